@@ -48,6 +48,7 @@ COMMANDS = {
     "nonlinear": Listed("nonlinear", "List where terms of higher order decide otherwise."),
     "convert": Listed("convert", "Convert YAML, plain text, and robots (URDF, MJCF)."),
     "schema": Listed("schema", "Print a JSON Schema, for editors and scripts."),
+    "edit": Listed("edit", "Draw, describe and understand a mechanism in the browser."),
     "lsp": Listed("lsp", "Serve an editor: complaints, completion, hover."),
     "explain": Listed("explain", "Tell what a problem computes, what a description holds."),
 }

@@ -76,7 +76,7 @@ class Guard:
             message = await receive()
             read += len(message.get("body", b""))
             if read > self.most:
-                raise TooLarge
+                raise TooLarge(f"a request has at most {self.most} bytes")
             return message
 
         path = str(scope["path"])[1 + len(self.token) :]
@@ -124,5 +124,6 @@ async def _answer(send: Send, status: int, code: str, words: str) -> None:
     body = json.dumps({"error": code, "message": words}).encode()
     headers = [(b"content-type", b"application/json"), (b"content-length", str(len(body)).encode())]
     # What rests of the request is not read, so that the connection is of no use any more.
-    await send({"type": "http.response.start", "status": status, "headers": [*headers, *HEADERS, (b"connection", b"close")]})
+    headers += [*HEADERS, (b"connection", b"close")]
+    await send({"type": "http.response.start", "status": status, "headers": headers})
     await send({"type": "http.response.body", "body": body})

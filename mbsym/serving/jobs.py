@@ -96,9 +96,7 @@ class _Job:
 class Jobs:
     """``tell`` gets every event, from any thread."""
 
-    def __init__(
-        self, tell: Callable[[Event], None], seconds: float = MOST_SECONDS, memory: int = MOST_MEMORY
-    ) -> None:
+    def __init__(self, tell: Callable[[Event], None], seconds: float = MOST_SECONDS, memory: int = MOST_MEMORY) -> None:
         self._tell, self._seconds, self._memory = tell, seconds, memory
         self._context = _context()
         self._running: dict[str, _Job] = {}
@@ -128,7 +126,7 @@ class Jobs:
                 return job.name
             own = [x for x in self._running.values() if x.tell is self._tell]
             old = [x for x in own if tell is None and (x.kind, x.page) == (job.kind, page)]
-            others = [x for x in self._running.values() if x not in old]
+            others = [x for x in own if x not in old] if tell is None else []
             self._running[job.name] = job
         for one in old:
             one.end("begun again")
@@ -146,12 +144,12 @@ class Jobs:
         job.end("cancelled")
         return True
 
-    def cancel_page(self, page: str) -> None:
-        """Nobody looks at what these would find."""
+    def cancel_all(self, words: str) -> None:
+        """Those that tell everybody."""
         with self._lock:
-            left = [x for x in self._running.values() if x.page == page]
+            left = [x for x in self._running.values() if x.tell is self._tell]
         for job in left:
-            job.end("nobody is there")
+            job.end(words)
 
     def result(self, task: Mapping[str, Any], page: str = "", seconds: float = 60.0) -> Event:
         """What a job of one message tells: that, or its failure.  Waits; not for an event loop."""

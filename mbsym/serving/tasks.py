@@ -1,11 +1,11 @@
 """What a job does, in a process of its own: a generator of what there is to tell, section by section.
 
-    {"kind": "section", "problem", "title", "state", "seconds", "html"}   a part of the report
-    {"kind": "progress", "words"}                                          what is being done
-    {"kind": "motion" | "modes" | "equilibria" | "picture", "value"}       what the picture shows
-    {"kind": "map", "image", "words"}                                      a map as an image (data:)
-    {"kind": "files", "files"}                                             texts of reports, by name
-    {"kind": "failed", "words"}                                            and nothing after it
+{"kind": "section", "problem", "title", "state", "seconds", "html"}   a part of the report
+{"kind": "progress", "words"}                                          what is being done
+{"kind": "motion" | "modes" | "equilibria" | "picture" | "hover", "value"}
+{"kind": "map", "image", "words"}                                      a map as an image (data:)
+{"kind": "files", "files"}                                             texts of reports, by name
+{"kind": "failed", "words"}                                            and nothing after it
 """
 
 from __future__ import annotations
@@ -157,6 +157,18 @@ def _picture(task: Task, system: System) -> Iterator[Message]:
     yield {"kind": "picture", "value": as_json(picture(system, read_values(system, task.get("set") or {})))}
 
 
+def _hover(task: Task, system: System) -> Iterator[Message]:
+    """What a word means, derived quantities included."""
+    from mbsym.analysis import Analysis
+    from mbsym.editing import explanation
+    from mbsym.serving.looking import word_at
+
+    line, column, start, end = word_at(task["text"], task["offset"])
+    told = explanation(task["text"], line, column, Analysis(system))
+    value = None if told is None else {"from": start, "to": end, "markdown": told}
+    yield {"kind": "hover", "value": value}
+
+
 def _simulate(task: Task, system: System) -> Iterator[Message]:
     from mbsym.picture import picture
     from mbsym.picture.motion import motion, motion_json
@@ -277,6 +289,7 @@ def _map(task: Task, system: System) -> Iterator[Message]:
 _KINDS = {
     "derive": _derive,
     "export": _export,
+    "hover": _hover,
     "picture": _picture,
     "simulate": _simulate,
     "equilibria": _equilibria,

@@ -1,0 +1,156 @@
+"""What a text means, as JSON values for the page: pure functions of the text, places in units of UTF-16."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from mbsym.editing import explanation, suggestions
+from mbsym.expressions.place import Complaint, Complaints, Span
+from mbsym.serving.offsets import Offsets
+from mbsym.source import read, to_text, to_yaml
+from mbsym.source.recognition import is_text, says_so
+
+if TYPE_CHECKING:
+    from mbsym.model.system import System
+
+#: A word that is completed, up to the place where one types.
+_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
+
+#: Longer formulas are not shown as they are typed.
+MOST_FORMULA = 5_000
+
+
+def spelling(text: str, name: str) -> str:
+    return "text" if is_text(text, name) else "yaml"
+
+
+def empty(name: str, stem: str) -> str:
+    """The description that a new file begins with."""
+    called = re.sub(r"[^A-Za-z0-9 ._-]", " ", stem).strip() or "mechanism"
+    if name.lower().endswith(".txt"):
+        return f"Mechanical system: {called}\n"
+    return f"mbsym: 1\nname: {called}\nbodies: []\n"
+
+
+def understood(text: str, name: str, folder: Path | None) -> tuple[System | None, list[Complaint]]:
+    """The system, or None, and everything that is wrong with the text, in its order."""
+    if not says_so(text):
+        return None, [Complaint("no-description", "a description begins with  mbsym: 1  or  Mechanical system: NAME")]
+    system, complaints = read(text, name, folder)
+    return system, list(complaints.sorted())
+
+
+def view(text: str, name: str, folder: Path | None) -> dict[str, Any]:
+    """The View of the seam: bodies, ties, the tree as written, complaints."""
+    system, found = understood(text, name, folder)
+    return {
+        "name": system.name if system else "",
+        "format": spelling(text, name),
+        "tree": None,
+        "bodies": [_body(one) for one in system.bodies] if system else [],
+        "constraints": [],
+        "loads": [],
+        "complaints": complaints_json(found, Offsets(text)),
+    }
+
+
+def _body(body: Any) -> dict[str, Any]:
+    parent = None if body.attached_to == "0" else body.attached_to
+    return {"name": body.name, "path": [], "parent": parent, "from": 0, "to": 0, "fields": {}}
+
+
+def changed(text: str, name: str, operations: list[Any], folder: Path | None) -> dict[str, Any]:
+    """What text edits operations mean, or why they mean none."""
+    told = Complaint("not-yet", "operations are not understood by this version")
+    return {"complaints": complaints_json([told], Offsets(text))}
+
+
+def complaints_json(found: list[Complaint], places: Offsets) -> list[dict[str, Any]]:
+    """Complaints of the seam."""
+    listed = []
+    for one in found:
+        start, end = places.of_span(one.span)
+        listed.append(
+            {
+                "severity": one.severity,
+                "code": one.code,
+                "message": one.message,
+                "hint": one.hint,
+                "from": start,
+                "to": end,
+                "line": one.span.line if one.span else 1,
+                "column": one.span.column if one.span else 1,
+            }
+        )
+    return listed
+
+
+def completed(text: str, offset: int, system: System | None) -> dict[str, Any]:
+    """What may stand at a place, and from where on it replaces what is typed."""
+    places = Offsets(text)
+    before = text[: places.characters(offset)]
+    start = before.rfind("\n") + 1
+    word = _WORD.search(before)
+    found = suggestions(text, before.count("\n"), len(before) - start, system)
+    items = [
+        {
+            "label": one.label,
+            "kind": one.kind,
+            "detail": one.kind,
+            "insert": one.insert or one.label,
+            "documentation": one.meaning,
+        }
+        for one in found
+    ]
+    return {"from": places.units(word.start() if word else len(before)), "items": items}
+
+
+def word_at(text: str, offset: int) -> tuple[int, int, int, int]:
+    """Line and column (from 0, in characters) of a place, and the word around it in units."""
+    places = Offsets(text)
+    at = places.characters(offset)
+    line = text.count("\n", 0, at)
+    column = at - (text.rfind("\n", 0, at) + 1)
+    start, end = at, at
+    while start > 0 and (text[start - 1].isalnum() or text[start - 1] == "_"):
+        start -= 1
+    while end < len(text) and (text[end].isalnum() or text[end] == "_"):
+        end += 1
+    return line, column, places.units(start), places.units(end)
+
+
+def hovered(text: str, offset: int) -> dict[str, Any] | None:
+    """What a word means as far as the reader's tables tell; nothing is derived for it."""
+    line, column, start, end = word_at(text, offset)
+    told = explanation(text, line, column)
+    return None if told is None else {"from": start, "to": end, "markdown": told}
+
+
+def converted(text: str, name: str, to: str, folder: Path | None) -> dict[str, Any]:
+    """The description in the other spelling, or the complaints for which there is none."""
+    system, found = understood(text, name, folder)
+    if system is None or any(one.severity == "error" for one in found):
+        return {"complaints": complaints_json(found, Offsets(text))}
+    return {"text": to_text(system) if to == "text" else to_yaml(system)}
+
+
+def typed_formula(source: str) -> dict[str, Any]:
+    """MathML of a formula as it is typed, or what is wrong with it."""
+    from mbsym.expressions.parser import parse_expression
+    from mbsym.expressions.tree import names
+    from mbsym.formulas.mathml import MathNames
+    from mbsym.report.html_description import expression
+
+    wrong = Complaints()
+    if len(source) > MOST_FORMULA:
+        wrong.error("too-long", f"a formula that is shown has at most {MOST_FORMULA} characters")
+        tree = None
+    else:
+        flat = " ".join(source.split())
+        tree = parse_expression(flat, wrong, lambda start, end: Span(1, start + 1, max(1, end - start)))
+    if tree is None or wrong.errors:
+        listed = complaints_json(wrong.sorted(), Offsets(source))
+        return {"complaint": listed[0] if listed else None}
+    return {"mathml": f"<math>{expression(tree, MathNames(sorted(names(tree))))}</math>"}
