@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,7 @@ from rich.text import Text
 from mbsym.expressions.counting import counted
 from mbsym.maps.boundaries import Origin
 from mbsym.maps.result import LineMap, Of, PlaneMap, Standing, Stratum
+from mbsym.maps.soft_borders import Onset
 from mbsym.model.system import System
 from mbsym.report.map_words import STANDINGS, condition_words, row_words, signature_words, telling
 from mbsym_cli.console import console, printable
@@ -86,6 +87,7 @@ def remarks(found: PlaneMap | LineMap) -> list[str]:
     large = sum(one.standing is Standing.TOO_LARGE for one in found.strata)
     if large:
         told.append(f"no verdict at {counted(large, 'exact point')} between regions: too large to be decided")
+    told += borders(found)
     if found.check is not None and found.check.holds:
         arcs = f" and {counted(found.check.arcs, 'arc')}" if found.check.arcs else ""
         by_balls = f"at {found.check.enclosed} of them eigenvalues in balls confirm the counts"
@@ -93,6 +95,50 @@ def remarks(found: PlaneMap | LineMap) -> list[str]:
             by_balls = "eigenvalues in balls exclude none of the counts, and decide none"
         told.append(f"check: {counted(found.check.points, 'more point')} in regions{arcs} agree; {by_balls}")
     return told
+
+
+#: What a border is called; the reason behind the last one is in map.json.
+_ONSETS = {
+    Onset.SOFT: "soft: asymptotically stable at the border, small oscillations arise beyond it",
+    Onset.HARD: "hard: unstable at the border already",
+    Onset.OPEN: "open: terms of third order do not decide, or are not at hand",
+}
+
+
+def borders(found: PlaneMap | LineMap) -> Iterator[str]:
+    """Where a pair of roots is imaginary and the others are to the left: how stability is lost."""
+    line = isinstance(found, LineMap)
+    strata = [one for one in (found.corners if line else found.arcs) if one.soft is not None]
+    for onset, words in _ONSETS.items():
+        alike = [one for one in strata if _onset(one) is onset]
+        if alike:
+            places = [_place(found, one) for one in alike]
+            yield f"border of flutter {', '.join(places)}: {words}"
+    for one in strata:
+        stretches = one.soft.stretches or () if one.soft is not None else ()
+        if len(stretches) > 1:
+            name = found.section.axes[0].name
+            parts = [f"{x.onset} for {name} from {float_of(x.start):.6g} to {float_of(x.end):.6g}" for x in stretches]
+            yield f"border of flutter {_place(found, one)}: {'; '.join(parts)}"
+
+
+def _onset(one: Stratum) -> Onset | None:
+    """That of the whole place; None where it is different along an arc."""
+    if one.soft is None or len(one.soft.stretches or ()) > 1:
+        return None
+    return one.soft.onset
+
+
+def _place(found: PlaneMap | LineMap, one: Stratum) -> str:
+    if isinstance(found, LineMap):
+        return f"at {float_of(found.line.zeros[one.number].number):.10g}"
+    partial = one.soft is not None and one.soft.stretches is None
+    return f"arc {one.number}" + (" (at its point in map.json)" if partial else "")
+
+
+def float_of(x: Any) -> float:
+    """A rational or algebraic number in floats."""
+    return float(x.p) / float(x.q) if isinstance(x, fmpq) else float(x)
 
 
 def _exactly(x: Any) -> str:

@@ -24,6 +24,7 @@ from mbsym.maps.mapping import Watch, asked, ends, unwatched
 from mbsym.maps.on_curves import ExactVerdicts
 from mbsym.maps.result import LineMap, Of, Shape, Standing, Stratum
 from mbsym.maps.section import Axis, Complaint, Fault, Section, Unfit, section
+from mbsym.maps.soft_borders import SoftBorders
 
 
 def line_map(
@@ -73,9 +74,15 @@ def line_map(
             replace(one, standing=Standing.WITHDRAWN, judged=None) if one.judged and one.number in doubted else one
             for one in zeros
         ]
+    borders = None
+    if of is Of.STABILITY and not interrupted:
+        borders = SoftBorders(analysis, there)
+        zeros = [
+            replace(one, soft=borders.at(line.zeros[one.number].number)) if one.imaginary else one for one in zeros
+        ]
     return LineMap(
         of, there, kept, replace(found, factors=tuple(factors)), line, tuple(regions), tuple(zeros), lengths(line),
-        interrupted, checked,
+        interrupted, checked, borders=borders,
     )  # fmt: skip
 
 

@@ -22,6 +22,7 @@ from mbsym.maps.constant_points import beside
 from mbsym.maps.on_curves import ExactVerdicts
 from mbsym.maps.result import Of, PlaneMap, Shape, Standing, Stratum
 from mbsym.maps.section import Axis, Complaint, Fault, Section, Unfit, section
+from mbsym.maps.soft_borders import SoftBorders
 from mbsym.maps.verdicts import Judged, matrix_at, verdict_at
 from mbsym.problems.stability.exact import inertia
 
@@ -53,7 +54,26 @@ def plane_map(
         raise Unfit([Complaint(Fault.OUTSIDE, "", one.condition.about) for one in kept.broken])
     watch("boundaries", 0, 1)
     found = boundaries(there, [*(one.condition for one in kept.demands), *asked(there)])
-    return mapped(there, kept, found, of, watch)
+    return _with_borders(mapped(there, kept, found, of, watch), SoftBorders(analysis, there), watch)
+
+
+def _with_borders(found: PlaneMap, borders: SoftBorders, watch: Watch) -> PlaneMap:
+    """The map with what terms of higher order say of arcs and corners where a pair of roots is imaginary."""
+    if found.of is not Of.STABILITY or found.interrupted:
+        return found
+    arcs, corners = list(found.arcs), list(found.corners)
+    interrupted = False
+    try:
+        for k, one in enumerate(arcs):
+            if one.imaginary:
+                watch("soft or hard", k, len(arcs))
+                arcs[k] = replace(one, soft=borders.along(found.arrangement, found.arrangement.arcs[one.number]))
+        for k, one in enumerate(corners):
+            if one.imaginary:
+                corners[k] = replace(one, soft=borders.at(found.point_of(one)))
+    except KeyboardInterrupt:
+        interrupted = True
+    return replace(found, arcs=tuple(arcs), corners=tuple(corners), interrupted=interrupted, borders=borders)
 
 
 def mapped(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 from mbsym.algebra.plane import Arrangement, Point
@@ -12,7 +12,8 @@ from mbsym.maps.admissible import Admissibility, Demand
 from mbsym.maps.boundaries import Boundaries
 from mbsym.maps.check import Check
 from mbsym.maps.section import Section
-from mbsym.maps.verdicts import Judged
+from mbsym.maps.soft_borders import SoftBorders, SoftOrHard
+from mbsym.maps.verdicts import Border, Judged
 from mbsym.problems.stability.word import Word
 
 
@@ -53,6 +54,7 @@ class Stratum:
     """A region, an arc of a curve, or a corner: ``number`` is its place in the arrangement's list.
 
     ``judged`` is None but where ``standing`` is JUDGED; ``broken``: the demands that are not kept there.
+    ``soft``: of arcs, corners and zeros at which one pair of roots is imaginary and none to the right; None elsewhere.
     """
 
     shape: Shape
@@ -60,6 +62,12 @@ class Stratum:
     standing: Standing
     judged: Judged | None = None
     broken: tuple[Demand, ...] = ()
+    soft: SoftOrHard | None = None
+
+    @property
+    def imaginary(self) -> bool:
+        """Whether a pair of roots is imaginary there and none is to the right: a border of flutter."""
+        return self.judged is not None and self.judged.border is Border.IMAGINARY and self.judged.right == 0
 
     @property
     def word(self) -> Word | None:
@@ -109,6 +117,7 @@ class LineMap(Shown):
     interrupted: bool = False
     check: Check | None = None
     arcs: tuple[Stratum, ...] = ()
+    borders: SoftBorders | None = field(default=None, repr=False, compare=False)
 
     @property
     def strata(self) -> Iterator[Stratum]:
@@ -133,7 +142,8 @@ class PlaneMap(Shown):
     """``regions``, ``arcs`` and ``corners`` in the order of ``arrangement``; ``interrupted``: some were not reached.
 
     ``areas``: of the regions, with estimates of their errors.  ``check``: more points in every cell and on every arc,
-    judged by a route without the boundary polynomials; None where it was not carried out.
+    judged by a route without the boundary polynomials; None where it was not carried out.  ``borders`` tells of further
+    points whether they are soft or hard; None where that was not asked.
     """
 
     of: Of
@@ -147,6 +157,7 @@ class PlaneMap(Shown):
     areas: tuple[tuple[float, float], ...]
     interrupted: bool = False
     check: Check | None = None
+    borders: SoftBorders | None = field(default=None, repr=False, compare=False)
 
     @property
     def strata(self) -> Iterator[Stratum]:

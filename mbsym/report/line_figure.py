@@ -16,7 +16,7 @@ from mbsym.model.system import System
 from mbsym.report.drawing import pictures
 from mbsym.report.language import Language
 from mbsym.report.map_figure import RESOLUTION, SMALL, TEXT, WIDTH, hatch_of, look, named, partial
-from mbsym.report.map_words import condition_words, look_words, telling
+from mbsym.report.map_words import condition_words, look_words, onset_words, telling
 from mbsym.report.unit_text import labelled
 
 #: Inches: the bar, and a line of the legend.
@@ -36,7 +36,7 @@ def changes(found: LineMap, language: Language) -> list[tuple[str, float, str]]:
     for one, there in zip(found.corners, found.line.zeros, strict=True):
         if found.changes(one):
             conditions = [condition for k in there.factors for condition in found.boundaries.conditions[k]]
-            words = condition_words(telling(conditions), found.section, language)
+            words = condition_words(telling(conditions), found.section, language) + onset_words([one], language)
             x = there.number
             told.append((float(x.p) / float(x.q) if isinstance(x, fmpq) else float(x), words))
     return [("abcdefghijklmnopqrstuvwxyz"[k % 26], x, words) for k, (x, words) in enumerate(told)]

@@ -28,7 +28,7 @@ from mbsym.model.system import System
 from mbsym.report.drawing import pictures
 from mbsym.report.language import Language
 from mbsym.report.map_language import say
-from mbsym.report.map_words import INTERRUPTED, condition_words, look_words, telling
+from mbsym.report.map_words import INTERRUPTED, arcs_of, condition_words, look_words, onset_words, telling
 from mbsym.report.unit_text import labelled
 from mbsym.report.verdict_colours import NONE, Look, look_of_degree, look_of_roots
 
@@ -310,7 +310,9 @@ def entries_of(shown: Sequence[tuple[PlaneMap, Mapping[int, str]]], language: La
             if letter not in named_letters:  # of slices, the first tells what a curve is
                 named_letters.add(letter)
                 condition = telling(found.boundaries.conditions[k], _borders_open(found, k))
-                by_condition.setdefault(condition_words(condition, found.section, language), []).append(letter)
+                words = condition_words(condition, found.section, language)
+                words += onset_words(arcs_of(found, k), language)
+                by_condition.setdefault(words, []).append(letter)
         counted |= found.of is Of.STABILITY and any(x.judged is not None and x.judged.right for x in found.regions)
         dashed |= any(found.singles_out(arc) and _style(found, arc) for arc in found.arcs)
     entries: list[tuple[Any, str]] = []

@@ -81,6 +81,7 @@ def plane_data(found: PlaneMap) -> dict[str, Any]:
         ],
         "arcs": [
             _stratum(one, _point(found.point_of(one)))
+            | soft_data(one)
             | {
                 "curves": list(there.factors),
                 "regions": list(there.regions),
@@ -91,6 +92,7 @@ def plane_data(found: PlaneMap) -> dict[str, Any]:
         ],
         "corners": [
             _stratum(one, _point(found.point_of(one)))
+            | soft_data(one)
             | {"curves": list(there.factors), "arcs": list(there.arcs), "kind": str(there.kind)}
             for one, there in zip(found.corners, arrangement.corners, strict=True)
         ],
@@ -107,7 +109,9 @@ def _of_line(found: LineMap) -> dict[str, Any]:
         ],
         "arcs": [],
         "corners": [
-            _stratum(one, [coordinate(there.number)]) | {"curves": list(there.factors), "arcs": [], "kind": "zero"}
+            _stratum(one, [coordinate(there.number)])
+            | soft_data(one)
+            | {"curves": list(there.factors), "arcs": [], "kind": "zero"}
             for one, there in zip(found.corners, found.line.zeros, strict=True)
         ],
     }
@@ -147,6 +151,27 @@ def judged_data(one: Stratum) -> dict[str, Any]:
         "zero_eigenvalues_of_K": None if judged is None else judged.null,
         "border": None if judged is None or judged.border is None else judged.border.value,
     }
+
+
+def soft_data(one: Stratum) -> dict[str, Any]:
+    """What terms of third order decide where a pair of roots is imaginary."""
+    found = one.soft
+    if found is None:
+        return {"soft_or_hard": None}
+    along = None
+    if found.stretches is not None:
+        along = [
+            {"from": coordinate(x.start), "to": coordinate(x.end), "onset": x.onset.value} for x in found.stretches
+        ]
+    data = {
+        "onset": found.onset.value,
+        "reason": found.why.value,
+        "frequency": None if found.frequency is None else float(found.frequency),
+        "coefficient": None if found.coefficient is None else float(found.coefficient),
+        "amplitude_of": found.amplitude_of,
+        "along": along,
+    }
+    return {"soft_or_hard": data}
 
 
 def _condition(one: Condition) -> dict[str, Any]:

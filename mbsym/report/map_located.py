@@ -23,7 +23,7 @@ LONGEST = 200
 
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d{1,3})?)(?:/(\d+))?\s*\Z", re.ASCII)
 
-WHERE, VERDICT = "where", "verdict"
+WHERE, VERDICT, BORDER = "where", "verdict", "border"
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,9 @@ def read_points(text: str, axes: Sequence[str]) -> tuple[Points | None, list[Wro
     wrong = [Wrong(1, f"there is no column '{name}'") for name in axes if name not in header]
     wrong += [Wrong(1, f"there are two columns '{name}'") for name in axes if header.count(name) > 1]
     wrong += [
-        Wrong(1, f"the column '{name}' would be written a second time") for name in (WHERE, VERDICT) if name in header
+        Wrong(1, f"the column '{name}' would be written a second time")
+        for name in (WHERE, VERDICT, BORDER)
+        if name in header
     ]
     if len(lines) - 1 > MOST_POINTS:
         wrong.append(Wrong(1, f"more than {MOST_POINTS} rows"))
@@ -90,12 +92,16 @@ def _number(text: str) -> Fraction | None:
 
 
 def located_csv(points: Points, found: PlaneMap | LineMap) -> str:
-    """The same rows with the columns ``where`` and ``verdict``."""
+    """The same rows with the columns ``where``, ``verdict`` and ``border``.
+
+    The last one: soft, hard or open at a point where a pair of roots is imaginary and none to the right.
+    """
     out = io.StringIO(newline="")
     writer = csv.writer(out, lineterminator="\n")
-    writer.writerow((*points.header, WHERE, VERDICT))
+    writer.writerow((*points.header, WHERE, VERDICT, BORDER))
     for row, values in zip(points.rows, points.values, strict=True):
-        writer.writerow((*row, *located(found, *values)))
+        stratum = judged_at(found, *values)
+        writer.writerow((*row, *_told(found, stratum), "" if stratum is None else _border(found, stratum, values)))
     return out.getvalue()
 
 
@@ -104,15 +110,36 @@ def located(found: PlaneMap | LineMap, *values: Fraction) -> tuple[str, str]:
 
     On an arc the verdict is that of the point itself.
     """
+    return _told(found, judged_at(found, *values))
+
+
+def judged_at(found: PlaneMap | LineMap, *values: Fraction) -> Stratum | None:
+    """The region, arc or corner of a rational point; an arc's verdict is found at the point itself.  None outside."""
     stratum = stratum_at(found, *values)
+    if stratum is not None and stratum.shape is Shape.ARC and stratum.standing is Standing.JUDGED:
+        # an arc's verdict is that of its own exact point: here it is found at the point that is asked about
+        return Judge(found.section, found.admissibility)(Shape.ARC, stratum.number, _place(values))
+    return stratum
+
+
+def _place(values: Sequence[Fraction]) -> Point:
+    return Point(*(fmpq(x.numerator, x.denominator) for x in values))
+
+
+def _told(found: PlaneMap | LineMap, stratum: Stratum | None) -> tuple[str, str]:
     if stratum is None:
         return "outside of the interval" if isinstance(found, LineMap) else "outside of the box", ""
-    if stratum.shape is Shape.ARC and stratum.standing is Standing.JUDGED:
-        # an arc's verdict is that of its own exact point: here it is found at the point that is asked about
-        place = Point(*(fmpq(x.numerator, x.denominator) for x in values))
-        stratum = Judge(found.section, found.admissibility)(Shape.ARC, stratum.number, place)
     word = stratum.word
     return f"{stratum.shape} {stratum.number}", stratum.standing.value if word is None else word.value
+
+
+def _border(found: PlaneMap | LineMap, stratum: Stratum, values: Sequence[Fraction]) -> str:
+    """``soft``, ``hard`` or ``open`` at a point on a border of flutter."""
+    if found.borders is None or not stratum.imaginary:
+        return ""
+    if stratum.shape is not Shape.ARC:
+        return "" if stratum.soft is None else stratum.soft.onset.value
+    return found.borders.at(_place(values)).onset.value
 
 
 def stratum_at(found: PlaneMap | LineMap, *values: Fraction) -> Stratum | None:

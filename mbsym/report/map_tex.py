@@ -13,7 +13,7 @@ from mbsym.report.language import Language
 from mbsym.report.line_figure import changes
 from mbsym.report.map_figure import lettered
 from mbsym.report.map_language import say
-from mbsym.report.map_words import INTERRUPTED, condition_words, telling
+from mbsym.report.map_words import INTERRUPTED, arcs_of, condition_words, onset_words, telling
 
 #: Longer polynomials are told by their degrees and number of terms.
 MOST_TERMS = 14
@@ -69,6 +69,7 @@ def _curves(found: PlaneMap, names: LatexNames, language: Language) -> list[str]
     items = []
     for k, letter in lettered(found).items():
         condition = condition_words(telling(found.boundaries.conditions[k]), found.section, language)
+        condition += onset_words(arcs_of(found, k), language)
         polynomial = equation(found.boundaries.factors[k], names, language)
         items.append(rf"\item[\textit{{{letter}}}] {polynomial} \quad ({escaped(condition)})")
     return items

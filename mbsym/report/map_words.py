@@ -6,8 +6,9 @@ from collections.abc import Sequence
 
 from mbsym.expressions.counting import counted
 from mbsym.maps.boundaries import Condition, Origin
-from mbsym.maps.result import Of, Shown, Standing, Stratum
+from mbsym.maps.result import Of, PlaneMap, Shape, Shown, Standing, Stratum
 from mbsym.maps.section import Section
+from mbsym.maps.soft_borders import Onset
 from mbsym.maps.verdicts import Judged
 from mbsym.problems.stability.word import Word
 from mbsym.report.language import Language
@@ -72,6 +73,30 @@ def condition_words(condition: Condition, section: Section, language: Language =
     if condition.part is None or len(section.parts) == 1:
         return words
     return f"{words} ({', '.join(section.coordinates[condition.part])})"
+
+
+def arcs_of(found: PlaneMap, curve: int) -> list[Stratum]:
+    """The arcs of a boundary polynomial."""
+    return [one for one in found.arcs if curve in found.arrangement.arcs[one.number].factors]
+
+
+def onset_words(strata: Sequence[Stratum], language: Language = ENGLISH) -> str:
+    """``, soft border`` of a curve's arcs or of zeros where terms of third order decide that on all of them.
+
+    Nothing where one of them is open, or is decided at its point only.
+    """
+    seen: set[Onset] = set()
+    for one in strata:
+        if one.soft is not None:
+            stretches = one.soft.stretches
+            if one.shape is Shape.ARC and stretches is None:
+                return ""
+            seen |= {one.soft.onset, *(x.onset for x in stretches or ())}
+    if not seen or Onset.OPEN in seen:
+        return ""
+    only = next(iter(seen)) if len(seen) == 1 else None
+    words = {Onset.SOFT: "soft border", Onset.HARD: "hard border", None: "soft border in parts, hard in others"}
+    return f", {say(language, words[only])}"
 
 
 def look_words(found: Shown, stratum: Stratum, language: Language = ENGLISH) -> str:

@@ -259,7 +259,7 @@ def test_the_tex_of_a_map_compiles(written: Path, tmp_path: Path) -> None:
 
 def test_located_points(written: Path) -> None:
     rows = list(csv.DictReader((written / "located.csv").open()))
-    assert list(rows[0]) == ["name", "gamma", "alpha", "where", "verdict"]
+    assert list(rows[0]) == ["name", "gamma", "alpha", "where", "verdict", "border"]
     assert [row["verdict"] for row in rows] == ["stable", "undecided", "undecided", ""]
     assert [row["where"].split()[0] for row in rows] == ["region", "arc", "corner", "outside"]
     found = mapped(*SATELLITE)

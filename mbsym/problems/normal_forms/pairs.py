@@ -23,7 +23,11 @@ def judged_on_border(found: Expansion, values: Mapping[str, Any], zero: Sequence
     """``zero``: ``root`` where a root is zero exactly, ``pair`` where the Hurwitz determinant before the last is."""
     from mbsym.problems.normal_forms.problem import enclosed
 
-    field, positions = state_field(enclosed(found, values))
+    return judged_enclosed(*state_field(enclosed(found, values)), zero)
+
+
+def judged_enclosed(field: Sequence[Truncated], positions: Sequence[str], zero: Sequence[str]) -> Judged:
+    """The same of a field with enclosed coefficients; ``positions`` are the coordinates among its first variables."""
     coefficients = faddeev(matrix_of(field), acb(0), acb(1))[1]
     if "root" in zero:
         return _zero(field, coefficients[1:]) if "pair" not in zero else _open(Why.MIXED_ROOTS)

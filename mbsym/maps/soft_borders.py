@@ -1,0 +1,347 @@
+"""Soft or hard: what becomes of a motion on the border at which a pair of roots becomes imaginary.
+
+At an exact point of an arc where problem 6 finds one pair +-i w and all other roots to the left, terms of third order
+decide (problem 11):  r' = a r^3 + ... on the centre manifold.  a < 0: the motion is asymptotically stable on the border
+and small oscillations arise beyond it (soft); a > 0: it is unstable on the border already (hard).  Zero roots, more
+pairs and systems without such an expansion are left open, each with its reason.
+
+``at`` decides at a point, by enclosures; that the pair is imaginary is known exactly.  ``along`` decides on a whole
+arc: a is a fraction of polynomials on the curve, its zeros and poles are among the real roots of resultants, and one
+point between two neighbouring ones stands for all (``normal_forms.on_curve``); there both routes have to agree.
+
+Source: N. N. Bautin, The Behaviour of Dynamical Systems near the Boundaries of the Stability Region (1949).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from functools import cached_property
+from itertools import pairwise
+from typing import Any
+
+from flint import acb, acb_poly, arb, ctx, fmpq_poly
+
+from mbsym.algebra.factors import irreducible_factors
+from mbsym.algebra.failures import Failure, Limit, TooLargeError
+from mbsym.algebra.plane import Arrangement, Point
+from mbsym.algebra.plane.arrangement import Arc, Piece, sample_of
+from mbsym.algebra.plane.numbers import between_simply, compare, enclosure, primitive, roots_between
+from mbsym.algebra.plane.numbers import high as upper
+from mbsym.algebra.plane.numbers import low as lower
+from mbsym.algebra.plane.projection import Curve, coefficients
+from mbsym.algebra.tower import Element, Tower
+from mbsym.analysis import Analysis
+from mbsym.analysis.higher import ignorable
+from mbsym.maps.images import Images
+from mbsym.maps.section import Section
+from mbsym.problems.normal_forms.dissipative import state_field
+from mbsym.problems.normal_forms.expansion import Expansion, Numbers, expansion
+from mbsym.problems.normal_forms.on_curve import OnCurve, on_curve
+from mbsym.problems.normal_forms.pairs import judged_enclosed
+from mbsym.problems.normal_forms.problem import PRECISION
+from mbsym.problems.normal_forms.result import Judged as Higher
+from mbsym.problems.normal_forms.result import Outcome, Theorem, Why
+
+#: Resultants of a higher degree than this are not formed: the arc is decided at its point then.
+MOST_DEGREE = 2_000
+
+
+class Onset(StrEnum):
+    """How stability is lost where a pair of roots becomes imaginary."""
+
+    SOFT = "soft"
+    HARD = "hard"
+    OPEN = "open"
+
+
+class Missing(StrEnum):
+    """Why there is no field to be expanded; other reasons are those of problem 11."""
+
+    CONSTRAINTS = "constraints"
+    MATRICES = "given-by-matrices"
+    CONDITIONS = "unsolved-conditions"
+    EXPANSION = "no-expansion"
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """A part of an arc between two values of the first axis, in the arc's order; on the open part ``onset`` holds."""
+
+    start: Any
+    end: Any
+    onset: Onset
+
+
+@dataclass(frozen=True)
+class SoftOrHard:
+    """``onset`` at the exact point; +-i ``frequency``, a = ``coefficient`` of r' = a r^3, r that of ``amplitude_of``.
+
+    ``stretches``: the whole arc but for their ends, neighbours of different onset; one: the onset is that of all points
+    of the arc but for its corners.  None: nothing is said but of the point.  ``why``: of an open one.
+    """
+
+    onset: Onset
+    why: Why | Missing = Why.NONE
+    frequency: Any = None
+    coefficient: Any = None
+    amplitude_of: str = ""
+    stretches: tuple[Stretch, ...] | None = None
+
+
+class SoftBorders:
+    """Decides points and arcs of a section; the expansion is formed when it is first needed."""
+
+    def __init__(self, analysis: Analysis, section: Section) -> None:
+        self.analysis = analysis.in_coordinates if analysis.system.speeds else analysis
+        self.section = section
+        self._along: dict[int, _Along | None] = {}
+
+    @cached_property
+    def _expanded(self) -> tuple[Expansion, Images] | Missing:
+        system = self.analysis.system
+        if system.constraints:
+            return Missing.CONSTRAINTS
+        if system.linear is not None:
+            return Missing.MATRICES
+        try:
+            motion = self.analysis.equilibrium
+            if len(motion.conditions) > len(motion.solved):
+                return Missing.CONDITIONS
+            _, cyclic = ignorable(self.analysis)
+            scene = self.analysis.parameters_scene
+            found = expansion(scene, system, motion, 4, cyclic)
+        except (Failure, ZeroDivisionError):
+            return Missing.EXPANSION
+        axes = [axis.name for axis in self.section.axes]
+        solved = {name: value.polynomial for name, value in motion.solved}
+        there = self.section
+        return found, Images(scene, axes, there.context, there.numbers, solved, there.constant)
+
+    def at(self, place: Any) -> SoftOrHard:
+        """At an exact point (of a line: an exact number) at which a pair of roots is imaginary."""
+        expanded = self._expanded
+        if isinstance(expanded, Missing):
+            return SoftOrHard(Onset.OPEN, expanded)
+        numbers = place.enclosures(PRECISION) if isinstance(place, Point) else (enclosure(place, PRECISION),)
+        with ctx.workprec(PRECISION):
+            return self._at(numbers)
+
+    def _at(self, numbers: Sequence[Any]) -> SoftOrHard:
+        expanded = self._expanded
+        assert not isinstance(expanded, Missing)
+        found, images = expanded
+        constant = self.section.constant
+        point = [*numbers, *([] if constant is None else [constant.number.enclosure(PRECISION)])]
+
+        def carry(p: Any) -> acb:
+            top, bottom = images(p)
+            return acb(top_at(top, point)) / acb(top_at(bottom, point))
+
+        try:
+            field = state_field(Numbers(found, carry, lambda x: 1 / x, acb(0), acb(1)))
+        except (Failure, ZeroDivisionError):
+            return SoftOrHard(Onset.OPEN, Missing.EXPANSION)
+        return _told(judged_enclosed(*field, ("pair",)))
+
+    def along(self, made: Arrangement, arc: Arc) -> SoftOrHard:
+        """On an arc: at its point, and on all of it where formulas are small enough."""
+        there = self.at(arc.point)
+        if there.onset is Onset.OPEN or self.section.constant is not None or any(x.vertical for x in arc.pieces):
+            return there
+        curve = next(k for k, one in enumerate(made.curves) if set(one.of) & set(arc.factors))
+        with ctx.workprec(PRECISION):
+            if curve not in self._along:
+                self._along[curve] = self._formula(made.curves[curve], arc)
+            formula = self._along[curve]
+            stretches = None if formula is None else _stretches(self, formula, made, arc, curve)
+        return replace(there, stretches=stretches)
+
+    def _formula(self, curve: Curve, arc: Arc) -> _Along | None:
+        """a on a curve; None where it outgrows its budgets, or the curve is another one."""
+        expanded = self._expanded
+        assert not isinstance(expanded, Missing)
+        found, images = expanded
+        tower = Tower([axis.name for axis in self.section.axes])
+        gens = [tower.parameter(name).top for name in tower.parameters]
+        values = dict(zip(tower.parameters, arc.point.enclosures(PRECISION), strict=True))
+
+        def carry(p: Any) -> Element:
+            top, bottom = (x.compose(*gens, ctx=tower.context) for x in images(p))
+            return tower.made(top, bottom)
+
+        def size(x: Element) -> float:
+            value = tower.enclosed(x, values)
+            return 0.0 if value.contains(0) else float(abs(value).mid())
+
+        try:
+            field, positions = state_field(Numbers(found, carry, tower.reciprocal, tower.zero, tower.one))
+            whole = on_curve(tower, field, positions, size)
+            return _Along(whole, curve) if _lies_on(whole, curve) else None
+        except (Failure, ZeroDivisionError):
+            return None
+
+
+def top_at(p: Any, point: Sequence[Any]) -> Any:
+    """A polynomial of a section at enclosed numbers."""
+    total = arb(0)
+    for powers, value in p.terms():
+        term = arb(value)
+        for x, power in zip(point, powers, strict=True):
+            if power:
+                term *= x ** int(power)
+        total += term
+    return total
+
+
+def _told(judged: Higher) -> SoftOrHard:
+    """What problem 11 says, in the words of borders."""
+    onset = Onset.OPEN
+    if judged.theorem is Theorem.REDUCTION and judged.coefficient is not None and judged.amplitude_of:
+        onset = Onset.SOFT if judged.outcome is Outcome.ASYMPTOTIC else Onset.HARD
+    frequency = judged.frequencies[0] if judged.frequencies else None
+    why = Why.NONE if onset is not Onset.OPEN else judged.why
+    return SoftOrHard(onset, why, frequency, judged.coefficient, judged.amplitude_of)
+
+
+def _plane(x: Any, curve: Curve) -> Any:
+    """A polynomial of a tower without roots in the context of a curve."""
+    context, skipped = curve.polynomial.context(), x.context().nvars() - 2
+    return context.from_dict({tuple(map(int, powers))[skipped:]: value for powers, value in x.to_dict().items()})
+
+
+def _lies_on(whole: OnCurve, curve: Curve) -> bool:
+    """Whether E and O have a common root all along the curve, exactly."""
+    return whole.resultant.is_zero() or divmod(_plane(whole.resultant.top, curve), curve.polynomial)[1] == 0
+
+
+class _Along:
+    """a along one curve: where its sign may change, and its sign at a point."""
+
+    def __init__(self, whole: OnCurve, curve: Curve) -> None:
+        self.curve = curve
+        self.top, self.bottom = (_plane(x, curve) for x in (whole.coefficient.top, whole.coefficient.bottom))
+        watched = [self.top, self.bottom]
+        watched += [_plane(x, curve) for one in (whole.slope, whole.constant) for x in (one.top, one.bottom)]
+        self.critical = list(self._abscissas(watched))
+
+    def _abscissas(self, watched: Sequence[Any]) -> Iterator[Any]:
+        """Polynomials in x that vanish wherever one of the watched does on the curve.  Raises TooLargeError."""
+        seen = set()
+        for p in watched:
+            for factor, _ in [] if p.is_constant() else irreducible_factors(p)[1]:
+                if factor.is_constant() or str(factor) in seen:
+                    continue
+                seen.add(str(factor))
+                a, b = factor.degrees(), self.curve.polynomial.degrees()
+                if int(a[0]) * int(b[1]) + int(a[1]) * int(b[0]) > MOST_DEGREE:
+                    raise TooLargeError("a resultant of a high degree", limit=Limit.DEGREE)
+                met = factor if not a[1] else factor.resultant(self.curve.polynomial, 1)
+                if met == 0:
+                    raise TooLargeError("it vanishes all along the curve", limit=Limit.DEGREE)
+                yield coefficients(met, 1)[0]
+
+    def between(self, low: Any, high: Any) -> list[Any]:
+        """The critical abscissas between two exact numbers, in order, each once."""
+        whole = fmpq_poly([1])
+        for one in self.critical:
+            whole *= one
+        if whole.degree() < 1:
+            return []
+        square_free = primitive(whole / whole.gcd(whole.derivative()))
+        found = [sample_of(root) for root in roots_between(square_free, lower(low), upper(high))]
+        return [x for x in found if compare(low, x) < 0 and compare(x, high) < 0]
+
+    def sign(self, x: Any, y: Any) -> int:
+        """Of a at enclosed numbers; 0 where it is not told."""
+        value = top_at(self.top, (x, y)) * top_at(self.bottom, (x, y))
+        return 1 if value > 0 else -1 if value < 0 else 0
+
+
+def _stretches(
+    borders: SoftBorders, formula: _Along, made: Arrangement, arc: Arc, curve: int
+) -> tuple[Stretch, ...] | None:
+    """Stretches of one sign of a; None where a point of the arc could not be told."""
+    found: list[Stretch] = []
+    for piece in arc.pieces:
+        run = list(_of_piece(borders, formula, made, piece, curve))
+        if any(one is None for one in run):
+            return None
+        kept = [one for one in run if one is not None]
+        if piece.backwards:
+            kept = [Stretch(one.end, one.start, one.onset) for one in reversed(kept)]
+        if found and found[-1].onset is kept[0].onset and _same_between(borders, made, piece, kept[0].onset):
+            found[-1:] = [Stretch(found[-1].start, kept[0].end, kept[0].onset)]
+            kept = kept[1:]
+        found += kept
+    if arc.corners == (None, None) and not _same_between(borders, made, arc.pieces[0], found[0].onset):
+        return None  # closed: where it starts is a point of it
+    return tuple(found)
+
+
+def _same_between(borders: SoftBorders, made: Arrangement, piece: Piece, onset: Onset) -> bool:
+    """Whether the point from which a piece goes on has the same onset."""
+    right = piece.backwards
+    fibre = made.fibres[piece.strip + right]
+    firsts = fibre.left if right else fibre.right
+    j = next(j for j in range(len(firsts) - 1) if firsts[j] <= piece.section < firsts[j + 1])
+    return borders.at(Point(fibre.abscissa.x, fibre.points[j].y)).onset is onset
+
+
+def _of_piece(
+    borders: SoftBorders, formula: _Along, made: Arrangement, piece: Piece, curve: int
+) -> Iterator[Stretch | None]:
+    """Stretches of a piece from left to right; None where a sign is not told."""
+    sections = made.columns[piece.strip].sections
+    place = sum(1 for one in sections[: piece.section] if one.curve == curve)
+    count = sum(1 for one in sections if one.curve == curve)
+    ends = [made.fibres[piece.strip + k].abscissa.x for k in (0, 1)]
+    marks = [ends[0], *formula.between(*ends), ends[1]]
+    last: Stretch | None = None
+    for left, right in pairwise(marks):
+        x = between_simply(left, right)
+        y = _ordinate(formula.curve, made, arb(x), place, count)
+        sign = 0 if y is None else formula.sign(arb(x), y)
+        onset = borders._at((arb(x), y)).onset if sign else None
+        if onset is None or (onset is not Onset.OPEN and (onset is Onset.HARD) != (sign > 0)):
+            yield None
+            return
+        here = Stretch(left, right, onset)
+        if last is not None and last.onset is here.onset and _regular(borders, formula, made, left, place, count, here):
+            last = Stretch(last.start, right, here.onset)
+            continue
+        if last is not None:
+            yield last
+        last = here
+    yield last
+
+
+def _regular(
+    borders: SoftBorders, formula: _Along, made: Arrangement, x: Any, place: int, count: int, here: Stretch
+) -> bool:
+    """Whether the onset at an abscissa within a piece is that of its neighbourhood, by enclosures."""
+    ball = enclosure(x, PRECISION)
+    y = _ordinate(formula.curve, made, ball, place, count)
+    return y is not None and borders._at((ball, y)).onset is here.onset
+
+
+def _ordinate(curve: Curve, made: Arrangement, x: Any, place: int, count: int) -> Any:
+    """The ``place``-th of the ``count`` ordinates of a curve over an enclosed x within a strip; None if not told."""
+    rows = acb_poly([arb_poly_at(c, x) for c in curve.in_y])
+    try:
+        roots = rows.roots(tol=arb(2) ** (-(PRECISION // 2)))
+    except ValueError:
+        return None
+    low, high = arb(made.box.y0), arb(made.box.y1)
+    real = sorted((z.real for z in roots if z.imag.contains(0)), key=lambda one: float(one.mid()))
+    inside = [y for y in real if y > low and y < high]
+    return inside[place] if len(inside) == count else None
+
+
+def arb_poly_at(p: Any, x: Any) -> Any:
+    """A polynomial with rational coefficients at an enclosed number."""
+    total = arb(0)
+    for c in reversed(p.coeffs()):
+        total = total * x + arb(c)
+    return total

@@ -1,0 +1,178 @@
+"""Soft and hard borders of maps, against Lyapunov coefficients found by hand.
+
+x'' - (p - q^2) x' + w^2 x + (q - 1/3) x'^3 + s x^2 x' = 0 has imaginary roots on p = q^2, where averaging over
+x = r cos(w t) gives  r' = -(3 w^2 (q - 1/3) + s) r^3/8  (Guckenheimer & Holmes, (3.4.11); w^2 = 1 + q^2 here).
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner
+from flint import fmpq
+from jsonschema import Draft202012Validator
+
+import mbsym
+from mbsym.maps import soft_borders
+from mbsym.maps.line_map import line_map
+from mbsym.maps.mapping import plane_map
+from mbsym.maps.result import PlaneMap, Stratum
+from mbsym.maps.section import Axis
+from mbsym.maps.soft_borders import Missing, Onset
+from mbsym.problems.normal_forms import Why
+from mbsym.report.language import Language
+from mbsym.report.map_words import onset_words
+from mbsym.report.schemas import schema
+from mbsym_cli.main import main
+
+TEXT = """
+mbsym: 1
+name: a border that changes
+parameters: {p: {}, q: {}, s: {}}
+bodies:
+  - {name: one, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}
+loads:
+  - {potential: (1 + q**2)*x**2/2}
+  - {generalized force: {x: "(p - q**2 - s*x**2)*x_dot - (q - 1/3)*x_dot**3"}}
+motion: {x: 0}
+"""
+
+
+def mapped(text: str, across: str, up: str, low: int = -1, **settings: int) -> PlaneMap:
+    axes = [Axis(name, Fraction(low), Fraction(1)) for name in (across, up)]
+    return plane_map(mbsym.loads(text), axes, {k: Fraction(v) for k, v in settings.items()})
+
+
+def borders(found: PlaneMap) -> list[Stratum]:
+    return [one for one in found.arcs if one.soft is not None]
+
+
+def told(found: PlaneMap) -> set[tuple[Any, Any, Onset]]:
+    """All stretches; the lines p = 0 and q = 0, on which the law of the energy depends, divide arcs, too."""
+    strata = borders(found)
+    assert strata
+    assert all(one.soft is not None and one.soft.stretches is not None for one in strata)
+    return {(*sorted((x.start, x.end)), x.onset) for one in strata for x in one.soft.stretches}  # type: ignore
+
+
+@pytest.fixture(scope="module")
+def changing() -> PlaneMap:
+    return mapped(TEXT, "q", "p", s=0)
+
+
+def test_where_a_border_changes_from_hard_to_soft(changing: PlaneMap) -> None:
+    assert told(changing) == {(-1, 0, Onset.HARD), (0, fmpq(1, 3), Onset.HARD), (fmpq(1, 3), 1, Onset.SOFT)}
+    for arc in borders(changing):
+        q = Fraction(str(changing.arrangement.arcs[arc.number].point.x))
+        assert arc.soft is not None
+        assert float(arc.soft.coefficient) == pytest.approx(float(-3 * (1 + q**2) * (q - Fraction(1, 3)) / 8))
+        assert float(arc.soft.frequency) ** 2 == pytest.approx(float(1 + q**2))
+    assert onset_words(borders(changing)) == ", soft border in parts, hard in others"
+    assert onset_words(borders(changing), Language("ru")) == ", граница частью безопасная, частью опасная"
+
+
+def test_the_same_with_the_axes_exchanged() -> None:
+    """Two branches over p, of which the lower one is hard: q < 0."""
+    ninth = fmpq(1, 9)
+    assert told(mapped(TEXT, "p", "q", s=0)) == {(0, 1, Onset.HARD), (0, ninth, Onset.HARD), (ninth, 1, Onset.SOFT)}
+
+
+@pytest.mark.parametrize(("s", "onset"), [(9, Onset.SOFT), (-9, Onset.HARD)])
+def test_a_whole_border(s: int, onset: Onset) -> None:
+    """3 (1 + q^2)(q - 1/3) is between -8 and 4 for -1 < q < 1: s decides alone."""
+    found = mapped(TEXT, "q", "p", s=s)
+    assert told(found) == {(-1, 0, onset), (0, 1, onset)}
+    assert onset_words(borders(found)) == f", {onset} border"
+
+
+CIRCLE = TEXT.replace("(p - q**2 -", "(1/16 - (p - 1/2)**2 - (q - 1/2)**2 -")
+
+
+def test_a_closed_border() -> None:
+    """Through points with vertical tangents; 3 (1 + q^2)(q - 1/3) is between -1/2 and 9/4 on it."""
+    (arc,) = borders(mapped(CIRCLE, "p", "q", 0, s=3))
+    assert arc.soft is not None
+    assert arc.soft.stretches is not None
+    assert [x.onset for x in arc.soft.stretches] == [Onset.SOFT]
+
+
+def test_a_closed_border_that_changes() -> None:
+    """q = 1/3 on the circle: (p - 1/2)^2 = 1/16 - 1/36 = 5/144; hard below."""
+    (arc,) = borders(mapped(CIRCLE, "p", "q", 0, s=0))
+    assert arc.soft is not None
+    assert arc.soft.stretches is not None
+    ends = sorted({round(float(x.start), 9) for x in arc.soft.stretches if not hasattr(x.start, "p")})
+    assert ends == [round(0.5 - 5**0.5 / 12, 9), round(0.5 + 5**0.5 / 12, 9)]
+    assert {x.onset for x in arc.soft.stretches} == {Onset.SOFT, Onset.HARD}
+
+
+def test_a_coefficient_with_a_double_zero_leaves_one_point_out() -> None:
+    """(q - 1/3)^2 in place of q - 1/3: soft on both sides, and nothing is said at q = 1/3."""
+    found = mapped(TEXT.replace("(q - 1/3)*x_dot", "(q - 1/3)**2*x_dot"), "q", "p", s=0)
+    assert told(found) == {(-1, 0, Onset.SOFT), (0, fmpq(1, 3), Onset.SOFT), (fmpq(1, 3), 1, Onset.SOFT)}
+
+
+def test_a_linear_border_is_neither() -> None:
+    """Without any term of third order a = 0 on the whole arc."""
+    found = borders(mapped(TEXT.replace("(q - 1/3)*x_dot**3", "0*x_dot**3"), "q", "p", s=0))
+    assert {(x.soft.onset, x.soft.why) for x in found if x.soft} == {(Onset.OPEN, Why.COEFFICIENT_OPEN)}
+    assert onset_words(found) == ""
+
+
+def test_two_pairs_at_once_are_left_open() -> None:
+    """A second oscillator of another frequency with the same damping: no theorem about one pair applies."""
+    text = TEXT.replace("connection point: [x, 0, 0]", "connection point: [x, y, 0]")
+    text = text.replace("coordinates: [x]", "coordinates: [x, y]").replace("x**2/2}", "x**2/2 + 2*y**2}")
+    text = text.replace('x_dot**3"}', 'x_dot**3", y: (p - q**2 - s*y**2)*y_dot}').replace("{x: 0}", "{x: 0, y: 0}")
+    found = borders(mapped(text, "q", "p", s=1))
+    assert {(x.soft.onset, x.soft.why) for x in found if x.soft} == {(Onset.OPEN, Why.MORE_PAIRS)}
+
+
+def test_given_matrices_have_no_terms_of_third_order() -> None:
+    text = "mbsym: 1\nname: m\nparameters: {p: {}, q: {}}\n"
+    text += "linear system: {coordinates: [x], M: [[1]], D: [[q**2 - p]], K: [[1]]}\n"
+    found = borders(mapped(text, "q", "p"))
+    assert {(x.soft.onset, x.soft.why) for x in found if x.soft} == {(Onset.OPEN, Missing.MATRICES)}
+
+
+def test_a_wrong_formula_is_not_believed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Both routes have to agree at every sample: with the sign of one turned only the point is told."""
+    right = soft_borders._Along.sign
+    monkeypatch.setattr(soft_borders._Along, "sign", lambda self, x, y: -right(self, x, y))
+    found = borders(mapped(TEXT, "q", "p", s=9))
+    assert {(x.soft.onset, x.soft.stretches) for x in found if x.soft} == {(Onset.SOFT, None)}
+    assert onset_words(found) == ""
+
+
+def test_a_zero_of_a_line() -> None:
+    """p = q^2 with q = 1/2: a = -(3 * 5/4 * 1/6)/8 = -5/64."""
+    settings = {"q": Fraction(1, 2), "s": Fraction(0)}
+    found = line_map(mbsym.loads(TEXT), Axis("p", Fraction(-1), Fraction(1)), settings)
+    (zero,) = [one for one in found.corners if one.soft is not None]
+    assert zero.soft is not None
+    assert zero.soft.onset is Onset.SOFT
+    assert float(zero.soft.coefficient) == pytest.approx(-5 / 64, rel=1e-12)
+
+
+def test_what_is_written(tmp_path: Path) -> None:
+    """map.json by its schema, located.csv at points of the arc, the terminal."""
+    (tmp_path / "changing.yaml").write_text(TEXT)
+    (tmp_path / "points.csv").write_text("q,p\n1/2,1/4\n0,0\n1/3,1/9\n0,1/2\n")
+    words = ["map", str(tmp_path / "changing.yaml"), "--x", "q=-1:1", "--y", "p=-1:1", "-s", "s=0"]
+    words += ["--format", "json,tex", "--locate", str(tmp_path / "points.csv"), "-o", str(tmp_path / "out")]
+    done = CliRunner().invoke(main, words)
+    assert done.exit_code == 0, done.output
+    content = json.loads((tmp_path / "out" / "map.json").read_text())
+    assert not list(Draft202012Validator(schema("map")).iter_errors(content))
+    along = [x for one in content["arcs"] if one["soft_or_hard"] for x in one["soft_or_hard"]["along"]]
+    ends = [("-1", "0", "hard"), ("0", "1/3", "hard"), ("1/3", "1", "soft")]
+    assert sorted((x["from"]["exact"], x["to"]["exact"], x["onset"]) for x in along) == sorted(ends)
+    rows = list(csv.DictReader((tmp_path / "out" / "located.csv").open()))
+    assert [row["border"] for row in rows] == ["soft", "hard", "open", ""]
+    assert "hard for q from 0 to 0.333333; soft for q from 0.333333 to 1" in " ".join(done.stdout.split())
+    assert "soft border in parts, hard in others" in (tmp_path / "out" / "map.tex").read_text()
