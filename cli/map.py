@@ -68,7 +68,7 @@ def command(
     are stable; written are equilibria-map.svg, .pdf, .png, .json and .tex.
 
     Where a pair of roots becomes imaginary, terms of third order say whether the border is soft or hard (problem 11):
-    at the arc's exact point and, where formulas are small enough, along the whole arc, with the points where it changes.
+    at the arc's exact point and, where formulas are small enough, along the whole arc, with points where it changes.
 
     Written are map.svg, map.pdf, map.png, map.json (every region, arc and corner), map.tex (to \\input) and, with
     --locate, located.csv.  Exit codes: 0 done, 1 there is nothing to judge or files could not be written, 2 something
