@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 #: More than any budget of monomials allows.
 MOST_DEGREE = 60
 MOST_WEIGHT = 12
+#: Seconds for ``--cases``.
+BUDGET = 60.0
 
 
 @click.command("integrals")
@@ -31,6 +33,7 @@ MOST_WEIGHT = 12
 )
 @click.option("--vary", "-v", metavar="NAME=LOW:HIGH", help="At which values of a parameter are there more?")
 @click.option("--cases", is_flag=True, help="Under which conditions on parameters are there more?")
+@click.option("--budget", metavar="S", help="Seconds after which --cases begins nothing more.  [default: 60]")
 @click.option("--relations", is_flag=True, help="Linear invariant relations, with their conditions.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON instead of a table.")
 def command(
@@ -40,6 +43,7 @@ def command(
     weights: tuple[str, ...],
     vary: str | None,
     cases: bool,
+    budget: str | None,
     relations: bool,
     as_json: bool,
 ) -> None:
@@ -53,8 +57,9 @@ def command(
 
     --vary finds every value of one parameter in an interval at which there are more, also those that hold only where
     another integral is zero; other parameters need numbers.  --cases looks for conditions on the parameters: zeros,
-    equalities and a polynomial condition besides.  --relations lists linear forms f that divide their derivative, so
-    that a motion which begins on f = 0 stays there, each with the parameters at which there is such a form.
+    equalities and a polynomial condition besides, also of gyrostats; families of parameters that the --budget leaves
+    out are counted.  --relations lists linear forms f that divide their derivative, so that a motion which begins on
+    f = 0 stays there, each with the parameters at which there is such a form.
 
     Exit codes: 0 found, or proved that there are none; 1 undecided, or the equations are not polynomial; 2 something is
     wrong.
@@ -64,7 +69,7 @@ def command(
       mbsym integrals systems/clebsch-poisson.yaml
       mbsym integrals systems/gyrostat-poisson.yaml --degree 6 --set lx=0 --set epsilon=0
       mbsym integrals systems/euler-poisson.yaml -s B=2 -s C=1 -s x0=1 -s y0=0 -s z0=0 -s m=1 -s g=1 --vary A=1:5
-      mbsym integrals systems/euler-poisson.yaml --set y0=0 --cases
+      mbsym integrals systems/euler-poisson.yaml --set y0=0 --cases --budget 30
       mbsym integrals systems/euler-poisson.yaml --set y0=0 --relations
     """
     system = read_description(file, unconstrained="integrals", moving="integrals")
@@ -77,13 +82,15 @@ def command(
         asked.complain("--cases", "not-together", "with --vary other parameters are numbers", "choose one of them")
     if axis is not None and axis.name in values:
         asked.complain("--set", "repeated-name", f"'{axis.name}' has an interval and a number", "leave one of them out")
-    if asked.refused(None if system is None else file) or system is None or most is None:
+    seconds = BUDGET if budget is None else asked.number("--budget", budget)
+    if budget is not None and not cases:
+        asked.complain("--budget", "missing-option", "--budget goes with --cases", "add --cases")
+    if asked.refused(None if system is None else file) or system is None or most is None or seconds is None:
         sys.exit(BAD_INPUT)
     from mbsym.algebra.failures import Failure, Limit
     from mbsym.analysis import Analysis
     from mbsym.analysis.polynomial import integrals_of, setting
-    from mbsym.problems.polynomial_integrals import along, linear_relations
-    from mbsym.problems.polynomial_integrals import cases as all_cases
+    from mbsym.problems.polynomial_integrals import along, cases_of, linear_relations
 
     try:
         with status(as_json, f"{file.name}: polynomial integrals"):
@@ -98,7 +105,7 @@ def command(
             found = integrals_of(there, most, given)
             line = None if axis is None else along(found, axis.low, axis.high)
             positive = [one.name for one in system.parameters if one.sign == "positive"]
-            special = all_cases(found, positive) if cases else None
+            special = cases_of(found, there.kinds, there.known, positive, seconds) if cases else None
             grading, linear = found.grading, None
             if relations:
                 linear = linear_relations(there.field, grading.weights, positive, grading.free)

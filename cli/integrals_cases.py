@@ -50,6 +50,10 @@ def cases_lines(there: Setting, found: Cases) -> Iterator[str]:
         f"{found.families} families of parameters were looked at (some zero, some equal), and conditions of degree up "
         "to 3 in each. Integrals are proved; that there are no other cases is not."
     )
+    if found.left:
+        yield (
+            f"{found.left} further families were not looked at within the budget (--budget): nothing is known of them."
+        )
     if found.unread:
         yield f"In {found.unread} families the rank drops elsewhere, too, under conditions that were not found."
 

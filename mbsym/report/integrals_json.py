@@ -81,6 +81,7 @@ def _along(there: Setting, line: Along) -> dict[str, Any]:
 def _cases(there: Setting, special: Cases) -> dict[str, Any]:
     return {
         "families": special.families,
+        "families_left": special.left,
         "conditions_not_found": special.unread,
         "cases": [
             {"vanishing": [str(there.formula(p)) for p in case.conditions], **_special(there, case.special)}

@@ -72,6 +72,7 @@ UNITS = {
     "double-pendulum": {"m1": "kg", "m2": "kg", "l1": "m", "l2": "m", "g": "m/s^2", "theta1": "rad"},
     "dumbbell": {**ORBIT, "m1": "kg", "m2": "kg", "l": "m", "alpha": "rad", "chi": "rad"},
     "euler-poisson": {**BODY, **HEAVY, "y0": "m", "z0": "m"},
+    "heavy-gyrostat": {**BODY, **HEAVY, "z0": "m", "h": "kg*m^2/s"},
     "kovalevskaya": {"C": MOMENTS, **HEAVY},
     "four-bar": {**dict.fromkeys(("l1", "l2", "l3", "l4"), "m"), "rho": "kg/m", "q1": "rad"},
     "gravity-gradient": {**ORBIT, **BODY, "m": "kg", "chi": "rad"},

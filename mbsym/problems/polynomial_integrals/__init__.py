@@ -29,6 +29,7 @@ Example:
 
 from mbsym.problems.polynomial_integrals.families import cases
 from mbsym.problems.polynomial_integrals.gradings import Grading, grading
+from mbsym.problems.polynomial_integrals.homogenised import cases_of
 from mbsym.problems.polynomial_integrals.levels import levels, on_level
 from mbsym.problems.polynomial_integrals.relations import linear_relations
 from mbsym.problems.polynomial_integrals.result import (
@@ -66,6 +67,7 @@ __all__ = [
     "Sure",
     "along",
     "cases",
+    "cases_of",
     "grading",
     "levels",
     "linear_relations",

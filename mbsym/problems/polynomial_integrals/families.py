@@ -17,7 +17,8 @@ import random
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations, product
-from math import comb
+from math import comb, inf
+from time import monotonic
 from typing import Any
 
 from flint import fmpq, fmpq_mpoly_ctx, nmod_mat
@@ -55,7 +56,7 @@ class Family:
 def families(field: PolynomialField, positive: Sequence[str]) -> Iterator[Family]:
     """Every choice of zeros among parameters that are not positive, and of equalities among those that are.
 
-    Equal to each other are put those that play the same part: with the same exponents in terms of the same degrees.
+    Equal to each other are put those that occur with the same exponents, as moments of inertia do.
     """
     able = [name for name in field.parameters if name not in positive]
     parts = _alike(field, positive)
@@ -70,18 +71,14 @@ def families(field: PolynomialField, positive: Sequence[str]) -> Iterator[Family
 
 def _alike(field: PolynomialField, positive: Sequence[str]) -> list[list[str]]:
     """Positive parameters by the part that they play; of those that occur as a product only, the first."""
-    count = len(field.parameters)
     terms = [m for p in field.numerators for m in p.monoms()]
     columns: dict[tuple[int, ...], str] = {}
     for k, name in enumerate(field.parameters):
         if name in positive:
             columns.setdefault(tuple(int(m[k]) for m in terms), name)
-    parts: dict[tuple[tuple[int, int, int], ...], list[str]] = {}
+    parts: dict[tuple[int, ...], list[str]] = {}
     for column, name in columns.items():
-        key = tuple(
-            sorted((a, sum(map(int, m[:count])), sum(map(int, m[count:]))) for a, m in zip(column, terms, strict=True))
-        )
-        parts.setdefault(key, []).append(name)
+        parts.setdefault(tuple(sorted(set(column))), []).append(name)
     return list(parts.values())
 
 
@@ -96,8 +93,10 @@ def _partitions(names: Sequence[str]) -> list[tuple[tuple[str, str], ...]]:
     return found
 
 
-def cases(usual: PolynomialIntegrals, positive: Sequence[str]) -> Cases:
+def cases(usual: PolynomialIntegrals, positive: Sequence[str], budget: float = inf) -> Cases:
     """The families and hypersurfaces in them on which there are more integrals than ``usual``, each proved.
+
+    After ``budget`` seconds no further family is begun.
 
     Raises NoClosedForm where the field is not quasi-homogeneous, or where there are too many families.
     """
@@ -108,7 +107,7 @@ def cases(usual: PolynomialIntegrals, positive: Sequence[str]) -> Cases:
     if len(listed) > MOST_FAMILIES:
         told = f"{len(field.parameters)} parameters have more than {MOST_FAMILIES} families"
         raise NoClosedForm(told, limit=Limit.WORK, remedy="put in numbers with --set, zeros above all")
-    return _Search(usual, positive).found(listed)
+    return _Search(usual, positive).found(listed, monotonic() + budget)
 
 
 class _Search:
@@ -120,8 +119,12 @@ class _Search:
         self.unread = 0
         self.source = random.Random("families")
 
-    def found(self, listed: Sequence[Family]) -> Cases:
+    def found(self, listed: Sequence[Family], until: float) -> Cases:
+        done = 0
         for family in listed:
+            if monotonic() > until:
+                break
+            done += 1
             there = self._somewhere(family)
             if there is None:
                 continue
@@ -130,7 +133,7 @@ class _Search:
             if larger(signature, below):
                 self._add(family, None, signature)
             self._hypersurfaces(family, signature)
-        return Cases(self.usual, tuple(case for case, _ in self.known), len(listed), self.unread)
+        return Cases(self.usual, tuple(case for case, _ in self.known), done, self.unread, len(listed) - done)
 
     def _somewhere(self, family: Family) -> ModularField | None:
         values = {name: self.source.randrange(1, self.prime) for name in self.field.parameters}

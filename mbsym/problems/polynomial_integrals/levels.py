@@ -27,7 +27,7 @@ from mbsym.problems.polynomial_integrals.modular import (
     remainder,
     times,
 )
-from mbsym.problems.polynomial_integrals.result import Count, Generator, OnLevel, PolynomialIntegrals
+from mbsym.problems.polynomial_integrals.result import UNITY, Count, Generator, OnLevel, PolynomialIntegrals
 from mbsym.problems.polynomial_integrals.search import echelon, products, sparsest
 
 
@@ -51,7 +51,7 @@ def levels(found: PolynomialIntegrals) -> tuple[Generator, ...]:
     """
     if not found.grading.homogeneous or (found.field.relations and not found.grading.free):
         return ()
-    return tuple(one for one in found.generators if not one.name.startswith("length of "))
+    return tuple(one for one in found.generators if not one.name.startswith("length of ") and one.name != UNITY)
 
 
 def on_level(found: PolynomialIntegrals, level: Generator) -> OnLevel:

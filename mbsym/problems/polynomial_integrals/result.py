@@ -23,6 +23,9 @@ class Sure(Enum):
 #: The name of an integral that depends on those of problem 7 as a function, at a random state.
 FUNCTION = "function of the integrals of problem 7"
 
+#: The name of the variable by which a field is made quasi-homogeneous, as an integral.
+UNITY = "unity"
+
 
 @dataclass(frozen=True)
 class Generator:
@@ -147,12 +150,16 @@ class Case:
 
 @dataclass(frozen=True)
 class Cases:
-    """The cases that were found in ``families`` families; ``unread``: drops of the rank whose condition was not."""
+    """The cases that were found in ``families`` families; ``unread``: drops of the rank whose condition was not.
+
+    ``left``: families that were not looked at within the budget; nothing is known of them.
+    """
 
     usual: PolynomialIntegrals
     cases: tuple[Case, ...]
     families: int
     unread: int
+    left: int = 0
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,165 @@
+"""Special parameters of fields that are not quasi-homogeneous: gyrostats, and their like.
+
+A variable h with h' = 0 of weight 1 makes them so: each term of x'_i is multiplied by the power of h that it lacks (a
+gyrostatic moment l becomes l h).  An integral of the larger field is one of the field itself at h = 1.  The converse
+holds for integrals that are such for every length of the unit vector; others, that need its length to be 1, are not
+looked for: lists of cases are not said to be complete.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from itertools import product
+from typing import Any
+
+from flint import fmpq_mpoly_ctx
+
+from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.problems.polynomial_integrals.families import cases
+from mbsym.problems.polynomial_integrals.gradings import Grading, grading
+from mbsym.problems.polynomial_integrals.lifting import primitive
+from mbsym.problems.polynomial_integrals.result import (
+    UNITY,
+    Case,
+    Cases,
+    Generator,
+    OnLevel,
+    PolynomialIntegrals,
+    Special,
+)
+from mbsym.problems.polynomial_integrals.search import polynomial_integrals
+
+#: Weights that are tried for each kind of variables.
+MOST_WEIGHT = 2
+
+
+def cases_of(
+    usual: PolynomialIntegrals,
+    kinds: Sequence[Sequence[str]],
+    known: Sequence[tuple[str, Any]],
+    positive: Sequence[str],
+    budget: float,
+) -> Cases:
+    """``cases`` of any field with at most one relation: of ``kinds`` of variables and ``known`` integrals.
+
+    Raises NoClosedForm where the larger field has relations that are not homogeneous, or too many families.
+    """
+    if usual.grading.homogeneous and (usual.grading.free or not usual.field.relations):
+        return cases(usual, positive, budget)
+    field, found = homogenised(usual.field, kinds)
+    if field.relations and not found.free:
+        raise NoClosedForm("special parameters are looked for where there is one unit vector or angle at most")
+    name = field.variables[-1]
+    listed = [(UNITY, field.generator(name))]
+    listed += [(title, _filled(field, f, found.weights)) for title, f in known]
+    larger = polynomial_integrals(field, found, usual.degree, listed)
+    special = cases(larger, positive, budget)
+    down = _Down(name)
+    return replace(special, usual=usual, cases=tuple(down.case(one) for one in special.cases))
+
+
+def homogenised(field: PolynomialField, kinds: Sequence[Sequence[str]]) -> tuple[PolynomialField, Grading]:
+    """The field with one variable more, and weights equal within each of ``kinds``: those that need the fewest powers.
+
+    The relations stay as they are.
+    """
+    count = len(field.parameters)
+    best: tuple[tuple[int, int], tuple[int, ...]] | None = None
+    for choice in product(range(1, MOST_WEIGHT + 1), repeat=len(kinds)):
+        by_name = {name: weight for kind, weight in zip(kinds, choice, strict=True) for name in kind}
+        weights = tuple(by_name[name] for name in field.variables)
+        rises = [
+            sum(w * int(a) for w, a in zip(weights, m[count:], strict=True)) - own
+            for p, own in zip(field.numerators, weights, strict=True)
+            for m in p.monoms()
+        ]
+        rank = (sum(max(rises) - one for one in rises), sum(choice))
+        if best is None or rank < best[0]:
+            best = rank, weights
+    if best is None:
+        raise NoClosedForm("there are no variables")
+    weights = best[1]
+    name = UNITY
+    while name in (*field.parameters, *field.variables):
+        name += "_"
+    context = fmpq_mpoly_ctx.get([*field.context.names(), name], field.context.ordering())
+    larger = replace(
+        field,
+        context=context,
+        variables=(*field.variables, name),
+        numerators=(*(context.constant(0) for _ in field.numerators), context.constant(0)),
+        denominator=_up(context, field.denominator),
+        relations=tuple(_up(context, r) for r in field.relations),
+    )
+    numerators = _raised(larger, field.numerators, weights)
+    larger = replace(larger, numerators=(*numerators, context.constant(0)))
+    found = grading(larger, [*kinds, (name,)], (*weights, 1))
+    return larger, found
+
+
+def _up(context: Any, p: Any) -> Any:
+    return context.from_dict({(*m, 0): c for m, c in p.to_dict().items()})
+
+
+def _raised(field: PolynomialField, numerators: Sequence[Any], weights: Sequence[int]) -> list[Any]:
+    """Every term of x'_i times the power of the last variable that it lacks."""
+    count = len(field.parameters)
+
+    def weight(m: Sequence[Any]) -> int:
+        return sum(w * int(a) for w, a in zip(weights, m[count:], strict=True))
+
+    rise = max(weight(m) - own for p, own in zip(numerators, weights, strict=True) for m in p.monoms())
+    return [
+        field.context.from_dict({(*m, rise - weight(m) + own): c for m, c in p.to_dict().items()})
+        for p, own in zip(numerators, weights, strict=True)
+    ]
+
+
+def _filled(field: PolynomialField, f: Any, weights: Sequence[int]) -> Any:
+    """f, over the smaller field, made homogeneous; its constant left out."""
+    count = len(field.parameters)
+    terms = {m: c for m, c in f.to_dict().items() if any(m[count:])}
+    of = {m: sum(w * int(a) for w, a in zip(weights, m[count:], strict=False)) for m in terms}
+    most = max(of.values(), default=0)
+    return field.context.from_dict({(*m, most - of[m]): c for m, c in terms.items()})
+
+
+class _Down:
+    """What was found at h = 1."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+
+    def case(self, one: Case) -> Case:
+        return Case(tuple(map(self.polynomial, one.conditions)), self.special(one.special))
+
+    def special(self, one: Special) -> Special:
+        field = one.field
+        smaller = replace(
+            field,
+            context=self._context(field.context),
+            variables=field.variables[:-1],
+            numerators=tuple(map(self.polynomial, field.numerators[:-1])),
+            denominator=self.polynomial(field.denominator),
+            relations=tuple(map(self.polynomial, field.relations)),
+        )
+        write: Callable[[Any], Any] = lambda f: primitive(smaller, self.polynomial(f))  # noqa: E731
+        levels = tuple(
+            OnLevel(self.generator(level.level), tuple((w, write(f)) for w, f in level.integrals), level.counts)
+            for level in one.levels
+        )
+        return replace(one, field=smaller, integrals=tuple((w, write(f)) for w, f in one.integrals), levels=levels)
+
+    def generator(self, one: Generator) -> Generator:
+        return replace(one, polynomial=self.polynomial(one.polynomial))
+
+    def polynomial(self, p: Any) -> Any:
+        context = p.context()
+        smaller = self._context(context)
+        images = [smaller.constant(1) if n == self.name else smaller.gen(k) for k, n in enumerate(context.names())]
+        return p.compose(*images, ctx=smaller)
+
+    def _context(self, context: Any) -> Any:
+        return fmpq_mpoly_ctx.get([n for n in context.names() if n != self.name], context.ordering())

@@ -1,0 +1,108 @@
+"""Fields that are not quasi-homogeneous: the classical gyrostats, each by its formula, and told from neighbours."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from flint import Ordering, fmpq_mpoly_ctx
+
+import mbsym
+from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.analysis import Analysis
+from mbsym.analysis.polynomial import integrals_of, setting
+from mbsym.problems.polynomial_integrals import cases_of, grading, polynomial_integrals
+from mbsym.problems.polynomial_integrals.homogenised import homogenised
+
+GYROSTAT = Path(__file__).parents[3] / "systems" / "heavy-gyrostat.yaml"
+
+
+def special(values, degree, budget=60.0):
+    system = mbsym.load(GYROSTAT).system
+    there = setting(Analysis(system), values)
+    found = integrals_of(there, degree)
+    positive = [one.name for one in system.parameters if one.sign == "positive"]
+    return there, cases_of(found, there.kinds, there.known, positive, budget)
+
+
+def by_condition(found):
+    return {frozenset(map(str, one.conditions)): one.special for one in found.cases}
+
+
+@pytest.mark.slow
+def test_yehias_and_sretenskys_cases():
+    """C = 1 and mg = 1, the mass centre on the first axis: A = B = 2 and A = B = 4 are found."""
+    _, found = special({"C": 1, "m": 1, "g": 1, "z0": 0}, 4)
+    (case,) = [one for one in found.cases if [w for w, _ in one.special.integrals] == [4]]
+    assert len(case.conditions) == 2
+    assert case.special.complete
+    field = case.special.field
+    names = {name: field.generator(name) for name in (*field.parameters, *field.variables)}
+    h, c, p, q, r = (names[name] for name in ("h", "x0", "p", "q", "r"))
+    g1, g2, g3 = (names[f"gamma{k}"] for k in (1, 2, 3))
+    # H. M. Yehia, Mech. Res. Commun. 13 (1986): with C = 1 and the rotor's moment h along the third axis.
+    book = (p**2 - q**2 - c * g1) ** 2 + (2 * p * q - c * g2) ** 2
+    book += 2 * h * (r - h) * (p**2 + q**2) - 4 * h * c * p * g3
+    assert field.derivative(book) == 0
+    ((_, new),) = case.special.integrals
+    assert field.derivative(new) == 0
+    # L. N. Sretensky, Dokl. Akad. Nauk SSSR 149 (1963): on the level zero of the area integral.
+    (level,) = [one for case in found.cases for one in case.special.levels if len(case.conditions) == 2]
+    ((weight, third),) = level.integrals
+    assert (weight, level.level.name) == (3, "angular momentum about axis 3")
+    (field,) = [case.special.field for case in found.cases if level in case.special.levels]
+    area = level.level.polynomial
+    names = [field.context.names().index(n) if n in field.context.names() else None for n in area.context().names()]
+    images = [field.context.constant(4) if k is None else field.context.gen(k) for k in names]
+    assert divmod(field.derivative(third), area.compose(*images, ctx=field.context))[1] == 0
+    assert all(one.name in {"generalised energy", "angular momentum about axis 3"} for one in found.usual.generators)
+
+
+def test_zhukovsky_and_lagrange():
+    """(A p)^2 + (B q)^2 + (C r + h)^2 without weight; r where A = B and the mass centre is on the third axis."""
+    _, found = special({"x0": 0, "m": 1, "g": 1}, 2)
+    told = by_condition(found)
+    ((weight, f),) = told[frozenset({"z0"})].integrals
+    field = told[frozenset({"z0"})].field
+    A, B, C, h, p, q, r = (field.generator(name) for name in ("A", "B", "C", "h", "p", "q", "r"))
+    book = (A * p) ** 2 + (B * q) ** 2 + (C * r + h) ** 2 - h**2
+    energy = A * p**2 + B * q**2 + C * r**2
+    assert weight == 2
+    assert f in (book - A * energy, A * energy - book)
+    lagrange = [one for key, one in told.items() if len(key) == 1 and "z0" not in key]
+    assert [[(w, str(f)) for w, f in one.integrals] for one in lagrange] == [[(1, "r")]]
+
+
+def test_a_budget_leaves_families_out_and_says_so():
+    _, found = special({"x0": 0, "m": 1, "g": 1}, 2, budget=-1.0)
+    assert (found.cases, found.families) == ((), 0)
+    assert found.left > 0
+
+
+def test_the_larger_field_is_quasi_homogeneous_and_the_same_at_one():
+    there = setting(Analysis(mbsym.load(GYROSTAT).system))
+    larger, found = homogenised(there.field, there.kinds)
+    assert found.homogeneous
+    assert found.weights == (1, 1, 1, 2, 2, 2, 1)
+    back = [p.compose(*there.field.context.gens(), there.field.context.constant(1), ctx=there.field.context)
+            for p in larger.numerators]  # fmt: skip
+    assert tuple(back[:-1]) == there.field.numerators
+    assert back[-1] == 0
+
+
+def test_two_angles_are_refused():
+    context = fmpq_mpoly_ctx.get(["k", "u", "s", "c", "x", "y"], Ordering.lex)
+    k, u, s, c, x, y = context.gens()
+    relations = (s**2 + c**2 - 1, x**2 + y**2 - 1)
+    tops = (k * s * x + u, c * u, -s * u, y * u, -x * u)
+    field = PolynomialField(context, ("k",), ("u", "s", "c", "x", "y"), tops, context.constant(1), relations)
+    kinds = (("u",), ("s", "c"), ("x", "y"))
+    usual = polynomial_integrals(field, grading(field, kinds), 1)
+    with pytest.raises(NoClosedForm, match="one unit vector or angle"):
+        cases_of(usual, kinds, (), (), 60.0)
+    # A wrong sign in Poisson's equations: the length is no integral, and its relation cannot be left out.
+    wrong = replace(field, numerators=(tops[0], tops[1], s * u, tops[3], tops[4]), relations=relations[:1])
+    with pytest.raises(NoClosedForm, match="one unit vector or angle"):
+        cases_of(polynomial_integrals(wrong, grading(wrong, kinds), 1), kinds, (), (), 60.0)
