@@ -31,6 +31,7 @@ COMMANDS = {
     "watch": Listed("watch", "Derive a description again whenever it is saved."),
     "diff": Listed("diff", "Say exactly what changed between results, or descriptions."),
     "simulate": Listed("simulate", "Integrate the equations of motion and draw figures."),
+    "view": Listed("view", "Show a system in three dimensions, as one page."),
     "inverse": Listed("inverse", "Find the inputs that a given motion needs."),
     "orbit": Listed("orbit", "Find a periodic motion near a guess, with its multipliers."),
     "lyapunov": Listed("lyapunov", "Measure how fast neighbouring motions part."),

@@ -28,7 +28,7 @@ from mbsym.picture.coordinates import coordinates
 from mbsym.picture.looks import ellipsoid, shapes
 from mbsym.picture.placing import Places, Triple
 from mbsym.picture.program import PoseProgram, flattened
-from mbsym.picture.room import Room, samples
+from mbsym.picture.room import Room, first_look, samples
 from mbsym.picture.start import Start, start
 from mbsym.picture.values import (
     Arrow,
@@ -42,6 +42,9 @@ from mbsym.picture.values import (
     Operands,
     Picture,
 )
+
+#: So many positions of a loop are looked for.
+LOOPS = 8
 
 
 def picture(system: System, overrides: Mapping[str, Expression] | None = None) -> Picture:
@@ -114,20 +117,39 @@ class _Made:
         return a, b, c
 
     def _room(self) -> Room:
-        values = self.program.evaluate(samples(self.known, self.scenario))
-        points = [self.at(x) for name in self.places.carried for x in (self.places.origins[name], self.centres[name])]
+        places = self.places
+        points = [self.at(x) for name in places.carried for x in (places.origins[name], self.centres[name])]
         points += [self.at(end) for span in self.spans for end in (span.start, span.end)]
         reach = [0.0] * len(points)
-        for name in self.places.carried:
+        for name in places.carried:
             body = self.system.body(name)
             own = ellipsoid(body, self.scenario.parameters)
             size = 0.0 if own is None or not own.true_size else max(own.half_axes)
             for shape in shapes(body, self.scenario.parameters):
                 size = max(size, float(np.linalg.norm(shape.at)) + float(np.linalg.norm(shape.size)))
-            points.append(self.at(self.places.origins[name]))
-            points.append(self.at(self.centres[name]))
+            points += [self.at(places.origins[name]), self.at(self.centres[name])]
             reach += [size if body.shapes else 0.0, size]
-        return Room.of(values, points, reach, None if self.up is None else self.at(self.up))
+        axes = [self.at(row) for name in places.carried for row in places.axes[name]]
+        up = None if self.up is None else self.at(self.up)
+        anywhere = self.program.evaluate(samples(self.known, self.scenario, 1.0))
+        inputs = samples(self.known, self.scenario)
+        values = self.program.evaluate(self._closed(inputs) if self.rows else inputs)
+        return Room.of(values, points, reach, first_look(anywhere, points[: 2 * len(places.carried)], axes, up))
+
+    def _closed(self, inputs: dict[str, Any]) -> dict[str, Any]:
+        """Those of the positions near which the loops are closed, the start first."""
+        closure = self._closure()
+        found = [{name: float(values[0]) for name, values in inputs.items()}]
+        for k in range(1, LOOPS + 1):
+            state = {name: float(values[k]) for name, values in inputs.items()}
+            there, good = loops.closed(self.program, closure, state, ())
+            found += [there] if good else []
+        return {name: np.array([one[name] for one in found]) for name in inputs}
+
+    def _closure(self) -> Closure:
+        slopes = tuple(tuple(self._value[x.number] for x in row) for row in self.slopes)
+        rows = tuple(self._value[x.number] for x in self.rows)
+        return Closure(self.system.coordinates, rows, slopes, tuple(self.labels))
 
     def picture(self, found: Start) -> Picture:
         """All of it as values."""
@@ -137,11 +159,6 @@ class _Made:
         notes = Notes(
             found.stand_ins, found.at_zero, found.moved, found.open_loop, hidden, tuple(self.without), velocity
         )
-        closure = None
-        if self.rows:
-            slopes = tuple(tuple(self._value[x.number] for x in row) for row in self.slopes)
-            rows = tuple(self._value[x.number] for x in self.rows)
-            closure = Closure(system.coordinates, rows, slopes, tuple(self.labels))
         units = {"length": length_unit(system), "time": time_unit(system)}
         return Picture(
             name=system.name,
@@ -152,7 +169,7 @@ class _Made:
             bodies=tuple(self._drawn(name) for name in places.carried),
             arrows=tuple(Arrow(x.load, x.of, x.body, self.at(x.point), self.at(x.along)) for x in self.pulls),
             lines=tuple(Line(x.kind, self.at(x.start), self.at(x.end), x.of) for x in self.spans),
-            closure=closure,
+            closure=self._closure() if self.rows else None,
             view=self.room.view,
             middle=self.room.middle,
             extent=self.room.radius,

@@ -7,6 +7,7 @@ hashes; what the description says stands in the file as text and as JSON, and ne
 from __future__ import annotations
 
 from base64 import b64encode
+from collections.abc import Callable
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
@@ -15,10 +16,35 @@ from markupsafe import escape
 
 from mbsym import __version__
 from mbsym.model.system import System
+from mbsym.picture.parts import Values, equilibria_part, modes_part, motion_part, picture_part
 from mbsym.report.html_environment import embedded
 
 #: Where the bundles are that `make page` builds.
 BUNDLES = Path(__file__).parents[1] / "serving" / "page"
+
+
+def viewed(
+    system: System,
+    overrides: Values,
+    time: float | None = None,
+    modes: bool = False,
+    equilibria: bool = False,
+    watch: Callable[[float], None] = lambda t: None,
+) -> tuple[str, list[str]]:
+    """The page of a system with what is asked for, and the sentences that are told with it.
+
+    Modes and equilibria that cannot be had are told of; a motion that cannot is not: raises what ``motion`` and
+    ``picture`` raise.
+    """
+    drawn = picture_part(system, overrides)
+    moving = None if time is None else motion_part(system, drawn, time, overrides, watch)
+    further = {
+        "modes": modes_part(system, overrides) if modes else None,
+        "equilibria": equilibria_part(system, overrides) if equilibria else None,
+    }
+    said = [f"{system.name}: {sentence}" for sentence in drawn["sentences"]]
+    said += [f"no {name}: {part['why']}" for name, part in further.items() if part is not None and "why" in part]
+    return view_page(system, drawn, moving, further["modes"], further["equilibria"]), said
 
 
 def view_page(
@@ -27,12 +53,8 @@ def view_page(
     motion: dict[str, Any] | None = None,
     modes: dict[str, Any] | None = None,
     equilibria: dict[str, Any] | None = None,
-    notes: tuple[str, ...] = (),
 ) -> str:
-    """The file's text, of what ``as_json``, ``motion_json``, ``modes_json`` and ``at_rest_json`` give.
-
-    ``notes`` are further sentences below the title.
-    """
+    """The file's text, of what ``as_json``, ``motion_json``, ``modes_json`` and ``at_rest_json`` give."""
     script = _inside((BUNDLES / "view.js").read_text(encoding="utf-8"), "script")
     style = _inside((BUNDLES / "view.css").read_text(encoding="utf-8"), "style")
     policy = (
@@ -40,7 +62,7 @@ def view_page(
         "base-uri 'none'; form-action 'none'"
     )
     data = embedded({"picture": picture, "motion": motion, "modes": modes, "equilibria": equilibria})
-    said = " ".join(x for x in (" ".join(system.description.split()), *notes) if x)
+    said = " ".join(system.description.split())
     source = f" After {escape(system.source)}." if system.source else ""
     return (
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'

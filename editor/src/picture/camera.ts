@@ -16,6 +16,8 @@ export class Eye {
   private zoom = 1;
   private target = new Vector3();
   private touched = false;
+  /** How far a system that runs away has carried the eye along. */
+  private readonly carried = new Vector3();
 
   constructor(private readonly changed: () => void) {}
 
@@ -35,7 +37,22 @@ export class Eye {
     this.azimuth = this.home.azimuth;
     this.elevation = this.home.elevation;
     this.zoom = 1;
-    this.target.copy(this.home.middle);
+    this.target.copy(this.home.middle).add(this.carried);
+    this.place();
+  }
+
+  /** Room for a motion: all of it in sight. */
+  fit(middle: Vector3, extent: number): void {
+    this.home = { ...this.home, middle, extent };
+    if (!this.touched) this.reset();
+    else this.place();
+  }
+
+  /** Goes along with what runs away. */
+  follow(offset: Vector3): void {
+    if (this.carried.equals(offset)) return;
+    this.target.add(offset).sub(this.carried);
+    this.carried.copy(offset);
     this.place();
   }
 

@@ -89,6 +89,7 @@ export class Drawing {
   private pulls: { shafts: Many; heads: Many } | null = null;
   private frames: LineSegments | null = null;
   private trails: Path[] = [];
+  private net: { lines: LineSegments; directions: [Vector3, Vector3]; mesh: number } | null = null;
   private largest: Record<string, number> = {};
   private readonly matrix = new Matrix4();
   private readonly other = new Matrix4();
@@ -112,7 +113,7 @@ export class Drawing {
     const e = picture.extent;
     const number = new Map(picture.bodies.map((body, k) => [body.name, COLOURS[k % COLOURS.length]!]));
     const solid = picture.bodies.filter((body) => body.ellipsoid !== null);
-    const balls = this.many(ball(true), solid.length, new MeshLambertMaterial({ transparent: true, opacity: 0.62 }));
+    const balls = this.many(ball(solid.length > 12 ? 14 : 24), solid.length, new MeshLambertMaterial({ transparent: true, opacity: 0.62 }));
     const symbolic = Math.max(0, ...solid.filter((x) => !x.ellipsoid!.trueSize).map((x) => Math.max(...x.ellipsoid!.halfAxes)));
     solid.forEach((body, k) => {
       const { halfAxes, axes, trueSize } = body.ellipsoid!;
@@ -149,8 +150,8 @@ export class Drawing {
     this.marks = {
       hinges: this.many(rod(10), joints.filter((x) => !x.hinge.slides).length, grey(), 0x5b6470),
       slides: this.many(rod(4), joints.filter((x) => x.hinge.slides).length, grey(), 0x9aa2ad),
-      joints: this.many(ball(false), picture.bodies.length, grey(), 0x5b6470),
-      centres: this.many(ball(false), picture.bodies.filter((body) => body.massive).length, grey()),
+      joints: this.many(ball(8), picture.bodies.length, grey(), 0x5b6470),
+      centres: this.many(ball(8), picture.bodies.filter((body) => body.massive).length, grey()),
     };
     picture.bodies.filter((body) => body.massive).forEach((body, k) => {
       this.marks!.centres.colour(k, number.get(body.name)!);
@@ -333,7 +334,16 @@ export class Drawing {
       }
     }
     found.renderOrder = -1;
+    this.net = { lines: found, directions: [first, second], mesh };
     return found;
+  }
+
+  /** The net goes along with what runs away, by whole meshes. */
+  carry(offset: Vector3): void {
+    if (!this.net) return;
+    const { lines, directions, mesh } = this.net;
+    lines.position.set(0, 0, 0);
+    for (const direction of directions) lines.position.addScaledVector(direction, Math.round(offset.dot(direction) / mesh) * mesh);
   }
 
   /** The paths of mass centres: `at(k)` gives the values of the k-th of `count` moments. */

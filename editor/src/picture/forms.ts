@@ -23,8 +23,8 @@ export function head(): BufferGeometry {
   return new ConeGeometry(1, 1, 10).rotateX(Math.PI / 2).translate(0, 0, 0.5);
 }
 
-export function ball(fine: boolean): BufferGeometry {
-  return fine ? new SphereGeometry(1, 24, 16) : new SphereGeometry(1, 10, 8);
+export function ball(pieces: number): BufferGeometry {
+  return new SphereGeometry(1, pieces, Math.ceil(pieces * 0.66));
 }
 
 /** A coil of wire along the third axis from 0 to 1, of radius 1: a spring, as a band of triangles. */

@@ -14,7 +14,7 @@ const COARSEST = 0.5;
 
 export class Stage {
   readonly element: HTMLElement;
-  readonly canvas = make("canvas", { tabindex: 0, role: "img", class: "viewer-canvas" });
+  readonly canvas = make("canvas", { tabindex: 0, role: "img", class: "viewer-canvas", "aria-label": "Picture: nothing drawn yet" });
   readonly drawing = new Drawing();
   readonly eye = new Eye(() => this.wanted());
   /** Why nothing can be drawn; "" where it can. */
@@ -35,7 +35,7 @@ export class Stage {
     let renderer: WebGLRenderer | null = null;
     let broken = "";
     try {
-      renderer = new WebGLRenderer({ canvas: this.canvas, antialias: true, powerPreference: "high-performance" });
+      renderer = new WebGLRenderer({ canvas: this.canvas, antialias: !inSoftware(), powerPreference: "high-performance" });
       renderer.outputColorSpace = SRGBColorSpace;
     } catch {
       broken = "This browser draws nothing in three dimensions (no WebGL): positions are told below in words.";
@@ -146,4 +146,13 @@ export class Stage {
     const [x, y] = this.place();
     this.name.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
   }
+}
+
+/** Whether triangles are filled by the processor: smooth edges would cost most of the time there. */
+function inSoftware(): boolean {
+  const probe = document.createElement("canvas").getContext("webgl2");
+  const known = probe?.getExtension("WEBGL_debug_renderer_info");
+  const name = probe && known ? String(probe.getParameter(known.UNMASKED_RENDERER_WEBGL)) : "";
+  probe?.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|software|basic render/i.test(name);
 }

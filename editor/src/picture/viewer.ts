@@ -1,7 +1,10 @@
 // A picture with everything about it: the canvas, sliders, a motion with its traces, modes, equilibria, and words.
 
+import { Vector3 } from "three";
+
 import { make } from "../elements.js";
 import { equilibriaList, inWords, modesList, press, Sliders } from "./controls.js";
+import { Journey } from "./journey.js";
 import { Swing, told, Track } from "./playing.js";
 import { begun, close, Poses, type State } from "./program.js";
 import { Stage } from "./stage.js";
@@ -27,12 +30,14 @@ export class Viewer {
   private state: State = {};
   private touched = false;
   private track: Track | null = null;
+  private journey: Journey | null = null;
   private swings: Swing[] = [];
   private equilibria: Equilibria | null = null;
   private playing: Playing = null;
   private going = false;
   private amplitude = 1;
   private lastTold = 0;
+  private readonly gone = new Vector3();
   private readonly reduced = matchMedia("(prefers-reduced-motion: reduce)");
   private readonly sliders = new Sliders((name, value) => this.slid(name, value));
   private readonly traces = new Traces((t) => this.go(t));
@@ -106,6 +111,8 @@ export class Viewer {
     const { track, poses } = this;
     if (poses && track.times.length > 1) {
       const count = Math.min(PATH, track.times.length);
+      this.journey = new Journey(this.picture!, poses, track);
+      this.stage.eye.fit(this.journey.middle, this.journey.extent);
       this.stage.drawing.trace(count, (k) => poses.at(track.state((track.end * k) / (count - 1))));
     }
     this.playing = { what: "motion", t: 0 };
@@ -160,6 +167,7 @@ export class Viewer {
   /** What belonged to another picture. */
   private forget(): void {
     this.track = null;
+    this.journey = null;
     this.swings = [];
     this.equilibria = null;
     this.stage.drawing.untrace();
@@ -205,7 +213,11 @@ export class Viewer {
       if (picture.closure) close(poses, picture.closure, this.state, swing.moved);
       this.stage.drawing.until(0);
     } else this.stage.drawing.until(this.track ? 1 : 0);
-    this.stage.drawing.move(poses.at(this.state));
+    const values = poses.at(this.state);
+    const offset = this.journey && playing?.what === "motion" ? this.journey.offset(values, this.gone) : this.gone.set(0, 0, 0);
+    this.stage.eye.follow(offset);
+    this.stage.drawing.carry(offset);
+    this.stage.drawing.move(values);
     this.tell(!this.going);
     return this.going;
   }
