@@ -9,10 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 from flint import fmpq
 
+from mbsym.algebra.base import Lowering
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.motion import relations
+from mbsym.mechanics.oracle import Oracle, State
+from mbsym.mechanics.states import Oracles
 from mbsym.problems import perturbation
 from mbsym.problems.angle_field import in_angles
 from mbsym.problems.integrals import PROVED, Integral
@@ -162,10 +165,13 @@ def polynomials_of(analysis: Analysis) -> Polynomials:
 def check(analysis: Analysis) -> Check | None:
     """Only where somebody has asked for it: dI/dt of those found, by d'Alembert's principle along the motion.
 
-    Of a system whose parameters are related there is none: the states of the oracles take them for independent.
+    Where parameters are related the states keep the relations; None where one of these gives an angle.
     """
+    truth = analysis.oracles
     if analysis.system.relations:
-        return None
+        if any(one.name in analysis.ring.angles for one in analysis.system.relations):
+            return None
+        truth = _Related(analysis.system, analysis.ring, truth.count)
     found = analysis.optional("polynomial_integrals") if "polynomial_integrals" in analysis.derived else None
     if found is None:
         return None
@@ -176,4 +182,14 @@ def check(analysis: Analysis) -> Check | None:
     ]
     if not new:
         return None
-    return replace(perturbation.check_integrals(analysis.oracles, analysis.programs, new), name="polynomial integrals")
+    return replace(perturbation.check_integrals(truth, analysis.programs, new), name="polynomial integrals")
+
+
+class _Related(Oracles):
+    """Oracles at states whose dependent parameters are what the relations say."""
+
+    def _oracle(self, state: State) -> Oracle:
+        values = dict(state.values)
+        for relation in self.system.relations:
+            values[relation.name] = Lowering(state.numbers, values)(relation.value)
+        return super()._oracle(State(state.numbers, values))

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import mbsym
+from mbsym.analysis import polynomial
+from mbsym.analysis.pipeline import Analysis
+from mbsym.formulas.formula import Formula
 
 BODY = """
 mbsym: 1
@@ -32,3 +37,15 @@ def test_steady_motions_are_those_of_the_related_body():
     found = mbsym.loads(BODY + "relations: {B: A}\n").invariant_sets
     assert all("B" not in str(x) for x in found.generic)
     assert any(one.free == ("r",) for one in found.families[0].sets)
+
+
+def test_the_second_route_is_taken_at_states_that_keep_the_relations():
+    """r of the body with B = A, and a planted p in its place: p is kept at no such state."""
+    analysis = Analysis(mbsym.loads(BODY + "relations: {B: A}\n").system, problems=(9,))
+    result = analysis.polynomial_integrals
+    assert polynomial.check(analysis).outcome == "exact"
+    ring = result.formulas[0].ring
+    wrong = Formula(ring, ring.generator("coordinate", "p"))
+    planted = replace(result, formulas=(wrong, *result.formulas[1:]))
+    object.__setattr__(analysis, "optional", lambda name: planted if name == "polynomial_integrals" else None)
+    assert polynomial.check(analysis).failed
