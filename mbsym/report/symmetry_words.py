@@ -38,20 +38,21 @@ def second_route(one: Symmetry) -> str:
 def sentences(found: Symmetries) -> Iterator[Said]:
     """What is known of the list as a whole."""
     values: dict[str, object] = {"unknowns": found.unknowns}
+    proof = _COMPARED if found.compared else _BY
+    almost = _ALMOST if found.symbols else ""
     if not found.symmetries:
-        yield _NONE[found.symbols] if found.complete else "None was found; that there is none is not proved.", values
+        told = (
+            f"There is none{almost} {proof}" if found.complete else "None was found; that there is none is not proved."
+        )
+        yield told, values
         return
     yield "Each of them is an identity of the exact ring (proved).", values
-    yield _ALL[found.symbols] if found.complete else "That there are no others is not proved.", values
+    if found.complete:
+        yield f"Every other is a combination of these with constant coefficients{almost} {proof}", values
+    else:
+        yield "That there are no others is not proved.", values
 
 
+_ALMOST = ", for almost all values of the parameters"
 _BY = "(proved: rank of the conditions on [[unknowns]] constants at exact states)."
-_NONE = {
-    True: f"There is none, for almost all values of the parameters {_BY}",
-    False: f"There is none {_BY}",
-}
-_ALL = {
-    True: "Every other is a combination of these with constant coefficients, for almost all values of the parameters "
-    + _BY,
-    False: f"Every other is a combination of these with constant coefficients {_BY}",
-}
+_COMPARED = "(proved: the conditions on [[unknowns]] constants, compared in independent functions)."

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import combinations
+from math import prod
 from typing import Any
 
 from mbsym.algebra.failures import Limit, NoClosedForm
@@ -15,6 +17,9 @@ Key = tuple[int, ...]
 
 #: The kinds of generators that are no constants, and whose functions are none.
 MOVING = ("coordinate", "prescribed", "time")
+PLAIN = ("coordinate", "velocity", "parameter")
+#: Roots of which all products are looked at.
+MOST_ROOTS = 6
 
 
 def kernel(ring: Ring, columns: Sequence[Polynomial]) -> list[dict[int, Polynomial]]:
@@ -55,6 +60,34 @@ def coefficients(ring: Ring, x: Polynomial) -> dict[Key, Polynomial]:
         rest = tuple(0 if one else int(a) for a, one in zip(monomial, fixed, strict=True))
         parts.setdefault(rest, {})[own] = c
     return {key: ring.context.from_dict(terms) for key, terms in parts.items()}
+
+
+def independent(ring: Ring, columns: Sequence[Polynomial]) -> bool:
+    """Whether the monomials in the columns are linearly independent functions: then ``kernel`` lacks nothing.
+
+    That is known where nothing is adjoined but sines and cosines of coordinates, and roots of polynomials in plain
+    generators of which no product is a square: then each root doubles the field.
+    """
+    radicands = []
+    used: set[int] = set()
+    for column in _cleared(ring, columns):
+        used |= {k for k, degree in enumerate(column.degrees()) if degree > 0}
+    for k in used:
+        g = ring.generators[k]
+        if g.kind in PLAIN or (g.kind in ("sine", "cosine") and g.name in ring.angles):
+            continue
+        inner = None if g.kind != "root" or g.argument is None else g.argument
+        if inner is None or any(d > 0 and ring.generators[j].kind not in PLAIN for j, d in enumerate(inner.degrees())):
+            return False
+        radicands.append(inner)
+    if len(radicands) > MOST_ROOTS:
+        return False
+    for count in range(1, len(radicands) + 1):
+        for chosen in combinations(radicands, count):
+            _, factors = prod(chosen, start=ring.one).factor()
+            if all(power % 2 == 0 for _, power in factors):
+                return False
+    return True
 
 
 def _cleared(ring: Ring, columns: Sequence[Polynomial]) -> list[Polynomial]:

@@ -41,6 +41,7 @@ class Symmetries:
 
     ``unknowns``: so many constants were free.  ``in_speeds``: directions are declared speeds.
     ``symbols``: some parameters have no numbers, and what is said holds for almost all their values.
+    ``compared``: that is known by coefficients of independent functions, not by ranks at states.
     """
 
     symmetries: tuple[Symmetry, ...]
@@ -48,6 +49,7 @@ class Symmetries:
     unknowns: int
     in_speeds: bool
     symbols: bool
+    compared: bool = False
 
     @property
     def new(self) -> tuple[Symmetry, ...]:

@@ -21,7 +21,7 @@ from mbsym.problems.integrals import Integral
 from mbsym.problems.polynomial_integrals.modular import PRIMES, null_space
 from mbsym.problems.polynomial_integrals.result import FUNCTION, Sure
 from mbsym.problems.symmetries.blocks import Blocks
-from mbsym.problems.symmetries.kernel import coefficients, kernel
+from mbsym.problems.symmetries.kernel import coefficients, independent, kernel
 from mbsym.problems.symmetries.result import DEPENDENT, Symmetries, Symmetry
 from mbsym.problems.vector_field import put_in
 
@@ -50,7 +50,10 @@ def symmetries(system: System, blocks: Blocks, known: Sequence[Integral] | None)
         raise NoClosedForm(told, limit=Limit.WORK)
     bound = _bound(system, blocks, unknowns)
     able, most = (list(range(len(unknowns))), -1) if bound is None else bound
-    vectors = kernel(blocks.ring, [_condition(blocks, unknowns[k]) for k in able]) if able else []
+    columns = [_condition(blocks, unknowns[k]) for k in able]
+    vectors = kernel(blocks.ring, columns) if able else []
+    compared = bound is None and independent(blocks.ring, columns)
+    most = len(vectors) if compared else most
     found = []
     right = len(vectors)
     for vector in vectors:
@@ -62,7 +65,7 @@ def symmetries(system: System, blocks: Blocks, known: Sequence[Integral] | None)
     judged = _told_apart(system, blocks, found, known)
     bound_by_images = {blocks.ring.generators[k].name for k in blocks.images}
     symbols = any(name not in bound_by_images for name in system.parameter_names)
-    return Symmetries(tuple(judged), right == most, len(unknowns), blocks.in_speeds, symbols)
+    return Symmetries(tuple(judged), right == most, len(unknowns), blocks.in_speeds, symbols, compared)
 
 
 def _unknowns(blocks: Blocks) -> list[Unknown]:

@@ -15,6 +15,7 @@ from mbsym.analysis.pipeline import Analysis
 from mbsym.analysis.symmetric import symmetries_of
 from mbsym.problems.polynomial_integrals import FUNCTION, Sure
 from mbsym.problems.symmetries import in_speeds
+from mbsym.problems.symmetries.kernel import independent
 from mbsym.problems.symmetries.result import DEPENDENT
 
 SYSTEMS = Path(__file__).parents[3] / "systems"
@@ -170,3 +171,18 @@ def test_a_mistake_in_the_equations_is_found_by_the_second_route(monkeypatch):
 def test_constraints_are_refused():
     with pytest.raises(Constrained):
         symmetries_of(Analysis(mbsym.load(SYSTEMS / "rolling-disc.yaml").system))
+
+
+def test_roots_are_told_apart_by_their_radicands():
+    """sqrt(m1 x^2 + m2 y^2) beside sqrt(x^2 + y^2): two roots whose product is none; sqrt(x^2) would be |x|."""
+    one = found(TWO + "  - force function: -k*sqrt(m1*x**2 + m2*y**2)\n")
+    assert (one.complete, one.compared) == (True, True)
+    assert [str(x.integral) for x in one.symmetries if not x.name] == ["m1*m2*(y_dot*x - x_dot*y)"]
+    two = found(TWO + "  - force function: -k*sqrt(m1*x**2 + m2*y**2) - n*sqrt(x**2 + y**2)\n")
+    assert ([x.name for x in two.symmetries], two.complete) == (["generalised energy"], True)
+    ring = Analysis(mbsym.loads(TWO.replace("loads:", "")).system).ring
+    x, y = (ring.generator("coordinate", name) for name in "xy")
+    square = (x + y) ** 2 + 1
+    roots = [ring.square_root(square), ring.square_root(square * (x * x + 1)), ring.square_root(x * x + 1)]
+    assert independent(ring, roots[:2])
+    assert not independent(ring, [ring.context.gen(0), *roots])  # the second may be the product of the others
