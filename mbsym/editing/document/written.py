@@ -99,6 +99,11 @@ class Written:
         found = self.extents.get(id(node))
         return found.style if found is not None else ""
 
+    def above(self, path: Path) -> list[Node]:
+        """What a path goes through, the whole first, what it leads to left out."""
+        found = (node_at(self.tree, path[:count]) for count in range(len(path)))
+        return [node for node in found if node is not None]
+
     def source(self, node: Scalar) -> str:
         """A value as it is spelled; of several lines, what they say."""
         start, end = self.extent(node)

@@ -1,0 +1,204 @@
+"""Operations on bodies: added, renamed, hung elsewhere, copied and taken out with what hangs on them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from mbsym.editing.document.meaning import Json, Meant, setting, word_of
+from mbsym.editing.document.primitives import Add, Primitive, Rekey, Remove, Replace, Shift, applied_to
+from mbsym.editing.document.understood import coordinates_of
+from mbsym.editing.document.words import body_renamed, pattern, places, uses
+from mbsym.editing.document.written import Data, Path, Refused, Written, child, data_of, node_at, spelled_path
+from mbsym.source.bodies import is_body_name
+from mbsym.source.placed import Mapping, Node, Scalar, Sequence
+
+
+def bodies_of(found: Written) -> list[tuple[str, str]]:
+    """(name, name of the previous body) of each body; "0" is the inertial frame."""
+    bodies = node_at(found.tree, ("bodies",))
+    pairs = []
+    for body in bodies.items if isinstance(bodies, Sequence) else ():
+        name, parent = child(body, "name"), child(body, "attached to")
+        pairs.append((_flat(name), _flat(parent) or "0"))
+    return pairs
+
+
+def _flat(node: Node | None) -> str:
+    return " ".join(node.text.split()) if isinstance(node, Scalar) else ""
+
+
+def _index(found: Written, name: str) -> int:
+    for index, (one, _) in enumerate(bodies_of(found)):
+        if one == name:
+            return index
+    raise Refused("unknown-body", f"there is no body {name[:80]!r}")
+
+
+def _new_name(found: Written, name: str) -> str:
+    name = " ".join(name.split())
+    if not is_body_name(name) or name == "ground":
+        hint = "letters, digits, blanks and . / _ -, beginning with a letter"
+        raise Refused("bad-name", f"a body cannot be called {name[:80]!r}", hint)
+    if any(one == name for one, _ in bodies_of(found)):
+        raise Refused("repeated-name", f"there is a body {name!r} already")
+    return name
+
+
+def _parent(found: Written, operation: Json) -> str:
+    to = operation.get("to")
+    if to is None or to == "0":
+        return "0"
+    name = word_of(operation, "to")
+    _index(found, name)
+    return name
+
+
+def add_body(found: Written, operation: Json) -> Meant:
+    name, parent = _new_name(found, word_of(operation, "name")), _parent(found, operation)
+    data: Data = {"name": name, "attached to": parent, "mass": "0"}
+    count = len(bodies_of(found))
+    path = ("bodies", count)
+    return Meant([setting(found, path, data, None)], select=path)
+
+
+def rename_body(found: Written, operation: Json) -> Meant:
+    old, given = " ".join(word_of(operation, "body").split()), word_of(operation, "name")
+    index = _index(found, old)
+    if " ".join(given.split()) == old:
+        return Meant([])
+    new = _new_name(found, given)
+    primitives, edits = body_renamed(found, old, new)
+    return Meant(primitives, edits, ("bodies", index), bodies={old: new})
+
+
+def _branch(found: Written, name: str) -> list[int]:
+    """A body and what hangs on it."""
+    inside, indices = {name}, []
+    for index, (one, parent) in enumerate(bodies_of(found)):
+        if one == name or parent in inside:
+            inside.add(one)
+            indices.append(index)
+    return indices
+
+
+def reattach(found: Written, operation: Json) -> Meant:
+    """The body hangs on another one; what it hangs on stands before it, so the branch may move behind it."""
+    name = " ".join(word_of(operation, "body").split())
+    index, parent = _index(found, name), _parent(found, operation)
+    branch = _branch(found, name)
+    if parent != "0" and _index(found, parent) in branch:
+        raise Refused("cyclic-bodies", f"{parent} hangs on {name} itself", "a body hangs on one outside its own branch")
+    path = spelled_path(found.tree, ("bodies", index, "attached to"))
+    primitives: list[Primitive] = [setting(found, path, parent, None)]
+    place = -1 if parent == "0" else _index(found, parent)
+    if place > index:
+        count = len(bodies_of(found))
+        target = place + 1 if place + 1 < count else None
+        moved = [one for one in branch if one < place]
+        for done, one in enumerate(moved):
+            primitives.append(Shift(("bodies", one - done), target))
+        index = place + 1 - len(moved)
+    return Meant(primitives, select=("bodies", index))
+
+
+def duplicate(found: Written, operation: Json) -> Meant:
+    """The bodies of a branch again, behind it, under new names and with new coordinates."""
+    name = " ".join(word_of(operation, "body").split())
+    _index(found, name)
+    branch, tree = _branch(found, name), found.tree
+    assert isinstance(tree, Mapping)
+    bodies, taken = bodies_of(found), {one for one, _ in bodies_of(found)}
+    names: dict[str, str] = {}
+    coordinates: dict[str, str] = {}
+    for index in branch:
+        names[bodies[index][0]] = _free(bodies[index][0], lambda one: one in taken, " ")
+        taken.add(names[bodies[index][0]])
+        for own in _own_names(found, tree, index):
+            coordinates[own] = _free(own, lambda other: uses(found, other) or other in coordinates.values(), "")
+    inner = [one for one in places(found) if one.path[0] == "bodies" and one.path[1] in branch]
+    word = pattern(list(coordinates)) if coordinates else None
+    copies: dict[int, Data] = {index: data_of(node_at(tree, ("bodies", index)) or tree) for index in branch}
+    for one in sorted(inner, key=lambda one: (one.is_key, -len(one.path))):
+        which = one.path[1]
+        assert isinstance(which, int)
+        text = one.node.text
+        if one.role == "formula":
+            turned = text if word is None else word.sub(lambda match: coordinates[match[1]], text)
+        else:
+            turned = names.get(" ".join(text.split()), text)
+        if turned != text:
+            change: Primitive = Rekey(one.path[2:], turned) if one.is_key else Replace(one.path[2:], turned)
+            copies[which] = applied_to(copies[which], change)
+    last, primitives = branch[-1] + 1, []
+    for done, index in enumerate(branch):
+        primitives.append(Add(("bodies", last + done), copies[index]))
+    return Meant([*primitives], select=("bodies", last))
+
+
+def _own_names(found: Written, tree: Mapping, index: int) -> list[str]:
+    """Coordinates, speeds and vectors that a body declares."""
+    body = node_at(tree, ("bodies", index))
+    own = [] if body is None else coordinates_of(found, tree, body, index)
+    for key in ("speeds", "orientation"):
+        node = None if body is None else child(body, key)
+        own += [entry.key.text for entry in node.entries] if isinstance(node, Mapping) else []
+    return own
+
+
+def _free(name: str, is_taken: Callable[[str], bool], between: str) -> str:
+    stem = name.rstrip("0123456789").rstrip() or name
+    return next(one for one in (f"{stem}{between}{k}" for k in range(2, 1000)) if not is_taken(one))
+
+
+def delete_branch(found: Written, operation: Json) -> Meant:
+    """A branch with everything that names its bodies or their coordinates."""
+    name = " ".join(word_of(operation, "body").split())
+    _index(found, name)
+    branch, tree = _branch(found, name), found.tree
+    assert isinstance(tree, Mapping)
+    gone = {bodies_of(found)[index][0] for index in branch}
+    names = {one for index in branch for one in _own_names(found, tree, index)}
+    names |= {f"{one}{k}" for one in _vectors(found, branch) for k in range(4)}
+    taken: dict[Path, None] = {}
+    while True:
+        word = pattern(sorted(names)) if names else None
+        before = len(taken)
+        for one in places(found):
+            if one.path[0] == "bodies":
+                continue
+            named = one.role == "body" and " ".join(one.node.text.split()) in gone
+            if named or (one.role == "formula" and word is not None and word.search(one.node.text)):
+                unit = one.path[:2]
+                taken[unit] = None
+                if unit[0] in ("abbreviations", "outputs") and isinstance(unit[1], str):
+                    names.add(unit[1])
+        if len(taken) == before:
+            break
+    _check_outside(found, branch, names)
+    units = [*taken, *(("bodies", index) for index in branch)]
+    ordered = sorted(
+        units, key=lambda path: (str(path[0]), path[1] if isinstance(path[1:2] and path[1], int) else -1), reverse=True
+    )
+    return Meant([Remove(path) for path in ordered], select=("bodies",), taken=list(taken))
+
+
+def _place(path: Path) -> tuple[str, int]:
+    step = path[1] if len(path) > 1 else -1
+    return str(path[0]), step if isinstance(step, int) else -1
+
+
+def _check_outside(found: Written, branch: list[int], names: set[str]) -> None:
+    """Other bodies may not use the coordinates of a branch that goes."""
+    word = pattern(sorted(names)) if names else None
+    for one in places(found):
+        if one.path[0] != "bodies" or one.path[1] in branch or one.role != "formula" or word is None:
+            continue
+        if word.search(one.node.text):
+            where = _flat(node_at(found.tree, (*one.path[:2], "name")))
+            message = f"body {where} uses a coordinate of this branch: {one.node.text[:60]}"
+            raise Refused("used-elsewhere", message, "change that body first")
+
+
+def _vectors(found: Written, branch: list[int]) -> list[str]:
+    nodes = (node_at(found.tree, ("bodies", index, "orientation")) for index in branch)
+    return [entry.key.text for node in nodes if isinstance(node, Mapping) for entry in node.entries]

@@ -1,0 +1,145 @@
+"""Operations as edits of the text, each checked: the text after it says what it said before, with that change."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping as Map
+from collections.abc import Sequence as Items
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+from mbsym.editing.document.operations import Meant, meant
+from mbsym.editing.document.pieces import Edit, Pieces, applied
+from mbsym.editing.document.primitives import Remove, applied_to
+from mbsym.editing.document.text_edits import text_edits
+from mbsym.editing.document.view import complaint_view
+from mbsym.editing.document.written import Data, Path, Refused, Written, data_of, original_offsets, written
+from mbsym.editing.document.yaml_edits import emptied, yaml_edits
+from mbsym.expressions.place import Complaint, Span
+from mbsym.expressions.tree import Name
+from mbsym.source.placed import MAX_TEXT, Mapping
+
+Json = dict[str, Any]
+
+#: So many operations are done at once.
+MOST_OPERATIONS = 200
+
+
+def changes(text: str, name: str, operations: Items[Map[str, Any]]) -> Json:
+    """The edits of a text that operations mean, or why they are not done.
+
+    ``{"edits": [{"from", "to", "insert"}], "select": path, "taken": [path]}`` with offsets in ``text``, the edits in
+    order and none overlapping another; ``taken`` is what was taken out because it named what is gone, by its paths in
+    the text as it was.  Otherwise ``{"complaints": [...]}``, and nothing is meant to be done: where one operation of
+    several cannot be done, none is.
+
+    An edit that would say anything else than the operation is refused (``not-so``).
+    """
+    found = written(text, name, understand=False)
+    try:
+        if len(operations) > MOST_OPERATIONS:
+            raise Refused("too-large", f"at most {MOST_OPERATIONS} operations are done at once")
+        if not isinstance(found.tree, Mapping):
+            found = written(text, name)
+            if not any(one.severity == "error" for one in found.complaints):
+                raise Refused("wrong-shape", "a description is a mapping of keys to values")
+            return {"complaints": [complaint_view(found, one) for one in found.complaints if one.severity == "error"]}
+        pieces = Pieces(found.text)
+        select: Path = ()
+        taken: list[Path] = []
+        for operation in operations:
+            understood = operation.get("op") in _UNDERSTANDING
+            if understood and found.system is None:
+                found = written(found.text, name)
+            done = meant(found, operation)
+            found = _done(found, done, pieces)
+            select, taken = done.select, [*taken, *done.taken]
+    except Refused as refused:
+        complaint = Complaint(refused.code, refused.message, Span(1, 1), refused.hint)
+        return {"complaints": [complaint_view(found, complaint) | {"from": 0, "to": 0}]}
+    ends = "\r\n" if "\r\n" in text else "\r" if "\r" in text and "\n" not in text else "\n"
+    offsets = original_offsets(text)
+    edits = [
+        {
+            "from": one.start if offsets is None else offsets[one.start],
+            "to": one.end if offsets is None else offsets[one.end],
+            "insert": one.insert.replace("\n", ends),
+        }
+        for one in pieces.edits()
+    ]
+    return {"edits": edits, "select": list(select), "taken": [list(path) for path in taken]}
+
+
+#: Operations that ask what the system is, not only what is written.
+_UNDERSTANDING = ("rename", "rename body", "duplicate branch", "delete branch")
+
+
+def _done(found: Written, done: Meant, pieces: Pieces) -> Written:
+    """The text after one operation, checked."""
+    if done.edits is not None:
+        after = data_of(found.tree) if found.tree is not None else ""
+        for primitive in done.primitives:
+            after = applied_to(after, primitive)
+        return _checked(found, done.edits, after, done, pieces)
+    for primitive in done.primitives:
+        assert found.tree is not None
+        exact = emptied(found, primitive.path) if isinstance(primitive, Remove) else primitive
+        before = data_of(found.tree)
+        after = applied_to(before, exact)
+        edits = text_edits(found, exact, before, after) if found.editor else yaml_edits(found, exact)
+        found = _checked(found, edits, after, done, pieces)
+    return found
+
+
+def _checked(found: Written, edits: list[Edit], wanted: Data, done: Meant, pieces: Pieces) -> Written:
+    """The text after edits.  Refused where it says anything else than what is wanted."""
+    text = applied(found.text, edits)
+    if len(text) > MAX_TEXT:
+        raise Refused("too-large", f"a description has at most {MAX_TEXT} characters")
+    renaming = done.edits is not None
+    after = written(text, found.name, understand=renaming and found.system is not None)
+    said = None if after.tree is None else data_of(after.tree)
+    if said is None or after.editor != found.editor or not _same(said, wanted):
+        raise Refused("not-so", "this cannot be written here without saying something else", "change it in the text")
+    if renaming and found.system is not None and not corresponds(found.system, after.system, done):
+        raise Refused("not-so", "with this name the description would be another one", "take another name")
+    pieces.edit(edits)
+    return after
+
+
+def _same(said: Data, wanted: Data) -> bool:
+    """Equal, the order of keys counted, and blanks of texts over several lines not."""
+    return json.dumps(said) == json.dumps(wanted)
+
+
+def corresponds(old: Any, new: Any, done: Meant) -> bool:
+    """Whether a system is another one with names put in place of others: in formulas all of them, in texts some."""
+    if isinstance(old, Name) and isinstance(new, Name):
+        return new.name == _renamed(old.name, done.names)
+    if isinstance(old, str) and isinstance(new, str):
+        return new in (old, _renamed(old, done.names), done.bodies.get(old, old)) or _reworded(old, new, done)
+    if type(old) is not type(new):
+        return False
+    if isinstance(old, tuple | list):
+        return len(old) == len(new) and all(corresponds(a, b, done) for a, b in zip(old, new, strict=True))
+    if is_dataclass(old):
+        pairs = ((getattr(old, one.name), getattr(new, one.name)) for one in fields(old) if "span" not in one.name)
+        return all(corresponds(a, b, done) for a, b in pairs)
+    return bool(old == new)
+
+
+def _renamed(name: str, names: Map[str, str]) -> str:
+    for ending in ("", "_dot", "_ddot"):
+        stem = name.removesuffix(ending) if ending else name
+        if stem in names and name == stem + ending:
+            return names[stem] + ending
+    return name
+
+
+def _reworded(old: str, new: str, done: Meant) -> bool:
+    """A formula that is kept as text, with the names put in."""
+    from mbsym.editing.document.words import pattern
+
+    if not done.names:
+        return any(one in old for one in done.bodies) and old.replace(*next(iter(done.bodies.items()))) == new
+    return pattern(list(done.names)).sub(lambda match: done.names[match[1]], old) == new

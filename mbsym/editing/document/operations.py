@@ -1,0 +1,125 @@
+"""Operations of the page on a description, as primitives: what to set, add, take out, rename."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from mbsym.editing.document.branches import add_body, delete_branch, duplicate, reattach, rename_body
+from mbsym.editing.document.meaning import Json, Meant, path_of, setting, word_of
+from mbsym.editing.document.primitives import Add, Remove, Shift
+from mbsym.editing.document.spelling import value_of
+from mbsym.editing.document.words import pattern, places, renamed, uses
+from mbsym.editing.document.written import Data, Refused, Written, child, data_of, node_at
+from mbsym.model.momenta import momentum_names
+from mbsym.source.placed import Node, Scalar, Sequence
+from mbsym.source.scope import why_no_name
+
+
+def meant(found: Written, operation: Json) -> Meant:
+    """What one operation means for a text.  Refused where it means nothing."""
+    kind = operation.get("op")
+    if not isinstance(kind, str) or kind not in _KINDS:
+        raise Refused("bad-operation", f"there is no operation {str(kind)[:40]!r}")
+    return _KINDS[kind](found, operation)
+
+
+# --- values -----------------------------------------------------------------------------------------------------------
+
+
+def _set(found: Written, operation: Json) -> Meant:
+    path, source = path_of(found, operation), word_of(operation, "source")
+    node = node_at(found.tree, path)
+    if not source.strip():
+        return Meant([] if node is None else [Remove(path)], select=path[:-1])
+    return Meant([setting(found, path, _typed(found, node, source), source)], select=path)
+
+
+def _typed(found: Written, node: Node | None, source: str) -> Data:
+    """What is meant by a source; in editor text lists may stand in any brackets."""
+    typed = source.strip()
+    if found.editor and typed[0] in "({" and typed[-1] in ")}" and ":" not in typed and "=" not in typed:
+        from mbsym.expressions.place import Span
+        from mbsym.source.text_values import items
+
+        listed = items(Scalar(typed, Span(1, 1, len(typed))))
+        if isinstance(node, Sequence) or (isinstance(listed, Sequence) and len(listed.items) > 1):
+            return data_of(listed)
+    return value_of(source)
+
+
+def _insert(found: Written, operation: Json) -> Meant:
+    path, source = path_of(found, operation), word_of(operation, "source")
+    data = _typed(found, None, source) if source.strip() else ""
+    if isinstance(path[-1], str) and node_at(found.tree, path) is not None:
+        raise Refused("repeated-key", f"'{path[-1]}' is there already")
+    holder = node_at(found.tree, path[:-1])
+    if isinstance(holder, Sequence) and isinstance(path[-1], int):
+        path = (*path[:-1], min(max(0, path[-1]), len(holder.items)))
+        if holder.items:
+            return Meant([Add(path, data, source)], select=path)
+    elif holder is None and isinstance(path[-1], int):
+        path = (*path[:-1], 0)
+    return Meant([setting(found, path, data, source)], select=path)
+
+
+def _delete(found: Written, operation: Json) -> Meant:
+    path = path_of(found, operation)
+    if node_at(found.tree, path) is None:
+        raise Refused("bad-path", "that is not there")
+    return Meant([Remove(path)], select=path[:-1])
+
+
+def _move(found: Written, operation: Json) -> Meant:
+    path = path_of(found, operation)
+    target = operation.get("before")
+    before = None if target is None else path_of(found, operation, "before")
+    if before is not None and before[:-1] != path[:-1]:
+        raise Refused("bad-operation", "something is moved within its own list only")
+    return Meant([Shift(path, None if before is None else before[-1])], select=path[:-1])
+
+
+# --- names ------------------------------------------------------------------------------------------------------------
+
+
+def _rename(found: Written, operation: Json) -> Meant:
+    kind, old, new = (word_of(operation, key) for key in ("kind", "name", "to"))
+    new = new.strip()
+    if kind in ("load", "constraint"):
+        raise Refused("no-name", f"a {kind} has no name of its own")
+    if old == new:
+        return Meant([])
+    if not any(one.role == "formula" and pattern([old]).fullmatch(one.node.text) for one in places(found)):
+        raise Refused("unknown-name", f"there is no {kind[:20]} {old[:40]!r}")
+    why = why_no_name(new)
+    if why is not None:
+        raise Refused("bad-name", f"nothing can be called {new[:40]!r}: {why[0]}", why[1])
+    if uses(found, new) or new in _variables(found):
+        raise Refused("repeated-name", f"{new!r} is there already")
+    names = {old: new}
+    if found.system is not None and old in found.system.coordinates and not found.system.speeds:
+        momentum = momentum_names(found.system)[old]
+        if momentum == f"p_{old}" and not uses(found, f"p_{new}"):
+            names[momentum] = f"p_{new}"
+    primitives, edits = renamed(found, names)
+    return Meant(primitives, edits, names=names)
+
+
+def _variables(found: Written) -> set[str]:
+    """The letters of characteristic polynomials."""
+    claims = node_at(found.tree, ("claims",))
+    nodes = (child(one, "variable") for one in (claims.items if isinstance(claims, Sequence) else ()))
+    return {node.text for node in nodes if isinstance(node, Scalar)}
+
+
+_KINDS: dict[str, Callable[[Written, Json], Meant]] = {
+    "set": _set,
+    "insert": _insert,
+    "delete": _delete,
+    "move": _move,
+    "add body": add_body,
+    "rename body": rename_body,
+    "reattach": reattach,
+    "duplicate branch": duplicate,
+    "delete branch": delete_branch,
+    "rename": _rename,
+}

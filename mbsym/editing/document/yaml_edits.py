@@ -1,0 +1,304 @@
+"""Primitives as edits of a YAML text: lines and values that are not touched stay byte for byte."""
+
+from __future__ import annotations
+
+import re
+
+from mbsym.editing.document.pieces import Edit
+from mbsym.editing.document.primitives import Add, Primitive, Rekey, Remove, Replace, Shift, applied_to
+from mbsym.editing.document.spelling import block, flow, key, scalar, spelled
+from mbsym.editing.document.written import Data, Path, Refused, Written, data_of, entry_of, node_at
+from mbsym.source.placed import Entry, Mapping, Node, Sequence
+
+#: Sections that mean something when they are empty.
+_KEPT_EMPTY = ("bodies", "motion")
+
+
+def yaml_edits(found: Written, primitive: Primitive) -> list[Edit]:
+    """The edits of the text that one primitive is.  Refused where there is no place for it."""
+    match primitive:
+        case Replace(path, data, source):
+            return [_replaced(found, path, data, source)]
+        case Add(path, data, source, after):
+            return [_added(found, path, data, source, after)]
+        case Remove(path):
+            return [_removed(found, path)]
+        case Rekey(path, new):
+            return [Edit(*found.key(_entry(found, path)), key(new))]
+        case Shift(path, before):
+            return _shifted(found, path, before)
+
+
+def emptied(found: Written, path: Path) -> Primitive:
+    """To remove the last of a section is to remove the section, or to leave it empty where that says something."""
+    holder = node_at(found.tree, path[:-1])
+    if len(path) < 2 or holder is None or len(_parts(holder)) > 1:
+        return Remove(path)
+    if len(path) == 2 and path[0] not in _KEPT_EMPTY:
+        return Remove(path[:1])
+    return Replace(path[:-1], {} if isinstance(holder, Mapping) else [])
+
+
+def _parts(node: Node) -> tuple[Entry, ...] | tuple[Node, ...]:
+    return node.entries if isinstance(node, Mapping) else node.items if isinstance(node, Sequence) else ()
+
+
+def _entry(found: Written, path: Path) -> Entry:
+    holder = node_at(found.tree, path[:-1])
+    entry = None if holder is None else entry_of(holder, path[-1])
+    if entry is None:
+        raise Refused("bad-path", f"there is no {path[-1]!r} there")
+    return entry
+
+
+def _node(found: Written, path: Path) -> Node:
+    node = node_at(found.tree, path)
+    if node is None:
+        raise Refused("bad-path", f"there is no {path[-1] if path else ''!r} there")
+    return node
+
+
+def _in_flow(found: Written, path: Path) -> bool:
+    """Whether what stands at a path stands between brackets."""
+    return any(found.style(_node(found, path[:k])) == "flow" for k in range(len(path)))
+
+
+# --- values -----------------------------------------------------------------------------------------------------------
+
+
+def _replaced(found: Written, path: Path, data: Data, source: str | None) -> Edit:
+    node, in_flow = _node(found, path), _in_flow(found, path)
+    value = spelled(source, in_flow) if source is not None else _value(data, in_flow)
+    start, end = found.extent(node)
+    if len(path) == 1 and data and not isinstance(data, str) and source is None and not in_flow:
+        return Edit(_colon(found, _entry(found, path)), end, _section(found, str(path[0]), data))
+    if isinstance(path[-1], str):
+        entry = _entry(found, path)
+        last = found.key(entry)[1]
+        if start == end:
+            return _into_empty(found, last, value, in_flow)
+        if found.style(node) == "block":
+            return Edit(_colon(found, entry), end, f" {value}")
+    return Edit(start, end, value)
+
+
+def _into_empty(found: Written, after: int, value: str, in_flow: bool) -> Edit:
+    """Behind a key without a value."""
+    match = re.compile(r"[ \t]*:").match(found.text, after)
+    if match is None:
+        if not in_flow:
+            raise Refused("bad-path", "no colon follows the key")
+        return Edit(after, after, f": {value}")
+    end = match.end()
+    blank = found.text[end : end + 1] == " "
+    return Edit(end + blank, end + blank, value if blank else f" {value}")
+
+
+def _colon(found: Written, entry: Entry) -> int:
+    """Behind the colon of a key."""
+    match = re.compile(r"[ \t]*:").match(found.text, found.key(entry)[1])
+    if match is None:
+        raise Refused("bad-path", f"no colon follows '{entry.key.text}'")
+    return match.end()
+
+
+def _value(data: Data, in_flow: bool) -> str:
+    return scalar(data, in_flow) if isinstance(data, str) else flow(data)
+
+
+# --- new --------------------------------------------------------------------------------------------------------------
+
+
+def _added(found: Written, path: Path, data: Data, source: str | None, after: str | None) -> Edit:
+    holder = _node(found, path[:-1])
+    if found.style(holder) == "flow" or _in_flow(found, path[:-1]):
+        return _added_in_flow(found, holder, path, data, source, after)
+    if isinstance(holder, Sequence):
+        return _added_item(found, holder, path, data, source)
+    if not isinstance(holder, Mapping) or not holder.entries:
+        raise Refused("bad-path", "there is no mapping to add to")
+    entries = holder.entries
+    before = next((one for one in entries if one.key.text == after), entries[-1])
+    start = found.key(entries[0])[0]
+    indent = start - found.line_start(start)
+    position = found.line_end(max(found.extent(before.value)[1], found.key(before)[1]))
+    name = key(str(path[-1]))
+    if len(path) == 1 and data and not isinstance(data, str):
+        return Edit(position, position, f"\n\n{name}:{_section(found, str(path[0]), data)}")
+    value = spelled(source, False) if source is not None else _value(data, False)
+    return Edit(position, position, f"\n{' ' * indent}{name}: {value}")
+
+
+def _added_in_flow(found: Written, holder: Node, path: Path, data: Data, source: str | None, after: str | None) -> Edit:
+    value = spelled(source) if source is not None else _value(data, True)
+    start, _ = found.extent(holder)
+    if isinstance(holder, Mapping):
+        entries = holder.entries
+        value = f"{key(str(path[-1]))}: {value}"
+        before = next((one for one in entries if one.key.text == after), entries[-1] if entries else None)
+        end = 0 if before is None else max(found.extent(before.value)[1], found.key(before)[1])
+    else:
+        items = holder.items if isinstance(holder, Sequence) else ()
+        index = path[-1]
+        assert isinstance(index, int)
+        if items and index == 0:
+            first = found.extent(items[0])[0]
+            return Edit(first, first, f"{value}, ")
+        end = found.extent(items[index - 1])[1] if items else 0
+    if end:
+        return Edit(end, end, f", {value}")
+    return Edit(start + 1, start + 1, value)
+
+
+def _added_item(found: Written, holder: Sequence, path: Path, data: Data, source: str | None) -> Edit:
+    index, section = path[-1], str(path[0])
+    assert isinstance(index, int)
+    if not holder.items:
+        raise Refused("bad-path", "there is no list to add to")
+    dashes = [_dash(found, item) for item in holder.items]
+    indent = dashes[0] - found.line_start(dashes[0])
+    text = _item(section, data, indent + 2) if len(path) == 2 else _item("", data, indent + 2)
+    apart = len(dashes) > 1 and "\n\n" in found.text[found.extent(holder.items[0])[1] : dashes[1]]
+    apart = apart or (len(dashes) == 1 and section == "bodies" and len(path) == 2)
+    if index == 0:
+        start = found.line_start(dashes[0])
+        return Edit(start, start, f"{' ' * indent}- {text}\n" + ("\n" if apart else ""))
+    position = found.line_end(found.extent(holder.items[index - 1])[1])
+    return Edit(position, position, ("\n" if apart else "") + f"\n{' ' * indent}- {text}")
+
+
+def _item(section: str, data: Data, indent: int) -> str:
+    """An item of a list as people write it: bodies line by line, loads by their kind, the rest between brackets."""
+    if section == "bodies":
+        return block(data, indent)
+    if section in ("loads", "constraints") and isinstance(data, dict) and len(data) == 1:
+        return block(data, indent)
+    return scalar(data, False) if isinstance(data, str) else flow(data)
+
+
+def _section(found: Written, name: str, data: Data) -> str:
+    """What stands behind the colon of a section, from the next line on."""
+    indent = " " * _indentation(found)
+    if isinstance(data, list):
+        apart = "\n\n" if name == "bodies" else "\n"
+        return "\n" + apart.join(f"{indent}- {_item(name, one, len(indent) + 2)}" for one in data)
+    assert isinstance(data, dict)
+    return "".join(f"\n{indent}{key(one)}: {_value(value, False)}" for one, value in data.items())
+
+
+def _indentation(found: Written) -> int:
+    """By how much sections are indented in this text."""
+    tree = found.tree
+    for entry in tree.entries if isinstance(tree, Mapping) else ():
+        if found.style(entry.value) == "block" and isinstance(entry.value, Mapping):
+            start = found.key(entry.value.entries[0])[0]
+            return start - found.line_start(start)
+    return 2
+
+
+def _dash(found: Written, item: Node) -> int:
+    """Where the dash of an item stands, first in its line."""
+    position = found.extent(item)[0] - 1
+    while position >= 0 and found.text[position] in " \t\n":
+        position -= 1
+    if position < 0 or found.text[position] != "-" or found.text[found.line_start(position) : position].strip():
+        raise Refused("bad-path", "this list is written in a way that is not changed here", "change it in the text")
+    return position
+
+
+# --- gone and moved ---------------------------------------------------------------------------------------------------
+
+
+def _removed(found: Written, path: Path) -> Edit:
+    holder = _node(found, path[:-1])
+    parts = _parts(holder)
+    index = _index(holder, path[-1])
+    if found.style(holder) == "flow":
+        return _removed_in_flow(found, holder, index)
+    if len(parts) == 1:
+        raise Refused("bad-path", "the last of a mapping or list is not taken out of it")
+    start, end = _lines(found, holder, index)
+    if start is None:
+        following = parts[index + 1] if index + 1 < len(parts) else None
+        if not isinstance(following, Entry):
+            raise Refused("bad-path", "this is written in a way that is not changed here", "change it in the text")
+        part = parts[index]
+        assert isinstance(part, Entry)
+        return Edit(found.key(part)[0], found.key(following)[0], "")
+    if found.text[:start].endswith("\n\n") and found.text[end : end + 1] in ("\n", ""):
+        return Edit(start - 1, end, "")
+    if end == len(found.text) and not found.text.endswith("\n"):
+        return Edit(max(0, start - 1), end, "")
+    return Edit(start, end, "")
+
+
+def _index(holder: Node, step: str | int) -> int:
+    if isinstance(holder, Mapping):
+        entry = entry_of(holder, step)
+        if entry is not None:
+            return holder.entries.index(entry)
+    elif isinstance(holder, Sequence) and isinstance(step, int) and 0 <= step < len(holder.items):
+        return step
+    raise Refused("bad-path", f"there is no {step!r} there")
+
+
+def _lines(found: Written, holder: Node, index: int) -> tuple[int | None, int]:
+    """The whole lines of a part of a block, their line end with them; no beginning where a line begins with more."""
+    if isinstance(holder, Mapping):
+        entry = holder.entries[index]
+        start, last = found.key(entry)[0], max(found.extent(entry.value)[1], found.key(entry)[1])
+    else:
+        assert isinstance(holder, Sequence)
+        item = holder.items[index]
+        start, last = _dash(found, item), found.extent(item)[1]
+    end = min(len(found.text), found.line_end(last) + 1)
+    first = found.line_start(start)
+    return (None if found.text[first:start].strip() else first), end
+
+
+def _bounds(found: Written, part: Entry | Node) -> tuple[int, int]:
+    if isinstance(part, Entry):
+        start, end = found.key(part)
+        return start, max(end, found.extent(part.value)[1])
+    return found.extent(part)
+
+
+def _removed_in_flow(found: Written, holder: Node, index: int) -> Edit:
+    parts = _parts(holder)
+    start, end = _bounds(found, parts[index])
+    if index + 1 < len(parts):
+        return Edit(start, _bounds(found, parts[index + 1])[0], "")
+    return Edit(_bounds(found, parts[index - 1])[1] if index else start, end, "")
+
+
+def _shifted(found: Written, path: Path, before: str | int | None) -> list[Edit]:
+    holder = _node(found, path[:-1])
+    parts = _parts(holder)
+    index = _index(holder, path[-1])
+    target = len(parts) if before is None else _index(holder, before)
+    if target in (index, index + 1):
+        return []
+    if found.style(holder) == "flow":
+        data = applied_to({"x": data_of(holder)}, Shift(("x", path[-1]), before))
+        assert isinstance(data, dict)
+        return [Edit(*found.extent(holder), flow(data["x"]))]
+    start, end = _lines(found, holder, index)
+    goal = _lines(found, holder, target)[0] if target < len(parts) else _lines(found, holder, len(parts) - 1)[1]
+    if start is None or goal is None:
+        raise Refused("bad-path", "this is written in a way that is not moved here", "move it in the text")
+    text = found.text
+    moved = text[start:end] if text[start:end].endswith("\n") else text[start:end] + "\n"
+    if text[:start].endswith("\n\n"):
+        start, apart = start - 1, True
+    else:
+        apart = text[end : end + 1] == "\n"
+        end += apart
+    if target < len(parts):
+        moved = moved + "\n" if apart else moved
+    else:
+        moved = "\n" + moved if apart else moved
+        if not text[:goal].endswith("\n"):
+            moved = "\n" + moved.removesuffix("\n")
+    if end == len(text) and not text.endswith("\n"):
+        start -= text[:start].endswith("\n")
+    return [Edit(start, end, ""), Edit(goal, goal, moved)]
