@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
 from mbsym.analysis import constrained, given
+from mbsym.analysis.poles import at_a_pole
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.mechanics.rest import given_values, missing_values
 from mbsym.problems import dissipation, energy, equations, equilibrium, stability
@@ -49,6 +51,9 @@ def stability_of(analysis: Analysis) -> Stability:
     """The verdicts of problem 6; open ones are looked at further."""
     scene, linear = analysis.parameters_scene, analysis.judgeable
     found = stability.stability(scene, analysis.balance, linear, analysis.equilibrium, analysis.signs)
+    values = None if found.numerical is None else stability.parameter_values(scene, analysis.equilibrium)
+    if values is not None and analysis.system.linear is None and at_a_pole(analysis, values):
+        return replace(found, numerical=None, spectra=())
     if found.numerical is None or not found.numerical.word.open or analysis.system.constraints:
         return found  # what looks further at open verdicts knows the open tree alone
     from mbsym.problems import open_verdicts  # what equilibria are judged by is not imported for nothing

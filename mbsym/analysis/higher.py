@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from mbsym.analysis.poles import at_a_pole
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.mechanics.generalized import generalized_forces
 from mbsym.problems import stability
@@ -27,7 +28,7 @@ def normal_forms_of(analysis: Analysis) -> NormalForms:
         raise Unavailable("conditions", NoResult(reason, "see problem 4", "conditions", "unsolved-conditions"))
     analysis.judgeable  # noqa: B018  raises where the first approximation, or time, says that no theorem applies
     values = stability.parameter_values(scene, found)
-    if values is not None and not on_motion(scene, found, values):
+    if values is not None and (not on_motion(scene, found, values) or at_a_pole(analysis, values)):
         values = None
     conservative, cyclic = ignorable(analysis)
     result = problem.normal_forms(scene, analysis.system, found, values, conservative, cyclic)

@@ -84,8 +84,9 @@ def test_a_feedback_control_system() -> None:
 def test_watts_governor() -> None:
     """x'' = z^2 sin x cos x - sin x - eps x', z' = al (cos x - be), eps = 2 al be^(3/2) (Pontryagin's border).
 
-    Sotomayor, Mello & Braga, Comput. Appl. Math. 26 (2007) 19: the sign of the first coefficient is that of
-    -(3 + (al^2 - 5) be^2 + al^4 be^6); be = r^2, sin and cos expanded about cos x = be, z = be^(-1/2).
+    J. Sotomayor, L. F. Mello & D. C. Braga, Bifurcation analysis of the Watt governor system (arXiv math/0606230): the
+    sign of the first coefficient is that of  -(3 + (al^2 - 5) be^2 + al^4 be^6),  quoted second-hand; the positive
+    factor was found here.  be = r^2, sin and cos expanded about cos x = be, z = be^(-1/2).
     """
     tower = Tower(("al", "r"))
     al, r, one = tower.parameter("al"), tower.parameter("r"), tower.one
