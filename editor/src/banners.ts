@@ -32,7 +32,7 @@ export function bannersOf(model: Model): HTMLElement {
   model.on("told", (told) => {
     if (told.kind !== "outside" || typeof told["text"] !== "string" || typeof told["digest"] !== "string") return;
     const { text, digest } = told as unknown as { text: string; digest: string };
-    if (digest === model.file.digest) return;
+    if (digest === model.file.digest || text === model.beingSaved) return;
     const untouched = model.saved;
     model.fileIs(digest, text);
     if (text === model.text) return;

@@ -76,6 +76,8 @@ export class Model extends Listeners<Events> {
   private journalTimer: number | undefined;
   private looking: Promise<void> | null = null;
   private pending = 0;
+  /** The text that is on its way into the file: the server tells every page of it, this one too. */
+  private saving: string | null = null;
   private changes: Promise<unknown> = Promise.resolve();
   private listeningTo: EventSource | null = null;
 
@@ -343,8 +345,13 @@ export class Model extends Listeners<Events> {
   }
 
   /** Saves; `force` writes over what someone else has written. Another text in the file is answered, not overwritten. */
+  get beingSaved(): string | null {
+    return this.saving;
+  }
+
   async save(force = false): Promise<{ saved: true } | { saved: false; other: { digest: string; text: string } | null }> {
     const text = this.text;
+    this.saving = text;
     try {
       const answer = await this.post<{ digest: string }>("save", { text, digest: this.file.digest, ...(force ? { force } : {}) });
       this.file = { ...this.file, digest: answer.digest, new: false, journal: null };
@@ -358,6 +365,8 @@ export class Model extends Listeners<Events> {
       }
       this.say(failure instanceof Error ? failure.message : String(failure));
       return { saved: false, other: null };
+    } finally {
+      this.saving = null;
     }
   }
 

@@ -180,7 +180,7 @@ class Window:
 
     def is_quiet(self) -> None:
         """Nothing on the console, nothing that the security policy had to stop."""
-        assert self.troubles == []
+        assert self.troubles == [], self.troubles
         assert self.page.evaluate("window.violations") == []
 
 
