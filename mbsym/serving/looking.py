@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mbsym.editing import explanation, suggestions
+from mbsym.editing.document import look
 from mbsym.expressions.place import Complaint, Complaints, Span
 from mbsym.serving.offsets import Offsets
 from mbsym.source import read, to_text, to_yaml
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
 #: A word that is completed, up to the place where one types.
 _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
+_FILE = re.compile(r"\bfile\b", re.IGNORECASE)
 
 #: Longer formulas are not shown as they are typed.
 MOST_FORMULA = 5_000
@@ -44,21 +46,11 @@ def understood(text: str, name: str, folder: Path | None) -> tuple[System | None
 
 def view(text: str, name: str, folder: Path | None) -> dict[str, Any]:
     """The View of the seam: bodies, ties, the tree as written, complaints."""
-    system, found = understood(text, name, folder)
-    return {
-        "name": system.name if system else "",
-        "format": spelling(text, name),
-        "tree": None,
-        "bodies": [_body(one) for one in system.bodies] if system else [],
-        "constraints": [],
-        "loads": [],
-        "complaints": complaints_json(found, Offsets(text)),
-    }
-
-
-def _body(body: Any) -> dict[str, Any]:
-    parent = None if body.attached_to == "0" else body.attached_to
-    return {"name": body.name, "path": [], "parent": parent, "from": 0, "to": 0, "fields": {}}
+    places = Offsets(text)
+    shown: dict[str, Any] = places.in_units(look(text, name))
+    if not says_so(text) or _FILE.search(text):  # what a file beside the description holds is part of what it means
+        shown["complaints"] = complaints_json(understood(text, name, folder)[1], places)
+    return shown
 
 
 def changed(text: str, name: str, operations: list[Any], folder: Path | None) -> dict[str, Any]:
