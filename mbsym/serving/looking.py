@@ -55,8 +55,10 @@ def view(text: str, name: str, folder: Path | None) -> dict[str, Any]:
 
 def changed(text: str, name: str, operations: list[Any], folder: Path | None) -> dict[str, Any]:
     """What text edits operations mean, or why they mean none."""
-    told = Complaint("not-yet", "operations are not understood by this version")
-    return {"complaints": complaints_json([told], Offsets(text))}
+    from mbsym.editing.document import changes
+
+    found: dict[str, Any] = Offsets(text).in_units(changes(text, name, operations, folder))
+    return found
 
 
 def complaints_json(found: list[Complaint], places: Offsets) -> list[dict[str, Any]]:

@@ -6,6 +6,7 @@ import json
 from collections.abc import Mapping as Map
 from collections.abc import Sequence as Items
 from dataclasses import fields, is_dataclass
+from pathlib import Path as Folder
 from typing import Any
 
 from mbsym.editing.document.operations import Meant, meant
@@ -25,7 +26,7 @@ Json = dict[str, Any]
 MOST_OPERATIONS = 200
 
 
-def changes(text: str, name: str, operations: Items[Map[str, Any]]) -> Json:
+def changes(text: str, name: str, operations: Items[Map[str, Any]], folder: Folder | None = None) -> Json:
     """The edits of a text that operations mean, or why they are not done.
 
     ``{"edits": [{"from", "to", "insert"}], "select": path, "taken": [path]}`` with offsets in ``text``, the edits in
@@ -35,12 +36,12 @@ def changes(text: str, name: str, operations: Items[Map[str, Any]]) -> Json:
 
     An edit that would say anything else than the operation is refused (``not-so``).
     """
-    found = written(text, name, understand=False)
+    found = written(text, name, False, folder)
     try:
         if len(operations) > MOST_OPERATIONS:
             raise Refused("too-large", f"at most {MOST_OPERATIONS} operations are done at once")
         if not isinstance(found.tree, Mapping):
-            found = written(text, name)
+            found = written(text, name, folder=folder)
             if not any(one.severity == "error" for one in found.complaints):
                 raise Refused("wrong-shape", "a description is a mapping of keys to values")
             return {"complaints": [complaint_view(found, one) for one in found.complaints if one.severity == "error"]}
@@ -48,9 +49,11 @@ def changes(text: str, name: str, operations: Items[Map[str, Any]]) -> Json:
         select: Path = ()
         taken: list[Path] = []
         for operation in operations:
+            if not isinstance(operation, Map):
+                raise Refused("bad-operation", "an operation is a mapping with the key 'op'")
             understood = operation.get("op") in _UNDERSTANDING
             if understood and found.system is None:
-                found = written(found.text, name)
+                found = written(found.text, name, folder=folder)
             done = meant(found, operation)
             found = _done(found, done, pieces)
             select, taken = done.select, [*taken, *done.taken]
@@ -97,7 +100,7 @@ def _checked(found: Written, edits: list[Edit], wanted: Data, done: Meant, piece
     if len(text) > MAX_TEXT:
         raise Refused("too-large", f"a description has at most {MAX_TEXT} characters")
     renaming = done.edits is not None
-    after = written(text, found.name, understand=renaming and found.system is not None)
+    after = written(text, found.name, renaming and found.system is not None, found.folder)
     said = None if after.tree is None else data_of(after.tree)
     if said is None or after.editor != found.editor or not _same(said, wanted):
         raise Refused("not-so", "this cannot be written here without saying something else", "change it in the text")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from dataclasses import dataclass, field
+from pathlib import Path as Folder
 
 from mbsym.expressions.place import Complaints, Span
 from mbsym.model.system import System
@@ -42,6 +43,7 @@ class Written:
     complaints: Complaints
     extents: dict[int, Extent]
     line_starts: list[int] = field(default_factory=list)
+    folder: Folder | None = None
 
     def offset(self, span: Span) -> int:
         """Where a span begins, within the text."""
@@ -125,16 +127,19 @@ def _children(node: Node) -> tuple[Node, ...]:
     return tuple(entry.value for entry in node.entries) if isinstance(node, Mapping) else ()
 
 
-def written(text: str, name: str, understand: bool = True) -> Written:
-    """What a text says and where; with ``understand`` its system and all complaints, too."""
+def written(text: str, name: str, understand: bool = True, folder: Folder | None = None) -> Written:
+    """What a text says and where; with ``understand`` its system and all complaints, too.
+
+    Files that it names are looked for in ``folder``.
+    """
     extents: dict[int, Extent] = {}
-    found = read_placed(text, name, None, extents, understand)
+    found = read_placed(text, name, folder, extents, understand)
     plain = normalised(text)
     starts, position = [0], plain.find("\n")
     while position >= 0:
         starts.append(position + 1)
         position = plain.find("\n", position + 1)
-    return Written(plain, name, found.tree, found.editor, found.system, found.complaints, extents, starts)
+    return Written(plain, name, found.tree, found.editor, found.system, found.complaints, extents, starts, folder)
 
 
 def original_offsets(text: str) -> list[int] | None:
