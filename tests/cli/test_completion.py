@@ -43,7 +43,7 @@ def offered(line: str, folder: Path) -> list[str]:
     [
         ("mbsym si", ["simulate"]),
         ("mbsym simulate --anim", ["--animate"]),
-        ("mbsym examples heavy", ["heavy-top"]),
+        ("mbsym examples heavy", ["heavy-gyrostat", "heavy-top"]),
         ("mbsym new crane --like dumb", ["dumbbell"]),
         ("mbsym explain lo", ["loads"]),
         ("mbsym schema sum", ["summary"]),
