@@ -46,6 +46,8 @@ def read_small(node: Node | None, reading: Reading, used: frozenset[str]) -> Sma
         if name in reading.scope.kinds:
             message = f"{ascii_safe(name)} is declared already: with 'powers' the small parameter is a name of its own"
             reading.error("misplaced-name", message, entry.key.span, "choose another name, or leave 'powers' out")
+        elif not powers and reading.errors == errors:
+            reading.shape_error(given, "'powers'", "a parameter with a power of the small one", HINT)
     fast = tuple(_variables(fields.get("fast"), "fast", reading))
     slow = tuple(_variables(fields.get("slow"), "slow", reading))
     for other in slow:
