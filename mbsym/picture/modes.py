@@ -196,7 +196,8 @@ def _sentences(found: Modes) -> Iterator[str]:
     word = found.verdict.word.value
     theorem = f" ({found.verdict.theorem})" if found.verdict.theorem else ""
     yield f"The motion at these values: {word}{theorem}."
-    yield "Roots are enclosed, shapes are floating-point; a mode is shown large and with constant amplitude."
+    yield "Roots are enclosed, shapes are floating-point; a part of a root that may be 0 is told as 0."
+    yield "A mode that swings is shown large and with constant amplitude, whatever its damping."
     if found.turning:
         yield f"Deviations from a steady motion, which is held still: {', '.join(found.turning)} turn in it."
     if found.still:

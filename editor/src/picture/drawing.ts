@@ -36,12 +36,6 @@ const LONGEST_ARROW = 0.34;
 /** Paths of at most so many bodies, with so many points. */
 const PATHS = 12;
 
-export interface Inks {
-  front: string;
-  soft: string;
-  back: string;
-}
-
 export interface Shown {
   frames: boolean;
   arrows: boolean;
@@ -383,8 +377,8 @@ export class Drawing {
     this.trails = [];
   }
 
-  ink(inks: Inks): void {
-    for (const material of this.inks) material.color.set(inks.soft);
+  ink(colour: string): void {
+    for (const material of this.inks) material.color.set(colour);
   }
 
   private clear(): void {

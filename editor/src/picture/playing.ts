@@ -108,10 +108,11 @@ export class Swing {
     const { mode } = this;
     const time = unit ? ` ${unit}` : "";
     if (mode.imaginary > 0) {
-      const grows = mode.real === 0 ? "undamped" : `damping ratio ${told(mode.damping)}${mode.real > 0 ? ", growing" : ""}`;
-      return `frequency ${told(mode.frequency)}${unit ? ` 1/${unit}` : ""} (${told(mode.imaginary)} rad${unit ? `/${unit}` : ""}), ${grows}`;
+      const grows = `damping ratio ${mode.real === 0 ? "0" : told(mode.damping)}${mode.real > 0 ? ", growing" : ""}`;
+      const per = unit ?? "unit of time";
+      return `frequency ${told(mode.frequency)} per ${per} (${told(mode.imaginary)} rad per ${per}), ${grows}`;
     }
-    if (mode.real === 0) return "root 0: a displacement or drift that nothing opposes in the first approximation";
+    if (mode.real === 0) return "root 0: in the first approximation nothing drives it back";
     return `does not swing: ${mode.real < 0 ? "decays" : "grows"} by e in ${told(1 / Math.abs(mode.real))}${time}`;
   }
 }

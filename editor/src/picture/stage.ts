@@ -5,6 +5,7 @@ import { Color, SRGBColorSpace, Vector3, WebGLRenderer } from "three";
 import { make } from "../elements.js";
 import { Eye } from "./camera.js";
 import { Drawing } from "./drawing.js";
+import { inks } from "./inks.js";
 import type { Picture } from "./types.js";
 
 /** Frames that take longer than this, in milliseconds, are drawn coarser; shorter than that, finer again. */
@@ -97,11 +98,9 @@ export class Stage {
   }
 
   ink(): void {
-    const style = getComputedStyle(this.element);
-    const read = (name: string, otherwise: string) => style.getPropertyValue(name).trim() || otherwise;
-    const inks = { front: read("--front", "#1d2430"), soft: read("--line", "#c9ced6"), back: read("--back", "#ffffff") };
-    this.drawing.ink(inks);
-    this.drawing.scene.background = new Color(inks.back);
+    const found = inks(this.element, { line: "#c9ced6", back: "#ffffff" });
+    this.drawing.ink(found.line);
+    this.drawing.scene.background = new Color(found.back);
     this.wanted();
   }
 

@@ -1,6 +1,7 @@
 // Energies and drift of a motion over time, on a small canvas of its own; pressing it goes there.
 
 import { make } from "../elements.js";
+import { inks } from "./inks.js";
 import { told, type Track } from "./playing.js";
 
 export class Traces {
@@ -8,7 +9,7 @@ export class Traces {
   private readonly canvas = make("canvas", { class: "viewer-trace-canvas", "aria-hidden": "true" });
   private readonly reading = make("p", { class: "viewer-reading" });
   private track: Track | null = null;
-  private rows: { name: string; values: number[]; colour: string; dashed: boolean }[] = [];
+  private rows: { name: string; values: number[]; colour: "accent" | "warn"; dashed: boolean }[] = [];
 
   constructor(go: (t: number) => void) {
     this.element = make("div", { class: "viewer-trace" }, this.canvas, this.reading);
@@ -25,8 +26,8 @@ export class Traces {
     const first = motion.energy[0] ?? 0;
     const numbers = (values: (number | null)[]) => values.map((x) => x ?? NaN);
     this.rows = [
-      { name: "kinetic energy", values: numbers(motion.kinetic), colour: "--accent", dashed: false },
-      { name: "change of energy", values: numbers(motion.energy).map((x) => x - first), colour: "--warn", dashed: true },
+      { name: "kinetic energy", values: numbers(motion.kinetic), colour: "accent", dashed: false },
+      { name: "change of energy", values: numbers(motion.energy).map((x) => x - first), colour: "warn", dashed: true },
     ];
   }
 
@@ -48,14 +49,14 @@ export class Traces {
     if (!pen || wide === 0) return;
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.clearRect(0, 0, wide, tall);
-    const style = getComputedStyle(canvas);
+    const ink = inks(this.element, { accent: "#0063a6", warn: "#a84a00", front: "#1d2430" });
     const every = this.rows.flatMap((row) => row.values).filter(Number.isFinite);
     const low = every.reduce((a, b) => Math.min(a, b), Infinity);
     const size = every.reduce((a, b) => Math.max(a, b), -Infinity) - low || 1;
     const x = (time: number) => (wide * time) / (track.end || 1);
     const y = (value: number) => tall - 4 - ((tall - 8) * (value - low)) / size;
     for (const row of this.rows) {
-      pen.strokeStyle = style.getPropertyValue(row.colour).trim() || "currentColor";
+      pen.strokeStyle = ink[row.colour];
       pen.lineWidth = 1.4;
       pen.setLineDash(row.dashed ? [5, 3] : []);
       pen.beginPath();
@@ -63,7 +64,7 @@ export class Traces {
       pen.stroke();
     }
     pen.setLineDash([]);
-    pen.strokeStyle = style.color;
+    pen.strokeStyle = ink.front;
     pen.beginPath();
     pen.moveTo(x(t), 0);
     pen.lineTo(x(t), tall);
