@@ -30,7 +30,7 @@ def sentences(found: Picture) -> Iterator[str]:
         yield f"{some} on velocities: every position can be shown, not every one is reached by a given motion."
     solid = [body.ellipsoid for body in found.bodies if body.ellipsoid is not None]
     if any(one.true_size for one in solid):
-        yield "Ellipsoids are homogeneous bodies with the same mass and inertia, to scale (but none thinner than 1/100)."
+        yield "Ellipsoids: homogeneous bodies with the same mass and inertia, to scale (none thinner than 1/100)."
     if any(not one.true_size for one in solid):
         yield "Ellipsoids of bodies without a mass have the proportions of their inertia; their size means nothing."
     if any(body.shapes for body in found.bodies):
