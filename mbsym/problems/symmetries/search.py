@@ -104,8 +104,9 @@ def _bound(system: System, blocks: Blocks, unknowns: Sequence[Unknown]) -> tuple
     """
     rows = []
     try:
-        for value in _states(system, blocks, len(unknowns) + SPARE):
-            rows.append(_row(value, blocks, unknowns))
+        plain = _Plain(blocks)
+        for carry in _states(system, blocks, len(unknowns) + SPARE):
+            rows.append(_row(carry, plain, unknowns))
             if len(rows) == len(unknowns) + SPARE // 2:
                 break
     except NOT_THERE:
@@ -139,9 +140,23 @@ def _norms(blocks: Blocks, source: Random) -> dict[str, fmpq]:
     return found
 
 
-def _row(carry: Carrier, blocks: Blocks, unknowns: Sequence[Unknown]) -> list[int]:
+class _Plain:
+    """The blocks in independent variables."""
+
+    def __init__(self, blocks: Blocks) -> None:
+        def moved(listed: Sequence[Polynomial]) -> list[Polynomial]:
+            return [blocks.plain(x) for x in listed]
+
+        self.momenta, self.rates = moved(blocks.momenta), moved(blocks.rates)
+        self.positions, self.changes = moved(blocks.positions), moved(blocks.changes)
+        (self.power,) = moved([blocks.power])
+
+
+def _row(carry: Carrier, blocks: _Plain, unknowns: Sequence[Unknown]) -> list[int]:
+    """What every constant is multiplied by at a state."""
+
     def at(listed: Sequence[Polynomial]) -> list[int]:
-        return [_residue(carry(blocks.plain(x))) for x in listed]
+        return [_residue(carry(x)) for x in listed]
 
     prime = PRIMES[0]
     p, rates = at(blocks.momenta), at(blocks.rates)
