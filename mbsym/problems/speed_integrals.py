@@ -15,7 +15,8 @@ before zero is decided).  Tried are
 * the squares and products of the unit vectors that occur, the norms of quaternions: what these are is known, they are
   listed because the equations alone keep them.
 
-Others, such as those of Kovalevskaya's and Clebsch's cases, are not looked for; a claim can propose them.
+Others, such as those of Kovalevskaya's and Clebsch's cases, are not looked for here: problem 9 and ``mbsym symmetries``
+do; a claim can propose them.
 """
 
 from __future__ import annotations
