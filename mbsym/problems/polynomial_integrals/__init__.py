@@ -15,8 +15,8 @@ functions by the rank of their gradients at a random state.
 
 Particular integrals have derivatives that vanish where another one does: df/dt = K V.  ``mbsym integrals`` asks more:
 at which values of a parameter, or under which conditions on parameters, there are others (of gyrostats, too, whose
-equations a further constant variable makes quasi-homogeneous).  ``mbsym symmetries`` finds those that are linear in the
-velocities by their symmetries, polynomial or not; ``mbsym simulate --invariants`` watches what is found.
+equations a further constant variable makes quasi-homogeneous).  ``mbsym symmetries`` finds those of symmetries whose
+fields are of degree one in the positions, polynomial or not; ``mbsym simulate --invariants`` watches what is found.
 
 Source: H. Yoshida, Necessary condition for the existence of algebraic first integrals, Celest. Mech. 31 (1983), on
 weights; the integrals themselves are those of Euler, Lagrange, Kovalevskaya and Clebsch.
