@@ -1,0 +1,112 @@
+// The map of stability over one or two parameters with ranges, others at numbers.
+
+import { make } from "./elements.js";
+import type { Model } from "./model.js";
+import type { Told } from "./seam.js";
+
+interface Axis {
+  name: HTMLSelectElement;
+  low: HTMLInputElement;
+  high: HTMLInputElement;
+  row: HTMLElement;
+}
+
+/** The keys of the section `parameters`, as they are written. */
+function parametersOf(model: Model): string[] {
+  const section = model.understood?.tree?.children?.find((child) => child.path.length === 1 && child.path[0] === "parameters");
+  const names = (section?.children ?? []).map((child) => {
+    if (section?.kind === "mapping") return String(child.path.at(-1));
+    return (child.source ?? "").trim();
+  });
+  return names.filter((name) => /^[A-Za-z]\w*$/.test(name));
+}
+
+function axis(key: string, words: string, optional: boolean): Axis {
+  const name = make("select", { id: `map-${key}`, "aria-label": words });
+  const low = make("input", { size: 6, value: "0", "aria-label": `${words}: from` });
+  const high = make("input", { size: 6, value: "1", "aria-label": `${words}: to` });
+  if (optional) name.append(make("option", { value: "" }, "(none)"));
+  return { name, low, high, row: make("div", { class: "row" }, make("label", { for: `map-${key}` }, words), name, " from ", low, " to ", high) };
+}
+
+function given(text: string): Record<string, string> | null {
+  const found: Record<string, string> = {};
+  for (const part of text.split(/[,;\s]+/).filter(Boolean)) {
+    const [name, value, more] = part.split("=");
+    if (!name || !value || more !== undefined) return null;
+    found[name] = value;
+  }
+  return found;
+}
+
+export function mapping(model: Model, page: string): HTMLElement {
+  const x = axis("x", "Across", false);
+  const y = axis("y", "Upwards", true);
+  const set = make("input", { id: "map-set", size: 28, placeholder: "p1=2/5, p2=1/5" });
+  const said = make("p", { role: "status" });
+  const place = make("div", { class: "map-place" });
+  const button = make("button", { type: "button", id: "map-begin", click: () => void begin() }, "Draw the map");
+  let job: string | null = null;
+  let early: Told[] = [];
+
+  function names(): void {
+    const all = parametersOf(model);
+    for (const one of [x, y]) {
+      const before = one.name.value;
+      const options = all.map((name) => make("option", { value: name }, name));
+      if (one === y) options.unshift(make("option", { value: "" }, "(none)"));
+      one.name.replaceChildren(...options);
+      if (all.includes(before)) one.name.value = before;
+    }
+    button.disabled = all.length === 0;
+  }
+
+  async function begin(): Promise<void> {
+    const values = given(set.value);
+    if (values === null) {
+      said.textContent = "Values are written as  p1=2/5, p2=1/5";
+      return;
+    }
+    const range = (one: Axis): object => ({ name: one.name.value, low: one.low.value.trim(), high: one.high.value.trim() });
+    said.textContent = "Begun …";
+    place.replaceChildren();
+    early = [];
+    try {
+      const body = { page, x: range(x), ...(y.name.value ? { y: range(y) } : {}), set: values };
+      job = (await model.request<{ job: string }>("map", body)).job;
+      early.filter((told) => told.job === job).forEach(hear);
+      early = [];
+    } catch (failure) {
+      said.textContent = failure instanceof Error ? failure.message : String(failure);
+    }
+  }
+
+  function hear(told: Told): void {
+    if (told.job === undefined) return;
+    if (told.job !== job) {
+      early = [...early.slice(-20), told];
+      return;
+    }
+    if (told.kind === "map") {
+      const image = String(told["image"]);
+      const about = y.name.value ? `${x.name.value} and ${y.name.value}` : x.name.value;
+      if (image.startsWith("data:image/png;base64,")) place.replaceChildren(make("img", { src: image, alt: `Map of stability over ${about}` }));
+      said.textContent = ((told["words"] as string[] | undefined) ?? []).join("; ") || `Over ${about}, of the text as it was then.`;
+    } else if (told.kind === "progress") said.textContent = `${String(told["words"])} …`;
+    else if (told.kind === "failed" || told.kind === "cancelled") said.textContent = `No map: ${String(told["words"])}.`;
+    if (["done", "failed", "cancelled"].includes(told.kind)) job = null;
+  }
+
+  model.on("view", names);
+  model.on("told", hear);
+  return make(
+    "details",
+    { class: "mapping" },
+    make("summary", {}, "Map of stability"),
+    x.row,
+    y.row,
+    make("div", { class: "row" }, make("label", { for: "map-set" }, "Other values "), set, button),
+    said,
+    place,
+  );
+}
