@@ -11,12 +11,12 @@ interface Axis {
   row: HTMLElement;
 }
 
-/** The keys of the section `parameters`, as they are written. */
-function parametersOf(model: Model): string[] {
-  const section = model.understood?.tree?.children?.find((child) => child.path.length === 1 && child.path[0] === "parameters");
-  const names = (section?.children ?? []).map((child) => {
-    if (section?.kind === "mapping") return String(child.path.at(-1));
-    return (child.source ?? "").trim();
+/** What a map may be over: parameters and symbols of the notation, as they are written. */
+function namesOf(model: Model): string[] {
+  const sections = model.understood?.tree?.children ?? [];
+  const names = ["notation", "parameters"].flatMap((key) => {
+    const section = sections.find((child) => child.path.length === 1 && child.path[0] === key);
+    return (section?.children ?? []).map((child) => (section?.kind === "mapping" ? String(child.path.at(-1)) : (child.source ?? "").trim()));
   });
   return names.filter((name) => /^[A-Za-z]\w*$/.test(name));
 }
@@ -50,7 +50,7 @@ export function mapping(model: Model, page: string): HTMLElement {
   let early: Told[] = [];
 
   function names(): void {
-    const all = parametersOf(model);
+    const all = namesOf(model);
     for (const one of [x, y]) {
       const before = one.name.value;
       const options = all.map((name) => make("option", { value: name }, name));

@@ -13,6 +13,8 @@ import type { Told } from "./seam.js";
 const DERIVE_AFTER = 350;
 const UNHEARD_AFTER = 4000;
 
+const EARLIER = "What stands here is of an earlier text.";
+
 /** Open from the beginning: what a reader wants first. */
 const OPEN = new Set(["summary", "6"]);
 
@@ -185,21 +187,24 @@ export function panel(host: HTMLElement, model: Model): void {
     } else if (told.kind === "progress") {
       const [done, of] = [told["done"], told["of"]];
       status.textContent = `${String(told["words"])} …${typeof of === "number" ? ` (${String(done)} of ${of})` : ""}`;
-    } else if (told.kind === "done") over("All is derived from the text as it stands.");
+    } else if (told.kind === "done") over(derived === model.text ? "All is derived from the text as it stands." : EARLIER);
     else if (told.kind === "failed") over(`Nothing more was derived: ${String(told["words"])}.`);
     else if (told.kind === "cancelled") over(`Stopped: ${String(told["words"])}.`);
   }
 
   model.on("told", hear);
   model.on("text", () => {
-    if (job === null && derived !== null && derived !== model.text) status.textContent = "What stands here is of an earlier text.";
+    if (derived === null || derived === model.text) return;
+    derived = null;
+    for (const one of shown.values()) one.waits();
+    if (job === null) status.textContent = EARLIER;
   });
   model.on("view", (view) => {
     if (!live.checked || model.text === derived) return;
     window.clearTimeout(timer);
     if (view.complaints.some((one) => one.severity === "error")) {
       void stop();
-      status.textContent = "Waiting: the text has mistakes. What stands here is of an earlier text.";
+      status.textContent = shown.size > 0 ? `Waiting: the text has mistakes. ${EARLIER}` : "Waiting: the text has mistakes.";
       return;
     }
     if (view.bodies.length === 0 && view.complaints.length > 0) return;
