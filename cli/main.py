@@ -42,6 +42,7 @@ COMMANDS = {
     "groups": Listed("groups", "Find the dimensionless groups of a system."),
     "average": Listed("average", "Average a system over a fast phase."),
     "expand": Listed("expand", "Expand in a small parameter: the slow integral manifold, checked."),
+    "oscillations": Listed("oscillations", "Find periodic motions in powers of a small parameter, checked."),
     "integrals": Listed("integrals", "Find all polynomial first integrals, or prove there are none."),
     "symmetries": Listed("symmetries", "Find symmetries that coordinates hide, and their integrals."),
     "sweep": Listed("sweep", "Measure stability or a number at a million parameter values."),

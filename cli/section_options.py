@@ -21,12 +21,14 @@ if TYPE_CHECKING:
     from mbsym.model.system import System
 
 
-def read_settings(texts: Sequence[str], system: System, options: Options) -> dict[str, Fraction]:
-    """``--set name=number``, each name once; every complaint joins those of ``options``."""
+def read_settings(
+    texts: Sequence[str], system: System, options: Options, more: Sequence[str] = ()
+) -> dict[str, Fraction]:
+    """``--set name=number``, each name once, also of ``more``; every complaint joins those of ``options``."""
     from mbsym.maps.section import usable
 
     found: dict[str, Fraction] = {}
-    names = usable(system)
+    names = (*usable(system), *more)
     for text in texts:
         name, equals, right = (part.strip() for part in " ".join(text.splitlines()).partition("="))
         if not equals or not name or len(text) > MAX_LENGTH:

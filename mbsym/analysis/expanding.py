@@ -79,6 +79,12 @@ def expansion(analysis: Analysis, order: int, values: Mapping[str, Fraction] | N
     motion = _motion(analysis)
     steady = () if isinstance(motion, str) else tuple(motion.values())
     whole, transfer = in_speeds(form, equations, steady, images)
+    for name, _ in small.powers:
+        if name in whole.variables:
+            raise NoClosedForm(
+                f"{name} is a variable that is small itself: slow manifolds take powers of parameters only",
+                remedy="see 'mbsym oscillations'",
+            )
     numbers = {n: fmpq(x.numerator, x.denominator) for n, x in (values or {}).items() if n in whole.parameters}
     field = whole.at(numbers) if numbers else whole
     if small.name not in field.parameters and not any(name in field.parameters for name, _ in small.powers):

@@ -63,10 +63,12 @@ INPUT = {
 }
 
 SMALL_PARAMETER = {
-    "powers": "{e: 1, p2: -1}: in place of e and p2 stand e*eps and p2/eps, with a name eps of its own; when left out, "
+    "powers": "{e: 1, p2: -1}: in place of e and p2 stand e*eps and p2/eps, with a name eps of its own "
+    "(variables may be small, too, for oscillations); when left out, "
     "the small parameter is one of the parameters",
     "fast": "the variables that a slow manifold expresses by the others: [x, y]; found when left out",
     "slow": "variables that are not among the fast ones: [p, q]",
+    "leading": "the variable whose oscillation 'mbsym oscillations' follows; found when there is only one",
 }
 
 LINEAR_SYSTEM = {

@@ -141,7 +141,10 @@ def _table_record() -> Schema:
 def _small_parameter(names: Schema) -> Schema:
     """A name, or one name with what is said of it."""
     powers = _named({"type": "integer", "minimum": -MOST_POWER, "maximum": MOST_POWER})
-    record = _record(SMALL_PARAMETER, {"powers": powers, "fast": names, "slow": names})
+    record = _record(
+        SMALL_PARAMETER,
+        {"powers": powers, "fast": names, "slow": names, "leading": {"type": "string", "pattern": _NAME}},
+    )
     return {"anyOf": [{"type": "string", "pattern": _NAME}, {**_named(record), "minProperties": 1, "maxProperties": 1}]}
 
 

@@ -81,6 +81,8 @@ def small_shape(small: SmallParameter) -> Shape:
         said["fast"] = [*small.fast]
     if small.slow:
         said["slow"] = [*small.slow]
+    if small.leading:
+        said["leading"] = small.leading
     return {small.name: said} if said else small.name
 
 

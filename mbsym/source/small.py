@@ -14,8 +14,8 @@ from mbsym.source.scope import Allowed
 #: Exponents beyond are complained about.
 MOST_POWER = 6
 _PARAMETER = Allowed("the small parameter", ("parameter",))
-_SCALED = Allowed("a parameter with a power of the small one", ("parameter",))
 _KINDS = ("coordinate", "speed", "unit vector", "quaternion")
+_SCALED = Allowed("what stands for a power of the small parameter", ("parameter", *_KINDS))
 HINT = "write 'small parameter: eps', or 'small parameter: {eps: {powers: {e: 1, p2: -1}}}'"
 
 
@@ -54,7 +54,8 @@ def read_small(node: Node | None, reading: Reading, used: frozenset[str]) -> Sma
         if other in fast:
             message = f"{ascii_safe(other)} is declared both fast and slow"
             reading.error("conflicting-keys", message, entry.key.span, "leave it out of one of the two lists")
-    return SmallParameter(name, powers, fast, slow, entry.key.span) if reading.errors == errors else None
+    leading = _leading(fields.get("leading"), reading)
+    return SmallParameter(name, powers, fast, slow, leading, entry.key.span) if reading.errors == errors else None
 
 
 def _check_used(name: str, where: Scalar, reading: Reading, used: frozenset[str]) -> None:
@@ -67,7 +68,7 @@ def _powers(node: Node, small: str, reading: Reading, used: frozenset[str]) -> I
     for entry in reading.entries(node, "'powers'"):
         errors = reading.errors
         reading.scope.check_name(entry.key.text, entry.key.span, _SCALED)
-        if reading.errors == errors:
+        if reading.errors == errors and reading.scope.kinds.get(entry.key.text) == "parameter":
             _check_used(entry.key.text, entry.key, reading, used)
         power = _power(entry, reading)
         if power is not None and reading.errors == errors:
@@ -84,6 +85,17 @@ def _power(entry: Entry, reading: Reading) -> int | None:
         reading.error("bad-number", message, entry.value.span, HINT)
         return None
     return int(text)
+
+
+def _leading(node: Node | None, reading: Reading) -> str:
+    scalar = None if node is None else reading.scalar(node, "'leading'")
+    if scalar is None:
+        return ""
+    if reading.scope.kinds.get(scalar.text) not in _KINDS:
+        known = ", ".join(n for n, k in reading.scope.kinds.items() if k in _KINDS)
+        message = f"{ascii_safe(scalar.text)} is no variable"
+        reading.error("unknown-name", message, scalar.span, f"variables are coordinates and speeds: {known}")
+    return scalar.text
 
 
 def _variables(node: Node | None, what: str, reading: Reading) -> Iterator[str]:

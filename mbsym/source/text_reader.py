@@ -200,6 +200,9 @@ class TextReader:
         for one in read.entries:
             if one.key.text == "name" or not isinstance(one.value, Scalar):
                 continue
+            if one.key.text == "leading":
+                entries.append(one)
+                continue
             listed = items(one.value)
             if one.key.text == "powers":
                 flat = [x for x in listed.items if isinstance(x, Scalar)] if isinstance(listed, Sequence) else []

@@ -87,6 +87,7 @@ def _small(small: SmallParameter) -> str:
     if small.powers:
         parts.append(f"powers = ({', '.join(f'{name}, {power}' for name, power in small.powers)})")
     parts += [f"{key} = ({', '.join(names)})" for key, names in (("fast", small.fast), ("slow", small.slow)) if names]
+    parts += [f"leading = {small.leading}"] if small.leading else []
     return "; ".join(parts)
 
 

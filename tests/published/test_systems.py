@@ -35,6 +35,7 @@ NO_MOTION = {
     "kovalevskaya.yaml",
     "four-bar.yaml",
     "gyrostat.yaml",
+    "gyrostat-fast.yaml",
     "gyrostat-poisson.yaml",
     "rolling-sphere.yaml",
     "rolling-sphere-speeds.yaml",

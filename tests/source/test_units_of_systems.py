@@ -78,6 +78,7 @@ UNITS = {
     "gravity-gradient": {**ORBIT, **BODY, "m": "kg", "chi": "rad"},
     "gravity-gradient-quaternion": {**ORBIT, **BODY, "m": "kg", "chi": "rad", "p": "rad/s", "e1": "1"},
     "gyrostat": {**BODY, **FIXED, "R": "m", "M": "kg", "psi": "rad"},
+    "gyrostat-fast": {**BODY, **FIXED, "R": "m", "M": "kg", "psi": "rad"},
     "gyrostat-poisson": {**FIXED, **SMALL, "R": "m", "M": "kg", "A0": MOMENTS, "C": MOMENTS, "psi": "rad"},
     "heavy-top": {"A": MOMENTS, "C": MOMENTS, "m": "kg", "l": "m", "g": "m/s^2", "Omega": "rad/s"},
     "satellite-with-gyroscope": {

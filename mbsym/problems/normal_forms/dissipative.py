@@ -27,12 +27,12 @@ from mbsym.problems.normal_forms.expansion import Expansion, Numbers, faddeev
 from mbsym.problems.normal_forms.result import Focus, Judged, Outcome, Theorem, Why
 
 
-def state_field(numbers: Numbers) -> tuple[list[Truncated], tuple[str, ...]]:
-    """x' and v' in the state, to third order, and the coordinates in it."""
+def state_field(numbers: Numbers, order: int = 3) -> tuple[list[Truncated], tuple[str, ...]]:
+    """x' and v' in the state, up to ``order``, and the coordinates in it."""
     found, n = numbers.found, numbers.n
     rates = numbers.field()
     places = [*(i for i in range(n) if i not in found.cyclic), *range(n, 2 * n)]
-    space = Space(len(places), 3, numbers.zero, numbers.one)
+    space = Space(len(places), order, numbers.zero, numbers.one)
 
     def cut(row: Truncated) -> Truncated:
         return Truncated(space, {tuple(key[k] for k in places): value for key, value in row.coefficients.items()})

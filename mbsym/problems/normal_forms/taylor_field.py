@@ -18,14 +18,16 @@ from mbsym.problems.normal_forms.exact import occurring_parameters, over_tower
 from mbsym.problems.normal_forms.expansion import Expansion
 
 
-def taylor_field(found: Expansion) -> PolynomialField:
-    """The field in the deviations of the coordinates that are not cyclic, and of all velocities, to third order.
+def taylor_field(found: Expansion, order: int = 3) -> PolynomialField:
+    """The field in the deviations of the coordinates that are not cyclic, and of all velocities, up to ``order``.
+
+    The Lagrangian is expanded to one order more.
 
     Variables are named like what deviates: ``theta``, ``theta_dot``.  Raises NoClosedForm where coefficients hold
     square roots or functions of parameters, SingularPoint where det M = 0 on the motion.
     """
     tower = Tower(occurring_parameters(found))
-    rows, positions = state_field(over_tower(found, tower, {}))
+    rows, positions = state_field(over_tower(found, tower, {}), order)
     if tower.squares:
         raise NoClosedForm("coefficients of the Taylor field hold square roots")
     variables = (*positions, *(velocity_name(name) for name in found.coordinates))

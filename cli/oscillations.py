@@ -1,0 +1,170 @@
+"""``mbsym oscillations``: periodic solutions in powers of a small parameter, by Lindstedt and Poincare."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from mbsym_cli.console import BAD_INPUT, FAILED, OK, complain, read_description, status
+from mbsym_cli.options import Options
+from mbsym_cli.section_options import read_settings
+
+if TYPE_CHECKING:
+    from mbsym.analysis.oscillating import Oscillating
+    from mbsym.model.system import System
+    from mbsym.simulation.oscillating import MeasuredOrders
+
+MOST_ORDER = 6
+
+
+@click.command("oscillations")
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option("--order", "-n", default="2", metavar="N", show_default=True, help="Up to this power.")
+@click.option("--of", "leading", metavar="NAME", help="The variable whose oscillation leads, where there are several.")
+@click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Put in a number; repeatable.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON instead of text.")
+def command(file: Path, order: str, leading: str | None, settings: tuple[str, ...], as_json: bool) -> None:
+    """Find periodic motions of FILE near those of its linear part, in powers of a small parameter, exactly.
+
+    The method of Poincare and Lindstedt: frequencies are corrected so that no secular terms remain; where that is
+    possible for some amplitudes only, or not at all, that is told.  FILE names the small parameter ('small parameter:
+    eps', or powers of it in parameters and variables); without it, the deviations from the unperturbed motion are
+    small, of order eps.  Coefficients hold the parameters, the amplitude and the values that stay constant without
+    eps; what must not vanish (resonances) is listed.
+
+    The series are put into the equations exactly.  Where FILE has numbers, their error is measured against runs at
+    parts of eps.
+
+    Exit codes: 0 found and checked; 1 there is no such solution, or none was found within the budget; 2 something is
+    wrong.
+
+    \b
+    Examples:
+      mbsym oscillations systems/spherical-pendulum.yaml
+      mbsym oscillations systems/gyrostat-fast.yaml --order 2
+      mbsym oscillations systems/gyrostat-fast.yaml --set lx=0 --json
+    """
+    system = read_description(file, unconstrained="oscillations", moving="oscillations")
+    asked = Options()
+    most = asked.whole("--order", order, 1, MOST_ORDER)
+    values = {} if system is None else read_settings(settings, system, asked, _symbols(system))
+    if system is not None:
+        _check(system, leading, values, asked)
+    if asked.refused(None if system is None else file) or system is None or most is None:
+        sys.exit(BAD_INPUT)
+    from mbsym.algebra.failures import Failure
+    from mbsym.analysis import Analysis
+    from mbsym.analysis.oscillating import oscillating
+
+    try:
+        with status(as_json, f"{file.name}: oscillations"):
+            found = oscillating(Analysis(system), most, values, leading or "")
+    except ZeroDivisionError as reason:
+        complain(file, f"no periodic solution: {reason}")
+        sys.exit(BAD_INPUT)
+    except Failure as reason:
+        complain(file, f"no expansion: {reason}" + (f"; {reason.remedy}" if reason.remedy else ""))
+        sys.exit(FAILED)
+    measured, missing = _measured(file, system, found, bool(values), as_json)
+    if as_json:
+        from mbsym.report.oscillation_json import oscillations_json
+
+        click.echo(oscillations_json(system, values, found, measured, missing), nl=False)
+    else:
+        _show(file, system.name, found, measured, missing)
+    sys.exit(OK)
+
+
+def _symbols(system: System) -> tuple[str, ...]:
+    """Names that a result may have beside the parameters."""
+    from mbsym.analysis.oscillating import AMPLITUDE_NAME
+
+    variables = (*system.coordinates, *system.velocities, *system.variables)
+    return (AMPLITUDE_NAME, *(f"{name}_0" for name in variables))
+
+
+def _check(system: System, leading: str | None, values: Mapping[str, Fraction], asked: Options) -> None:
+    if system.small is None and (not system.motion or system.speeds):
+        asked.complain("FILE", "missing-key", "the description names no small parameter", "add 'small parameter: eps'")
+    known = (*system.coordinates, *system.velocities, *system.variables)
+    if leading and leading not in known:
+        asked.complain(
+            "--of", "unknown-name", f"there is no variable called {leading[:60]!r}", f"one of: {', '.join(known)}"
+        )
+    small = system.small
+    for name, value in values.items():
+        if small is None:
+            break
+        if name == small.name or (name in dict(small.powers) and value != 0):  # zero has no power
+            asked.complain("--set", "bad-assignment", f"{name} belongs to the small parameter: it stays a symbol")
+
+
+def _measured(
+    file: Path, system: System, found: Oscillating, settled: bool, quiet: bool
+) -> tuple[MeasuredOrders | None, str]:
+    """The errors; or why there are none."""
+    from mbsym.algebra.failures import Failure
+    from mbsym.numerics.scenario import Incomplete
+    from mbsym.simulation.oscillating import measured_orders
+
+    if settled:
+        return None, "numbers were put in that need not be those of the description"
+    try:
+        with status(quiet, f"{file.name}: measuring"):
+            return measured_orders(system, found), ""
+    except Incomplete:
+        return None, "the description does not give all numbers and an initial state"
+    except (Failure, ZeroDivisionError) as reason:
+        return None, str(reason)
+
+
+def _show(file: Path, name: str, told: Oscillating, measured: MeasuredOrders | None, missing: str) -> None:
+    from rich.text import Text
+
+    from mbsym.report.oscillation_words import DRIFTS, RATE, SOLUTION, measured_sentences, sentences
+    from mbsym.report.said import filled
+    from mbsym_cli.console import console, printable
+
+    out, found = console(), told.found
+    out.print(Text.assemble((name, "bold"), (f"  {printable(file)}", "dim")))
+    for one, power in found.powers:
+        out.print(
+            Text(
+                f"  {one} stands for {one} {found.small}^{power}"
+                if power != 1
+                else f"  {one} stands for {one} {found.small}"
+            )
+        )
+
+    def lines(heading: str, series: list[str]) -> None:
+        out.print(Text(f"    {heading} ="))
+        for k, line in enumerate(x for x in series if x):
+            out.print(Text(f"      {'+ ' if k else ''}{line}"), soft_wrap=True)
+
+    def term(n: int, text: str) -> str:
+        factor = "" if n == 0 else f"{found.small} " if n == 1 else f"{found.small}^{n} "
+        return "" if text == "0" else f"{factor}({text})" if n else text
+
+    gaps: dict[str, object] = {"order": found.order, "small": found.small, "leading": found.leading}
+    out.print(Text.assemble("  ", (filled((SOLUTION, gaps)), "bold cyan")))
+    for variable, series in zip(found.names, found.series, strict=True):
+        lines(variable, [term(n, told.written(one)) for n, one in enumerate(series)] or ["0"])
+    out.print(Text.assemble("  ", (RATE, "bold cyan")))
+    rate = ["1", *(term(n, str(told.formula(x))) for n, x in enumerate(found.corrections, start=1))]
+    lines(f"{told.phase}' / ({told.formula(found.frequency)})", rate)
+    if found.drifts:
+        out.print(Text.assemble("  ", (DRIFTS, "bold cyan")))
+    for drift in found.drifts:
+        rates = [term(n, str(told.formula(x))) for n, x in enumerate(drift.rates)]
+        waves = [term(n, told.written(x)) for n, x in enumerate(drift.waves)]
+        lines(drift.variable, [*(f"t*({x})" for x in rates if x), *waves])
+    said = [*sentences(told), *(measured_sentences(told, measured) if measured else ())]
+    for one in said:
+        out.print(Text(f"    {filled(one)}"))
+    if measured is None:
+        out.print(Text(f"    The error was not measured: {missing}."))

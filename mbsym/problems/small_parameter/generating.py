@@ -1,0 +1,190 @@
+"""The equations of quasi-linear oscillations sorted by powers of the small parameter, and their generating system.
+
+    x' = f_0(x) + eps f_1(x) + eps^2 f_2(x) + ...
+
+where f_0 leaves some variables c constant and is linear in the others z:  z' = A(c) z + b(c).  A splits into blocks of
+variables that drive each other; an irreducible factor lambda^2 + omega^2 of a block's characteristic polynomial is a
+mode.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.tower import Element, Tower
+from mbsym.problems.normal_forms.expansion import faddeev
+
+#: Exponents of the variables -> coefficient.
+Terms = Mapping[tuple[int, ...], Element]
+#: By variable, then by power of eps.
+Rows = Sequence[Mapping[int, Terms]]
+
+MOST_BLOCK = 6
+
+
+@dataclass(frozen=True)
+class Mode:
+    """Variables of a block, and omega^2 of one of its pairs of roots +-i omega."""
+
+    block: tuple[int, ...]
+    square: Element
+
+
+@dataclass(frozen=True)
+class Generating:
+    """``constant`` and ``moving`` variables by number; A over ``moving``, b; ``blocks``, each after what drives it.
+
+    ``aside`` are variables that no equation needs; they are found by quadrature, in this order.
+    """
+
+    tower: Tower
+    names: tuple[str, ...]
+    rows: Rows
+    constant: tuple[int, ...]
+    moving: tuple[int, ...]
+    aside: tuple[int, ...]
+    matrix: Mapping[tuple[int, int], Element]
+    shift: Mapping[int, Element]
+    blocks: tuple[tuple[int, ...], ...]
+    modes: tuple[Mode, ...]
+    damped: tuple[tuple[int, ...], ...]
+
+    def block_matrix(self, block: Sequence[int]) -> list[list[Element]]:
+        zero = self.tower.zero
+        return [[self.matrix.get((i, j), zero) for j in block] for i in block]
+
+
+def generating(tower: Tower, names: Sequence[str], rows: Rows, start: Callable[[int], Element]) -> Generating:
+    """``start``: the constant value of a variable that f_0 leaves constant, by its number.
+
+    Raises NoClosedForm where f_0 is not as above.
+    """
+    count = len(names)
+    aside = _aside(rows, count)
+    constant = tuple(i for i in range(count) if i not in aside and not rows[i].get(0))
+    moving = tuple(i for i in range(count) if i not in aside and i not in constant)
+    values = {i: start(i) for i in constant}
+    matrix: dict[tuple[int, int], Element] = {}
+    shift: dict[int, Element] = {}
+    for i in moving:
+        for exponents, c in rows[i][0].items():
+            rest = [(j, e) for j, e in enumerate(exponents) if e and j not in values]
+            if len(rest) > 1 or any(e > 1 for _, e in rest):
+                told = "*".join(f"{names[j]}**{e}" if e > 1 else names[j] for j, e in rest)
+                raise NoClosedForm(
+                    f"the equations are not quasi-linear: without the small parameter that of {names[i]} holds {told}",
+                    remedy="declare which variables are small: 'small parameter: {eps: {powers: {x: 1}}}'",
+                )
+            for j, e in enumerate(exponents):
+                for _ in range(e if j in values else 0):
+                    c = c * values[j]
+            if rest:
+                key = (i, rest[0][0])
+                matrix[key] = matrix[key] + c if key in matrix else c
+            else:
+                shift[i] = shift[i] + c if i in shift else c
+    matrix = {key: c for key, c in matrix.items() if not c.is_zero()}
+    blocks = _blocks(moving, matrix)
+    found = Generating(tower, tuple(names), rows, constant, moving, aside, matrix, shift, blocks, (), ())
+    modes, damped = [], []
+    for block in blocks:
+        one, other = _modes(found, block)
+        modes += one
+        damped += [block] if other else []
+    return Generating(
+        tower, tuple(names), rows, constant, moving, aside, matrix, shift, blocks, tuple(modes), tuple(damped)
+    )
+
+
+def _aside(rows: Rows, count: int) -> tuple[int, ...]:
+    """Variables on which no other equation depends, one after the other; what is found first is integrated last."""
+    left = list(range(count))
+    found: list[int] = []
+    while True:
+        used = {
+            j for i in left for part in rows[i].values() for exponents in part for j, e in enumerate(exponents) if e
+        }
+        fresh = [i for i in left if i not in used]
+        if not fresh or len(fresh) == len(left):
+            return tuple(reversed(found))
+        found += fresh
+        left = [i for i in left if i not in fresh]
+
+
+def _blocks(moving: Sequence[int], matrix: Mapping[tuple[int, int], Element]) -> tuple[tuple[int, ...], ...]:
+    """Strongly connected parts, each after those that it depends on."""
+    reach = {i: {i} | {j for (k, j) in matrix if k == i} for i in moving}
+    grown = True
+    while grown:
+        grown = False
+        for i in moving:
+            more = set().union(*(reach[j] for j in reach[i]))
+            if more - reach[i]:
+                reach[i], grown = reach[i] | more, True
+    parts = list(dict.fromkeys(tuple(j for j in moving if j in reach[i] and i in reach[j]) for i in moving))
+    return tuple(sorted(parts, key=lambda part: (len(reach[part[0]]), part)))
+
+
+def _modes(found: Generating, block: tuple[int, ...]) -> tuple[list[Mode], bool]:
+    """The modes of a block; and whether it has other roots."""
+    tower = found.tower
+    if len(block) > MOST_BLOCK:
+        raise NoClosedForm(f"more than {MOST_BLOCK} variables oscillate together without the small parameter")
+    coefficients = faddeev(found.block_matrix(block), tower.zero, tower.one)[1]  # low to high
+    squares: list[Element] = []
+    for factor in [coefficients] if _even(coefficients) else _factors(tower, coefficients):
+        if _even(factor):
+            squares += _roots(tower, [c / factor[-1] for c in factor[::2]])  # of mu = lambda^2
+    modes = [Mode(block, -x) for x in squares if not _negative(tower, -x)]
+    return modes, 2 * len(modes) < len(block)
+
+
+def _even(polynomial: Sequence[Element]) -> bool:
+    return len(polynomial) % 2 == 1 and all(c.is_zero() for c in polynomial[1::2])
+
+
+def _negative(tower: Tower, x: Element) -> bool:
+    number = tower.rational(x)
+    return number is not None and number <= 0
+
+
+def _roots(tower: Tower, polynomial: Sequence[Element]) -> list[Element]:
+    """Of a monic polynomial, coefficients from low to high: those of factors of degrees 1 and 2."""
+    degree = len(polynomial) - 1
+    if degree == 1:
+        return [-polynomial[0]]
+    if degree == 2:
+        half = polynomial[1] / tower.number(2)
+        root = tower.square_root(half * half - polynomial[0])
+        return [root - half, -root - half]
+    found: list[Element] = []
+    for factor in _factors(tower, polynomial):
+        if len(factor) <= 3:
+            lead = factor[-1]
+            found += _roots(tower, [c / lead for c in factor])
+    return found
+
+
+def _factors(tower: Tower, polynomial: Sequence[Element]) -> list[list[Element]]:
+    """Irreducible factors over the field of the parameters; the polynomial itself where it holds roots."""
+    context = tower.context
+    common = context.constant(1)
+    for c in polynomial:
+        common = common * (c.bottom / common.gcd(c.bottom))
+    gens = context.gens()
+    free = gens[-1] if not any(c.top.degrees()[-1] > 0 or c.bottom.degrees()[-1] > 0 for c in polynomial) else None
+    if free is None or any(d > 0 for c in polynomial for d in c.top.degrees()[: len(gens) - len(tower.parameters)]):
+        return [list(polynomial)]
+    whole = sum((c.top * (common / c.bottom) * free**k for k, c in enumerate(polynomial)), context.constant(0))
+    found: list[list[Element]] = []
+    for factor, exponent in whole.factor()[1]:
+        top = factor.degrees()[-1]
+        if top > 0:
+            parts: list[dict[Any, Any]] = [{} for _ in range(top + 1)]
+            for monomial, number in factor.to_dict().items():
+                parts[monomial[-1]][(*monomial[:-1], 0)] = number
+            found += [[tower.made(context.from_dict(one), context.constant(1)) for one in parts]] * int(exponent)
+    return found

@@ -1,0 +1,82 @@
+"""A polynomial field as x' = sum_k eps^k rows[k](x) over a tower, with x eps^power for variables that are small."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
+from mbsym.problems.small_parameter.generating import Terms
+
+_Graded = dict[int, dict[tuple[int, ...], Element]]
+
+
+def graded_rows(
+    tower: Tower, field: PolynomialField, small: str, powers: Mapping[str, int], most: int
+) -> list[Mapping[int, Terms]]:
+    """Up to eps^most.  The parameters of ``field`` but ``small`` are among those of the tower.
+
+    Raises NoClosedForm where a right side grows without bound as eps tends to 0, or the denominator of lowest order
+    depends on the state.
+    """
+    below = _graded(tower, field, field.denominator, small, powers)
+    least = min(below)
+    below = {k - least: part for k, part in below.items() if k - least <= most}
+    zero = (0,) * len(field.variables)
+    if set(below[0]) != {zero}:
+        raise NoClosedForm(
+            f"the equations are not quasi-linear: without {small} the mass matrix depends on the state",
+            remedy=f"declare that the deviations are small: 'small parameter: {{{small}: {{powers: {{x: 1}}}}}}'",
+        )
+    back = tower.reciprocal(below.pop(0)[zero])
+    rows: list[Mapping[int, Terms]] = []
+    for name, numerator in zip(field.variables, field.numerators, strict=True):
+        above = _graded(tower, field, numerator, small, powers)
+        shift = least + powers.get(name, 0)
+        above = {k - shift: part for k, part in above.items()}
+        if any(k < 0 for k in above):
+            raise NoClosedForm(
+                f"{name}' grows without bound as {small} tends to 0: nothing oscillates at a rate of order 1",
+                remedy="see 'mbsym expand' for slow manifolds, and the powers that are declared",
+            )
+        found: _Graded = {}
+        for k in range(most + 1):
+            part = dict(above.get(k, {}))
+            for j, factor in below.items():
+                if j <= k:
+                    _subtract(part, factor, found[k - j])
+            found[k] = {m: c * back for m, c in part.items() if not c.is_zero()}
+        rows.append({k: part for k, part in found.items() if part})
+    return rows
+
+
+def _subtract(total: dict[tuple[int, ...], Element], a: Terms, b: Terms) -> None:
+    for m, x in a.items():
+        for n, y in b.items():
+            key = tuple(map(int.__add__, m, n))
+            total[key] = total[key] - x * y if key in total else -(x * y)
+
+
+def _graded(tower: Tower, field: PolynomialField, p: Any, small: str, powers: Mapping[str, int]) -> _Graded:
+    names = field.context.names()
+    first = len(field.parameters)
+    places = [None if n == small else MOST_ROOTS + tower.parameters.index(n) for n in field.parameters]
+    weights = [1 if n == small else powers.get(n, 0) for n in names]
+    parts: dict[int, dict[tuple[int, ...], dict[tuple[int, ...], Any]]] = {}
+    width = len(tower.context.names())
+    for monomial, c in p.to_dict().items():
+        order = sum(w * int(e) for w, e in zip(weights, monomial, strict=True) if e)
+        exponents = [0] * width
+        for place, e in zip(places, monomial, strict=False):
+            if place is not None:
+                exponents[place] = int(e)
+        state = tuple(int(e) for e in monomial[first:])
+        terms = parts.setdefault(order, {}).setdefault(state, {})
+        terms[tuple(exponents)] = terms.get(tuple(exponents), 0) + c
+    one = tower.context.constant(1)
+    return {
+        k: {m: tower.made(tower.context.from_dict(terms), one) for m, terms in part.items()}
+        for k, part in parts.items()
+    }

@@ -1,0 +1,305 @@
+"""Periodic solutions of quasi-linear equations by Poincare's and Lindstedt's method, exactly.
+
+    x = X_0(T) + eps X_1(T) + ...,       dT/dt = omega (1 + eps nu_1 + eps^2 nu_2 + ...),       X_n of period 2 pi in T
+
+In the order n, with G_n from lower orders, constant variables c and the others z
+
+    omega c_n' = G_n,          omega z_n' = A z_n + G_n - omega nu_n z_0'.
+
+The mean of G_n must vanish in the equations of c.  At the harmonic k the equations of z are (i k omega - A) Z = G;
+where k omega is a frequency of the linear system they have a solution for special G only: nu_n and conditions on the
+amplitude follow from the leading block at k = 1, anything else is a resonance.  (A. Nayfeh, Perturbation methods,
+Wiley 1973, section 3.1; I. Malkin, Some problems in the theory of nonlinear oscillations, chapter II.)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.tower import Element
+from mbsym.problems.normal_forms.expansion import faddeev
+from mbsym.problems.small_parameter.generating import Generating, Mode
+from mbsym.problems.small_parameter.harmonics import Harmonics
+from mbsym.problems.small_parameter.linear_waves import solved
+from mbsym.problems.small_parameter.oscillation_result import Divisor, Drift
+
+
+class Resonance(NoClosedForm):
+    """A divisor vanishes where something is to be divided by it."""
+
+    code = "resonance"
+
+
+class NotPeriodic(NoClosedForm):
+    """Secular terms cannot be removed."""
+
+    code = "not-periodic"
+
+
+class Demand(Exception):
+    """``condition`` must vanish for secular terms to vanish; it holds no correction of the amplitude."""
+
+    def __init__(self, condition: Element, order: int) -> None:
+        self.condition, self.order = condition, order
+
+
+@dataclass
+class Orders:
+    """The solution order by order; ``corrections`` are the symbols of unknown terms of the amplitude, if any."""
+
+    system: Generating
+    mode: Mode
+    leading: int
+    amplitude: Element
+    constants: dict[int, Element]
+    corrections: Sequence[str] = ()
+    series: list[list[Harmonics]] = field(default_factory=list)
+    shifts: list[Element] = field(default_factory=list)
+    divisors: list[Divisor] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        tower = self.tower = self.system.tower
+        self.frequency = tower.square_root(self.mode.square)
+        self.nothing = Harmonics(tower, {})
+        self.products: dict[tuple[tuple[int, ...], int], Harmonics] = {}
+        matrix = self.system.block_matrix(self.mode.block)
+        adjugates = faddeev(matrix, tower.zero, tower.one)[0]
+        size = len(matrix)
+        real, imaginary = _at_imaginary(tower, adjugates, self.frequency)
+        place = self.mode.block.index(self.leading)
+        for column in range(size):
+            entry = real[place][column], imaginary[place][column]
+            if not (entry[0].is_zero() and entry[1].is_zero()):
+                break
+        else:
+            raise NoClosedForm(f"{self.system.names[self.leading]} does not take part in this mode")
+        #: v with (i omega - A) v = 0 and v = 1 in the leading variable; l with l (i omega - A) = 0.
+        self.right = [_over(tower, (real[r][column], imaginary[r][column]), entry) for r in range(size)]
+        self.left = [(real[place][c], imaginary[place][c]) for c in range(size)]
+        self.matrix = matrix
+        self._generating()
+
+    # --- what the field is along the series ---
+
+    def product(self, exponents: tuple[int, ...], order: int) -> Harmonics:
+        """The coefficient of eps^order in a product of powers of the variables."""
+        known = (exponents, order)
+        if known in self.products:
+            return self.products[known]
+        place = next((i for i, e in enumerate(exponents) if e), None)
+        if place is None:
+            return Harmonics.constant(self.tower, self.tower.one) if order == 0 else self.nothing
+        rest = (*exponents[:place], exponents[place] - 1, *exponents[place + 1 :])
+        own, total = self.series[place], self.nothing
+        if not any(rest):
+            total = own[order] if order < len(own) else self.nothing
+        else:
+            for j in range(min(order, len(own) - 1) + 1):
+                if not own[j].is_zero:
+                    total = total + own[j] * self.product(rest, order - j)
+        if order < self.complete:
+            self.products[known] = total
+        return total
+
+    def right_side(self, i: int, order: int) -> Harmonics:
+        """The coefficient of eps^order in f_i; what is not known yet of this order counts as zero."""
+        total = self.nothing
+        for power, terms in self.system.rows[i].items():
+            if power <= order:
+                for exponents, c in terms.items():
+                    total = total + self.product(exponents, order - power).scaled(c)
+        return total
+
+    def forcing(self, i: int, order: int) -> Harmonics:
+        total = self.right_side(i, order)
+        for j, shift in enumerate(self.shifts[:order], start=1):
+            if not shift.is_zero():
+                total = total - self.series[i][order - j].slope().scaled(shift * self.frequency)
+        return total
+
+    # --- orders ---
+
+    def _generating(self) -> None:
+        tower, system = self.tower, self.system
+        self.complete = 0
+        self.series = [[self.nothing] for _ in system.names]
+        for i, value in self.constants.items():
+            self.series[i] = [Harmonics.constant(tower, value)]
+        for block in system.blocks:
+            forcing = [self.forcing(i, 0) for i in block]
+            for i, one in zip(block, self._answer(block, forcing, 0), strict=True):
+                self.series[i][0] = one
+            if block == self.mode.block:
+                for i, (c, s) in zip(block, self.right, strict=True):
+                    wave = Harmonics(tower, {1: (c * self.amplitude, -(s * self.amplitude))})
+                    self.series[i][0] = self.series[i][0] + wave
+        self.complete = 1
+        self.products.clear()
+
+    def go_on(self) -> None:
+        """One order more.  Raises Demand, Resonance."""
+        system, order = self.system, self.complete
+        for one in self.series:
+            one.append(self.nothing)
+        for i in system.constant:
+            slope = self.forcing(i, order)
+            if not slope.mean.is_zero():
+                raise Demand(slope.mean, order)
+            self.series[i][order] = slope.sum_from_zero().scaled(self.tower.reciprocal(self.frequency))
+        for block in system.blocks:
+            forcing = [self.forcing(i, order) for i in block]
+            answer = self._led(forcing, order) if block == self.mode.block else self._answer(block, forcing, order)
+            for i, found in zip(block, answer, strict=True):
+                self.series[i][order] = found
+        self.complete = order + 1
+
+    def _answer(self, block: tuple[int, ...], forcing: Sequence[Harmonics], order: int) -> list[Harmonics]:
+        """The forced oscillations of a block."""
+        found: list[dict[int, Any]] = [{} for _ in block]
+        for k in sorted({k for one in forcing for k in one.waves}):
+            cosines, sines = self._at(block, [one.wave(k) for one in forcing], k, order)
+            for place, wave in enumerate(zip(cosines, sines, strict=True)):
+                found[place][k] = wave
+        return [Harmonics(self.tower, one) for one in found]
+
+    def _at(
+        self, block: tuple[int, ...], forcing: Sequence[tuple[Element, Element]], k: int, order: int
+    ) -> tuple[list[Element], list[Element]]:
+        """k omega S = A C + F_c,  -k omega C = A S + F_s."""
+        tower, size, zero = self.tower, len(block), self.tower.zero
+        matrix = self.system.block_matrix(block)
+        speed = self.frequency * k
+        if k == 0:
+            right = [-c for c, _ in forcing]
+            answer = solved(tower, matrix, right)
+        else:
+            upper = [[*row, *(-speed if i == j else zero for j in range(size))] for i, row in enumerate(matrix)]
+            lower = [[*(speed if i == j else zero for j in range(size)), *row] for i, row in enumerate(matrix)]
+            right = [*(-c for c, _ in forcing), *(-s for _, s in forcing)]
+            answer = solved(tower, [*upper, *lower], right)
+        names = tuple(self.system.names[i] for i in block)
+        if answer is None:
+            told = f"{k} times the frequency" if k > 1 else "the frequency" if k else "the frequency zero"
+            raise Resonance(
+                f"resonance: in the order {order} of the small parameter, {', '.join(names)} are driven at {told}, "
+                "which is a frequency of their own; secular terms cannot be removed, the oscillations exchange energy",
+            )
+        self._divided(names, matrix, k, order)
+        return answer[:size], answer[size:] or [zero] * size
+
+    def _divided(self, names: tuple[str, ...], matrix: list[list[Element]], k: int, order: int) -> None:
+        """Notes chi(i k omega) of a block with an even characteristic polynomial chi."""
+        coefficients = faddeev(matrix, self.tower.zero, self.tower.one)[1]
+        if any(not c.is_zero() for c in coefficients[-2::-2]) or len(matrix) % 2:
+            return
+        square = -(self.mode.square * (k * k))
+        value = self.tower.zero
+        for c in reversed(coefficients[::2]):
+            value = value * square + c
+        known = any(one.variables == names and one.harmonic == k for one in self.divisors)
+        if known or self.tower.rational(value / self.mode.square) is not None:
+            return  # of multiples of the frequency itself it is said already that they are not zero
+        if self.tower.rational(value) is None:
+            self.divisors.append(Divisor(names, k, order, value))
+
+    def _led(self, forcing: Sequence[Harmonics], order: int) -> list[Harmonics]:
+        """The block that oscillates by itself: its frequency is corrected, its amplitude may be determined."""
+        tower, block, size = self.tower, self.mode.block, len(self.mode.block)
+        rest = [Harmonics(tower, {k: wave for k, wave in one.waves.items() if k != 1}) for one in forcing]
+        found = self._answer(block, rest, order)
+        # l G = i omega nu a (l v), G = F_c - i F_s.
+        top = bottom = (tower.zero, tower.zero)
+        for l, one, v in zip(self.left, forcing, self.right, strict=True):
+            c, s = one.wave(1)
+            top = _sum(top, _times(l, (c, -s)))
+            bottom = _sum(bottom, _times(l, v))
+        real, imaginary = _over(tower, top, bottom)
+        back = tower.reciprocal(self.amplitude)
+        if not real.is_zero():
+            raise Demand(real * back, order)
+        shift = imaginary * tower.reciprocal(self.frequency) * back
+        self.shifts.append(shift)
+        # What is left has solutions; the one without the leading variable is taken.
+        speed, zero, place = self.frequency, tower.zero, block.index(self.leading)
+        loads = []
+        for one, (c, s) in zip(forcing, self.right, strict=True):
+            a, b = one.wave(1)
+            own = Harmonics(tower, {1: (c * self.amplitude, -(s * self.amplitude))}).slope().wave(1)
+            loads.append((a - own[0] * shift * speed, b - own[1] * shift * speed))
+        kept = [j for j in range(size) if j != place]
+        upper = [
+            [*(row[j] for j in kept), *(-speed if i == j else zero for j in kept)] for i, row in enumerate(self.matrix)
+        ]
+        lower = [
+            [*(speed if i == j else zero for j in kept), *(row[j] for j in kept)] for i, row in enumerate(self.matrix)
+        ]
+        answer = solved(tower, [*upper, *lower], [*(-c for c, _ in loads), *(-s for _, s in loads)])
+        if answer is None:
+            raise Resonance(
+                f"resonance: two oscillations of {', '.join(self.system.names[i] for i in block)} have one frequency"
+            )
+        known = [(zero, zero)] * size
+        for n, j in enumerate(kept):
+            known[j] = (answer[n], answer[len(kept) + n])
+        correction = tower.parameter(self.corrections[order - 1]) if self.corrections else -found[place].start
+        for j, (c, s) in enumerate(self.right):
+            wave = (known[j][0] + c * correction, known[j][1] - s * correction)
+            found[j] = found[j] + Harmonics(tower, {1: wave})
+        return found
+
+    def quadratures(self, order: int) -> list[Drift]:
+        """The variables that no equation needs; those that depend on one that drifts are left out."""
+        found: list[Drift] = []
+        drifting: set[int] = set()
+        for i in self.system.aside:
+            held = {j for part in self.system.rows[i].values() for key in part for j, e in enumerate(key) if e}
+            if held & drifting:
+                drifting.add(i)
+                continue
+            rates: list[Element] = []
+            waves: list[Harmonics] = []
+            self.series[i] = waves
+            for n in range(order + 1):
+                slope = self.right_side(i, n)
+                for j, shift in enumerate(self.shifts[:n], start=1):
+                    slope = slope - waves[n - j].slope().scaled(shift * self.frequency)
+                rates.append(slope.mean)
+                rest = slope - Harmonics.constant(self.tower, slope.mean)
+                waves.append(rest.sum_from_zero().scaled(self.tower.reciprocal(self.frequency)))
+            if any(not x.is_zero() for x in rates):
+                drifting.add(i)
+            found.append(Drift(self.system.names[i], tuple(rates), tuple(waves)))
+        return found
+
+
+Pair = tuple[Element, Element]
+
+
+def _at_imaginary(tower: Any, adjugates: Sequence[Any], speed: Element) -> tuple[Any, Any]:
+    """adj(i omega - A) = sum_k (i omega)^(m - 1 - k) adjugates[k], real and imaginary parts."""
+    size = len(adjugates[0])
+    parts = [[[tower.zero] * size for _ in range(size)] for _ in range(2)]
+    power, signs = tower.one, (1, 1, -1, -1)
+    for k, one in enumerate(reversed(adjugates)):
+        for r in range(size):
+            for c in range(size):
+                parts[k % 2][r][c] = parts[k % 2][r][c] + one[r][c] * power * signs[k % 4]
+        power = power * speed
+    return parts[0], parts[1]
+
+
+def _times(a: Pair, b: Pair) -> Pair:
+    return a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]
+
+
+def _sum(a: Pair, b: Pair) -> Pair:
+    return a[0] + b[0], a[1] + b[1]
+
+
+def _over(tower: Any, a: Pair, b: Pair) -> Pair:
+    back = tower.reciprocal(b[0] * b[0] + b[1] * b[1])
+    real, imaginary = _times(a, (b[0], -b[1]))
+    return real * back, imaginary * back

@@ -1,0 +1,239 @@
+"""Poincare's and Lindstedt's method from the graded equations to a result: amplitudes found, everything checked.
+
+Periodic solutions are a family with a free amplitude, or secular terms leave in some order m a condition P(a) = 0;
+then the corrections of the amplitude follow from the orders m + 1, m + 2, ..., in which they stand linearly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from dataclasses import field as dataclass_field
+from typing import Any
+
+from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
+from mbsym.problems.small_parameter.generating import Generating, Mode, Rows, generating
+from mbsym.problems.small_parameter.lindstedt import Demand, NotPeriodic, Orders
+from mbsym.problems.small_parameter.oscillation_checks import residual_orders
+from mbsym.problems.small_parameter.oscillation_result import Amplitude, Oscillation
+
+#: A condition on the amplitude may first appear in this order.
+LATEST = 4
+#: Names of the tower that no description can hold.
+AMPLITUDE = "#amplitude"
+
+
+def correction_names(order: int) -> tuple[str, ...]:
+    """Symbols of unknown terms of the amplitude, which no result holds."""
+    return tuple(f"#amplitude {k}" for k in range(1, order + LATEST + 1))
+
+
+def tower_over(parameters: Sequence[str], variables: Sequence[str], order: int) -> Tower:
+    """Parameters, the amplitude and its corrections, a constant value ``#x`` of every variable x."""
+    return Tower((*parameters, AMPLITUDE, *(f"#{name}" for name in variables), *correction_names(order)))
+
+
+class ModeIsOpen(NoClosedForm):
+    """Several variables oscillate with frequencies of their own, and none was named."""
+
+    code = "several-modes"
+
+    def __init__(self, blocks: Sequence[tuple[str, ...]]) -> None:
+        self.blocks = tuple(blocks)
+        told = "; ".join(", ".join(one) for one in blocks)
+        super().__init__(
+            f"without the small parameter several frequencies are there, of: {told}",
+            remedy="name a variable whose oscillation leads: --of NAME, or 'leading: NAME' under the small parameter",
+        )
+
+
+@dataclass(frozen=True)
+class Equations:
+    """x' = sum_k eps^k rows[k](x) over a tower, known up to eps^most; ``told`` writes an element for a person.
+
+    ``values``: numbers for the amplitude and for constants, by their symbols.
+    """
+
+    tower: Tower
+    small: str
+    names: tuple[str, ...]
+    rows: Rows
+    powers: tuple[tuple[str, int], ...]
+    positions: tuple[str, ...]
+    told: Callable[[Element], str]
+    most: int = 99
+    values: Mapping[str, Element] = dataclass_field(default_factory=dict)
+
+    def symbol(self, name: str) -> Element:
+        """A symbol of the tower, or its number."""
+        return self.values.get(name, self.tower.parameter(name))
+
+
+def oscillation(there: Equations, order: int, leading: str = "") -> Oscillation:
+    """The periodic solution that is led by the variable ``leading``.
+
+    Raises NoClosedForm where the equations are not quasi-linear or several frequencies are there, Resonance and
+    NotPeriodic where there is no such solution.
+    """
+    tower = there.tower
+    system = generating(tower, there.names, there.rows, lambda i: there.symbol(f"#{there.names[i]}"))
+    mode = _mode(there, system, leading)
+    place = there.names.index(leading) if leading else _leading(there, mode)
+    constants = {i: there.symbol(f"#{there.names[i]}") for i in system.constant}
+    kind, amplitude = Amplitude.FREE, there.symbol(AMPLITUDE)
+    orders = Orders(system, mode, place, amplitude, constants)
+    try:
+        for _ in range(order):
+            orders.go_on()
+    except Demand as demand:
+        if order + demand.order > there.most:
+            raise _secular(there, demand) from None
+        amplitude = _determined(there, system, demand)
+        kind = Amplitude.DETERMINED
+        orders = Orders(system, mode, place, amplitude, constants, correction_names(order))
+        _with_corrections(there, orders, order, demand.order)
+    names = [i for i in range(len(there.names)) if i not in system.aside]
+    found = Oscillation(
+        tower,
+        there.small,
+        order,
+        tuple(there.names[i] for i in names),
+        there.powers,
+        there.names[place],
+        tuple(there.names[i] for i in mode.block),
+        orders.frequency,
+        tuple(orders.shifts[:order]),
+        kind,
+        amplitude,
+        tuple((there.names[i], constants[i]) for i in system.constant),
+        tuple(tuple(orders.series[i][: order + 1]) for i in names),
+        tuple(orders.quadratures(order)),
+        tuple(one for one in orders.divisors if one.order <= order),
+        tuple((tuple(there.names[i] for i in one.block), one.square) for one in system.modes if one is not mode),
+        tuple(tuple(there.names[i] for i in block) for block in system.damped),
+    )
+    return replace(found, residuals=residual_orders(there.rows, there.names, found))
+
+
+def _mode(there: Equations, system: Generating, leading: str) -> Mode:
+    if leading:
+        if leading not in there.names:
+            raise NoClosedForm(f"the equations do not depend on {leading}")
+        own = [one for one in system.modes if there.names.index(leading) in one.block]
+    else:
+        own = list(system.modes)
+    if not own:
+        damped = [there.names[i] for block in system.damped for i in block]
+        if damped:
+            raise NotPeriodic(
+                f"no periodic solution near those of the linear system: without {there.small} no pair of imaginary "
+                f"roots was found for {', '.join(damped)}"
+            )
+        what = f"{leading} does not oscillate" if leading else "nothing oscillates"
+        raise NoClosedForm(f"{what} where the small parameter is zero")
+    if len(own) > 1:
+        if leading and len({one.block for one in own}) == 1:
+            return own[0]  # the first frequency of its block
+        raise ModeIsOpen([tuple(there.names[i] for i in one.block) for one in own])
+    return own[0]
+
+
+def _leading(there: Equations, mode: Mode) -> int:
+    """The first position among the variables of a mode, if there is one."""
+    return min(mode.block, key=lambda i: (there.names[i] not in there.positions, i))
+
+
+def _determined(there: Equations, system: Generating, demand: Demand) -> Element:
+    """The amplitude a != 0 that a condition determines."""
+    tower, context = there.tower, there.tower.context
+    gens = context.gens()
+    place = MOST_ROOTS + tower.parameters.index(AMPLITUDE)
+    for factor, _ in demand.condition.top.factor()[1]:
+        degree = factor.degrees()[place]
+        if degree not in (1, 2) or factor == gens[place]:
+            continue
+        parts: list[dict[Any, Any]] = [{}, {}, {}]
+        for monomial, c in factor.to_dict().items():
+            parts[monomial[place]][(*monomial[:place], 0, *monomial[place + 1 :])] = c
+        zero, one, two = (tower.made(context.from_dict(part), context.constant(1)) for part in parts)
+        if degree == 1:
+            return -zero / one
+        if one.is_zero():
+            square = -zero / two
+            number = tower.rational(square)
+            if number is None or number > 0:
+                return tower.square_root(square)
+    raise _secular(there, demand)
+
+
+def _secular(there: Equations, demand: Demand) -> NotPeriodic:
+    context = there.tower.context
+    place = MOST_ROOTS + there.tower.parameters.index(AMPLITUDE)
+    top = _without(demand.condition.top, context.gens()[place])
+    condition = there.tower.made(top / top.leading_coefficient(), context.constant(1))
+    return NotPeriodic(
+        f"no periodic solution near those of the linear system: in the order {demand.order} of {there.small} secular "
+        f"terms remain unless {there.told(condition)} = 0"
+    )
+
+
+def _without(p: Any, variable: Any) -> Any:
+    while p != 0 and divmod(p, variable)[1] == 0:
+        p = divmod(p, variable)[0]
+    return p
+
+
+def _with_corrections(there: Equations, orders: Orders, order: int, first: int) -> None:
+    """All orders; each correction of the amplitude from the condition in which it stands first."""
+    tower, names = there.tower, orders.corrections
+    if first > LATEST:
+        raise NoClosedForm(f"a condition on the amplitude appears in the order {first} only")
+    while orders.complete <= order + first:
+        try:
+            orders.go_on()
+        except Demand as demand:
+            for name in names:
+                place = MOST_ROOTS + tower.parameters.index(name)
+                top = demand.condition.top
+                if top.degrees()[place] > 0:
+                    break
+            else:
+                raise _secular(there, demand) from None
+            slope = top.derivative(place)
+            if slope.degrees()[place] > 0:
+                raise NoClosedForm("a correction of the amplitude does not stand linearly in its condition") from None
+            images = list(tower.context.gens())
+            images[place] = tower.context.constant(0)
+            rest = top.compose(*images, ctx=tower.context)
+            one = tower.context.constant(1)
+            _put(orders, place, tower.made(-rest, one) / tower.made(slope, one))
+
+
+def _put(orders: Orders, place: int, value: Element) -> None:
+    """A value in place of a symbol, everywhere; the order that was being made is made again."""
+    tower = orders.tower
+    images = list(tower.context.gens())
+    images[place] = tower.context.constant(0)
+
+    def change(x: Element) -> Element:
+        degree = x.top.degrees()[place]
+        if degree <= 0:
+            return x
+        parts: list[dict[Any, Any]] = [{} for _ in range(degree + 1)]
+        for monomial, c in x.top.to_dict().items():
+            parts[monomial[place]][(*monomial[:place], 0, *monomial[place + 1 :])] = c
+        total = tower.zero
+        for part in reversed(parts):
+            total = total * value + tower.made(tower.context.from_dict(part), tower.context.constant(1))
+        return total / tower.made(x.bottom, tower.context.constant(1))
+
+    for i, one in enumerate(orders.series):
+        orders.series[i] = [x.mapped(change) for x in one[: orders.complete]]
+    orders.shifts = [change(x) for x in orders.shifts[: orders.complete - 1]]
+    orders.products.clear()
+
+
+def values_of(found: Oscillation) -> Mapping[str, Element]:
+    """Constants of the solution by the symbols that stand for them in the tower."""
+    return {AMPLITUDE: found.amplitude, **{f"#{name}": x for name, x in found.constants}}

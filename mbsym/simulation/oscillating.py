@@ -1,0 +1,255 @@
+"""How far a periodic solution in powers of a small parameter is from the motion itself: measured, at parts of eps.
+
+Both begin in the state that the series has at T = 0.  Equations in speeds are integrated by Taylor series in balls of
+many bits; a system in coordinates is simulated, so that its Taylor field is put to the test, too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import log, pi
+from typing import Any
+
+from flint import arb, arb_series, ctx, fmpq
+
+from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.algebra.tower import Element
+from mbsym.analysis.oscillating import Oscillating
+from mbsym.expressions.tree import Expression, number
+from mbsym.model.system import System, velocity_name
+from mbsym.numerics.scenario import Scenario, exact, scenario
+from mbsym.numerics.states import scenario_in_states
+from mbsym.problems.small_parameter.harmonics import Harmonics
+from mbsym.problems.small_parameter.oscillations import AMPLITUDE
+from mbsym.simulation.request import Request
+from mbsym.simulation.run import simulate
+
+#: Parts of the given eps, and states that are compared over one period.
+PARTS = tuple(Fraction(1, 2**k) for k in range(1, 6))
+ROWS, BITS, TAYLOR = 24, 200, 24
+#: Errors below, in parts of the variable's size, are rounding of the simulation.
+NOISE_OF_A_RUN, NOISE_OF_BALLS = 1e-10, 1e-40
+TOLERANCE = 1e-13
+
+
+@dataclass(frozen=True)
+class MeasuredOrders:
+    """``errors[v][k]``: the largest |x_v - X_v| over one period at eps times ``parts[k]``, in scaled variables.
+
+    ``orders``: log2 of the ratio of the last two errors of each variable that rounding leaves; None where there are
+    none.  The expansion to order n is right where they are about n + 1, or more.
+    """
+
+    small: float
+    time: float
+    parts: tuple[Fraction, ...]
+    names: tuple[str, ...]
+    errors: tuple[tuple[float, ...], ...]
+    orders: tuple[float | None, ...]
+    simulated: bool
+
+
+def measured_orders(
+    system: System, told: Oscillating, watch: Callable[[str], None] = lambda what: None
+) -> MeasuredOrders:
+    """Numbers of the description.  Raises Incomplete where some are missing, NoClosedForm where nothing oscillates."""
+    given = scenario(system)
+    found = told.found
+    parameters = {name: Fraction(value) for name, value in given.parameters.items()}
+    powers = dict(found.powers)
+    whole = parameters[found.small] if found.small in told.field.parameters else Fraction(1)
+    symbols = _symbols(given, told, powers, whole)
+    errors: list[list[float]] = [[] for _ in found.names]
+    time = 0.0
+    simulated = not system.speeds
+    for part in PARTS:
+        eps = whole * part
+        watch(f"{found.small}/{part.denominator}")
+        numbers = {name: value * part ** powers.get(name, 0) for name, value in parameters.items()}
+        if found.small in numbers:
+            numbers[found.small] = eps
+        series = _Numeric(told, parameters | symbols, eps)
+        time = 2 * pi / series.rate
+        times = [time * k / ROWS for k in range(1, ROWS + 1)]
+        if simulated:
+            rows = _simulated(system, given, told, numbers, powers, series, times, whole, part)
+        else:
+            start = [series.at(0.0, name) * series.eps ** powers.get(name, 0) for name in found.names]
+            rows = _integrated(told.field, found.names, numbers, start, times)
+        for place, name in enumerate(found.names):
+            unit = series.eps ** powers.get(name, 0)
+            with ctx.workprec(BITS):
+                away = [abs(row[place] / unit - series.at(t, name)) for row, t in zip(rows, times, strict=True)]
+            errors[place].append(max(float(x.mid()) for x in away))
+    noise = NOISE_OF_A_RUN if simulated else NOISE_OF_BALLS
+    return MeasuredOrders(
+        float(whole),
+        time,
+        PARTS,
+        found.names,
+        tuple(map(tuple, errors)),
+        tuple(_order(x, noise) for x in errors),
+        simulated,
+    )
+
+
+def _order(errors: Sequence[float], noise: float) -> float | None:
+    kept = [x for x in errors if x > noise]
+    return log(kept[-2] / kept[-1], 2) if len(kept) > 1 else None
+
+
+def _symbols(given: Scenario, told: Oscillating, powers: Mapping[str, int], eps: Fraction) -> dict[str, Fraction]:
+    """The amplitude and the constants that belong to the initial state, by their symbols in the tower."""
+    found = told.found
+    if given.system.speeds:
+        seen = scenario_in_states(given)
+        state = dict(zip((*seen.system.coordinates, *seen.system.velocities), seen.state, strict=True))
+    else:
+        state = dict(zip((*given.system.coordinates, *given.system.velocities), given.state, strict=True))
+        for entry in given.system.motion if told.taylor else ():
+            state[entry.coordinate] -= _value(entry.value, given)
+    scaled = {name: Fraction(value) / eps ** powers.get(name, 0) for name, value in state.items()}
+    values = {f"#{name}": scaled[name] for name, _ in found.constants if name in scaled}
+    values[AMPLITUDE] = scaled[found.leading]
+    if values[AMPLITUDE] == 0:
+        raise NoClosedForm(f"{found.leading} begins at zero: the initial state gives no amplitude")
+    return values
+
+
+def _value(x: Expression, given: Scenario) -> Fraction:
+    return exact(x, given.parameters)
+
+
+class _Numeric:
+    """The series at numbers, in balls."""
+
+    def __init__(self, told: Oscillating, values: Mapping[str, Fraction], eps: Fraction) -> None:
+        self.found, tower = told.found, told.found.tower
+        balls = {name: arb(fmpq(x.numerator, x.denominator)) for name, x in values.items()}
+        self._values = {name: balls.get(name, arb(0)) for name in tower.parameters}
+        self.eps = arb(fmpq(eps.numerator, eps.denominator))
+        with ctx.workprec(BITS):
+            speed = sum((self._of(x) * self.eps ** (k + 1) for k, x in enumerate(self.found.corrections)), arb(1))
+            speed = speed * self._of(self.found.frequency)
+            self.waves = {
+                name: self._summed(series) for name, series in zip(self.found.names, self.found.series, strict=True)
+            }
+        self.speed, self.rate = speed, float(speed)
+
+    def _of(self, x: Element) -> Any:
+        return self.found.tower.enclosed(x, self._values).real
+
+    def _summed(self, series: Sequence[Harmonics]) -> dict[int, tuple[Any, Any]]:
+        total: dict[int, tuple[Any, Any]] = {}
+        for n, one in enumerate(series):
+            for k, (c, s) in one.waves.items():
+                a, b = total.get(k, (arb(0), arb(0)))
+                total[k] = (a + self._of(c) * self.eps**n, b + self._of(s) * self.eps**n)
+        return total
+
+    def at(self, time: float, name: str) -> Any:
+        with ctx.workprec(BITS):
+            phase = self.speed * arb(time)
+            return sum(
+                (c * (k * phase).cos() + s * (k * phase).sin() for k, (c, s) in self.waves[name].items()), arb(0)
+            )
+
+
+def _simulated(
+    system: System,
+    given: Scenario,
+    told: Oscillating,
+    numbers: Mapping[str, Fraction],
+    powers: Mapping[str, int],
+    series: _Numeric,
+    times: Sequence[float],
+    whole: Fraction,
+    part: Fraction,
+) -> list[list[Any]]:
+    """Rows of the variables of the result."""
+    import numpy as np
+
+    eps = whole * part
+    changed = {told.found.small, *powers}
+    chosen: dict[str, Expression] = {name: number(x) for name, x in numbers.items() if name in changed}
+    shift = {entry.coordinate: _value(entry.value, given) for entry in system.motion} if told.taylor else {}
+    start = {}
+    for name in told.found.names:
+        start[name] = Fraction(float(series.at(0.0, name))) * eps ** powers.get(name, 0)
+        chosen[name] = number(start[name] + shift.get(name, 0))
+    run = simulate(
+        scenario(system, chosen), Request(time=times[-1], samples=len(times) + 1, estimate=False, tolerance=TOLERANCE)
+    )
+    columns = {
+        name: np.asarray(run.coordinates)[k] - float(shift.get(name, 0)) for k, name in enumerate(system.coordinates)
+    }
+    columns |= {velocity_name(name): np.asarray(run.velocities)[k] for k, name in enumerate(system.coordinates)}
+    return [[arb(float(columns[name][k])) for name in told.found.names] for k in range(1, len(times) + 1)]
+
+
+def _integrated(
+    field: PolynomialField,
+    names: Sequence[str],
+    numbers: Mapping[str, Fraction],
+    start: Sequence[Any],
+    times: Sequence[float],
+) -> list[list[Any]]:
+    """The field by Taylor series, from one time to the next; variables that no equation needs are left out."""
+    values = [numbers.get(name) for name in field.parameters]
+    parts = []
+    for p in (field.denominator, *(field.numerators[field.variables.index(name)] for name in names)):
+        terms: dict[tuple[int, ...], Any] = {}
+        for monomial, c in p.to_dict().items():
+            for value, e in zip(values, monomial, strict=False):
+                if e:
+                    assert value is not None
+                    c = c * fmpq(value.numerator, value.denominator) ** int(e)
+            exponents = dict(zip(field.variables, monomial[len(values) :], strict=True))
+            key = tuple(int(exponents[name]) for name in names)
+            terms[key] = terms.get(key, 0) + c
+        parts.append([(key, fmpq(c)) for key, c in terms.items()])
+    with ctx.workprec(BITS):
+        state, now, rows = [arb(x) for x in start], 0.0, []
+        for t in times:
+            state = _step(parts, state, arb(t) - arb(now))
+            state, now = [x.mid() for x in state], t
+            rows.append(state)
+    return rows
+
+
+def _step(parts: Sequence[Any], state: Sequence[Any], step: Any) -> list[Any]:
+    """Picard's iteration on power series of t, a coefficient more each time."""
+    known = [[x] for x in state]
+    before = ctx.cap
+    try:
+        for length in range(1, TAYLOR):
+            ctx.cap = length
+            series = [arb_series(x) for x in known]
+            below, *above = [_polynomial(terms, series) for terms in parts]
+            for place, one in enumerate(above):
+                rate = one / below
+                known[place].append(rate[length - 1] / length)
+    finally:
+        ctx.cap = before
+    return [_horner(x, step) for x in known]
+
+
+def _horner(coefficients: Sequence[Any], x: Any) -> Any:
+    total = arb(0)
+    for c in reversed(coefficients):
+        total = total * x + c
+    return total
+
+
+def _polynomial(terms: Sequence[Any], series: Sequence[Any]) -> Any:
+    total = arb_series([0])
+    for key, c in terms:
+        term = arb_series([arb(c)])
+        for one, e in zip(series, key, strict=True):
+            for _ in range(e):
+                term = term * one
+        total = total + term
+    return total

@@ -1,0 +1,69 @@
+"""``mbsym oscillations``: what it prints, as JSON by its schema, and what it refuses."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import jsonschema
+import pytest
+from click.testing import CliRunner
+
+from mbsym.report.schemas import schema
+from mbsym_cli.main import main
+
+FAST = "systems/gyrostat-fast.yaml"
+
+
+def run(*words):
+    return CliRunner().invoke(main, ["oscillations", *words])
+
+
+@pytest.fixture(autouse=True)
+def _at_the_root(monkeypatch, request):
+    monkeypatch.chdir(request.config.rootpath)
+
+
+def test_the_gyrostat_as_json_and_as_text():
+    done = run(FAST, "--order", "1", "--set", "lx=0", "--json")
+    assert done.exit_code == 0
+    data = json.loads(done.stdout)
+    jsonschema.validate(data, schema("oscillations"))
+    assert (data["leading"], data["amplitude"]) == ("gamma1", {"kind": "free", "value": "amplitude"})
+    assert data["solution"][0]["coefficients"][0]["order"] == 1  # p begins with the first order
+    told = " ".join(run(FAST, "--order", "1").stdout.split())
+    assert "gamma1 = amplitude*cos(phase) + eps (" in told
+    assert "Free oscillations of p, q" in told
+    assert "against motions that begin in the same state: with eps halved from 0.0625 to 0.0312" in told
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("systems/euler-poisson.yaml",), "names no small parameter"),
+        ((FAST, "--order", "90"), "error["),
+        ((FAST, "--set", "lx=1"), "belongs to the small parameter"),
+        ((FAST, "--set", "Q=1"), "there is no parameter called Q"),
+        ((FAST, "--of", "zeta"), "there is no variable called zeta"),
+    ],
+)
+def test_bad_input_is_complained_about(words, told):
+    done = run(*words)
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert told in done.stderr.replace("'", "")
+
+
+def test_what_leads_and_what_is_small_are_checked_where_they_stand(tmp_path):
+    text = Path(FAST).read_text(encoding="utf-8").replace("leading: gamma1", "leading: zeta").replace("q: 1}", "qq: 1}")
+    (tmp_path / "wrong.yaml").write_text(text, encoding="utf-8")
+    done = run(str(tmp_path / "wrong.yaml"))
+    assert done.exit_code == 2
+    assert "wrong.yaml:23:" in done.stderr
+    assert "zeta is no variable" in done.stderr.replace("'", "")
+    assert "unknown name" in done.stderr
+
+
+def test_a_damped_pendulum_has_none():
+    done = run("systems/simple-pendulum.yaml")
+    assert done.exit_code == 1
+    assert "no pair of imaginary roots was found for theta, theta_dot" in " ".join(done.stderr.split())

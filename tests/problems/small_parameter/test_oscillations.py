@@ -1,0 +1,231 @@
+"""Periodic solutions in powers of a small parameter against textbooks, a derivation by hand, and an independent one.
+
+Duffing: A. Nayfeh, Perturbation Methods, section 3.1; van der Pol: omega = 1 - eps^2/16 + 17 eps^4/3072
+(C. Andersen and J. Geer, 1982); pendulum: omega = 1 - a^2/16 + a^4/3072, the series of its elliptic integral.
+"""
+
+from __future__ import annotations
+
+import ast
+import operator
+from fractions import Fraction
+
+import pytest
+from conftest import SHIPPED, reference
+
+import mbsym
+from mbsym.algebra.failures import NoClosedForm
+from mbsym.analysis.oscillating import oscillating
+from mbsym.problems.small_parameter.lindstedt import NotPeriodic, Resonance
+from mbsym.problems.small_parameter.oscillation_checks import residual_orders
+from mbsym.problems.small_parameter.oscillation_result import Amplitude
+from mbsym.simulation.oscillating import measured_orders
+
+POINT = """mbsym: 1
+name: A point
+parameters: {{w: {{sign: positive}}, eps: {{sign: positive}}, k: {{sign: real}}}}
+{small}
+bodies:
+  - {{name: mass, attached to: 0, connection point: [{place}], mass: 1, coordinates: [{names}]}}
+loads:
+{loads}
+"""
+EPS = "small parameter: eps"
+
+
+def point(tmp_path, loads, names="x", small=EPS, more=""):
+    path = tmp_path / "point.yaml"
+    place = f"{names}, 0" if "," in names else f"{names}, 0, 0"
+    text = POINT.format(small=small, place=place, names=names, loads="".join(f"  - {one}\n" for one in loads))
+    path.write_text(text + more, encoding="utf-8")
+    return mbsym.load(path)
+
+
+def corrections(told):
+    return [str(told.formula(x)) for x in told.found.corrections]
+
+
+def test_duffing_as_in_the_textbook(tmp_path):
+    """omega = w + 3 eps a^2/(8 w) - 21 eps^2 a^4/(256 w^3), a the initial displacement."""
+    told = oscillating(point(tmp_path, ["potential: w**2*x**2/2 + eps*x**4/4"]), 2)
+    assert str(told.formula(told.found.frequency)) == "w"
+    assert corrections(told) == ["3*amplitude**2/(8*w**2)", "-21*amplitude**4/(256*w**4)"]
+    assert told.found.residuals == (3, 3)
+    first = told.wave(told.found.series[1][1]).polynomial
+    ring = told.ring
+    s, c = (ring.generator(kind, "phase") for kind in ("sine", "cosine"))
+    a = told.formula(told.found.amplitude).polynomial
+    by_hand = ring.times(ring.multiple_angle(s, c, 3)[1] - c, a**3)  # 32 w^2 x_1 = a^3 (cos 3T - cos T)
+    w = ring.generator("parameter", "w")
+    assert ring.is_zero(ring.times(first, 32 * w**2) - by_hand)
+
+
+def test_a_quadratic_oscillator(tmp_path):
+    """x'' + x + eps x^2: omega = 1 - 5 eps^2 a^2/12, by hand: x_1 = a^2 (-1/2 + cos(2T)/6 + cos(T)/3)."""
+    told = oscillating(point(tmp_path, ["potential: x**2/2 + eps*x**3/3"]), 2)
+    assert corrections(told) == ["0", "-5*amplitude**2/12"]
+
+
+def test_van_der_pol_has_one_amplitude(tmp_path):
+    told = oscillating(point(tmp_path, ["potential: x**2/2", "generalized force: {x: eps*(1 - x**2)*x_dot}"]), 4)
+    assert told.found.kind is Amplitude.DETERMINED
+    assert str(told.formula(told.found.amplitude)) == "2"
+    assert corrections(told) == ["0", "-1/16", "0", "17/3072"]
+    assert str(told.written(told.found.series[told.found.names.index("x")][1])) == "-1/4*sin(3*phase)"
+
+
+def test_a_damped_oscillator_has_no_periodic_solution(tmp_path):
+    loads = ["potential: w**2*x**2/2 + eps*x**4/4", "generalized force: {x: -eps*k*x_dot}"]
+    with pytest.raises(NotPeriodic, match="order 1 of eps secular terms remain unless k = 0"):
+        oscillating(point(tmp_path, loads), 2)
+    loads = ["potential: w**2*x**2/2 + eps*x**4/4", "generalized force: {x: -k*x_dot}"]
+    with pytest.raises(NotPeriodic, match="no pair of imaginary roots"):
+        oscillating(point(tmp_path, loads), 2)
+
+
+def test_two_oscillators_at_one_to_two(tmp_path):
+    """x^2 y drives y at 2 w: resonance where its frequency is 2 w, and a divisor w^2 k^2 - 4 w^2 where it is k w."""
+    loads = ["potential: w**2*x**2/2 + 4*w**2*y**2/2 + eps*x**2*y"]
+    with pytest.raises(Resonance, match="y are driven at 2 times the frequency"):
+        oscillating(point(tmp_path, loads, "x, y"), 2, leading="x")
+    loads = ["potential: w**2*x**2/2 + k**2*w**2*y**2/2 + eps*x**2*y"]
+    told = oscillating(point(tmp_path, loads, "x, y"), 2, leading="x")
+    two = next(one for one in told.found.divisors if one.harmonic == 2 and "y" in one.variables)
+    assert str(told.formula(two.value)) == "w**2*(k - 2)*(k + 2)"
+    # by hand: y_1 = -a^2/(2 k^2 w^2) - a^2 cos(2T)/(2 w^2 (k^2 - 4)) and x'' + w^2 x = -2 eps^2 x_0 y_1
+    ring, a = told.ring, told.formula(told.found.amplitude).polynomial
+    k, w = (ring.generator("parameter", name) for name in ("k", "w"))
+    second = told.formula(told.found.corrections[1]).polynomial
+    assert ring.is_zero(ring.times(second, 4 * w**4 * k**2 * (k**2 - 4)) - a**2 * (8 - 3 * k**2))
+    with pytest.raises(NoClosedForm, match="several frequencies"):
+        oscillating(point(tmp_path, loads, "x, y"), 2)
+
+
+def test_a_pendulum_about_its_rest_by_its_amplitude(tmp_path):
+    """No small parameter is named: that is the size of the deviation.  A planted 1 in 1000 is seen in the residuals."""
+    loads = ["potential: -w**2*cos(x)"]
+    analysis = point(
+        tmp_path,
+        loads,
+        small="",
+        more="motion: {x: 0}\nvalues: {w: 2, eps: 1, k: 0}\ninitial: {x: {position: 1/2, velocity: 0}}\n",
+    )
+    told = oscillating(analysis, 4)
+    assert told.taylor
+    assert corrections(told) == ["0", "-amplitude**2/16", "0", "amplitude**4/3072"]
+    measured = measured_orders(analysis.system, oscillating(analysis, 2))
+    assert measured.simulated
+    assert all(order > 2.9 for order in measured.orders)
+
+
+GYROSTAT = reference("gyrostat-oscillation")
+_OPERATORS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv}
+#: sin and cos of T by the tangent of T/2 = 1/2.
+SINE, COSINE = Fraction(4, 5), Fraction(3, 5)
+
+
+def value(text, known):
+    """A formula of the reference at rational numbers; sin and cos of multiples of T."""
+
+    def of(node):
+        match node:
+            case ast.Constant(value=x):
+                return Fraction(x)
+            case ast.Name(id=name):
+                return known[name]
+            case ast.UnaryOp(operand=x):
+                return -of(x)
+            case ast.BinOp(op=ast.Pow(), left=a, right=b):
+                return of(a) ** int(of(b))
+            case ast.BinOp(op=op, left=a, right=b):
+                return _OPERATORS[type(op)](of(a), of(b))
+            case ast.Call(func=ast.Name(id=name), args=[x]):
+                k = 1 if isinstance(x, ast.Name) else int(of(x.left))
+                s, c = SINE, COSINE
+                for _ in range(k - 1):
+                    s, c = s * COSINE + c * SINE, c * COSINE - s * SINE
+                return s if name == "sin" else c
+        raise AssertionError(ast.dump(node))
+
+    return of(ast.parse(text, mode="eval").body)
+
+
+@pytest.fixture(scope="module")
+def gyrostat():
+    return mbsym.load(SHIPPED / "gyrostat-fast.yaml")
+
+
+@pytest.fixture(scope="module")
+def fast(gyrostat):
+    return oscillating(gyrostat, 2)
+
+
+@pytest.mark.parametrize("moment", [Fraction(0), Fraction(3, 7)])
+def test_the_gyrostat_to_second_order(fast, moment):
+    """All six functions and the frequency of references/gyrostat, section 2.2, with and without l_x.
+
+    In units with C = r0 = gamma0'' = 1: a = A, b = B, y1 = lx, nz = lz, x0' = g M x0, k = 3 g/R, M3 = amplitude.
+    """
+    numbers = {"a": Fraction(2, 3), "b": Fraction(7, 10), "nz": Fraction(3, 11), "y1": moment, "M3": Fraction(4, 3)}
+    numbers |= {"x0": Fraction(2, 7), "y0": Fraction(3, 7), "z0": Fraction(6, 7), "k": Fraction(1, 5)}
+    known = dict(numbers)
+    known |= {"Aa": (1 - known["b"] + known["nz"]) / known["a"], "Bb": (known["a"] - 1 - known["nz"]) / known["b"]}
+    for name in ("P0", "Omega2", "X", "A1", "B1", "C1", "lambda_", "lambda1", "lambda2", "nu"):
+        known[name] = value(GYROSTAT[name], known)
+    ours = {"A": known["a"], "B": known["b"], "C": Fraction(1), "M": Fraction(1), "g": Fraction(1), "R": 3 / known["k"]}
+    ours |= {name: known[name] for name in ("x0", "y0", "z0")} | {"lx": moment, "lz": known["nz"]}
+    symbols = {"amplitude": known["M3"], "r_0": Fraction(1), "gamma3_0": Fraction(1)}
+
+    def at(formula):
+        ring = fast.ring
+        images = {ring.index("parameter", name): ring.number(x) for name, x in (ours | symbols).items()}
+        images |= {ring.index("sine", "phase"): ring.number(SINE), ring.index("cosine", "phase"): ring.number(COSINE)}
+        return _number(ring, formula, images)
+
+    assert at(fast.formula(fast.found.corrections[0])) == 0
+    assert at(fast.formula(fast.found.corrections[1])) == known["nu"]
+    names = {"p": "p1", "q": "q1", "r": "r1", "gamma1": "g1", "gamma2": "g1p", "gamma3": "g1pp"}
+    for name, series in zip(fast.found.names, fast.found.series, strict=True):
+        for n in range(3):
+            assert at(fast.wave(series[n])) == value(GYROSTAT[f"order{n}"][names[name]], known), (name, n)
+
+
+def _number(ring, formula, images):
+    top, factors = ring.fraction(formula.polynomial)
+    found = Fraction(1)
+    for part, exponent in [(top, 1), *((factor, -exponent) for factor, exponent in factors)]:
+        x = ring.substitute(part, images)
+        c = x.leading_coefficient() if not x.is_zero() else 0
+        found *= Fraction(int(c.p), int(c.q)) ** exponent if c else 0
+    return found
+
+
+def test_divisors_of_the_gyrostat(fast):
+    """Omega^2 = 0, 1 and 4 (references/gyrostat, the row on singular points)."""
+    assert sorted(one.harmonic for one in fast.found.divisors) == [0, 1, 2]
+
+
+def test_the_measured_orders_of_the_gyrostat(gyrostat, fast):
+    """3, 3, 4, 4, 4, 4 without l_x, and 3 with it (references/gyrostat, section 2.3)."""
+    with_moment = measured_orders(gyrostat.system, fast)
+    assert [round(x) for x in with_moment.orders] == [3] * 6
+    other = oscillating(gyrostat, 2, {"lx": Fraction(0)})
+    assert [round(x) for x in measured_orders(gyrostat.system, other).orders] == [3, 3, 4, 4, 4, 4]
+
+
+def test_a_planted_error_is_seen_twice(gyrostat, fast):
+    """One coefficient of second order of gamma1 a little off: residuals, and measured orders."""
+    from dataclasses import replace
+
+    found = fast.found
+    place, tower = found.names.index("gamma1"), found.tower
+    rows = [list(one) for one in found.series]
+    rows[place][2] = rows[place][2].scaled(tower.number(1) + tower.number(1) / tower.number(1000))
+    wrong = replace(found, series=tuple(map(tuple, rows)))
+    small = dict(found.powers)
+    from mbsym.problems.small_parameter.graded_rows import graded_rows
+
+    graded = graded_rows(tower, fast.field, "eps", small, 3)
+    assert min(x for x in residual_orders(graded, fast.field.variables, wrong) if x is not None) == 2
+    assert min(x for x in residual_orders(graded, fast.field.variables, found) if x is not None) == 3
+    assert measured_orders(gyrostat.system, replace(fast, found=wrong)).orders[place] < 2.8
