@@ -218,8 +218,11 @@ export class Form {
     if (input instanceof HTMLInputElement) input.placeholder = row.placeholder ?? "";
     // What is being typed stays.
     if (input.value === drawn.shown || document.activeElement !== input) {
+      const changed = input.value !== row.value;
       input.value = row.value;
       drawn.shown = row.value;
+      // Reached by Tab just before: typing still replaces all of it.
+      if (changed && document.activeElement === input && input instanceof HTMLInputElement) input.select();
     }
     this.complain(drawn);
   }

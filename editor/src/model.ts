@@ -265,7 +265,9 @@ export class Model extends Listeners<Events> {
       this.looking = null;
       this.view = view;
       this.viewed = text;
-      if (view.bodies.length > 0 || view.complaints.length === 0 || this.understood === null) {
+      // Half a line that is no YAML takes whole sections away for a moment: what was understood before is shown on.
+      const broken = view.tree === null || view.complaints.some((one) => one.code === "syntax");
+      if (!broken || this.understood === null || view.bodies.length >= this.understood.bodies.length) {
         this.understood = view;
         this.understoodText = text;
       }
