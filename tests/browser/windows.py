@@ -179,8 +179,8 @@ class Window:
         return self.page.locator(".complaint .message").all_text_contents()
 
     def is_quiet(self) -> None:
-        """Nothing on the console, nothing that the security policy had to stop; but where text is edited Chromium itself
-        puts style attributes, which are stopped there."""
+        """Nothing on the console, nothing that the security policy had to stop; but where text is edited Chromium
+        itself puts style attributes, which are stopped there."""
         assert self.troubles == [], self.troubles
         violations = self.page.evaluate("window.violations")
         assert [one for one in violations if one != "style-src-attr inline text-shadow"] == []
