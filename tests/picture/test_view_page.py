@@ -190,7 +190,7 @@ class Window:
 
     def __init__(self, browser: Any, path: Path, **options: Any) -> None:
         self.complaints: list[str] = []
-        self.page = browser.new_page(viewport={"width": 760, "height": 480}, **options)
+        self.page = browser.new_page(viewport={"width": 480, "height": 320}, **options)
         self.page.on("console", lambda one: self.complaints.append(one.text))
         self.page.on("pageerror", lambda one: self.complaints.append(str(one)))
         self.asked: list[str] = []
@@ -283,7 +283,7 @@ def test_a_loop_follows_its_slider_or_says_that_it_is_open(still: Window) -> Non
 def test_markup_stays_text_in_a_browser(browser: Any, tmp_path: Path) -> None:
     out = tmp_path / "page.html"
     out.write_text(viewed(mbsym.loads(HOSTILE).system, {}, 1.0, modes=True)[0], encoding="utf-8")
-    window = Window(browser, out)
+    window = Window(browser, out, reduced_motion="reduce")
     assert not window.complaints
     assert window.page.locator("img, iframe, svg, b").count() == 0
     assert "onerror" in window.page.locator("h1").inner_text()
