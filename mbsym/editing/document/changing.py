@@ -18,6 +18,7 @@ from mbsym.editing.document.written import Data, Path, Refused, Written, data_of
 from mbsym.editing.document.yaml_edits import emptied, yaml_edits
 from mbsym.expressions.place import Complaint, Span
 from mbsym.expressions.tree import Name
+from mbsym.source.lines import normalised
 from mbsym.source.placed import MAX_TEXT, Mapping
 
 Json = dict[str, Any]
@@ -57,6 +58,8 @@ def changes(text: str, name: str, operations: Items[Map[str, Any]], folder: Fold
             done = meant(found, operation)
             found = _done(found, done, pieces)
             select, taken = done.select, [*taken, *done.taken]
+        if applied(normalised(text), pieces.edits()) != found.text:
+            raise Refused("not-so", "these operations do not go together", "do them one after another")
     except Refused as refused:
         complaint = Complaint(refused.code, refused.message, Span(1, 1), refused.hint)
         return {"complaints": [complaint_view(found, complaint) | {"from": 0, "to": 0}]}
@@ -102,7 +105,7 @@ def _checked(found: Written, edits: list[Edit], wanted: Data, done: Meant, piece
     renaming = done.edits is not None
     after = written(text, found.name, renaming and found.system is not None, found.folder)
     said = None if after.tree is None else data_of(after.tree)
-    if said is None or after.editor != found.editor or not _same(said, wanted):
+    if said is None or after.editor != found.editor or not _same(said, wanted, found.editor):
         raise Refused("not-so", "this cannot be written here without saying something else", "change it in the text")
     if renaming and found.system is not None and not corresponds(found.system, after.system, done):
         raise Refused("not-so", "with this name the description would be another one", "take another name")
@@ -110,9 +113,26 @@ def _checked(found: Written, edits: list[Edit], wanted: Data, done: Meant, piece
     return after
 
 
-def _same(said: Data, wanted: Data) -> bool:
-    """Equal, the order of keys counted, and blanks of texts over several lines not."""
-    return json.dumps(said) == json.dumps(wanted)
+def _same(said: Data, wanted: Data, editor: bool) -> bool:
+    """Equal, the order of keys counted; in editor text that of sections and of the lines of a block is nothing."""
+    return json.dumps(_sorted(said, 0) if editor else said) == json.dumps(_sorted(wanted, 0) if editor else wanted)
+
+
+def _sorted(data: Data, depth: int) -> Data:
+    """Sections, and what stands in lists, in the order of the alphabet; the entries of sections as they are."""
+    if not isinstance(data, dict):
+        return [_in_block(one) for one in data] if isinstance(data, list) else data
+    found = {key: _sorted(data[key], depth + 1) for key in (sorted(data) if depth == 0 else data)}
+    for body in found.get("bodies", ()) if depth == 0 else ():
+        if isinstance(body, dict) and body.get("inertia about", "joint") == "joint":  # goes without saying
+            body.pop("inertia about", None)
+    return found
+
+
+def _in_block(data: Data) -> Data:
+    if isinstance(data, list):
+        return [_in_block(one) for one in data]
+    return {key: _in_block(data[key]) for key in sorted(data)} if isinstance(data, dict) else data
 
 
 def corresponds(old: Any, new: Any, done: Meant) -> bool:

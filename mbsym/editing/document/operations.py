@@ -6,10 +6,20 @@ from collections.abc import Callable
 
 from mbsym.editing.document.branches import add_body, delete_branch, duplicate, reattach, rename_body
 from mbsym.editing.document.meaning import Json, Meant, path_of, setting, word_of
-from mbsym.editing.document.primitives import Add, Remove, Shift
+from mbsym.editing.document.primitives import Add, Primitive, Remove, Shift
 from mbsym.editing.document.spelling import value_of
 from mbsym.editing.document.words import pattern, places, renamed, uses
-from mbsym.editing.document.written import Data, Refused, Written, child, data_of, node_at
+from mbsym.editing.document.written import (
+    Data,
+    Path,
+    Refused,
+    Written,
+    child,
+    data_of,
+    entry_of,
+    is_understood,
+    node_at,
+)
 from mbsym.model.momenta import momentum_names
 from mbsym.source.placed import Node, Scalar, Sequence
 from mbsym.source.scope import why_no_name
@@ -30,8 +40,30 @@ def _set(found: Written, operation: Json) -> Meant:
     path, source = path_of(found, operation), word_of(operation, "source")
     node = node_at(found.tree, path)
     if not source.strip():
-        return Meant([] if node is None else [Remove(path)], select=path[:-1])
-    return Meant([setting(found, path, _typed(found, node, source), source)], select=path)
+        return Meant([] if node is None else _gone(found, path), select=path[:-1])
+    data = _typed(found, node, source)
+    if found.editor and path[-1] in ("inertia", "tensor"):
+        data = _rows(data)
+    return Meant([setting(found, path, data, source)], select=path)
+
+
+def _rows(data: Data) -> Data:
+    """Principal moments as the rows that editor text has."""
+    if not isinstance(data, list) or len(data) != 3 or not all(isinstance(one, str) for one in data):
+        return data
+    zero: Data = "0"
+    return [[data[row] if column == row else zero for column in range(3)] for row in range(3)]
+
+
+def _gone(found: Written, path: Path) -> list[Primitive]:
+    """What is taken out; of a tensor of inertia its point goes with it."""
+    removed: list[Primitive] = [Remove(path)]
+    if len(path) == 3 and path[0] == "bodies" and path[2] == "inertia":
+        body = node_at(found.tree, path[:2])
+        entry = None if body is None else entry_of(body, "inertia about")
+        if entry is not None and not (found.editor and is_understood(entry)):
+            removed.append(Remove((*path[:2], entry.key.text)))
+    return removed
 
 
 def _typed(found: Written, node: Node | None, source: str) -> Data:
@@ -66,7 +98,7 @@ def _delete(found: Written, operation: Json) -> Meant:
     path = path_of(found, operation)
     if node_at(found.tree, path) is None:
         raise Refused("bad-path", "that is not there")
-    return Meant([Remove(path)], select=path[:-1])
+    return Meant(_gone(found, path), select=path[:-1])
 
 
 def _move(found: Written, operation: Json) -> Meant:

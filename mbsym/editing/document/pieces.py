@@ -59,7 +59,10 @@ class Pieces:
 
     def edit(self, edits: Iterable[Edit]) -> None:
         """Edits of the text as it now stands, none overlapping another."""
-        for edit in sorted(edits, key=lambda one: (one.start, one.end), reverse=True):
+        # From behind; of several at one place the last first, so that they stand in their order.
+        behind = sorted(edits, key=lambda one: (one.start, one.end))
+        behind.reverse()
+        for edit in behind:
             before, after, position = [], [], 0
             for piece in self.pieces:
                 end = position + len(piece)

@@ -1,0 +1,215 @@
+"""The data of a description as lines of editor text: (label, value) by blocks, bodies by their numbers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from mbsym.editing.document.written import Data
+from mbsym.model.claims import BODY as ABOUT_BODY
+from mbsym.model.claims import CLAIMS
+from mbsym.source.keys import ALIASES
+from mbsym.source.labels import BODY, HEADER, SECTIONS
+
+Line = tuple[str, str]
+
+#: The lists of blocks: key of the description -> what their headings begin with.
+BLOCKS = {"bodies": "Body", "loads": "Load", "constraints": "Constraint", "claims": "Claim"}
+
+ROWS = "\n    "
+
+_LABELS = {key: label.capitalize() for label, key in BODY.items()}
+_TITLES = {key: title for title, (key, _) in SECTIONS.items()}
+_FIRST = dict(SECTIONS.values())
+_SHOWN = {"latex symbols": "LaTeX symbols"}
+
+
+@dataclass(slots=True)
+class Lines:
+    """What a text has to hold; assumptions are a section whose lines have no labels."""
+
+    header: list[Line] = field(default_factory=list)
+    sections: dict[str, list[Line]] = field(default_factory=dict)
+    blocks: dict[str, list[list[Line]]] = field(default_factory=dict)
+
+
+def lines_of_data(data: dict[str, Data]) -> Lines:
+    """The lines of a whole description."""
+    found, numbers = Lines(), _numbers(data)
+    for key, value in data.items():
+        plain = ALIASES.get(key, key)
+        if plain in BLOCKS and isinstance(value, list):
+            found.blocks[plain] = [_block(plain, one, numbers) for one in value]
+        elif plain == "assumptions" and isinstance(value, list):
+            found.sections["assumptions"] = [(_flat(one), "") for one in value]
+        elif plain in _TITLES and isinstance(value, dict):
+            first = _FIRST[plain]
+            found.sections[_TITLES[plain]] = [(name, _entry(plain, one, first)) for name, one in value.items()]
+        elif plain != "mbsym":
+            found.header += _header(plain, value, numbers)
+    count = len(found.blocks.get("bodies", ()))
+    found.header.append(("number of bodies", str(count)))
+    return found
+
+
+def title_shown(title: str) -> str:
+    return _SHOWN.get(title, title.capitalize())
+
+
+def _numbers(data: dict[str, Data]) -> dict[str, str]:
+    bodies = data.get("bodies")
+    names = [one.get("name") for one in bodies if isinstance(one, dict)] if isinstance(bodies, list) else []
+    return {" ".join(name.split()): str(k) for k, name in enumerate(names, start=1) if isinstance(name, str)}
+
+
+def _header(key: str, value: Data, numbers: dict[str, str]) -> list[Line]:
+    label = next((label for label, one in HEADER.items() if one == key), key)
+    if key == "reactions" and isinstance(value, list):
+        value = [numbers.get(_flat(one), _flat(one)) for one in value]
+    if key == "small parameter" and isinstance(value, dict):
+        return [(label, _small(value))]
+    free = key in ("name", "description", "source")
+    return [(label, _free(value) if free and isinstance(value, str) else text_of(value))]
+
+
+def _small(value: dict[str, Data]) -> str:
+    parts = []
+    for name, rest in value.items():
+        parts.append(name)
+        for key, one in rest.items() if isinstance(rest, dict) else ():
+            pairs: list[Data] = [x for pair in one.items() for x in pair] if isinstance(one, dict) else []
+            parts.append(f"{key} = {text_of(pairs or one)}")
+    return "; ".join(parts)
+
+
+def _entry(section: str, value: Data, first: str | None) -> str:
+    if isinstance(value, dict):
+        return record(value, first)
+    return _free(value) if section == "inputs" and isinstance(value, str) else text_of(value)
+
+
+def record(value: dict[str, Data], first: str | None = None) -> str:
+    """``positive; value = 2; meaning = length``: the first value without its key where that goes without saying."""
+    parts = []
+    for index, (key, one) in enumerate(value.items()):
+        written = _free(one) if key == "meaning" and isinstance(one, str) else text_of(one)
+        parts.append(written if index == 0 and key == first and len(value) > 1 else f"{key} = {written}")
+    return "; ".join(parts)
+
+
+def _flat(value: Data) -> str:
+    return " ".join(value.split()) if isinstance(value, str) else text_of(value)
+
+
+def text_of(value: Data) -> str:
+    """A value in one line: lists in round brackets."""
+    if isinstance(value, list):
+        return "(" + ", ".join(map(text_of, value)) + ")"
+    return record(value) if isinstance(value, dict) else _flat(value)
+
+
+def _free(value: str) -> str:
+    """Text for people: in double quotes where it could be taken for something else."""
+    if value and value == value.strip() and "\n" not in value and not any(mark in value for mark in ';"#\\='):
+        return value
+    escaped = value.replace("\\", "\\\\").replace('"', '\\"')
+    return f'"{escaped}"'
+
+
+# --- blocks -----------------------------------------------------------------------------------------------------------
+
+
+def _block(section: str, data: Data, numbers: dict[str, str]) -> list[Line]:
+    if not isinstance(data, dict):
+        return []
+    if section == "bodies":
+        return _body(data, numbers)
+    if section == "claims":
+        return _claim(data, numbers)
+    kind, value = next(iter(data.items()), ("", ""))
+    what = "load" if section == "loads" else "constraint"
+    return [(f"type of {what}", kind), *_tie(kind, value, numbers)]
+
+
+def _body(data: dict[str, Data], numbers: dict[str, str]) -> list[Line]:
+    lines: list[Line] = []
+    for key, value in data.items():
+        plain = ALIASES.get(key, key)
+        if plain == "attached to":
+            lines.append((_LABELS[plain], numbers.get(_flat(value), _flat(value))))
+        elif plain == "rotation" and isinstance(value, dict):
+            lines += [(_LABELS[one], _braces(inner)) for one, inner in value.items() if one in _LABELS]
+        elif plain == "inertia" and isinstance(value, dict):
+            lines.append((_LABELS["inertia"], _tensor(value.get("tensor", []))))
+            lines += [(_LABELS["accept"], text_of(value["accept"]))] if "accept" in value else []
+        elif plain == "inertia":
+            lines.append((_LABELS["inertia"], _tensor(value)))
+        elif plain == "shapes" and isinstance(value, list):
+            lines += [(_LABELS["shapes"], _shape(one)) for one in value]
+        elif plain in ("coordinates",):
+            lines.append((_LABELS[plain], _braces(value)))
+        else:
+            lines.append((_LABELS.get(plain, plain), text_of(value)))
+    return lines
+
+
+def _braces(value: Data) -> str:
+    return "{" + ", ".join(map(text_of, value)) + "}" if isinstance(value, list) else text_of(value)
+
+
+def _tensor(value: Data) -> str:
+    """Three rows; of principal moments a diagonal matrix is not what was said, but what is meant."""
+    if not isinstance(value, list) or not all(isinstance(row, list) for row in value):
+        return text_of(value)
+    return ROWS + ROWS.join(", ".join(map(text_of, row)) for row in value if isinstance(row, list))
+
+
+def _shape(value: Data) -> str:
+    if not isinstance(value, dict):
+        return text_of(value)
+    flat: dict[str, Data] = {}
+    for key, one in value.items():
+        flat |= one if key == "rotation" and isinstance(one, dict) else {key: one}
+    return record(flat)
+
+
+_NUMBERED = ("body", "centre", "about", "axes", "reaction on", "on")
+
+
+def _tie(kind: str, value: Data, numbers: dict[str, str]) -> list[Line]:
+    if isinstance(value, list):
+        return _ends(value, numbers)
+    if not isinstance(value, dict):
+        return [("Expression", text_of(value))]
+    lines: list[Line] = []
+    force = ALIASES.get(kind, kind) == "generalized force"
+    for key, one in value.items():
+        if key == "between" and isinstance(one, list):
+            lines += _ends(one, numbers)
+        elif key in _NUMBERED and not force:
+            lines.append((key.capitalize(), numbers.get(_flat(one), _flat(one))))
+        else:
+            lines.append((key if force else key.capitalize(), text_of(one)))
+    return lines
+
+
+def _ends(value: list[Data], numbers: dict[str, str]) -> list[Line]:
+    lines: list[Line] = []
+    for which, end in zip(("First", "Second"), value, strict=False):
+        for key, one in end.items() if isinstance(end, dict) else ():
+            written = numbers.get(_flat(one), _flat(one)) if key == "body" else text_of(one)
+            lines.append((f"{which} {key}", written))
+    return lines
+
+
+def _claim(data: dict[str, Data], numbers: dict[str, str]) -> list[Line]:
+    kind = data.get("claim")
+    about_body = isinstance(kind, str) and kind in CLAIMS and CLAIMS[kind].of == ABOUT_BODY
+    lines: list[Line] = []
+    for key, value in data.items():
+        written = text_of(value)
+        if key == "of" and about_body:
+            written = numbers.get(_flat(value), _flat(value))
+        elif key == "place" and isinstance(value, str):
+            written = _free(value)
+        lines.append((key.capitalize(), written))
+    return lines
