@@ -41,11 +41,12 @@ def changes(text: str, name: str, operations: Items[Map[str, Any]], folder: Fold
     try:
         if len(operations) > MOST_OPERATIONS:
             raise Refused("too-large", f"at most {MOST_OPERATIONS} operations are done at once")
-        if not isinstance(found.tree, Mapping):
+        if not isinstance(found.tree, Mapping) or any(one.code in _NOT_CHANGED for one in found.complaints):
             found = written(text, name, folder=folder)
             if not any(one.severity == "error" for one in found.complaints):
                 raise Refused("wrong-shape", "a description is a mapping of keys to values")
-            return {"complaints": [complaint_view(found, one) for one in found.complaints if one.severity == "error"]}
+            first = [one for one in found.complaints if one.code in _NOT_CHANGED] or found.complaints.errors
+            return {"complaints": [complaint_view(found, one) for one in first]}
         pieces = Pieces(found.text)
         select: Path = ()
         taken: list[Path] = []
@@ -75,6 +76,9 @@ def changes(text: str, name: str, operations: Items[Map[str, Any]], folder: Fold
     ]
     return {"edits": edits, "select": list(select), "taken": [list(path) for path in taken]}
 
+
+#: What a text may not hold for operations to be done: a change of one place would be one of others.
+_NOT_CHANGED = ("alias", "tag", "several-documents")
 
 #: Operations that ask what the system is, not only what is written.
 _UNDERSTANDING = ("rename", "rename body", "duplicate branch", "delete branch")
