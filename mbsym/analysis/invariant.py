@@ -59,6 +59,7 @@ def _known(analysis: Analysis, there: Setting) -> list[tuple[str, Any]]:
 
     field = there.whole
     energies = {one.name for one in analysis.integrals if one.kind == ENERGY}
+    energies |= {name + polynomial.MULTIPLE for name in energies}
     known = [(name, p) for name, p in there.known if field.reduced(_without_constants(field, p)) != 0]
     # Claimed integrals are looked at here once more: ``analysis.claims`` asks for every result, this one among them.
     for k, claim in enumerate(analysis.system.claims):

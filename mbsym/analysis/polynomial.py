@@ -94,6 +94,10 @@ def with_known(there: Setting, listed: Sequence[Integral]) -> Setting:
     return replace(there, known=(*there.known, *further))
 
 
+#: What the name of an integral gets where only its numerator is told: the denominator holds parameters alone.
+MULTIPLE = ", but for a constant factor (its denominator is left out)"
+
+
 def _known(
     whole: PolynomialField,
     field: PolynomialField,
@@ -101,7 +105,7 @@ def _known(
     transfer: Transfer,
     listed: Sequence[Integral],
 ) -> list[tuple[str, Any]]:
-    """Names and numerators of integrals, of those that are functions on the field."""
+    """Names and numerators of integrals, of those that are functions on the field; with denominators: ``MULTIPLE``."""
     known = []
     for one in listed:
         try:
@@ -109,7 +113,8 @@ def _known(
         except Failure:
             continue  # it holds the time, or positions on which the equations do not depend
         if not any(bottom.degrees()[k] for k in whole.places):
-            known.append((one.name, _at(whole, field, numbers, top)))
+            name = one.name if bottom.is_constant() else one.name + MULTIPLE
+            known.append((name, _at(whole, field, numbers, top)))
     return known
 
 

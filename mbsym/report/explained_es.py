@@ -5,6 +5,7 @@
 _TURNED = "las rotaciones permanentes en torno a otras direcciones del espacio"
 
 EXPLAINED = {
+    "{}, but for a constant factor (its denominator is left out)": "{0:said}, salvo un factor constante (sin su denominador)",
     "to {} bits at {} random points": "hasta {0} bits en {1} puntos al azar",
     "equal at {} random rational points": "iguales en {0} puntos racionales al azar",
     "length of {}": "longitud de {0}",

@@ -5,6 +5,7 @@
 _TURNED = "перманентных вращений вокруг других направлений пространства"
 
 EXPLAINED = {
+    "{}, but for a constant factor (its denominator is left out)": "{0:said}, с точностью до постоянного множителя (знаменатель опущен)",
     "to {} bits at {} random points": "до {0} бит в {1} случайных точках",
     "equal at {} random rational points": "равны в {0} случайных рациональных точках",
     "length of {}": "длина вектора {0}",

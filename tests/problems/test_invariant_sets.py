@@ -8,6 +8,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 import sympy
+from conftest import SHIPPED
 
 import mbsym
 from mbsym.analysis.stages import Unavailable
@@ -15,6 +16,7 @@ from mbsym.problems.invariant_sets import Definiteness, Gap, Kind, Proof
 from mbsym.problems.invariant_sets.arena import arena
 from mbsym.problems.invariant_sets.problem import invariant_sets
 from mbsym.problems.vector_field import in_speeds
+from mbsym.report.language import Language
 
 HEAVY = """
 mbsym: 1
@@ -282,3 +284,16 @@ def test_definiteness_where_values_have_denominators():
                 assert (side is not None and _all_hold(side, **numbers)) == definite
                 compared.add(definite)
     assert False in compared
+
+
+def test_an_integral_without_its_denominator_is_named_a_multiple():
+    """C = A B/(A + B): H and the area integral have that denominator; what is shown is A + B times them."""
+    text = (SHIPPED / "clebsch-poisson.yaml").read_text(encoding="utf-8").split("values:")[0]
+    found = mbsym.loads(text.replace("bodies:", "relations: {C: A*B/(A + B)}\nbodies:", 1)).invariant_sets
+    names = [name for name, _ in found.integrals]
+    assert names[:2] == [
+        "generalised energy, but for a constant factor (its denominator is left out)",
+        "angular momentum about axis 3, but for a constant factor (its denominator is left out)",
+    ]
+    assert str(found.integrals[1][1]) == "A*p*gamma1*(A + B) + B*(q*gamma2*(A + B) + A*r*gamma3)"
+    assert Language("ru").say(names[1]).endswith("с точностью до постоянного множителя (знаменатель опущен)")
