@@ -250,6 +250,10 @@ def of_none(found: SmallParameters, write: Medium) -> Iterator[Said]:
             "No slow manifold was found in powers of [[small]]: [[why]].",
             {"small": write.names([found.small]), "why": write.word(found.no_slow)},
         )
+        yield (
+            "Periodic solutions in powers of [[small]] are looked for by mbsym oscillations.",
+            {"small": write.names([found.small])},
+        )
 
 
 def _told(found: Expansion, conditions: Sequence[Condition], write: Medium) -> str:

@@ -79,7 +79,8 @@ def test_a_small_parameter_in_coordinates_says_what_is_missing():
     source = (SHIPPED / "simple-pendulum.yaml").read_text(encoding="utf-8")
     name = mbsym.loads(source).system.parameter_names[0]
     analysis = Analysis(mbsym.loads(f"{source}\nsmall parameter: {name}\n").system, (12,))
-    (told,) = lines(analysis.small_parameters, analysis)
+    told, further = lines(analysis.small_parameters, analysis)
+    assert further == f"Periodic solutions in powers of {name} are looked for by mbsym oscillations."
     assert told == f"No slow manifold was found in powers of {name}: expansions are made of equations in speeds."
 
 
