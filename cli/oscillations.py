@@ -45,7 +45,7 @@ def command(file: Path, order: str, leading: str | None, settings: tuple[str, ..
 
     \b
     Examples:
-      mbsym oscillations systems/spherical-pendulum.yaml
+      mbsym oscillations systems/spring-pendulum.yaml --of theta
       mbsym oscillations systems/gyrostat-fast.yaml --order 2
       mbsym oscillations systems/gyrostat-fast.yaml --set lx=0 --json
     """
@@ -126,45 +126,10 @@ def _measured(
 def _show(file: Path, name: str, told: Oscillating, measured: MeasuredOrders | None, missing: str) -> None:
     from rich.text import Text
 
-    from mbsym.report.oscillation_words import DRIFTS, RATE, SOLUTION, measured_sentences, sentences
-    from mbsym.report.said import filled
+    from mbsym.report.oscillation_lines import lines
     from mbsym_cli.console import console, printable
 
-    out, found = console(), told.found
+    out = console()
     out.print(Text.assemble((name, "bold"), (f"  {printable(file)}", "dim")))
-    for one, power in found.powers:
-        out.print(
-            Text(
-                f"  {one} stands for {one} {found.small}^{power}"
-                if power != 1
-                else f"  {one} stands for {one} {found.small}"
-            )
-        )
-
-    def lines(heading: str, series: list[str]) -> None:
-        out.print(Text(f"    {heading} ="))
-        for k, line in enumerate(x for x in series if x):
-            out.print(Text(f"      {'+ ' if k else ''}{line}"), soft_wrap=True)
-
-    def term(n: int, text: str) -> str:
-        factor = "" if n == 0 else f"{found.small} " if n == 1 else f"{found.small}^{n} "
-        return "" if text == "0" else f"{factor}({text})" if n else text
-
-    gaps: dict[str, object] = {"order": found.order, "small": found.small, "leading": found.leading}
-    out.print(Text.assemble("  ", (filled((SOLUTION, gaps)), "bold cyan")))
-    for variable, series in zip(found.names, found.series, strict=True):
-        lines(variable, [term(n, told.written(one)) for n, one in enumerate(series)] or ["0"])
-    out.print(Text.assemble("  ", (RATE, "bold cyan")))
-    rate = ["1", *(term(n, str(told.formula(x))) for n, x in enumerate(found.corrections, start=1))]
-    lines(f"{told.phase}' / ({told.formula(found.frequency)})", rate)
-    if found.drifts:
-        out.print(Text.assemble("  ", (DRIFTS, "bold cyan")))
-    for drift in found.drifts:
-        rates = [term(n, str(told.formula(x))) for n, x in enumerate(drift.rates)]
-        waves = [term(n, told.written(x)) for n, x in enumerate(drift.waves)]
-        lines(drift.variable, [*(f"t*({x})" for x in rates if x), *waves])
-    said = [*sentences(told), *(measured_sentences(told, measured) if measured else ())]
-    for one in said:
-        out.print(Text(f"    {filled(one)}"))
-    if measured is None:
-        out.print(Text(f"    The error was not measured: {missing}."))
+    for line, heading in lines(told, measured, missing):
+        out.print(Text(line, "bold cyan" if heading else ""), soft_wrap=line.startswith("      "))

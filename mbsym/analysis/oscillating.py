@@ -26,7 +26,7 @@ from mbsym.problems.angle_field import in_angles
 from mbsym.problems.normal_forms.taylor_field import taylor_field
 from mbsym.problems.small_parameter.graded_rows import graded_rows
 from mbsym.problems.small_parameter.harmonics import Harmonics
-from mbsym.problems.small_parameter.oscillation_result import Oscillation
+from mbsym.problems.small_parameter.oscillation_result import Divisor, Oscillation
 from mbsym.problems.small_parameter.oscillations import (
     AMPLITUDE,
     LATEST,
@@ -47,7 +47,9 @@ PHASE, AMPLITUDE_NAME = "phase", "amplitude"
 class Oscillating:
     """An oscillation with the ring in which it is told: parameters, ``symbols`` (amplitude, constants), the phase.
 
-    ``field``: the equations with their numbers; ``taylor``: it is a Taylor series about the motion, cut off.
+    ``field``: the equations with their numbers; ``taylor``: it is a Taylor series about the motion, cut off; ``real``:
+    by the signs of the parameters the frequency at eps = 0 is real and not zero; ``resonances``: the divisors that are
+    not known to be different from zero by them.
     """
 
     found: Oscillation
@@ -56,6 +58,8 @@ class Oscillating:
     symbols: Mapping[str, str]
     field: PolynomialField
     taylor: bool
+    real: bool = False
+    resonances: tuple[Divisor, ...] = ()
 
     def formula(self, x: Element) -> Formula:
         return Formula(self.ring, in_letters(self.found.tower, self.ring, self.symbols, x))
@@ -170,7 +174,31 @@ def oscillating(
     if not found.verified:
         raise NoClosedForm("withdrawn: put into the equations, the expansion leaves terms of its own order")
     used = {AMPLITUDE, *(f"#{name}" for name, _ in found.constants)}
-    return Oscillating(found, ring, phase, {k: v for k, v in symbols.items() if k in used}, field, taylor)
+    sign = _sign(analysis, tower, found.frequency * found.frequency)
+    if sign == "negative":
+        raise NoClosedForm(
+            f"{found.leading} does not oscillate where {small.name} = 0: the square of its frequency is < 0"
+        )
+    return Oscillating(
+        found,
+        ring,
+        phase,
+        {k: v for k, v in symbols.items() if k in used},
+        field,
+        taylor,
+        sign == "positive",
+        tuple(one for one in found.divisors if _sign(analysis, tower, one.value) not in ("positive", "negative")),
+    )
+
+
+def _sign(analysis: Analysis, tower: Tower, x: Element) -> str | None:
+    """By the assumptions of the description; None where there is no telling, or symbols of the solution are in it."""
+    places = (p.degrees()[MOST_ROOTS:] for p in (x.top, x.bottom))
+    names = {name for degrees in places for name, d in zip(tower.parameters, degrees, strict=True) if d > 0}
+    if any(name.startswith("#") for name in names) or any(d > 0 for d in x.top.degrees()[:MOST_ROOTS]):
+        return None
+    product = in_letters(tower, analysis.ring, {}, tower.made(x.top * x.bottom, tower.context.constant(1)))
+    return analysis.signs.sign(product)
 
 
 def _field(analysis: Analysis, small: SmallParameter, order: int) -> tuple[PolynomialField, bool]:

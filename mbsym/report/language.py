@@ -16,7 +16,14 @@ from typing import Any
 LANGUAGES = {"en": "English", "ru": "Russian", "es": "Spanish"}
 
 #: Problems whose sentences stand in modules of their own, ``stabilisation_ru`` and so on.
-FURTHER = ("stabilisation", "invariant_sets", "normal_forms", "polynomial_integrals", "small_parameters")
+FURTHER = (
+    "stabilisation",
+    "invariant_sets",
+    "normal_forms",
+    "polynomial_integrals",
+    "small_parameters",
+    "oscillations",
+)
 
 _BABEL = {"en": "", "ru": "russian", "es": "spanish,es-noquoting,es-noshorthands,es-nodecimaldot"}
 

@@ -30,9 +30,9 @@ _NOTHING = "Put into the equations at random rational parameters, it leaves noth
 _TAYLOR = (
     "Of the equations, terms up to degree [[degree]] in the deviations were taken; the others are of higher order."
 )
-_REAL = "It is one where [[square]] > 0, the square of the frequency without [[small]]."
+_REAL = "The frequency without [[small]] is real and not zero where [[square]] > 0."
 _NONZERO = "It holds where the frequency without [[small]] is not zero: [[frequency]] != 0."
-_RESONANCES = "Resonance, and no such solution in general, where one of these vanishes: [[divisors]]."
+_RESONANCES = "Resonance, and in general no such solution, where one of these vanishes: [[divisors]]."
 _HARMONIC = "[[value]] (harmonic [[harmonic]], order [[order]], [[names]])"
 _OTHERS = "Free oscillations of [[names]], whose frequency has the square [[square]], are left out."
 _DAMPED = "Without [[small]], roots of [[names]] are not all imaginary: only what is forced of them is here."
@@ -68,19 +68,19 @@ def sentences(told: Oscillating) -> Iterator[Said]:
     if told.taylor:
         yield _TAYLOR, {"degree": found.order + 1}
     square = found.frequency * found.frequency
-    if found.tower.rational(square) is None:
+    if not told.real:
         rooted = any(d > 0 for d in found.frequency.top.degrees()[: -len(found.tower.parameters)])
         if rooted:
             yield _REAL, values | {"square": told.formula(square)}
         else:
             yield _NONZERO, values | {"frequency": told.formula(found.frequency)}
-    if found.divisors:
+    if told.resonances:
         listed = "; ".join(
             _HARMONIC.replace("[[value]]", str(numerator(told, one.value)))
             .replace("[[harmonic]]", str(one.harmonic))
             .replace("[[order]]", str(one.order))
             .replace("[[names]]", ", ".join(one.variables))
-            for one in found.divisors
+            for one in told.resonances
         )
         yield _RESONANCES, {"divisors": listed}
     for group, other in found.others:

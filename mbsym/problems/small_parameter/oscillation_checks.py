@@ -17,6 +17,7 @@ from mbsym.problems.small_parameter.harmonics import Harmonics
 from mbsym.problems.small_parameter.oscillation_result import Oscillation
 
 _SIZE = 20
+MOST_SEEDS = 8
 
 
 class Numbers:
@@ -83,12 +84,15 @@ def _chebyshev(one: Any, x: Any, k: int) -> tuple[Any, Any]:
 def residual_orders(rows: Any, names: Sequence[str], found: Oscillation, seed: int = 1) -> tuple[int | None, ...]:
     """The lowest order of eps in f(X) - omega (1 + eps nu_1 + ...) X'(T) for each variable of ``found``, then for its
     drifting ones.  None: nothing is left."""
-    numbers = Numbers(found, seed)
+    try:
+        numbers = Numbers(found, seed)
+        speed = _speed(numbers, found)
+        series = _all_series(numbers, found)
+    except ZeroDivisionError:  # a denominator vanishes at these numbers
+        if seed > MOST_SEEDS:
+            raise
+        return residual_orders(rows, names, found, seed + 1)
     context, eps = numbers.context, numbers.eps
-    series = {name: numbers.series(one) for name, one in zip(found.names, found.series, strict=True)}
-    speed = numbers(found.frequency) * (
-        1 + sum((numbers(x) * eps ** (k + 1) for k, x in enumerate(found.corrections)), context.constant(0))
-    )
     rates = {}
     for one in found.drifts:
         series[one.variable] = numbers.series(one.waves)
@@ -115,3 +119,14 @@ def residual_orders(rows: Any, names: Sequence[str], found: Oscillation, seed: i
         place = len(numbers.roots)
         result.append(min((int(m[place]) for m in left.to_dict()), default=None))
     return tuple(result)
+
+
+def _speed(numbers: Numbers, found: Oscillation) -> Any:
+    """omega (1 + eps nu_1 + ...)."""
+    zero = numbers.context.constant(0)
+    shifts = sum((numbers(x) * numbers.eps ** (k + 1) for k, x in enumerate(found.corrections)), zero)
+    return numbers(found.frequency) * (1 + shifts)
+
+
+def _all_series(numbers: Numbers, found: Oscillation) -> dict[str, Any]:
+    return {name: numbers.series(one) for name, one in zip(found.names, found.series, strict=True)}

@@ -19,6 +19,7 @@ from mbsym.analysis.oscillating import oscillating
 from mbsym.problems.small_parameter.lindstedt import NotPeriodic, Resonance
 from mbsym.problems.small_parameter.oscillation_checks import residual_orders
 from mbsym.problems.small_parameter.oscillation_result import Amplitude
+from mbsym.report.oscillation_words import numerator
 from mbsym.simulation.oscillating import measured_orders
 
 POINT = """mbsym: 1
@@ -229,3 +230,35 @@ def test_a_planted_error_is_seen_twice(gyrostat, fast):
     assert min(x for x in residual_orders(graded, fast.field.variables, wrong) if x is not None) == 2
     assert min(x for x in residual_orders(graded, fast.field.variables, found) if x is not None) == 3
     assert measured_orders(gyrostat.system, replace(fast, found=wrong)).orders[place] < 2.8
+
+
+def test_the_papers_solution_is_wrong_where_there_is_a_moment(fast):
+    """(41) has p = 0 in the order 0, and gamma'' with y1 in place of P0 = y1/(1 - a + nz) in the order 1; without l_x
+    both are right (references/gyrostat, the row on (41)).  In our units P0 = lx r0/((C - A) r0 + lz)."""
+    ring = fast.ring
+    a, c, lx, lz = (ring.generator("parameter", name) for name in ("A", "C", "lx", "lz"))
+    r, m = (ring.generator("parameter", name) for name in ("r_0", "amplitude"))
+    cosine = ring.generator("cosine", "phase")
+    series = dict(zip(fast.found.names, fast.found.series, strict=True))
+    p, gamma = fast.wave(series["p"][0]).polynomial, fast.wave(series["gamma3"][1]).polynomial
+    assert ring.is_zero(ring.times(p, (c - a) * r + lz) - lx * r)
+    assert not ring.is_zero(p)  # (41)
+    assert ring.is_zero(ring.times(gamma, (c - a) * r + lz) - lx * m * (1 - cosine))
+    printed = ring.times(lx * m * (1 - cosine), ring.reciprocal(ring.times(c, r)))  # M3 y1 (1 - cos), y1 = lx/(C r0)
+    assert not ring.is_zero(gamma - printed)
+    without = {ring.index("parameter", "lx"): ring.zero}
+    assert ring.substitute(p, without).is_zero()
+    assert ring.substitute(gamma - printed, without).is_zero()
+
+
+def test_the_spring_pendulum_names_one_to_two():
+    """k/m = 4 g/l with l = l0 + m g/k: 3 m g = k l0."""
+    told = oscillating(mbsym.load(SHIPPED / "spring-pendulum.yaml"), 2, leading="theta")
+    assert told.real
+    shown = [(one.harmonic, str(numerator(told, one.value))) for one in told.resonances]
+    assert shown == [(2, "k*(k*l0 - 3*m*g)")]
+
+
+def test_what_cannot_oscillate_is_refused(tmp_path):
+    with pytest.raises(NoClosedForm, match="square of its frequency is < 0"):
+        oscillating(point(tmp_path, ["potential: -w**2*x**2/2 + eps*x**4/4"]), 2)
