@@ -4,9 +4,11 @@ Nothing else imports it.
 """
 
 import gc
+import signal
 
 from mbsym.serving.worker import warm
 
+signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C in a terminal is for the server, which ends this process
 warm()
 gc.collect()
 gc.freeze()  # what is there stays shared

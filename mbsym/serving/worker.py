@@ -57,7 +57,7 @@ def attend(connection: Connection, memory: int) -> None:
         code = 0
     except MemoryError:
         code = OUT_OF_MEMORY
-    except (EOFError, BrokenPipeError, KeyboardInterrupt):
+    except (EOFError, ConnectionError, KeyboardInterrupt):
         code = 0  # nobody listens any more
     except BaseException as error:
         traceback.print_exc()
