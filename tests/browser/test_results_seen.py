@@ -58,12 +58,15 @@ def test_results_fill_are_copied_and_follow_the_text(served: tuple[str, Path], o
     assert page.evaluate("navigator.clipboard.readText()") == "-m*l*g*sin(x)"
 
     # With a mistake nothing is derived, and what stands there is told to be of an earlier text.
-    window.write(NASTY.replace("mass: m,", "mass: mm,"))
+    load = page.get_by_role("button", name="Load it")
+    path.write_text(NASTY.replace("mass: m,", "mass: mm,"), encoding="utf-8")
+    load.click()
     window.until("document.querySelector('.deriving').textContent.startsWith('Waiting: the text has mistakes')")
     assert page.locator("#result-summary.old").count() == 1
 
     # Gravity upwards: the motion is unstable, and the page says so without being asked.
-    window.write(NASTY.replace("direction: [0, -1, 0]", "direction: [0, 1, 0]"))
+    path.write_text(NASTY.replace("direction: [0, -1, 0]", "direction: [0, 1, 0]"), encoding="utf-8")
+    load.click()
     window.until(done)
     assert page.locator("#result-summary .bad").first.inner_text() == "unstable"
     assert page.locator(".result.old").count() == 0
