@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import random
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 import yaml
+from mutants import mutant
 
 from mbsym.editing.document import changes, formula, look
 from mbsym.editing.document.pieces import Edit, Pieces, applied
@@ -281,7 +283,7 @@ def _operations(text: str, name: str, chance: random.Random) -> list[dict[str, A
         ]
     for section in ("loads", "claims", "constraints"):
         node = next((one for one in view["tree"]["children"] if one["path"] == [section]), None)
-        if node is not None and node["children"]:
+        if node is not None and node.get("children"):
             found.append({"op": "delete", "path": chance.choice(node["children"])["path"]})
     return found
 
@@ -311,6 +313,46 @@ def test_random_operations_say_what_they_mean(name: str) -> None:
         # What comments there were is there still, where nothing was taken out.
         if operation["op"] in ("set", "add body", "rename body"):
             assert after.count("#") >= text.count("#")
+
+
+_TYPED = ("1", "[1, 2, 3]", "a: b", "{x: 1}", "", '"q"', "x # y", "- z", "(1, 2, 3)", "[1", "é", "a, b", "'", "&a x")
+
+
+def _paths(node: dict[str, Any]) -> Iterator[list[Any]]:
+    yield node["path"]
+    for one in node.get("children", ()):
+        yield from _paths(one)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_any_operation_on_anything_is_done_or_refused(seed: int) -> None:
+    """Of broken descriptions, too: an answer, and where that is edits, untouched text on both sides of them."""
+    chance = random.Random(seed)
+    for _ in range(5):
+        name = chance.choice(NAMES)
+        text = mutant((SYSTEMS / name).read_text(encoding="utf-8"), chance)
+        tree = look(text, name)["tree"]
+        if tree is None:
+            continue
+        paths = [path for path in _paths(tree) if path]
+        for _ in range(4):
+            path = chance.choice(paths)
+            op = chance.choice(
+                [
+                    put(path, chance.choice(_TYPED)),
+                    put([*path, "new"], chance.choice(_TYPED)),
+                    {"op": "insert", "path": [*path, 0], "source": chance.choice(_TYPED)},
+                    {"op": "delete", "path": path},
+                    {"op": "move", "path": path, "before": chance.choice([None, *paths])},
+                    *_operations(text, name, chance)[-3:],
+                ]
+            )
+            answer = changes(text, name, [op])
+            if "edits" not in answer:
+                assert answer["complaints"][0]["message"]
+            elif tree is not None:
+                after = done(text, op, name=name)
+                assert look(after, name)["tree"] is not None
 
 
 @pytest.mark.parametrize("name", ["satellite.yaml", "satellite.txt", "rolling-disc-speeds.yaml", "four-bar.yaml"])
@@ -375,3 +417,13 @@ def test_a_look_is_quick() -> None:
     assert time.process_time() - start < 1.5
     assert len(view["bodies"]) == 50
     assert written(chain, "x.yaml").system is not None
+
+
+def test_a_renaming_that_forgets_a_place_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Planted: claims, or loads, are not looked at; the system that comes out is no longer the same by other names."""
+    from mbsym.editing.document import words
+
+    for section in ("claims", "loads", "bodies"):
+        with monkeypatch.context() as planted:
+            planted.setitem(words._LISTS, section, lambda _node, _path: iter(()))
+            assert refused(PENDULUM, {"op": "rename", "kind": "parameter", "name": "m", "to": "mass1"}) == "not-so"

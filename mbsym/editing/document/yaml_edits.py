@@ -34,7 +34,7 @@ def emptied(found: Written, path: Path) -> Primitive:
     holder = node_at(found.tree, path[:-1])
     if len(path) < 2 or holder is None or len(_parts(holder)) > 1:
         return Remove(path)
-    if len(path) == 2 and path[0] not in _KEPT_EMPTY:
+    if len(path) == 2 and (path[0] not in _KEPT_EMPTY or (found.editor and path[0] == "bodies")):
         return Remove(path[:1])
     return Replace(path[:-1], {} if isinstance(holder, Mapping) else [])
 
