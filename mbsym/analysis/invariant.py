@@ -7,11 +7,13 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from mbsym.algebra.failures import Failure, NoClosedForm
-from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.problems.claims.forms import in_parameters
 from mbsym.problems.claims.symbols import Symbols
 from mbsym.problems.integrals import ENERGY
 from mbsym.problems.polynomial_integrals.result import Sure
+
+#: Of Lagrange's equations: coordinates, and variables of their field, beyond which splitting takes minutes.
+MOST_ANGLES, MOST_IN_ANGLES = 4, 7
 
 if TYPE_CHECKING:
     from mbsym.algebra.polynomial_field import PolynomialField
@@ -24,30 +26,60 @@ if TYPE_CHECKING:
 def invariant_sets_of(analysis: Analysis) -> InvariantSets:
     """Families of the integrals of problem 7, of those that claims have proved, and of further polynomial ones.
 
-    Raises Unavailable for systems without speeds, NoClosedForm where the field is not polynomial or nothing but the
-    geometry is conserved.
+    Of equations in speeds and unit vectors, or of Lagrange's in rates, sines and cosines of angles and positions.
+
+    Raises NoClosedForm where the field is not polynomial or nothing but the geometry is conserved.
     """
     from mbsym.analysis import polynomial  # few ask for it
     from mbsym.problems.invariant_sets.arena import arena
     from mbsym.problems.invariant_sets.problem import invariant_sets
 
-    if analysis.speed_form is None:
-        reason = "families of integrals are looked at of equations in speeds (and unit vectors)"
-        hint = "declare 'speeds' and 'orientation' (mbsym explain description)"
-        raise Unavailable("speeds", NoResult(reason, hint, "no speeds", "no-speeds"))
+    count = len(analysis.system.coordinates)
+    if analysis.speed_form is None and count > MOST_ANGLES:
+        raise NoClosedForm(
+            f"{count} coordinates: without speeds of their own, families of integrals of at most {MOST_ANGLES} are "
+            "looked at; with speeds and unit vectors (mbsym explain description) equations are shorter"
+        )
     there = polynomial.setting(analysis)
     field = there.whole
+    if analysis.speed_form is None and len(field.variables) > MOST_IN_ANGLES:
+        raise NoClosedForm(
+            f"{len(field.variables)} rates, sines, cosines and positions: families of at most {MOST_IN_ANGLES} are "
+            "looked at; with speeds and unit vectors (mbsym explain description) equations are shorter"
+        )
     found = [(name, _without_constants(field, p)) for name, p in _known(analysis, there)]
     chosen = _independent(field, [(name, p) for name, p in found if field.reduced(field.derivative(p)) == 0])
     if not chosen:
         raise NoClosedForm("no integrals are known but those of geometry")
     signs = {one.name: one.sign for one in analysis.system.parameters}
-    place = arena(field, chosen, signs, _assumptions(analysis, there.transfer))
-    if analysis.system.symbols:
-        from mbsym.formulas.latex import write_as
+    floating = len(field.relations) if analysis.speed_form is None else 0
+    place = arena(field, chosen, signs, _assumptions(analysis, there.transfer), floating)
+    from mbsym.formulas.latex import write_as
 
-        write_as(place.ring, {one.name: one.latex for one in analysis.system.symbols})
+    spelled = _in_angles(analysis, field) if floating else {}
+    spelled |= {one.name: one.latex for one in analysis.system.symbols}
+    if spelled:
+        write_as(place.ring, spelled)
     return invariant_sets(place)
+
+
+def _in_angles(analysis: Analysis, field: PolynomialField) -> dict[str, str]:
+    r"""(\sin\theta) and \dot{\theta} for what names ``arena`` gives to the variables of Lagrange's equations."""
+    from mbsym.formulas.latex import LatexNames
+    from mbsym.problems.invariant_sets.arena import identifiers
+
+    letters = LatexNames(list(analysis.system.coordinates))
+    letter = {name: letters[name] for name in analysis.system.coordinates}
+    letter |= {one.name: one.latex for one in analysis.system.symbols if one.name in letter}
+    found = {}
+    for name, plain in zip(field.variables, identifiers(field.variables, field.parameters), strict=True):
+        stem = name.removesuffix("_dot")
+        if name[:4] in ("sin(", "cos("):
+            angle, _, share = name[4:-1].partition("/")
+            found[plain] = rf"(\{name[:3]} {letter.get(angle, angle)}{'/' + share if share else ''})"
+        elif stem != name and stem in letter:
+            found[plain] = rf"\dot{{{letter[stem]}}}"
+    return found
 
 
 def _known(analysis: Analysis, there: Setting) -> list[tuple[str, Any]]:

@@ -258,7 +258,7 @@ def _of_invariant_sets(found: InvariantSets, names: MathNames) -> Iterator[list[
 
     yield said(opening(found, write))
     for family in found.families:
-        if family.sets or family.unfinished:
+        if family.sets or family.unfinished or family.singular or family.parts:
             title = escape(f"K = {family_title(family, found)}")
             yield [title, *said(of_family(family, write))]
             for k, one in enumerate(family.sets, start=1):

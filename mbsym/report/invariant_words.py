@@ -46,6 +46,10 @@ def opening(found: InvariantSets, write: Medium) -> Iterator[Said]:
         relations = ", ".join(write.condition(one, "=") for one in found.relations)
         yield "Between the variables: [[relations]].", {"relations": relations}
 
+    yield "What is said of stability is about these variables: [[names]].", {"names": write.names(found.variables)}
+    if found.in_angles and found.relations:
+        yield "Multipliers of the geometry are Lagrange's: along a motion only the others are constant.", {}
+
 
 def family_title(family: Family, whole: InvariantSets) -> str:
     """``K = V0 + lambda1 V1 + lambda2 V2``, in letters that every medium has."""
@@ -55,10 +59,14 @@ def family_title(family: Family, whole: InvariantSets) -> str:
 
 
 def of_family(family: Family, write: Medium) -> Iterator[Said]:
-    if not family.sets and not family.unfinished:
+    if not (family.sets or family.unfinished or family.singular or family.parts):
         yield "It has no stationary points for almost all parameters (proved).", {}
     if family.unfinished:
         yield "Branches left aside by the budget: [[n]]; there may be further sets.", {"n": family.unfinished}
+    if family.singular:
+        yield "Branches on which the coordinates are singular, left aside: [[n]].", {"n": family.singular}
+    if family.parts:
+        yield "Pieces that are not invariant by themselves, left aside: [[n]].", {"n": family.parts}
 
 
 def of_set(one: StationarySet, number: int, write: Medium) -> Iterator[Said]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from mbsym.formulas.formula import Formula
 from mbsym.formulas.latex import LatexNames
 from mbsym.problems.invariant_sets import InvariantSets
 from mbsym.report.invariant_words import Medium, closing, of_family, of_set, opening
@@ -16,6 +17,9 @@ def of_invariant_sets(found: InvariantSets, names: LatexNames, tongue: Language)
     """Paragraphs, each a list of sentences in the language of the report."""
 
     def name_of(name: str) -> str:
+        if name in found.variables and found.in_angles:  # written as in the formulas
+            ring = found.integrals[0][1].ring
+            return formula(Formula(ring, ring.generator("parameter", name)))
         return str(names[name])
 
     write = Medium(
@@ -41,7 +45,7 @@ def of_invariant_sets(found: InvariantSets, names: LatexNames, tongue: Language)
 
     paragraphs = [said(opening(found, write))]
     for family in found.families:
-        if not family.sets and not family.unfinished:
+        if not (family.sets or family.unfinished or family.singular or family.parts):
             continue
         first = len(found.integrals) - len(family.integrals)
         terms = [f"{name_of(name)} V_{first + k + 1}" for k, name in enumerate(family.multipliers)]

@@ -11,7 +11,6 @@ import sympy
 from conftest import SHIPPED
 
 import mbsym
-from mbsym.analysis.stages import Unavailable
 from mbsym.problems.invariant_sets import Definiteness, Gap, Kind, Proof
 from mbsym.problems.invariant_sets.arena import arena
 from mbsym.problems.invariant_sets.problem import invariant_sets
@@ -205,11 +204,6 @@ def test_a_wrong_sign_in_the_equations_is_seen():
     assert {one.invariant for one in right} == {Proof.PROVED}
     planted = invariant_sets(arena(wrong, known, signs)).families[0].sets
     assert Proof.FAILED in {one.invariant for one in planted}
-
-
-def test_what_is_not_in_speeds_is_refused_by_name():
-    with pytest.raises(Unavailable, match="speeds"):
-        _ = mbsym.load("systems/double-pendulum.yaml").invariant_sets
 
 
 def test_definiteness_agrees_with_eigenvalues(clebsch):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -22,7 +23,11 @@ SPARE = 40
 
 @dataclass(frozen=True)
 class Arena:
-    """Generators by index in ``ring``; the field x' = numerators/denominator, its integrals and relations there."""
+    """Generators by index in ``ring``; the field x' = numerators/denominator, its integrals and relations there.
+
+    ``floating``: so many multipliers, the last ones, belong to relations that alone make integrals of the others (sines
+    and cosines of angles): they are Lagrange's, and need not be constant along a motion.
+    """
 
     ring: Ring
     parameters: tuple[int, ...]
@@ -34,6 +39,12 @@ class Arena:
     integrals: tuple[Polynomial, ...]
     relations: tuple[Polynomial, ...]
     signs: Signs
+    floating: int = 0
+
+    @property
+    def constant(self) -> tuple[int, ...]:
+        """The multipliers that are constant along every motion."""
+        return self.multipliers[: len(self.multipliers) - self.floating]
 
     def name(self, index: int) -> str:
         return self.ring.generators[index].name
@@ -52,22 +63,37 @@ class Arena:
         return total
 
 
+def identifiers(names: Sequence[str], others: Sequence[str]) -> list[str]:
+    """``sin_theta`` for sin(theta): names that may stand in every language that is written."""
+    found: list[str] = []
+    for name in names:
+        plain = re.sub(r"\W+", "_", name).strip("_") if not name.isidentifier() else name
+        while plain in (*found, *others):
+            plain += "_"
+        found.append(plain)
+    return found
+
+
 def arena(
     field: PolynomialField,
     integrals: Sequence[tuple[str, Any]],
     signs: Mapping[str, str],
     assumptions: Sequence[tuple[Any, str]] = (),
+    floating: int = 0,
 ) -> Arena:
     """``integrals``: names and polynomials of the field's context; ``signs``: what is declared of parameters, by name;
     ``assumptions``: polynomials of that context in parameters alone, and their relations to 0.
 
-    Raises NoClosedForm where there are too many variables.
+    Raises NoClosedForm where there are too many variables or integrals.
     """
+    if len(integrals) > MOST_INTEGRALS:
+        raise NoClosedForm(f"{len(integrals)} integrals: families of at most {MOST_INTEGRALS} are looked at")
     if len(field.variables) > MOST_VARIABLES:
         raise NoClosedForm(
             f"{len(field.variables)} variables: families of integrals of at most {MOST_VARIABLES} are looked at"
         )
-    taken = {*field.parameters, *field.variables}
+    variables = identifiers(field.variables, field.parameters)
+    taken = {*field.parameters, *variables}
     count = min(len(integrals), MOST_INTEGRALS) - 1
     stem = next(
         stem
@@ -75,11 +101,11 @@ def arena(
         if not any(f"{stem}{k + 1}" in taken for k in range(count))
     )
     multipliers = tuple(f"{stem}{k + 1}" for k in range(count))
-    every = [*field.parameters, *multipliers, *field.variables]
+    every = [*field.parameters, *multipliers, *variables]
     positive = [name for name in field.parameters if signs.get(name) == "positive"]
     ring = Ring((), (), every, {}, positive, spare=SPARE)
     index = {name: ring.index("parameter", name) for name in every}
-    moved = [ring.generator("parameter", name) for name in (*field.parameters, *field.variables)]
+    moved = [ring.generator("parameter", name) for name in (*field.parameters, *variables)]
 
     def here(p: Any) -> Polynomial:
         return p.compose(*moved, ctx=ring.context)
@@ -92,11 +118,12 @@ def arena(
         ring,
         tuple(index[name] for name in field.parameters),
         tuple(index[name] for name in multipliers),
-        tuple(index[name] for name in field.variables),
+        tuple(index[name] for name in variables),
         tuple(here(p) for p in field.numerators),
         here(field.denominator),
         tuple(name for name, _ in integrals),
         tuple(here(p) for _, p in integrals),
         tuple(here(p) for p in field.relations),
         Signs(ring.context, tuple(words), tuple((here(p), relation) for p, relation in assumptions)),
+        floating,
     )

@@ -197,9 +197,9 @@ class Place:
         for s in self.branch.solved:
             p = s.denominator * arena.ring.context.gen(s.unknown) - s.numerator
             rows.append([evaluate(p.derivative(g), point) for g in unknown])
-        m = len(arena.multipliers)
+        m, constant = len(arena.multipliers), len(arena.constant)
         whole = len(unknown) - rank(rows)
-        fixed = len(unknown) - rank([*rows, *([int(j == i) for j in range(len(unknown))] for i in range(m))])
+        fixed = len(unknown) - rank([*rows, *([int(j == i) for j in range(len(unknown))] for i in range(constant))])
         moving = len(unknown) - rank(
             [*rows, *([int(j == m + i) for j in range(len(unknown))] for i in range(len(unknown) - m))]
         )

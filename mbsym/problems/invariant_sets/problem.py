@@ -8,7 +8,7 @@ from dataclasses import replace
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial
-from mbsym.algebra.splitting import Branch, exchanged, split
+from mbsym.algebra.splitting import Branch, Solved, SplitLimits, exchanged, split
 from mbsym.formulas.formula import Formula
 from mbsym.problems.invariant_sets import second_variation
 from mbsym.problems.invariant_sets.arena import Arena
@@ -27,13 +27,15 @@ from mbsym.problems.invariant_sets.trials import gap_between, is_real
 
 #: Sets of one family that are looked at closely.
 MOST_SETS = 40
+#: Equations in sines and cosines are longer: fewer branches are followed.
+IN_ANGLES = SplitLimits(branches=150, terms=120, pairs=4, long=24)
 
 
 def invariant_sets(arena: Arena) -> InvariantSets:
     """The stationary sets of K = V_0 + sum lambda_k V_k, and of V_1 + sum lambda_k V_k, ..., each family for itself."""
     families = []
     generic: list[Polynomial] = []
-    for first in range(max(1, len(arena.integrals) - 1)):
+    for first in range(max(1, len(arena.integrals) - max(1, arena.floating))):
         names = arena.names[first:]
         multipliers = arena.multipliers[: len(names) - 1]
         whole = arena.integrals[first]
@@ -45,21 +47,67 @@ def invariant_sets(arena: Arena) -> InvariantSets:
         generic += [p for p in taken if p not in generic]
     integrals = tuple((name, arena.formula(p)) for name, p in zip(arena.names, arena.integrals, strict=True))
     relations = tuple(arena.formula(p) for p in arena.relations)
-    return InvariantSets(integrals, relations, tuple(families), tuple(arena.formula(p) for p in generic))
+    return InvariantSets(
+        integrals=integrals,
+        relations=relations,
+        families=tuple(families),
+        generic=tuple(arena.formula(p) for p in generic),
+        in_angles=arena.floating > 0,
+        variables=tuple(arena.name(g) for g in arena.variables),
+    )
 
 
 def _family(arena: Arena, whole: Polynomial) -> tuple[Family, tuple[Polynomial, ...]]:
-    equations = [whole.derivative(g) for g in arena.variables]
-    found = split(equations, (*arena.variables, *arena.multipliers), arena.signs.never_zero)
+    equations = in_angles(arena, whole) if arena.floating else [whole.derivative(g) for g in arena.variables]
+    limits = IN_ANGLES if arena.floating else SplitLimits()
+    found = split(equations, (*arena.variables, *arena.constant), arena.signs.never_zero, limits=limits)
     places = [place for branch in found.branches if (place := _on_relations(arena, branch)) is not None]
+    places = [with_lagrangian(place, whole) for place in places] if arena.floating else places
     kept = _largest([_by_variables(place) if _is_steady(place) else place for place in _largest(places)])
+    singular = sum(1 for place in kept if place.vanishes(arena.denominator) is True)
+    kept = [place for place in kept if place.vanishes(arena.denominator) is not True]
     looked = [_set(place, whole) for place in kept[:MOST_SETS]]
     sets = [one for one in looked if one is not None]
+    # A piece of a larger set may be cut off it by what was divided by; alone it need not be invariant.
+    parts = [one for one in sets if arena.floating and one.invariant is Proof.FAILED]
+    sets = [one for one in sets if one not in parts]
     # A branch on which no point was found modulo a prime may be empty, or may not: nothing is said of it.
     unfinished = found.unfinished + max(0, len(kept) - MOST_SETS) + looked.count(None)
     sets.sort(key=lambda one: (one.dimension, one.union))
     names = tuple(arena.name(g) for g in arena.multipliers)
-    return Family(arena.names, names, tuple(sets), unfinished), found.generic
+    return Family(arena.names, names, tuple(sets), unfinished, singular, len(parts)), found.generic
+
+
+def _angles(arena: Arena, whole: Polynomial) -> tuple[list[tuple[int, int]], Polynomial]:
+    """Sines and cosines by relation, and K without the terms of the relations."""
+    pairs = [tuple(g for g in arena.variables if relation.degrees()[g] > 0) for relation in arena.relations]
+    floating = arena.multipliers[len(arena.constant) :]
+    images = [whole.context().constant(0) if k in floating else g for k, g in enumerate(whole.context().gens())]
+    return [(a, b) for a, b in pairs], whole.compose(*images, ctx=whole.context())
+
+
+def in_angles(arena: Arena, whole: Polynomial) -> list[Polynomial]:
+    """The equations of stationarity in rates, positions and angles: cos dK/dsin - sin dK/dcos = 0 for each of these.
+
+    So the multipliers of  sin^2 + cos^2 = 1  are eliminated.
+    """
+    pairs, plain = _angles(arena, whole)
+    gens, turned = whole.context().gens(), {g for pair in pairs for g in pair}
+    return [
+        *(plain.derivative(g) for g in arena.variables if g not in turned),
+        *(gens[b] * plain.derivative(a) - gens[a] * plain.derivative(b) for a, b in pairs),
+    ]
+
+
+def with_lagrangian(place: Place, whole: Polynomial) -> Place:
+    """With the multiplier mu of every sin^2 + cos^2 = 1:  2 mu = -(sin dK/dsin + cos dK/dcos)."""
+    arena, branch = place.arena, place.branch
+    pairs, plain = _angles(arena, whole)
+    gens, added = whole.context().gens(), []
+    for (a, b), g in zip(pairs, arena.multipliers[len(arena.constant) :], strict=True):
+        top, bottom = place.fraction(-gens[a] * plain.derivative(a) - gens[b] * plain.derivative(b))
+        added.append(Solved(g, top, bottom * 2))
+    return replace(place, branch=replace(branch, solved=(*branch.solved, *added)))
 
 
 def _on_relations(arena: Arena, branch: Branch) -> Place | None:
@@ -139,8 +187,8 @@ def _holds(outer: Place, inner: Place) -> bool:
 
 def _set(place: Place, whole: Polynomial) -> StationarySet | None:
     arena, dimensions = place.arena, place.dimensions
-    if dimensions is None:
-        return None  # no point was found over a finite field: nothing is said of it
+    if dimensions is None or place.vanishes(arena.denominator) is not False:
+        return None  # no point was found over a finite field, or rates are perhaps not given there: nothing is said
     steady = _is_steady(place)
     motion = []
     for g, slope in zip(arena.variables, arena.numerators, strict=True):
@@ -163,7 +211,10 @@ def _set(place: Place, whole: Polynomial) -> StationarySet | None:
         relations=tuple(arena.formula(p) for p in place.branch.remaining),
         nonzero=tuple(arena.formula(p) for p in _denominators(place)),
         free=tuple(arena.name(g) for g in place.free_variables),
-        multipliers=tuple((arena.name(g), _value(place, g) if g in place.solved else None) for g in arena.multipliers),
+        multipliers=tuple(
+            (arena.name(g), _value(place, g) if g in place.solved else None)
+            for g in (arena.multipliers if steady else arena.constant)
+        ),
         dimension=dimensions[0],
         union=dimensions[1],
         motion=() if steady else tuple((name, arena.formula(*_lowest(top, bottom))) for name, top, bottom in motion),
@@ -182,7 +233,7 @@ def _variation(place: Place, whole: Polynomial, steady: bool) -> SecondVariation
     try:
         if steady:
             return second_variation.on_level(place, whole)
-        if not any(p.degrees()[g] > 0 for p in further for g in variables):
+        if not place.arena.floating and not any(p.degrees()[g] > 0 for p in further for g in variables):
             return second_variation.across(place, whole)
     except Failure:
         pass
@@ -204,8 +255,9 @@ def _lowest(top: Polynomial, bottom: Polynomial) -> tuple[Polynomial, Polynomial
 def _denominators(place: Place) -> list[Polynomial]:
     """What is divided by on the set and is no polynomial in parameters alone."""
     found: list[Polynomial] = []
-    for s in place.branch.solved:
-        for f, _ in irreducible_factors(s.denominator)[1]:
+    top, _ = place.fraction(place.arena.denominator)
+    for p in (*(s.denominator for s in place.branch.solved), top):
+        for f, _ in irreducible_factors(p)[1]:
             if not _is_parameter(place.arena, f) and f not in found:
                 found.append(f)
     return found
@@ -215,7 +267,12 @@ def _invariant(place: Place) -> Proof:
     """d/dt of every equation of the set, for constant multipliers, vanishes on it by the equations of motion."""
     arena = place.arena
     context = arena.ring.context
+    floating = arena.multipliers[len(arena.constant) :]
     equations = list(place.branch.remaining)
-    equations += [s.denominator * context.gen(s.unknown) - s.numerator for s in place.branch.solved]
+    equations += [
+        s.denominator * context.gen(s.unknown) - s.numerator for s in place.branch.solved if s.unknown not in floating
+    ]
+    if not _is_steady(place) and any(p.degrees()[g] > 0 for p in equations for g in floating):
+        return Proof.UNDECIDED  # their rates are not known
     answers = [place.vanishes(arena.derivative(p)) for p in equations]
     return Proof.FAILED if False in answers else Proof.UNDECIDED if None in answers else Proof.PROVED

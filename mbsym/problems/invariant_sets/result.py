@@ -115,6 +115,10 @@ class Family:
     multipliers: tuple[str, ...]
     sets: tuple[StationarySet, ...]
     unfinished: int
+    #: Branches on which the coordinates are singular: rates are not given there, and nothing is said.
+    singular: int = 0
+    #: Pieces that are not invariant by themselves, left out: the whole set of stationary points is.
+    parts: int = 0
 
 
 @dataclass(frozen=True, repr=False)
@@ -125,8 +129,11 @@ class InvariantSets(Shown):
     relations: tuple[Formula, ...]
     families: tuple[Family, ...]
     generic: tuple[Formula, ...]
+    #: Of Lagrange's equations in angles: multipliers of the relations need not be constant along a motion.
+    in_angles: bool = False
+    variables: tuple[str, ...] = ()
 
     @property
     def complete(self) -> bool:
         """Whether no branch was left aside."""
-        return not any(family.unfinished for family in self.families)
+        return not any(family.unfinished or family.singular or family.parts for family in self.families)

@@ -32,7 +32,7 @@ def data(found: InvariantSets, system: System, write: Write) -> dict[str, Any]:
             {
                 "integrals": list(family.integrals),
                 "multipliers": list(family.multipliers),
-                "complete": not family.unfinished,
+                "complete": not (family.unfinished or family.singular or family.parts),
                 "sets": [_set(one, write) for one in family.sets],
             }
             for family in found.families
@@ -92,7 +92,7 @@ def lines(found: InvariantSets, analysis: Analysis) -> Iterator[str]:
     """The lines in the terminal."""
     yield from map(filled, opening(found, PLAIN))
     for family in found.families:
-        if not family.sets and not family.unfinished:
+        if not (family.sets or family.unfinished or family.singular or family.parts):
             continue
         yield f"K = {family_title(family, found)}"
         yield from (f"  {filled(said)}" for said in of_family(family, PLAIN))

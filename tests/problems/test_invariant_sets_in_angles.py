@@ -1,0 +1,107 @@
+"""Problem 10 of Lagrange's equations in angles: conical motions, precessions of the top, pendulums, by hand."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+
+import mbsym
+from mbsym.analysis.stages import Unavailable
+from mbsym.problems.invariant_sets import Definiteness, Gap, Kind, Proof, StationarySet
+from mbsym.problems.invariant_sets.arena import identifiers
+
+
+def value(formula, **numbers):
+    return Fraction(str(formula.subs(numbers)))
+
+
+def holds(relations, **numbers):
+    """Whether all relations hold at the numbers."""
+    found = [(value(one.formula, **numbers), one.relation) for one in relations]
+    return all({">": x > 0, ">=": x >= 0, "!=": x != 0}[relation] for x, relation in found)
+
+
+def sufficient(one: StationarySet, **numbers):
+    sides = [x for x in (one.variation.positive, one.variation.negative) if x is not None]
+    return any(holds(side, **numbers) for side in sides)
+
+
+def test_conical_motions_of_the_spherical_pendulum():
+    """psi'^2 l cos(theta) = g, stable wherever they are (Routh); the poles are singular in these angles."""
+    found = mbsym.load("systems/spherical-pendulum.yaml").invariant_sets
+    family = found.families[0]
+    (one,) = family.sets
+    assert (one.kind, one.invariant, one.union) == (Kind.STEADY, Proof.PROVED, 1)
+    assert (family.unfinished, family.parts) == (0, 0)
+    assert family.singular > 0
+    assert not found.complete
+    solved = dict(one.solved)
+    numbers = {"g": 8, "l": 1, "lambda1": 4}  # cos = 1/2
+    assert value(solved["cos_theta"], **numbers) == Fraction(1, 2)
+    assert value(solved["psi_dot"], **numbers) == -4
+    # sin = 4/5, cos = 3/5: psi'^2 = 5 g/(3 l); g = 15, l = 1
+    assert sufficient(one, g=15, l=1, m=1, lambda1=5, sin_theta=Fraction(4, 5))
+    assert value(one.relations[0], g=15, l=1, lambda1=5, sin_theta=Fraction(4, 5)) == 0
+    assert not sufficient(one, g=15, l=1, m=1, lambda1=3, sin_theta=Fraction(4, 5))
+    assert one.gap is Gap.NONE_FOUND
+
+
+@pytest.fixture(scope="module")
+def top():
+    return mbsym.load("systems/heavy-top.yaml").invariant_sets
+
+
+def test_the_sleeping_top(top):
+    """C^2 W^2 > 4 A m g l (Lagrange): necessary and, for some multiplier, sufficient."""
+    one = next(x for x in top.families[0].sets if x.kind is Kind.STEADY and "phi_dot" in x.free)
+    assert one.invariant is Proof.PROVED
+    upright = {"A": 1, "C": 1, "m": 1, "l": 1, "g": 1, "cos_alpha": 1, "cos_beta": 1}
+    assert not all(holds([x], **upright, phi_dot=Fraction(19, 10)) for x in one.first.necessary)
+    assert all(holds([x], **upright, phi_dot=Fraction(21, 10)) for x in one.first.necessary)
+    (free,) = one.variation.chosen
+    tried = [Fraction(k, 8) for k in range(-40, 41)]
+    assert any(sufficient(one, **upright, phi_dot=3, **{free: x}) for x in tried)
+    assert not any(sufficient(one, **upright, phi_dot=Fraction(3, 2), **{free: x}) for x in tried)
+    hanging = upright | {"cos_beta": -1}
+    assert any(sufficient(one, **hanging, phi_dot=0, **{free: x}) for x in tried)
+
+
+def test_regular_precessions_of_the_top(top):
+    """In these angles the axis moves: for given multipliers a closed curve of dimension 1."""
+    one = next(x for x in top.families[0].sets if x.kind is Kind.MANIFOLD)
+    assert (one.invariant, one.dimension) == (Proof.PROVED, 1)
+    assert one.variation.outcome is Definiteness.LEFT_OUT
+    # The axis turns about the vertical at the rate -lambda1: with (n1, n2) = (sin b, -sin a cos b) horizontally,
+    # b' = -lambda1 sin a  is  n1' = -lambda1 sin a cos b = lambda1 n2.
+    rate = dict(one.solved)["beta_dot"]
+    assert value(rate, lambda1=2, sin_alpha=Fraction(3, 5)) == Fraction(-6, 5)
+
+
+def test_the_double_pendulum_rests_stably_only_hanging():
+    """V has its minimum at 0, 0 alone."""
+    (one,) = mbsym.load("systems/double-pendulum.yaml").invariant_sets.families[0].sets
+    numbers = {"m1": 1, "m2": 2, "l1": 1, "l2": 3, "g": 10}
+    stable = {(a, b): sufficient(one, **numbers, cos_theta1=a, cos_theta2=b) for a in (1, -1) for b in (1, -1)}
+    assert stable == {(1, 1): True, (1, -1): False, (-1, 1): False, (-1, -1): False}
+
+
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        ("simple-pendulum", "no integrals are known"),
+        ("gravity-gradient", "9 rates, sines, cosines and positions"),
+        ("spatial-arm", "6 coordinates"),
+        ("rolling-disc", "constraints"),
+        ("shaken-pendulum", "not polynomial"),
+    ],
+)
+def test_refused_with_the_reason(name, why):
+    with pytest.raises(Unavailable, match=why):
+        mbsym.load(f"systems/{name}.yaml").invariant_sets  # noqa: B018
+
+
+def test_names_that_every_language_may_write():
+    assert identifiers(("x_dot", "sin(theta)", "cos(theta/2)"), ("sin_theta",)) == [
+        "x_dot", "sin_theta_", "cos_theta_2"
+    ]  # fmt: skip
