@@ -42,15 +42,23 @@ def serving(path: Path) -> Iterator[str]:
             process.wait(20)
 
 
+_LAUNCHED: list[Any] = []
+
+
 @pytest.fixture(scope="session")
 def browser() -> Iterator[Any]:
-    """One Chromium for all tests of a worker."""
+    """One Chromium for all tests of a worker, in however many modules this fixture is named."""
+    if _LAUNCHED:
+        yield _LAUNCHED[0]
+        return
     if CHROMIUM is None:
         pytest.skip("no chromium")
     playwright = pytest.importorskip("playwright.sync_api", reason="no playwright")
     with playwright.sync_playwright() as running:
         started = running.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        _LAUNCHED.append(started)
         yield started
+        _LAUNCHED.clear()
         started.close()
 
 
