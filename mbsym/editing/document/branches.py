@@ -7,7 +7,7 @@ from collections.abc import Callable
 from mbsym.editing.document.meaning import Json, Meant, setting, word_of
 from mbsym.editing.document.primitives import Add, Primitive, Rekey, Remove, Replace, Shift, applied_to
 from mbsym.editing.document.understood import coordinates_of
-from mbsym.editing.document.words import body_renamed, pattern, places, uses
+from mbsym.editing.document.words import body_renamed, pattern, places, words_of
 from mbsym.editing.document.written import Data, Path, Refused, Written, child, data_of, node_at, spelled_path
 from mbsym.source.bodies import is_body_name
 from mbsym.source.placed import Mapping, Node, Scalar, Sequence
@@ -110,11 +110,13 @@ def duplicate(found: Written, operation: Json) -> Meant:
     bodies, taken = bodies_of(found), {one for one, _ in bodies_of(found)}
     names: dict[str, str] = {}
     coordinates: dict[str, str] = {}
+    words = words_of(found)
     for index in branch:
         names[bodies[index][0]] = _free(bodies[index][0], lambda one: one in taken, " ")
         taken.add(names[bodies[index][0]])
         for own in _own_names(found, tree, index):
-            coordinates[own] = _free(own, lambda other: uses(found, other) or other in coordinates.values(), "")
+            coordinates[own] = _free(own, lambda other: other in words, "")
+            words.add(coordinates[own])
     inner = [one for one in places(found) if one.path[0] == "bodies" and one.path[1] in branch]
     word = pattern(list(coordinates)) if coordinates else None
     copies: dict[int, Data] = {index: data_of(node_at(tree, ("bodies", index)) or tree) for index in branch}

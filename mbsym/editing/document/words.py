@@ -13,7 +13,7 @@ from mbsym.editing.document.spelling import scalar
 from mbsym.editing.document.view import BODY_KEYS
 from mbsym.editing.document.written import Path, Written, is_understood
 from mbsym.model.claims import BODY, CLAIMS
-from mbsym.source.keys import ALIASES, SIGNS
+from mbsym.source.keys import ALIASES, SIGNS, SMALL_PARAMETER
 from mbsym.source.placed import Entry, Mapping, Node, Scalar, Sequence
 
 Role = Literal["formula", "body", "new body"]
@@ -29,6 +29,7 @@ _NAMED = {
 _FREE = ("sign", "meaning", "unit", *SIGNS)
 _CLAIM_FREE = ("claim", "component", "variable", "as", "tolerance", "digits", "place")
 
+_WORD = re.compile(r"[A-Za-z_]\w*")
 _SPIN = re.compile(r"(omega\s*\[\s*)([^\]]*?)(\s*\])")
 
 
@@ -60,7 +61,7 @@ def _section(name: str, entry: Entry, path: Path, editor: bool) -> Iterator[Plac
         yield from _formulas(node, path, "body")
     elif name == "small parameter":
         for one, at, is_key in _leaves(node, path):
-            if not (is_key and one.text in ("powers", "fast", "slow")):
+            if not (is_key and one.text in SMALL_PARAMETER):
                 yield Place(at, one, "formula", is_key)
     elif name == "linear system" and isinstance(node, Mapping):
         for part in node.entries:
@@ -176,6 +177,12 @@ def pattern(names: list[str]) -> re.Pattern[str]:
     """Any of some names as a word, its derivatives with respect to time included."""
     longest = sorted(names, key=len, reverse=True)
     return re.compile(rf"(?<![\w.])({'|'.join(map(re.escape, longest))})(?=(?:_d?dot)?(?![\w]))")
+
+
+def words_of(found: Written) -> set[str]:
+    """Every word of formulas and keys, those of velocities and accelerations by what they are derivatives of, too."""
+    plain = {word for one in places(found) if one.role == "formula" for word in _WORD.findall(one.node.text)}
+    return plain | {word.removesuffix(ending) for word in plain for ending in ("_dot", "_ddot")}
 
 
 def uses(found: Written, name: str) -> bool:
