@@ -69,7 +69,7 @@ def _in_angles(analysis: Analysis, field: PolynomialField) -> dict[str, str]:
     from mbsym.problems.invariant_sets.arena import identifiers
 
     letters = LatexNames(list(analysis.system.coordinates))
-    letter = {name: letters[name] for name in analysis.system.coordinates}
+    letter = {name: str(letters[name]) for name in analysis.system.coordinates}
     letter |= {one.name: one.latex for one in analysis.system.symbols if one.name in letter}
     found = {}
     for name, plain in zip(field.variables, identifiers(field.variables, field.parameters), strict=True):
