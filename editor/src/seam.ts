@@ -89,6 +89,8 @@ export interface Edit {
 export interface Changed {
   edits?: Edit[];
   select?: Path;
+  /** What goes, too, because it names what is deleted. */
+  taken?: Path[];
   complaints?: Complaint[];
 }
 

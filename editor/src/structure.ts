@@ -4,7 +4,7 @@ import { asked, ask, confirmed } from "./dialogs.js";
 import { make } from "./elements.js";
 import { branch, FIXED } from "./layout.js";
 import type { Model } from "./model.js";
-import type { Tie } from "./seam.js";
+import type { Changed, Path, Tie } from "./seam.js";
 
 /** The name of the fixed axes for people. */
 export const FIXED_WORDS = "fixed axes (0)";
@@ -63,6 +63,10 @@ export class Structure {
     const view = this.model.understood;
     const touching = (ties: Tie[]): string[] =>
       ties.filter((tie) => tie.bodies.some((one) => gone.has(one))).map((tie) => tie.name || tie.kind);
+    const planned = await this.model
+      .request<Changed>("change", { operations: [{ op: "delete branch", body }] })
+      .catch(() => null);
+    const others = (planned?.taken ?? []).filter(([section]) => !["bodies", "loads", "constraints"].includes(String(section)));
     const [loads, constraints] = [touching(view?.loads ?? []), touching(view?.constraints ?? [])];
     const line = (what: string, names: string[]): HTMLElement | null =>
       names.length === 0 ? null : make("li", {}, make("strong", {}, `${what}: `), names.join(", "));
@@ -72,6 +76,7 @@ export class Structure {
       line(going.length === 1 ? "Body" : `${going.length} bodies`, going),
       line("Loads on them", loads),
       line("Constraints on them", constraints),
+      line("What names them", others.map(named)),
     );
     const done = await confirmed(
       `Delete ${body}?`,
@@ -110,4 +115,9 @@ export class Structure {
     ], false);
     if (done && select.value !== parent) await this.reattach(body, select.value);
   }
+}
+
+/** A place for people: "claims 3", "motion theta". */
+function named(path: Path): string {
+  return path.map((step) => (typeof step === "number" ? String(step + 1) : step)).join(" ");
 }

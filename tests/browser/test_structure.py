@@ -107,11 +107,21 @@ def test_deleting_lists_what_goes(show: Show) -> None:
     window = show((SHIPPED / "four-bar.yaml").read_text(encoding="utf-8"))
     window.body("coupler").click()
     window.press("Delete")
+    window.page.locator("dialog[open]").wait_for()
     said = window.page.locator("dialog[open]").inner_text()
     assert "2 bodies: coupler, rocker" in said
     assert "Constraints on them" in said
     window.press("Escape")
     assert len(window.bodies) == 3
+    window = show(SATELLITE)
+    window.body("satellite").click()
+    window.press("Delete")
+    window.page.locator("dialog[open]").wait_for()
+    said = window.page.locator("dialog[open]").inner_text()
+    assert "3 bodies: satellite, rod, point mass" in said
+    assert "claims 1, claims 2" in said  # direction cosines of the satellite
+    window.press("Escape")
+    assert window.text == SATELLITE
 
 
 def test_complaints_stand_in_place_and_lead_there(show: Show) -> None:
