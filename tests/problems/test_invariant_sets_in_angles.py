@@ -86,6 +86,18 @@ def test_the_double_pendulum_rests_stably_only_hanging():
     assert stable == {(1, 1): True, (1, -1): False, (-1, 1): False, (-1, -1): False}
 
 
+def test_the_dumbbell_on_a_circular_orbit():
+    """Along the radius: frequencies sqrt(3) and 2 times the orbit's (Beletsky); along the tangent unstable."""
+    radial, tangential = sorted(
+        mbsym.load("systems/dumbbell.yaml").invariant_sets.families[0].sets, key=lambda one: one.first.unstable
+    )
+    assert radial.variation.outcome is Definiteness.STABLE
+    squares = {value(low, omega0=1) / value(high, omega0=1) for low, high in radial.first.factors}
+    assert squares == {3, 4}
+    assert tangential.first.unstable
+    assert tangential.variation.outcome is Definiteness.NEVER
+
+
 @pytest.mark.parametrize(
     ("name", "why"),
     [
