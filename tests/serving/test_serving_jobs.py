@@ -12,6 +12,8 @@ from typing import Any
 
 import pytest
 from serving_editor import PENDULUM
+from test_self_check import plant
+from test_withdrawn import ACCELERATION, LIFT
 
 from mbsym.report.targets import FORMATS
 from mbsym.serving.jobs import Jobs
@@ -152,3 +154,15 @@ def test_a_map_is_a_picture() -> None:
     assert found["kind"] == "map", found
     assert found["image"].startswith("data:image/png;base64,")
     assert of("map", x={"name": "g", "low": "2", "high": "1"})[-1]["kind"] == "failed"
+
+
+def test_a_verdict_is_never_shown_whose_check_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Not even for the moment before the checks come: the falling lift with a mistake planted in its equations."""
+    plant(monkeypatch, ACCELERATION)
+    sections = [x for x in of("derive", text=LIFT.read_text(encoding="utf-8")) if x["kind"] == "section"]
+    told = [x for x in sections if x["problem"] in ("6", "summary")]
+    assert {x["state"] for x in told if x["problem"] == "6"} == {"refused"}
+    assert all("withdrawn" in x["html"] for x in told)
+    assert not any(word in x["html"] for x in told for word in ('class="good"', 'id="verdict', "Kelvin"))
+    (checks,) = [x for x in sections if x["problem"] == "checks"]
+    assert 'class="bad"' in checks["html"]
