@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
+from collections.abc import AsyncIterator, Callable, Mapping
 from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass
 from functools import lru_cache
@@ -16,16 +16,16 @@ from pathlib import Path
 from typing import Any
 
 from starlette.applications import Starlette
-from starlette.requests import ClientDisconnect, Request
+from starlette.requests import Request
 from starlette.responses import JSONResponse, Response, StreamingResponse
 from starlette.routing import Route
 
-from mbsym.algebra.failures import LOG
 from mbsym.serving import examples, looking
-from mbsym.serving.guard import Guard, TooLarge
+from mbsym.serving.answers import Work, posted, refused, safely
+from mbsym.serving.guard import Guard
 from mbsym.serving.jobs import Jobs
 from mbsym.serving.requests import Wrong, flag, listed, mapping, text_of, whole
-from mbsym.serving.storage import Conflict, Storage, Unreadable, Unwritable
+from mbsym.serving.storage import Conflict, Storage, Unreadable
 
 #: Seconds between two looks whether somebody else wrote the file, and between two signs of life to a page.
 WATCHING, ALIVE = 0.5, 15.0
@@ -42,9 +42,6 @@ STATIC = {
 
 #: Seconds after which a job that nobody listens to is ended.
 ABANDONED = 20.0
-
-#: A route's part that takes an object and answers one.
-Work = Callable[[Mapping[str, Any], Request], Awaitable[Any]]
 
 Deliver = Callable[[Path, Mapping[str, str | bytes], str, list[str]], list[Path]]
 
@@ -342,58 +339,14 @@ class Editor:
         }
         posts |= {kind: self._job(kind) for kind in ("derive", "simulate", "equilibria", "modes", "map")}
         routes = [
-            Route("/api/file", _safely(self.file), methods=["GET"]),
+            Route("/api/file", safely(self.file), methods=["GET"]),
             Route("/api/events", self.events, methods=["GET"]),
-            Route("/api/digest", _safely(self.digest), methods=["GET"]),
-            *(Route(f"/api/{name}", _posted(work), methods=["POST"]) for name, work in posts.items()),
-            Route("/", _safely(self.static), methods=["GET"]),
-            Route("/{name}", _safely(self.static), methods=["GET"]),
+            Route("/api/digest", safely(self.digest), methods=["GET"]),
+            *(Route(f"/api/{name}", posted(work), methods=["POST"]) for name, work in posts.items()),
+            Route("/", safely(self.static), methods=["GET"]),
+            Route("/{name}", safely(self.static), methods=["GET"]),
         ]
         return Starlette(routes=routes, lifespan=self._living)
-
-
-Handler = Callable[[Request], Awaitable[Response]]
-
-
-def refused(status: int, code: str, words: str) -> Response:
-    return JSONResponse({"error": code, "message": words}, status_code=status)
-
-
-def _posted(work: Work) -> Handler:
-    """A route that takes an object and answers one."""
-
-    async def handle(request: Request) -> Response:
-        try:
-            body = json.loads(await request.body())
-        except (ValueError, RecursionError):
-            return refused(400, "json", "JSON is wanted")
-        if not isinstance(body, dict):
-            return refused(400, "json", "an object is wanted")
-        found = await work(body, request)
-        return found if isinstance(found, Response) else JSONResponse(found)
-
-    return _safely(handle)
-
-
-def _safely(work: Handler) -> Handler:
-    """What is foreseen is answered with words."""
-
-    async def handle(request: Request) -> Response:
-        try:
-            return await work(request)
-        except ClientDisconnect:
-            return Response(status_code=400)
-        except TooLarge as error:
-            return refused(413, "too-large", str(error))
-        except Wrong as error:
-            return refused(400, "request", str(error))
-        except (Unwritable, Unreadable) as error:
-            return refused(422, "unwritable" if isinstance(error, Unwritable) else "unreadable", str(error))
-        except Exception as error:  # a defect costs one answer
-            LOG.exception("a request failed")
-            return refused(500, "internal-error", f"internal error: {type(error).__name__}: {error}")
-
-    return handle
 
 
 def _encoded(event: dict[str, Any]) -> str:
