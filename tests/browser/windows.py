@@ -139,7 +139,7 @@ class Window:
             self.press("Control+a")
             self.typed(value)
         self.press("Enter")
-        self.page.locator("dialog[open]").wait_for(state="detached")
+        self.page.locator("dialog").wait_for(state="detached")  # closed, and acted upon
         self.settled()
 
     def form_of(self, which: str) -> None:
@@ -160,7 +160,7 @@ class Window:
         if text is not None:
             self.typed(text)
         self.press("Enter")
-        self.page.locator("dialog[open]").wait_for(state="detached")
+        self.page.locator("dialog").wait_for(state="detached")  # closed, and acted upon
         self.settled()
 
     def write(self, text: str) -> None:
