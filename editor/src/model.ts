@@ -265,6 +265,10 @@ export class Model extends Listeners<Events> {
       this.looking = null;
       this.view = view;
       this.viewed = text;
+      // A text in the other spelling was put in: it says so itself.
+      if (view.format !== this.format && text === this.text) {
+        this.editor.dispatch({ effects: formatIs.of(view.format), annotations: Transaction.addToHistory.of(false) });
+      }
       // Half a line that is no YAML takes whole sections away for a moment: what was understood before is shown on.
       const broken = view.tree === null || view.complaints.some((one) => one.code === "syntax");
       if (!broken || this.understood === null || view.bodies.length >= this.understood.bodies.length) {

@@ -276,6 +276,24 @@ def test_a_chain_of_fifty_is_usable(show: Show) -> None:
     assert window.page.evaluate("document.activeElement.getBoundingClientRect().bottom") < 720
 
 
+def test_the_other_spelling_is_converted_to_pasted_and_undone(show: Show) -> None:
+    window = show(PENDULUM)
+    spelling = window.page.locator("#format")
+    window.page.locator("#do-convert").click()
+    window.told("converted")
+    assert spelling.text_content() == "editor text"
+    assert set(window.bodies) == {"first rod", "second rod"}
+    assert window.complaints == []
+    window.press("Control+z")
+    window.settled()
+    assert spelling.text_content() == "YAML"
+    assert window.text == PENDULUM
+    window.write((SHIPPED / "satellite.txt").read_text(encoding="utf-8"))
+    assert spelling.text_content() == "editor text"
+    assert window.complaints == []
+    assert "rod" in window.bodies
+
+
 def test_a_file_with_other_line_ends_keeps_them(show: Show) -> None:
     text = PENDULUM.replace("\n", "\r\n")
     window = show(text)
