@@ -276,6 +276,36 @@ def test_a_chain_of_fifty_is_usable(show: Show) -> None:
     assert window.page.evaluate("document.activeElement.getBoundingClientRect().bottom") < 720
 
 
+#: Principal moments about the mass centre for m = 60, l = 2, r = 3, h = 4, edges 1, 2, 3, worked out by hand: a rod
+#: m l^2/12, a disc m r^2/4 and m r^2/2, a cylinder m (3 r^2 + h^2)/12, a box m (b^2 + c^2)/12, a sphere 2 m r^2/5, a
+#: shell 2 m r^2/3; along which axis of the body its own lies.
+SOLIDS = [
+    ("thin rod", 2, (20, 0, 20)),
+    ("thin disc", 3, (135, 135, 270)),
+    ("cylinder", 1, (270, 215, 215)),
+    ("box", None, (65, 50, 25)),
+    ("sphere", None, (216, 216, 216)),
+    ("thin spherical shell", None, (360, 360, 360)),
+]
+
+
+def test_moments_of_inertia_of_solids_are_those_of_the_tables(show: Show) -> None:
+    window = show(PENDULUM)
+    window.body("first rod").click()
+    for name, axis, expected in SOLIDS:
+        window.page.get_by_role("button", name="Inertia of a rod, disc, box, sphere or shell").click()
+        dialog = window.page.locator("dialog[open]")
+        dialog.get_by_label("Shape").select_option(label=name)
+        if axis is not None:
+            dialog.get_by_label("Its own axis lies along").select_option(label=f"axis {axis}")
+        window.in_dialog_take()
+        body = yaml.safe_load(window.text)["bodies"][0]
+        assert body["inertia about"] == "mass centre"
+        numbers = {"m1": 60, "l": 2, "r": 3, "h": 4, "a": 1, "b": 2, "c": 3}
+        values = [eval(str(moment), {}, numbers) for moment in body["inertia"]]
+        assert values == pytest.approx(expected), name
+
+
 def test_the_other_spelling_is_converted_to_pasted_and_undone(show: Show) -> None:
     window = show(PENDULUM)
     spelling = window.page.locator("#format")

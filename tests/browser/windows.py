@@ -163,6 +163,12 @@ class Window:
         self.page.locator("dialog").wait_for(state="detached")  # closed, and acted upon
         self.settled()
 
+    def in_dialog_take(self) -> None:
+        """Presses the main button of the open dialog."""
+        self.page.locator("dialog[open] button.main").click()
+        self.page.locator("dialog").wait_for(state="detached")
+        self.settled()
+
     def write(self, text: str) -> None:
         """The whole text replaced, by keys as a person would: mark all, paste."""
         self.page.locator(".cm-content").focus()
