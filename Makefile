@@ -3,6 +3,7 @@
 # make test     sets up and runs the tests
 # make systems  every description that comes with it, in one line each
 # make gallery  draws systems/figures again
+# make window   draws the README's pictures of the editor again (Chromium)
 # make robots   27 robots (UR5 to Tiago Dual) derived and held against Pinocchio; installs its URDF files, 400 MB
 # make docs     builds the documentation site into build/site
 # make bench    mbsym against SymPy in one run, as ratios (some minutes)
@@ -12,7 +13,7 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
 
-.PHONY: all lint types test demo systems gallery docs page robots robot-data consumers bench clean
+.PHONY: all lint types test demo systems gallery window docs page robots robot-data consumers bench clean
 .DEFAULT_GOAL := all
 
 all: lint types test
@@ -95,6 +96,10 @@ gallery: $(READY)
 	$(call map,satellite-with-damper,--x omega=0:5 --y Lambda=0:2)
 	$(call map,heavy-top,--x Omega=0:100 --y l=0:1/2)
 	$(call map,bicycle,--x v=0:10)
+
+# The README's picture and animation of the editor.
+window: $(READY)
+	PYTHONPATH=tests:tests/browser $(BIN)/python tests/browser/draw_window.py docs/figures
 
 docs: $(READY)
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'

@@ -83,8 +83,8 @@ def test_shapes_turn_and_move_with_their_bodies(run: Simulation) -> None:
 def test_a_shape_at_a_wrong_place_is_caught(mistake: str, run: Simulation, monkeypatch: pytest.MonkeyPatch) -> None:
     """Planted: the shape's rotation the other way round, and its place taken from the mass centre."""
     if mistake == "turned back":
-        right = module._turned
-        monkeypatch.setattr(module, "_turned", lambda *given: right(*given).T)
+        right = module.turned
+        monkeypatch.setattr(module, "turned", lambda *given: right(*given).T)
     else:
         place = module._placed
         monkeypatch.setattr(
@@ -99,7 +99,7 @@ def test_turns_of_shapes_are_those_of_scipy() -> None:
     assert system is not None
     rotation: Rotation = system.bodies[1].shapes[1].rotation
     wanted = Turned.from_euler("ZXY", [0.5, -1 / 3, np.pi / 5]).as_matrix()
-    assert np.allclose(module._turned(rotation, {"pi": Fraction(0)}), wanted, atol=1e-14)
+    assert np.allclose(module.turned(rotation, {"pi": Fraction(0)}), wanted, atol=1e-14)
 
 
 @pytest.mark.parametrize(
