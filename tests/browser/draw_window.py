@@ -46,9 +46,8 @@ def main(folder: Path) -> None:
                     for _ in range(24):
                         shots.append(few_colours(page.screenshot(), 720, 32))
                         page.wait_for_timeout(80)
-                    shots[0].save(
-                        folder / "window.gif", save_all=True, append_images=shots[1:], duration=160, loop=0, optimize=True
-                    )
+                    gif = folder / "window.gif"
+                    shots[0].save(gif, save_all=True, append_images=shots[1:], duration=160, loop=0, optimize=True)
                 page.close()
 
 
