@@ -26,6 +26,29 @@ const undoneWithTheText = invertedEffects.of((transaction) =>
   transaction.effects.some((effect) => effect.is(formatIs)) ? [formatIs.of(transaction.startState.field(spelling))] : [],
 );
 
+/** Requests that begin a job, which tells of itself by events. */
+const JOBS: ReadonlySet<string> = new Set(["derive", "simulate", "equilibria", "modes", "map"]);
+
+interface Hearing {
+  /** Fulfilled as soon as events are heard. */
+  promise: Promise<void>;
+  heard: () => void;
+  open: boolean;
+}
+
+function hearing(): Hearing {
+  let fulfil = (): void => undefined;
+  const made: Hearing = {
+    promise: new Promise((resolve) => (fulfil = resolve)),
+    heard: () => {
+      made.open = true;
+      fulfil();
+    },
+    open: false,
+  };
+  return made;
+}
+
 export type Connection = "there" | "away";
 
 export interface Events {
@@ -80,6 +103,7 @@ export class Model extends Listeners<Events> {
   private saving: string | null = null;
   private changes: Promise<unknown> = Promise.resolve();
   private listeningTo: EventSource | null = null;
+  private hearing = hearing();
 
   constructor(
     public file: FileState,
@@ -205,8 +229,11 @@ export class Model extends Listeners<Events> {
   // ---- the server ------------------------------------------------------------------------------------------------
 
   /** A request about the text as it is now: `text` and `format` go with it. */
-  request<Answer>(name: string, body: object = {}, signal?: AbortSignal): Promise<Answer> {
-    return this.watched(post<Answer>(name, { text: this.text, format: this.format, ...body }, signal));
+  async request<Answer>(name: string, body: object = {}, signal?: AbortSignal): Promise<Answer> {
+    const whole = { text: this.text, format: this.format, ...body };
+    // What a job tells before anybody listens is lost.
+    if (JOBS.has(name)) await this.hearing.promise;
+    return this.watched(post<Answer>(name, whole, signal));
   }
 
   /** A request that is not about the text: cancel, save. */
@@ -221,7 +248,8 @@ export class Model extends Listeners<Events> {
       return answer;
     } catch (failure) {
       if (failure instanceof Away) this.connected("away");
-      else if (failure instanceof Refused) this.connected("there");
+      // Not found: another server stands there now, which does not know this page.
+      else if (failure instanceof Refused && failure.status !== 404) this.connected("there");
       throw failure;
     }
   }
@@ -230,6 +258,7 @@ export class Model extends Listeners<Events> {
     if (connection === this.connection) return;
     this.connection = connection;
     this.tell("connection", connection);
+    if (connection === "there" && this.listeningTo?.readyState === EventSource.CLOSED) this.listen();
     if (connection === "there") void this.look();
     else this.waitForServer();
   }
@@ -238,7 +267,7 @@ export class Model extends Listeners<Events> {
   private waitForServer(): void {
     window.setTimeout(() => {
       if (this.connection === "there") return;
-      this.watched(get("digest")).catch(() => this.waitForServer());
+      get("digest").then(() => this.connected("there"), () => this.waitForServer());
     }, 2000);
   }
 
@@ -409,8 +438,15 @@ export class Model extends Listeners<Events> {
         console.error(failure);
       }
     };
-    source.onopen = () => this.connected("there");
-    source.onerror = () => this.connected("away");
+    source.onopen = () => {
+      this.hearing.heard();
+      this.connected("there");
+    };
+    source.onerror = () => {
+      // Those who wait already go on waiting: the next opening is theirs, too.
+      if (this.hearing.open) this.hearing = hearing();
+      this.connected("away");
+    };
   }
 }
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 import windows
@@ -304,6 +305,20 @@ def test_moments_of_inertia_of_solids_are_those_of_the_tables(show: Show) -> Non
         numbers = {"m1": 60, "l": 2, "r": 3, "h": 4, "a": 1, "b": 2, "c": 3}
         values = [eval(str(moment), {}, numbers) for moment in body["inertia"]]
         assert values == pytest.approx(expected), name
+
+
+def test_a_motion_asked_for_before_events_are_heard_is_shown(show: Show, server: Server) -> None:
+    """A job tells of itself by events: one that is begun before the page hears them would never be shown."""
+    window = show(PENDULUM)
+
+    def late(route: Any) -> None:
+        window.page.wait_for_timeout(1500)
+        route.continue_()
+
+    window.page.route("**/api/events", late)
+    window.open(server.address)
+    window.page.get_by_role("button", name="Simulate").click()
+    window.page.get_by_label("Time", exact=True).wait_for()
 
 
 def test_the_other_spelling_is_converted_to_pasted_and_undone(show: Show) -> None:
