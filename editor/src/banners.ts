@@ -34,18 +34,19 @@ export function bannersOf(model: Model): HTMLElement {
     const { text, digest } = told as unknown as { text: string; digest: string };
     if (digest === model.file.digest || text === model.beingSaved) return;
     const untouched = model.saved;
-    model.fileIs(digest, text);
-    if (text === model.text) return;
+    if (text === model.text) return model.fileIs(digest, text);
+    // Until somebody decides the digest stays the old one: saving asks, and writes over nothing by itself.
     offer("outside", {
       words: untouched
         ? `${model.file.name} was changed outside this page.`
         : `${model.file.name} was changed outside this page, and there are unsaved changes here.`,
       choices: [
-        { words: "Load it (undo brings this text back)", act: () => { model.replaceText(text); model.say("loaded from the file"); } },
-        { words: "Keep this text", act: () => model.say("kept; saving writes over the other text") },
+        { words: "Load it (undo brings this text back)", act: () => { model.fileIs(digest, text); model.replaceText(text); model.say("loaded from the file"); } },
+        { words: "Keep this text", act: () => { model.fileIs(digest, text); model.say("kept; saving writes over the other text"); } },
       ],
     });
   });
+  model.on("file", () => close("outside"));
   model.on("connection", (state) => {
     if (state === "there") return close("away");
     offer("away", {

@@ -192,6 +192,26 @@ def test_two_windows_on_one_file_lose_nothing(show: Show, server: Server, opened
     assert "lower rod" in other.bodies
 
 
+def test_saving_over_what_somebody_else_wrote_asks(show: Show, server: Server) -> None:
+    """Also when the page has told of the change and nobody has decided anything."""
+    window = show(PENDULUM)
+    window.body("first rod").click()
+    window.press("F2")
+    window.in_dialog("upper rod")
+    theirs = f"{PENDULUM}# theirs\n"
+    server.path.write_text(theirs, encoding="utf-8")
+    window.page.locator(".banner.outside").wait_for()
+    window.press("Control+s")
+    dialog = window.page.locator("dialog[open]")
+    dialog.wait_for()
+    assert "# theirs" in dialog.inner_text()
+    window.press("Escape")
+    assert server.path.read_text(encoding="utf-8") == theirs
+    window.page.get_by_role("button", name="Keep this text").click()
+    window.save()
+    assert "upper rod" in server.path.read_text(encoding="utf-8")
+
+
 def test_tabs_on_a_tablet_and_colours(show: Show) -> None:
     window = show(PENDULUM, color_scheme="dark")
     page = window.page
