@@ -130,6 +130,7 @@ bench: robot-data
 	$(BIN)/python tests/bench/peers_bench.py
 	$(BIN)/python tests/bench/choice_bench.py
 	$(BIN)/python tests/bench/equilibria_bench.py
+	PYTHONPATH=tests:tests/browser $(BIN)/python tests/bench/window_bench.py
 
 # What can be made again; reports are the user's.
 clean:

@@ -135,19 +135,19 @@ def test_complaints_stand_in_place_and_lead_there(show: Show) -> None:
     assert window.text == PENDULUM
 
 
-def test_complaints_come_within_a_tenth_of_a_second(show: Show) -> None:
-    """From the key to the complaint shown, for the satellite of the paper: the quickest of some keys, since the machine
-    may be busy."""
+def test_complaints_follow_each_key(show: Show) -> None:
+    """How long they take is measured by tests/bench/window_bench.py."""
     window = show(SATELLITE)
     window.page.locator(".cm-content").focus()
     window.press("Control+End")
-    window.typed("x")
-    window.page.locator(".complaint.error").first.wait_for()
-    for _ in range(6):
-        window.typed("y")
+    for key in "xyz":
+        window.typed(key)
         window.settled()
-    took = window.page.evaluate("performance.getEntriesByName('mbsym:look').map(e => e.duration)")
-    assert min(took[1:]) < 100, took
+        assert window.complaints != [], key
+    for _ in "xyz":
+        window.press("Backspace")
+    window.settled()
+    assert window.complaints == []
 
 
 MARKUP = "<img src=x onerror=alert(1)><script>alert(2)</script>"
@@ -269,7 +269,7 @@ def test_everything_has_a_name_and_can_be_reached_by_keys(show: Show) -> None:
 
 
 def test_a_chain_of_fifty_is_usable(show: Show) -> None:
-    """Every body is there and can be reached; a step of the arrow keys takes less than 30 ms."""
+    """Every body is there and can be reached (how quickly: tests/bench/window_bench.py)."""
     bodies = [
         {
             "name": f"link {i}",
@@ -285,14 +285,8 @@ def test_a_chain_of_fifty_is_usable(show: Show) -> None:
     window = show(yaml.safe_dump(description, sort_keys=False))
     assert len(window.bodies) == 50
     window.page.locator("#graph [role=treeitem]").first.focus()
-    step = """async () => {
-      const begun = performance.now();
-      for (let i = 0; i < 50; i += 1)
-        document.activeElement.dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowDown', bubbles: true}));
-      await new Promise(requestAnimationFrame);
-      return (performance.now() - begun) / 50;
-    }"""
-    assert window.page.evaluate(step) < 30
+    for _ in range(49):
+        window.press("ArrowDown")
     assert window.page.evaluate("document.activeElement.ariaLabel").startswith("link 50,")
     assert window.page.evaluate("document.activeElement.getBoundingClientRect().bottom") < 720
 

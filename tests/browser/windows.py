@@ -42,6 +42,9 @@ def serving(path: Path) -> Iterator[str]:
             process.wait(20)
 
 
+#: Three dimensions without a graphics card; flat canvases drawn the same way each time.
+OPTIONS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-accelerated-2d-canvas"]
+
 _LAUNCHED: list[Any] = []
 
 
@@ -55,7 +58,7 @@ def browser() -> Iterator[Any]:
         pytest.skip("no chromium")
     playwright = pytest.importorskip("playwright.sync_api", reason="no playwright")
     with playwright.sync_playwright() as running:
-        started = running.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        started = running.chromium.launch(executable_path=CHROMIUM, args=OPTIONS)
         _LAUNCHED.append(started)
         yield started
         _LAUNCHED.clear()

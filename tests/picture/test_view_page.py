@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 from base64 import b64encode
-from collections.abc import Iterator
 from hashlib import sha256
 from html.parser import HTMLParser
 from pathlib import Path
@@ -14,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import windows
 from click.testing import CliRunner, Result
 
 import mbsym
@@ -23,7 +22,6 @@ from mbsym_cli.main import main
 
 SYSTEMS = Path(__file__).parents[2] / "systems"
 DRAWN = [x for x in sorted(SYSTEMS.glob("*.yaml")) if x.stem not in ("gyroscopic-pair", "triangular-points")]
-CHROMIUM = "/usr/bin/chromium"
 
 HOSTILE = """mbsym: 1
 name: "</script><img src=x onerror=alert(1)><!--"
@@ -173,16 +171,7 @@ def test_systems_of_matrices_have_no_picture(tmp_path: Path) -> None:
 # ---- in a browser ---------------------------------------------------------------------------------------------------
 
 
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    sync = pytest.importorskip("playwright.sync_api", reason="no playwright")
-    if not os.access(CHROMIUM, os.X_OK):
-        pytest.skip(f"no {CHROMIUM}")
-    options = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-    with sync.sync_playwright() as running:
-        found = running.chromium.launch(executable_path=CHROMIUM, args=options)
-        yield found
-        found.close()
+browser = windows.browser  # one Chromium a process: Playwright runs once
 
 
 class Window:
