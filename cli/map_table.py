@@ -99,7 +99,7 @@ def remarks(found: PlaneMap | LineMap) -> list[str]:
 
 #: What a border is called; the reason behind the last one is in map.json.
 _ONSETS = {
-    Onset.SOFT: "soft: asymptotically stable at the border, small oscillations arise beyond it",
+    Onset.SOFT: "soft: asymptotically stable at the border; where the pair crosses, small oscillations arise beyond",
     Onset.HARD: "hard: unstable at the border already",
     Onset.OPEN: "open: terms of third order do not decide, or are not at hand",
 }
@@ -113,13 +113,13 @@ def borders(found: PlaneMap | LineMap) -> Iterator[str]:
         alike = [one for one in strata if _onset(one) is onset]
         if alike:
             places = [_place(found, one) for one in alike]
-            yield f"border of flutter {', '.join(places)}: {words}"
+            yield f"imaginary pair, {', '.join(places)}: {words}"
     for one in strata:
         stretches = one.soft.stretches or () if one.soft is not None else ()
         if len(stretches) > 1:
             name = found.section.axes[0].name
             parts = [f"{x.onset} for {name} from {float_of(x.start):.6g} to {float_of(x.end):.6g}" for x in stretches]
-            yield f"border of flutter {_place(found, one)}: {'; '.join(parts)}"
+            yield f"imaginary pair, {_place(found, one)}: {'; '.join(parts)}"
 
 
 def _onset(one: Stratum) -> Onset | None:

@@ -24,13 +24,14 @@ def command(file: Path, settings: tuple[str, ...], as_json: bool) -> None:
     """Find the symmetries of FILE that its coordinates hide, and their first integrals (Noether).
 
     Looked for are all fields of degree one in the positions, with a shift of time, that leave the Lagrangian unchanged
-    but for a time derivative: directions are generalised coordinates, or the speeds that FILE declares (then a
+    but for the time derivative of a polynomial of degree two in the positions, fields and polynomial free of the time:
+    directions are generalised coordinates, or the speeds that FILE declares (then a
     body turning about an axis in itself is one).  Forces without a force function take part.  Parameters stay symbols,
     so that what is said holds for almost all their values; --set puts in exact numbers, where there may be more.
 
     Each integral is told apart from those of problem 7; dI/dt is formed by substitution once more.
 
-    Exit codes: 0 all were found, proved; 1 not proved that these are all; 2 something is wrong.
+    Exit codes: 0 all of this kind were found, proved; 1 not proved that these are all; 2 something is wrong.
 
     \b
     Examples:

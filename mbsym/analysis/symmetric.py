@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def symmetries_of(analysis: Analysis, values: Mapping[str, Fraction] | None = None) -> Symmetries:
-    """All symmetries whose fields are of degree one in the positions, and their integrals.
+    """All symmetries with fields of degree one in the positions (Gamma: two), free of the time, and their integrals.
 
     Raises Failure where equations or their coefficients outgrow a bound, SingularPoint where formulas divide by zero at
     the ``values``.

@@ -66,7 +66,7 @@ class Stratum:
 
     @property
     def imaginary(self) -> bool:
-        """Whether a pair of roots is imaginary there and none is to the right: a border of flutter."""
+        """Whether a pair of roots is imaginary there and none to the right: a border of flutter if it crosses."""
         return self.judged is not None and self.judged.border is Border.IMAGINARY and self.judged.right == 0
 
     @property

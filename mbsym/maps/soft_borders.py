@@ -2,8 +2,9 @@
 
 At an exact point of an arc where problem 6 finds one pair +-i w and all other roots to the left, terms of third order
 decide (problem 11):  r' = a r^3 + ... on the centre manifold.  a < 0: the motion is asymptotically stable on the border
-and small oscillations arise beyond it (soft); a > 0: it is unstable on the border already (hard).  Zero roots, more
-pairs and systems without such an expansion are left open, each with its reason.
+and, where the pair crosses the axis, small oscillations arise beyond it (soft); whether it crosses is not looked at:
+x'' + (p^2 + x^2) x' + x = 0 is asymptotically stable at p = 0 and on both sides of it.  a > 0: it is unstable on the
+border already (hard).  Zero roots, more pairs and systems without such an expansion are left open, with the reason.
 
 ``at`` decides at a point, by enclosures; that the pair is imaginary is known exactly.  ``along`` decides on a whole
 arc: a is a fraction of polynomials on the curve, its zeros and poles are among the real roots of resultants, and one

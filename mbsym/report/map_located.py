@@ -134,7 +134,7 @@ def _told(found: PlaneMap | LineMap, stratum: Stratum | None) -> tuple[str, str]
 
 
 def _border(found: PlaneMap | LineMap, stratum: Stratum, values: Sequence[Fraction]) -> str:
-    """``soft``, ``hard`` or ``open`` at a point on a border of flutter."""
+    """``soft``, ``hard`` or ``open`` at a point with an imaginary pair and no root to the right."""
     if found.borders is None or not stratum.imaginary:
         return ""
     if stratum.shape is not Shape.ARC:

@@ -8,7 +8,7 @@ from mbsym.problems.polynomial_integrals import Sure
 from mbsym.problems.symmetries import Symmetries, Symmetry
 from mbsym.report.said import Said
 
-HEADING = "Symmetries with fields of degree one in the positions, and their integrals"
+HEADING = "Symmetries with fields of degree one in the positions and Gamma of degree two, both free of the time"
 
 
 def field_text(one: Symmetry) -> str:
@@ -41,14 +41,12 @@ def sentences(found: Symmetries) -> Iterator[Said]:
     proof = _COMPARED if found.compared else _BY
     almost = _ALMOST if found.symbols else ""
     if not found.symmetries:
-        told = (
-            f"There is none{almost} {proof}" if found.complete else "None was found; that there is none is not proved."
-        )
-        yield told, values
+        none = f"There is none of this kind{almost} {proof}"
+        yield (none if found.complete else "None was found; that there is none is not proved."), values
         return
     yield "Each of them is an identity of the exact ring (proved).", values
     if found.complete:
-        yield f"Every other is a combination of these with constant coefficients{almost} {proof}", values
+        yield f"Every other of this kind is a combination of these with constant coefficients{almost} {proof}", values
     else:
         yield "That there are no others is not proved.", values
 

@@ -13,7 +13,8 @@ parameters.  The system may have forces without a force function: only the ident
 Found are cyclic coordinates in other coordinates (two discs on one shaft: both turn alike), axes of symmetry that are
 no axes of the description (Lagrange's top in axes turned about), rotations of spaces that are no space of one body
 (two oscillators of one frequency), helices (a shift of time with a rotation).  Not looked for: fields that are no
-polynomials of degree one in the positions.
+polynomials of degree one in the positions, a Gamma that is none of degree two in them, and what holds the time: free
+fall (m z' + m g t), a free particle's centre (x - t x'), x'' = -3 x^2 y', y'' = 3 x^2 x' (y' - x^3).
 
 How it is known: the identity in the exact ring; dI/dt on the motion once more, by substitution of the accelerations.
 That there are no others of this kind: the rank of the system at exact random states, at numbers for the parameters.

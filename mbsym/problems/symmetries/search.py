@@ -39,8 +39,9 @@ class Unknown:
 
 
 def symmetries(system: System, blocks: Blocks, known: Sequence[Integral] | None) -> Symmetries:
-    """A basis of the symmetries whose fields are of degree one in the positions; ``known``: problem 7,
-    None where that has no result.
+    """A basis of the symmetries with fields of degree one in the positions (Gamma: two), free of the time.
+
+    ``known``: problem 7, None where that has no result.
 
     Raises NoClosedForm where there are too many unknowns, or coefficients outgrow their bounds.
     """
