@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from base64 import b64encode
+from collections.abc import Callable, Iterator
 from hashlib import sha256
 from html.parser import HTMLParser
 from pathlib import Path
@@ -188,13 +189,29 @@ class Window:
         self.page.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
 
 
+@pytest.fixture
+def show(browser: Any) -> Iterator[Callable[[Path], Window]]:
+    """Opens pages for a reader who wants things still, and closes them: what moves costs the tests after it."""
+    shown: list[Window] = []
+
+    def one(out: Path) -> Window:
+        shown.append(Window(browser, out, reduced_motion="reduce"))
+        return shown[-1]
+
+    yield one
+    for window in shown:
+        window.page.close()
+
+
 @pytest.fixture(scope="module")
-def still(browser: Any, tmp_path_factory: pytest.TempPathFactory) -> Window:
+def still(browser: Any, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Window]:
     """The double pendulum, for a reader who wants things still."""
     out = tmp_path_factory.mktemp("view") / "page.html"
     text, _ = viewed(mbsym.load(SYSTEMS / "double-pendulum.yaml").system, {}, 2.0, modes=True, equilibria=True)
     out.write_text(text, encoding="utf-8")
-    return Window(browser, out, reduced_motion="reduce")
+    window = Window(browser, out, reduced_motion="reduce")
+    yield window
+    window.page.close()
 
 
 SHOWN = "([told, state]) => { const v = mbsymViewer; v.show(told); v.stage.renderer.render(v.stage.drawing.scene, \
@@ -216,12 +233,12 @@ def test_every_system_is_drawn_where_the_library_says(still: Window) -> None:
 
 
 @pytest.mark.slow
-def test_the_page_by_keys(browser: Any, tmp_path: Path) -> None:
+def test_the_page_by_keys(show: Callable[[Path], Window], tmp_path: Path) -> None:
     """Sliders, time, modes and equilibria without a pointer; nothing moves by itself where that is not wanted."""
     out = tmp_path / "page.html"
     text, _ = viewed(mbsym.load(SYSTEMS / "simple-pendulum.yaml").system, {}, 2.0, modes=True, equilibria=True)
     out.write_text(text, encoding="utf-8")
-    window = Window(browser, out, reduced_motion="reduce")
+    window = show(out)
     page = window.page
     assert page.get_by_role("button", name="Play").is_visible()
     slider = page.get_by_role("slider", name=re.compile("^theta"))
@@ -269,10 +286,10 @@ def test_a_loop_follows_its_slider_or_says_that_it_is_open(still: Window) -> Non
 
 
 @pytest.mark.slow
-def test_markup_stays_text_in_a_browser(browser: Any, tmp_path: Path) -> None:
+def test_markup_stays_text_in_a_browser(show: Callable[[Path], Window], tmp_path: Path) -> None:
     out = tmp_path / "page.html"
     out.write_text(viewed(mbsym.loads(HOSTILE).system, {}, 1.0, modes=True)[0], encoding="utf-8")
-    window = Window(browser, out, reduced_motion="reduce")
+    window = show(out)
     assert not window.complaints
     assert window.page.locator("img, iframe, svg, b").count() == 0
     assert "onerror" in window.page.locator("h1").inner_text()
