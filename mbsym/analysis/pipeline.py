@@ -94,7 +94,7 @@ JUDGED = ("energy", "equilibrium", "linearisation", "perturbed motion")
 #: The stages that know constraints, or hold whether there are any or not.
 KNOW_CONSTRAINTS = frozenset(
     (
-        *("scene", "parameters_scene", "signs", "kinematics", "energy", "equations", "constraints"),
+        *("scene", "held_scene", "parameters_scene", "signs", "kinematics", "energy", "equations", "constraints"),
         *("tied_in_coordinates", "first_order", "small_parameters"),
         *("claims", "checks", "reduced", "residuals", "equilibrium", "first_approximation", "linearisation"),
         *("judgeable", "balance", "stability", "integrals", "reactions"),
