@@ -86,12 +86,17 @@ def sentences(found: PolynomialIntegrals) -> Iterator[Said]:
                 {"weight": count.weight, "more": count.most - count.products},
             )
     if found.complete and not found.new and all(one.name != FUNCTION for one in found.generators):
-        yield "Up to weighted degree [[degree]] there is none beyond those of problem 7.", values
+        yield _NO_OTHER[bool(found.field.parameters)], values
 
 
 _NONE = {
     True: "There is none up to weighted degree [[degree]] (proved for almost all values of the parameters).",
     False: "There is none up to weighted degree [[degree]] (proved).",
+}
+_NO_OTHER = {
+    True: "Up to weighted degree [[degree]] there is none beyond those of problem 7, for almost all values of the "
+    "parameters.",
+    False: "Up to weighted degree [[degree]] there is none beyond those of problem 7.",
 }
 _DEPENDENT = {
     Sure.PROVED: "That of weight [[weight]] ([[name]]) depends on those before it as a function "

@@ -14,6 +14,7 @@ SENTENCES = {
     "Every polynomial integral of weighted degree up to [[degree]] is a polynomial in these, for almost all values of the parameters (proved).": "Toda integral polinómica de grado ponderado hasta [[degree]] es un polinomio en ellas, para casi todos los valores de los parámetros (demostrado).",
     "Every polynomial integral of weighted degree up to [[degree]] is a polynomial in these (proved).": "Toda integral polinómica de grado ponderado hasta [[degree]] es un polinomio en ellas (demostrado).",
     "Of weight [[weight]] there are at most [[more]] more; they were not found within the budget.": "De peso [[weight]] hay como mucho [[more]] más; no se encontraron dentro del presupuesto.",
+    "Up to weighted degree [[degree]] there is none beyond those of problem 7, for almost all values of the parameters.": "Hasta el grado ponderado [[degree]] no hay ninguna además de las del problema 7, para casi todos los valores de los parámetros.",
     "Up to weighted degree [[degree]] there is none beyond those of problem 7.": "Hasta el grado ponderado [[degree]] no hay ninguna además de las del problema 7.",
     "That of weight [[weight]] ([[name]]) depends on those before it as a function (proved: no more can be).": "La de peso [[weight]] ([[name]]) depende de las anteriores como función (demostrado: no puede haber más).",
     "That of weight [[weight]] ([[name]]) depends on those before it as a function (verified at a random state).": "La de peso [[weight]] ([[name]]) depende de las anteriores como función (verificado en un estado al azar).",

@@ -14,6 +14,7 @@ SENTENCES = {
     "Every polynomial integral of weighted degree up to [[degree]] is a polynomial in these, for almost all values of the parameters (proved).": "Всякий полиномиальный интеграл взвешенной степени не выше [[degree]] есть многочлен от них при почти всех значениях параметров (доказано).",
     "Every polynomial integral of weighted degree up to [[degree]] is a polynomial in these (proved).": "Всякий полиномиальный интеграл взвешенной степени не выше [[degree]] есть многочлен от них (доказано).",
     "Of weight [[weight]] there are at most [[more]] more; they were not found within the budget.": "Веса [[weight]] есть ещё не более [[more]]; в пределах бюджета они не найдены.",
+    "Up to weighted degree [[degree]] there is none beyond those of problem 7, for almost all values of the parameters.": "До взвешенной степени [[degree]] сверх интегралов задачи 7 их нет при почти всех значениях параметров.",
     "Up to weighted degree [[degree]] there is none beyond those of problem 7.": "До взвешенной степени [[degree]] сверх интегралов задачи 7 их нет.",
     "That of weight [[weight]] ([[name]]) depends on those before it as a function (proved: no more can be).": "Интеграл веса [[weight]] ([[name]]) как функция зависит от предыдущих (доказано: больше независимых быть не может).",
     "That of weight [[weight]] ([[name]]) depends on those before it as a function (verified at a random state).": "Интеграл веса [[weight]] ([[name]]) как функция зависит от предыдущих (проверено в случайном состоянии).",
