@@ -32,7 +32,7 @@ export function bannersOf(model: Model): HTMLElement {
   model.on("told", (told) => {
     if (told.kind !== "outside" || typeof told["text"] !== "string" || typeof told["digest"] !== "string") return;
     const { text, digest } = told as unknown as { text: string; digest: string };
-    if (digest === model.file.digest || text === model.beingSaved) return;
+    if (digest === model.file.digest || text === model.beingSaved) return close("outside");
     const untouched = model.saved;
     if (text === model.text) return model.fileIs(digest, text);
     // Until somebody decides the digest stays the old one: saving asks, and writes over nothing by itself.

@@ -39,7 +39,7 @@ function given(text: string): Record<string, string> | null {
   return found;
 }
 
-export function mapping(model: Model, page: string): HTMLElement {
+export function mapping(model: Model): HTMLElement {
   const x = axis("x", "Across", false);
   const y = axis("y", "Upwards", true);
   const set = make("input", { id: "map-set", size: 28, placeholder: "p1=2/5, p2=1/5" });
@@ -72,7 +72,7 @@ export function mapping(model: Model, page: string): HTMLElement {
     place.replaceChildren();
     early = [];
     try {
-      const body = { page, x: range(x), ...(y.name.value ? { y: range(y) } : {}), set: values };
+      const body = { x: range(x), ...(y.name.value ? { y: range(y) } : {}), set: values };
       job = (await model.request<{ job: string }>("map", body)).job;
       early.filter((told) => told.job === job).forEach(hear);
       early = [];
@@ -82,6 +82,7 @@ export function mapping(model: Model, page: string): HTMLElement {
   }
 
   function hear(told: Told): void {
+    if (told.kind === "lost" && job !== null) void begin();
     if (told.job === undefined) return;
     if (told.job !== job) {
       early = [...early.slice(-20), told];

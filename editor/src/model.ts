@@ -103,6 +103,12 @@ export class Model extends Listeners<Events> {
   private saving: string | null = null;
   private changes: Promise<unknown> = Promise.resolve();
   private listeningTo: EventSource | null = null;
+  /** The last event that was heard: what came after it is told again to who was away. */
+  private lastHeard: string;
+  /** Whether the journal lacks the last changes. */
+  private unkept = false;
+  /** Under this word the jobs of this page are begun: other pages of the file leave them alone. */
+  private readonly page = crypto.randomUUID();
   private hearing = hearing();
 
   constructor(
@@ -112,6 +118,7 @@ export class Model extends Listeners<Events> {
   ) {
     super();
     this.stored = file.new ? "" : file.text;
+    this.lastHeard = file.told;
     this.editor = new EditorView({
       root,
       state: EditorState.create({
@@ -231,9 +238,10 @@ export class Model extends Listeners<Events> {
   /** A request about the text as it is now: `text` and `format` go with it. */
   async request<Answer>(name: string, body: object = {}, signal?: AbortSignal): Promise<Answer> {
     const whole = { text: this.text, format: this.format, ...body };
-    // What a job tells before anybody listens is lost.
-    if (JOBS.has(name)) await this.hearing.promise;
-    return this.watched(post<Answer>(name, whole, signal));
+    if (!JOBS.has(name)) return this.watched(post<Answer>(name, whole, signal));
+    // A job that nobody hears is ended after a while.
+    await this.hearing.promise;
+    return this.watched(post<Answer>(name, { page: this.page, ...whole }, signal));
   }
 
   /** A request that is not about the text: cancel, save. */
@@ -259,8 +267,10 @@ export class Model extends Listeners<Events> {
     this.connection = connection;
     this.tell("connection", connection);
     if (connection === "there" && this.listeningTo?.readyState === EventSource.CLOSED) this.listen();
-    if (connection === "there") void this.look();
-    else this.waitForServer();
+    if (connection === "there") {
+      void this.look();
+      if (this.unkept) void this.journal();
+    } else this.waitForServer();
   }
 
   /** A server that was stopped may come back at the same address, with the same token or not. */
@@ -406,10 +416,12 @@ export class Model extends Listeners<Events> {
   }
 
   private async journal(): Promise<void> {
+    this.unkept = true;
     try {
       await this.post("journal", { text: this.text, digest: this.file.digest });
+      this.unkept = false;
     } catch {
-      // The status line tells that the server is away; the next change tries again.
+      // The status line tells that the server is away; it is tried again when it is back.
     }
   }
 
@@ -429,9 +441,10 @@ export class Model extends Listeners<Events> {
   /** Begins to listen to what the server tells by itself. */
   listen(): void {
     this.listeningTo?.close();
-    const source = new EventSource("api/events");
+    const source = new EventSource(`api/events?after=${encodeURIComponent(this.lastHeard)}`);
     this.listeningTo = source;
     source.onmessage = (event) => {
+      this.lastHeard = event.lastEventId;
       try {
         this.tell("told", JSON.parse(String(event.data)) as Told);
       } catch (failure) {

@@ -33,6 +33,12 @@ export function panel(host: HTMLElement, model: Model): void {
   let timer = 0;
   let asking: AbortController | null = null;
   let drawn = "";
+  /** What the last picture that was asked for is of. */
+  let asked: string | null = null;
+  /** Fulfilled when what is to be drawn is drawn, or cannot be. */
+  let drawing: Promise<void> | null = null;
+  let isDrawn = (): void => undefined;
+  let wanted = 0;
   /** Jobs that are awaited: what was begun last for each section. */
   const jobs = new Map<Section, string>();
   /** What was told of jobs before their names were: the answer to a request may be overtaken. */
@@ -59,11 +65,14 @@ export function panel(host: HTMLElement, model: Model): void {
       viewer.select(model.selected);
     } catch (failure) {
       if (own.signal.aborted) return;
+      asked = null;
       stale.textContent = failure instanceof Error ? failure.message : String(failure);
     }
   }
 
   async function begin(section: Section): Promise<void> {
+    viewer.note(section, "Being computed …");
+    await drawing; // another picture would take what is shown with it
     viewer.note(section, "Being computed …");
     try {
       const body = section === "motion" ? { time: time.value.trim(), set: viewer.moved() } : { set: {} };
@@ -78,6 +87,7 @@ export function panel(host: HTMLElement, model: Model): void {
   }
 
   function hear(told: Told): void {
+    if (told.kind === "lost") [...jobs.keys()].forEach((section) => void begin(section));
     const section = [...jobs].find(([, job]) => job === told.job)?.[0];
     if (section === undefined) {
       if (told.job !== undefined) early = [...early.slice(-20), told];
@@ -91,9 +101,18 @@ export function panel(host: HTMLElement, model: Model): void {
     if (told.kind === "done" || told.kind === "failed" || told.kind === "cancelled") jobs.delete(section);
   }
 
-  model.on("view", () => {
+  model.on("view", (view) => {
+    if (view.content !== null && view.content === asked) return; // a comment is not drawn
+    asked = view.content;
     window.clearTimeout(timer);
-    timer = window.setTimeout(() => void draw(), DRAW_AFTER);
+    drawing ??= new Promise((resolve) => {
+      isDrawn = () => {
+        drawing = null;
+        resolve();
+      };
+    });
+    const mine = (wanted += 1);
+    timer = window.setTimeout(() => void draw().finally(() => mine === wanted && isDrawn()), drawn === "" ? 0 : DRAW_AFTER);
   });
   model.on("selection", (name) => viewer.select(name));
   model.on("theme", () => viewer.stage.ink());

@@ -9,10 +9,14 @@ import type { Model } from "./model.js";
 import { sanitised } from "./sanitised.js";
 import type { Told } from "./seam.js";
 
-/** Milliseconds after the last change; and after which a job of which nothing was heard is begun again. */
+/** Milliseconds after the last change; a text that the server has not looked at for so long is another one. */
 const DERIVE_AFTER = 350;
-const UNHEARD_AFTER = 4000;
+const UNSEEN_AFTER = 400;
 
+/** Why the server ends the jobs of a page that was away for long. */
+const ALONE = "nobody is there";
+
+const DERIVED = "All is derived from the text as it stands.";
 const EARLIER = "What stands here is of an earlier text.";
 
 /** Open from the beginning: what a reader wants first. */
@@ -39,6 +43,8 @@ class Shown {
   private readonly body = make("div", { class: "report-part" });
   private html: string | null = null;
   private shown: string | null = null;
+  /** What is told of its derivation. */
+  private took: string | null = null;
 
   constructor(
     readonly problem: string,
@@ -60,12 +66,25 @@ class Shown {
     this.state.textContent = this.html === null ? "…" : "earlier text …";
   }
 
+  /** It is being derived. */
+  begins(): void {
+    this.took = null;
+    this.waits();
+  }
+
+  /** It is of the text as it stands after all. */
+  stays(): void {
+    if (this.took === null) return;
+    this.element.classList.remove("old");
+    this.state.textContent = this.took;
+  }
+
   takes(section: Section): void {
     this.html = section.html;
     this.element.classList.remove("old");
     this.element.dataset["state"] = section.state;
     const words = { derived: `${section.seconds.toFixed(2)} s`, refused: "no result", failed: "failed" }[section.state];
-    this.state.textContent = words;
+    this.state.textContent = this.took = words;
     this.fill();
   }
 
@@ -84,7 +103,6 @@ class Shown {
 }
 
 export function panel(host: HTMLElement, model: Model): void {
-  const page = crypto.randomUUID();
   const known = ((model.file as unknown as { problems?: Problem[] }).problems ?? []) as Problem[];
   const status = make("p", { class: "deriving", role: "status" });
   const live = make("input", { type: "checkbox", id: "derive-live", checked: true });
@@ -100,18 +118,23 @@ export function panel(host: HTMLElement, model: Model): void {
     make("details", { class: "chosen" }, make("summary", {}, "Problems"), make("div", { class: "boxes" }, ...boxes.map((x) => x.label))),
     status,
     sections,
-    mapping(model, page),
+    mapping(model),
     exporting(model),
   );
   copying(sections, model);
 
   const shown = new Map<string, Shown>();
   let job: string | null = null;
-  let heard = false;
   let asked = 0;
   let early: Told[] = [];
+  /** What the sections are of, or will be as soon as they come: a text, and what it says. */
   let derived: string | null = null;
+  let content: string | null = null;
+  let old = false;
+  /** How the last derivation ended. */
+  let outcome = "";
   let timer = 0;
+  let unseen = 0;
   cancel.disabled = true;
 
   function follow(section: string): void {
@@ -125,12 +148,31 @@ export function panel(host: HTMLElement, model: Model): void {
   function over(words: string): void {
     job = null;
     cancel.disabled = true;
-    status.textContent = words;
+    outcome = words;
+    if (derived !== null) status.textContent = current() ? words : EARLIER;
   }
 
   async function stop(): Promise<void> {
     window.clearTimeout(timer);
     if (job !== null) await model.post("cancel", { job }).catch(() => undefined);
+  }
+
+  const sayOf = (text: string): string | null => (model.viewed === text ? (model.view?.content ?? null) : null);
+
+  /** Whether the sections are of the text as it stands, but for its comments. */
+  function current(): boolean {
+    if (derived !== null && content === null) content = sayOf(derived);
+    return derived !== null && (derived === model.text || (content !== null && content === sayOf(model.text)));
+  }
+
+  function compare(): void {
+    window.clearTimeout(unseen);
+    if (derived === null) return;
+    if (old === current()) {
+      old = !old;
+      for (const one of shown.values()) old ? one.waits() : one.stays();
+    }
+    if (job === null) status.textContent = old ? EARLIER : outcome;
   }
 
   async function begin(): Promise<void> {
@@ -142,19 +184,19 @@ export function panel(host: HTMLElement, model: Model): void {
       status.textContent = "Begun …";
       early = [];
       const usual = boxes.every((x) => x.box.checked === x.problem.usual);
-      const answer = await model.request<{ job: string }>("derive", { page, ...(usual || problems.length === 0 ? {} : { problems }) });
+      const answer = await model.request<{ job: string }>("derive", usual || problems.length === 0 ? {} : { problems });
       if (mine !== asked) return;
       job = answer.job;
-      derived = text;
-      heard = false;
+      [derived, content, old] = [text, sayOf(text), false];
       cancel.disabled = false;
       early.filter((told) => told.job === job).forEach(hear);
       early = [];
-      window.setTimeout(() => {
-        if (mine === asked && job === answer.job && !heard) void begin();
-      }, UNHEARD_AFTER);
+      compare();
     } catch (failure) {
-      if (mine === asked) over(failure instanceof Error ? failure.message : String(failure));
+      if (mine !== asked) return;
+      over("");
+      derived = null; // whatever stands there: it is begun again with the next look
+      status.textContent = failure instanceof Error ? failure.message : String(failure);
     }
   }
 
@@ -163,7 +205,7 @@ export function panel(host: HTMLElement, model: Model): void {
     for (const [problem, title] of plan) {
       let one = shown.get(problem);
       if (one === undefined) shown.set(problem, (one = new Shown(problem, title, follow)));
-      else one.waits();
+      else one.begins();
       kept.push(one.element);
     }
     for (const problem of [...shown.keys()]) if (!plan.some(([x]) => x === problem)) shown.delete(problem);
@@ -174,12 +216,12 @@ export function panel(host: HTMLElement, model: Model): void {
   }
 
   function hear(told: Told): void {
+    if (told.kind === "lost" && job !== null) void begin();
     if (told.job === undefined) return;
     if (told.job !== job) {
       early = [...early.slice(-40), told];
       return;
     }
-    heard = true;
     if (told.kind === "plan") planned(told["sections"] as [string, string][]);
     else if (told.kind === "section") {
       const section = told as unknown as Section;
@@ -187,33 +229,36 @@ export function panel(host: HTMLElement, model: Model): void {
     } else if (told.kind === "progress") {
       const [done, of] = [told["done"], told["of"]];
       status.textContent = `${String(told["words"])} …${typeof of === "number" ? ` (${String(done)} of ${of})` : ""}`;
-    } else if (told.kind === "done") over(derived === model.text ? "All is derived from the text as it stands." : EARLIER);
+    } else if (told.kind === "done") over(DERIVED);
     else if (told.kind === "failed") over(`Nothing more was derived: ${String(told["words"])}.`);
-    else if (told.kind === "cancelled") over(`Stopped: ${String(told["words"])}.`);
+    else if (told.kind === "cancelled" && told["words"] === ALONE) {
+      job = null;
+      void begin();
+    } else if (told.kind === "cancelled") over(`Stopped: ${String(told["words"])}.`);
   }
 
   model.on("told", hear);
   model.on("text", () => {
-    if (derived === null || derived === model.text) return;
-    derived = null;
-    for (const one of shown.values()) one.waits();
-    if (job === null) status.textContent = EARLIER;
+    window.clearTimeout(unseen);
+    unseen = window.setTimeout(compare, UNSEEN_AFTER);
   });
   model.on("view", (view) => {
-    if (!live.checked || model.text === derived) return;
+    compare();
+    if (!live.checked || current()) return;
     window.clearTimeout(timer);
     if (view.complaints.some((one) => one.severity === "error")) {
-      void stop();
+      if (job !== null) {
+        void stop();
+        derived = null;
+      }
       status.textContent = shown.size > 0 ? `Waiting: the text has mistakes. ${EARLIER}` : "Waiting: the text has mistakes.";
       return;
     }
     if (view.bodies.length === 0 && view.complaints.length > 0) return;
+    if (asked === 0) return void begin(); // nobody types yet
     timer = window.setTimeout(() => void begin(), DERIVE_AFTER);
   });
   live.addEventListener("change", () => {
     if (live.checked) void begin();
-  });
-  model.on("connection", (state) => {
-    if (state === "there" && job !== null) void begin();
   });
 }

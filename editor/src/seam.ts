@@ -63,6 +63,8 @@ export interface View {
   constraints: Tie[];
   loads: Tie[];
   complaints: Complaint[];
+  /** The same where only comments and blanks differ; null while the text has mistakes. */
+  content: string | null;
   [section: string]: unknown;
 }
 
@@ -106,6 +108,8 @@ export interface FileState {
   schema: unknown;
   functions: unknown[];
   languages: string[];
+  /** The last event that was told before the file was read. */
+  told: string;
   examples?: { name: string; title: string }[];
 }
 
@@ -122,7 +126,7 @@ export interface Completion {
   items: CompletionItem[];
 }
 
-/** Everything the server tells by itself: of jobs, and of the file. */
+/** Everything the server tells by itself: of jobs, and of the file; "lost": something was told that cannot be told again. */
 export interface Told {
   kind: string;
   job?: string;

@@ -77,7 +77,7 @@ export async function start(host: HTMLElement): Promise<void> {
   for (const event of ["text", "view", "busy"] as const) {
     model.on(event, () => (root.dataset["fresh"] = String(model.fresh && !model.busy)));
   }
-  await model.look();
-  // Listening last: a request that never ends must not stand before those that the page begins with.
+  const looked = model.look();
   model.listen();
+  await looked;
 }

@@ -6,7 +6,6 @@ Answers are JSON; one that refuses is {"error": code, "message": words} with a s
 from __future__ import annotations
 
 import asyncio
-import json
 from collections.abc import AsyncIterator, Callable, Mapping
 from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass
@@ -22,16 +21,14 @@ from starlette.routing import Route
 
 from mbsym.serving import examples, looking
 from mbsym.serving.answers import Work, posted, refused, safely
+from mbsym.serving.events import Events, encoded
 from mbsym.serving.guard import Guard
 from mbsym.serving.jobs import Jobs
 from mbsym.serving.requests import Wrong, flag, listed, mapping, text_of, whole
 from mbsym.serving.storage import Conflict, Storage, Unreadable
 
-#: Seconds between two looks whether somebody else wrote the file, and between two signs of life to a page.
-WATCHING, ALIVE = 0.5, 15.0
-
-#: A page that does not take its events is let go; it connects again.
-MOST_WAITING = 1_000
+#: Seconds between two looks whether somebody else wrote the file.
+WATCHING = 0.5
 
 #: What a page may ask for by name; of everything else there is nothing.
 STATIC = {
@@ -61,7 +58,7 @@ class Editor:
         self.storage, self.services, self.token = Storage(path), services, token
         self.jobs = Jobs(self._tell_from_a_thread)
         self.guard = Guard(self._starlette(), token, port)
-        self._pages: set[asyncio.Queue[dict[str, Any] | None]] = set()
+        self.told = Events()
         self._loop: asyncio.AbstractEventLoop | None = None
         self._slow = asyncio.Semaphore(1)
         self._looks = asyncio.Semaphore(2)
@@ -77,24 +74,18 @@ class Editor:
         try:
             yield
         finally:
-            self.end_events()
+            self.told.end()
             await asyncio.to_thread(self.jobs.close)
             for task in tasks:
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
-
-    def end_events(self) -> None:
-        """Streams end, so that a server can."""
-        for page in self._pages:
-            with suppress(asyncio.QueueFull):
-                page.put_nowait(None)
 
     async def _watch(self) -> None:
         """Tells when somebody else has written the file; ends jobs that nobody listens to."""
         stamp, alone = self.storage.stamp(), 0.0
         while True:
             await asyncio.sleep(WATCHING)
-            alone = 0.0 if self._pages else alone + WATCHING
+            alone = 0.0 if self.told.heard else alone + WATCHING
             if ABANDONED <= alone < ABANDONED + WATCHING:
                 self.jobs.cancel_all("nobody is there")
             now = self.storage.stamp()
@@ -115,37 +106,18 @@ class Editor:
     # --- events -------------------------------------------------------------------------------------------------------
 
     def _tell_from_a_thread(self, event: dict[str, Any]) -> None:
+        text = encoded(event)
         if self._loop is not None:
             with suppress(RuntimeError):  # the loop has ended
-                self._loop.call_soon_threadsafe(self._tell, event)
+                self._loop.call_soon_threadsafe(self.told.tell, text)
 
     def _tell(self, event: dict[str, Any]) -> None:
-        for page in self._pages.copy():
-            try:
-                page.put_nowait(event)
-            except asyncio.QueueFull:
-                self._pages.discard(page)
+        self.told.tell(encoded(event))
 
     async def events(self, request: Request) -> Response:
-        queue: asyncio.Queue[dict[str, Any] | None] = asyncio.Queue(MOST_WAITING)
-        self._pages.add(queue)
-
-        async def stream() -> AsyncIterator[str]:
-            try:
-                yield "retry: 2000\n\n"
-                while queue in self._pages:
-                    try:
-                        event = await asyncio.wait_for(queue.get(), ALIVE)
-                    except TimeoutError:
-                        yield ": alive\n\n"
-                        continue
-                    if event is None:
-                        return
-                    yield f"data: {await asyncio.to_thread(_encoded, event)}\n\n"
-            finally:
-                self._pages.discard(queue)
-
-        return StreamingResponse(stream(), media_type="text/event-stream")
+        """A browser that connects again names the last event it has heard in a header, a page in ``after``."""
+        after = request.headers.get("last-event-id") or request.query_params.get("after") or ""
+        return StreamingResponse(self.told.listen(after[:100]), media_type="text/event-stream")
 
     # --- the page and the file ----------------------------------------------------------------------------------------
 
@@ -160,7 +132,8 @@ class Editor:
         return Response(content, media_type=found[1])
 
     async def file(self, request: Request) -> Response:
-        return JSONResponse(await asyncio.to_thread(self._file))
+        last = self.told.last  # before the file is read: what becomes of it then is told to who listens from here
+        return JSONResponse({**await asyncio.to_thread(self._file), "told": last})
 
     def _file(self) -> dict[str, Any]:
         import mbsym
@@ -170,7 +143,6 @@ class Editor:
         from mbsym.source import json_schema
 
         content, path = self.storage.read(), self.storage.path
-        self._known = content.digest
         offered = self.storage.offered()
         text = content.text if content.digest else looking.empty(path.name, path.stem)
         return {
@@ -347,10 +319,6 @@ class Editor:
             Route("/{name}", safely(self.static), methods=["GET"]),
         ]
         return Starlette(routes=routes, lifespan=self._living)
-
-
-def _encoded(event: dict[str, Any]) -> str:
-    return json.dumps(event, ensure_ascii=False, separators=(",", ":"))
 
 
 def _chosen(numbers: list[int]) -> list[int]:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -45,12 +48,31 @@ def understood(text: str, name: str, folder: Path | None) -> tuple[System | None
 
 
 def view(text: str, name: str, folder: Path | None) -> dict[str, Any]:
-    """The View of the seam: bodies, ties, the tree as written, complaints."""
+    """The View of the seam: bodies, ties, the tree as written, complaints; ``content`` is that of ``content_of``."""
     places = Offsets(text)
     shown: dict[str, Any] = places.in_units(look(text, name))
+    shown["content"] = content_of(shown)
     if not says_so(text) or _FILE.search(text):  # what a file beside the description holds is part of what it means
         shown["complaints"] = complaints_json(understood(text, name, folder)[1], places)
     return shown
+
+
+def content_of(shown: Mapping[str, Any]) -> str | None:
+    """Another one whenever the text says something else; the same where only comments, blanks and line ends differ.
+
+    SHA-256 of the keys and values as spelled, in their order.  None where the text cannot be read as a whole: what is
+    left out of the tree then could say anything.
+    """
+    if shown["tree"] is None or any(one["severity"] == "error" for one in shown["complaints"]):
+        return None
+    found = hashlib.sha256(str(shown["format"]).encode())
+    waiting = [shown["tree"]]
+    while waiting:
+        node = waiting.pop()
+        item = [node["kind"], node["path"], node.get("source")]
+        found.update(json.dumps(item, ensure_ascii=True).encode() + b"\n")
+        waiting += node.get("children", ())
+    return found.hexdigest()
 
 
 def changed(text: str, name: str, operations: list[Any], folder: Path | None) -> dict[str, Any]:

@@ -29,7 +29,7 @@ class Server(uvicorn.Server):
         self.editor = editor
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        self.editor.end_events()
+        self.editor.told.end()
         await asyncio.sleep(0)
         await super().shutdown(sockets)
 

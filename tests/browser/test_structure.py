@@ -329,7 +329,7 @@ def test_a_motion_asked_for_before_events_are_heard_is_shown(show: Show, server:
         window.page.wait_for_timeout(1500)
         route.continue_()
 
-    window.page.route("**/api/events", late)
+    window.page.route("**/api/events*", late)
     window.open(server.address)
     window.page.get_by_role("button", name="Simulate").click()
     window.page.get_by_label("Time", exact=True).wait_for()
