@@ -72,7 +72,9 @@ def expansion(analysis: Analysis, order: int, values: Mapping[str, Fraction] | N
         raise NoClosedForm("the description names no small parameter", remedy="add 'small parameter: eps'")
     form = analysis.speed_form
     if form is None:
-        raise NoClosedForm("expansions are made of equations in speeds", remedy="declare 'speeds' in the bodies")
+        first = next((f"{name}_dot" for name in analysis.system.coordinates), "x_dot")
+        remedy = f"declare 'speeds' in the bodies, as in  speeds: {{v: {first}}}"
+        raise NoClosedForm("expansions are made of equations in speeds", remedy=remedy)
     images = relations(analysis.parameters_scene)
     _refuse(analysis, small, values or {}, images)
     equations: Any = analysis.equations

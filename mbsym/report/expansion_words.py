@@ -61,6 +61,16 @@ _FAST = {
     Outcome.UNDECIDED: "Whether the manifold attracts near this motion is undecided: a Hurwitz minor of the fast roots "
     "vanishes to the order of the expansion, or has no sign.",
 }
+#: Where no root is zero by itself.
+_ALL = {
+    Outcome.HOLDS: "All roots of the flow on it have negative real parts for all sufficiently small [[small]] > 0 "
+    "(proved in first approximation).",
+    Outcome.CONDITIONAL: "All roots of the flow on it have negative real parts for all sufficiently small [[small]] "
+    "> 0 where [[conditions]] (proved in first approximation).",
+    Outcome.FAILS: "Not all roots of the flow on it have negative real parts for sufficiently small [[small]] > 0 "
+    "(proved in first approximation).",
+}
+#: Where some are, by coordinates on which nothing depends.
 _SLOW = {
     Outcome.HOLDS: "All roots of the flow on it but [[zeros]] that are zero have negative real parts for all "
     "sufficiently small [[small]] > 0 (proved in first approximation).",
@@ -127,12 +137,19 @@ def sentences(found: Expansion, write: Medium) -> Iterator[Said]:
     yield _FAST[outcome], values | {"conditions": _told(found, conditions, write)}
     if len(manifold.steady.slow.polynomial) > 1:
         outcome, conditions = found.slow
-        yield _SLOW[outcome], values | {"conditions": _told(found, conditions, write)}
+        told = _SLOW if manifold.steady.zeros else _SLOW | _ALL
+        yield told[outcome], values | {"conditions": _told(found, conditions, write)}
     yield (
         "The characteristic polynomial of all variables is divided by that of the flow without a remainder up to order "
         "[[known]] (verified).",
         values | {"known": manifold.steady.remainder - 1},
     )
+    if found.fast[0] is Outcome.FAILS:  # a negative minor: a root to the right, whatever the flow on the manifold does
+        yield (
+            "A fast root has a positive real part: this motion is unstable for all sufficiently small [[small]] > 0.",
+            values,
+        )
+        return
     yield (
         "By the reduction principle (Strygin and Sobolev) a steady state on an attracting slow manifold is stable, "
         "asymptotically stable or unstable as it is in the flow on it. How small [[small]] has to be is not known "

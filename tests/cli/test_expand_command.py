@@ -69,3 +69,36 @@ def test_the_map_gives_the_range_that_the_reduced_condition_misjudges(tmp_path):
     told = " ".join(done.stdout.split())
     assert "at 0.0316227766 (exactly: a root of a polynomial of degree 2" in told
     assert "unstable: divergence, 1 root to the right" in told
+
+
+HEAVY_DAMPING = """
+mbsym: 1
+name: Small mass
+parameters:
+  e: {sign: positive, meaning: mass}
+  c: {sign: positive, meaning: damping}
+  k: {sign: positive, meaning: stiffness}
+small parameter: e
+bodies:
+  - {name: point, attached to: 0, connection point: [x, 0, 0], mass: e, coordinates: [x], speeds: {v: x_dot}}
+loads:
+  - potential: k*x**2/2
+  - damper: {coordinate: x, coefficient: c}
+motion: {x: 0}
+"""
+
+
+def test_a_manifold_that_repels_makes_its_steady_states_unstable(tmp_path):
+    """e x'' + c x' + k x = 0: the roots are -c/e + ... and -k/c + ...; both change their signs with c."""
+    (tmp_path / "damped.yaml").write_text(HEAVY_DAMPING)
+    (tmp_path / "driven.yaml").write_text(HEAVY_DAMPING.replace("coefficient: c", "coefficient: -c"))
+    damped, driven = (
+        " ".join(run(str(tmp_path / f"{x}.yaml"), "--order", "1").stdout.split()) for x in ("damped", "driven")
+    )
+    assert "All roots of the flow on it have negative real parts for all sufficiently small e > 0" in damped
+    assert "reduction principle" in damped
+    assert "this motion is unstable" not in damped
+    assert "reduction principle" not in driven
+    assert "A fast root has a positive real part: this motion is unstable for all sufficiently small e > 0." in driven
+    (tmp_path / "plain.yaml").write_text(HEAVY_DAMPING.replace(", speeds: {v: x_dot}", ""))
+    assert "speeds: {v: x_dot}" in run(str(tmp_path / "plain.yaml")).output
