@@ -65,6 +65,13 @@ def _numbers(judged: Judged) -> Iterator[str]:
             f"{borders.get(judged.outcome, '')}+-i w with w = {decimal(judged.frequencies[0])}, r' = a r^3 with "
             f"a = {decimal(judged.coefficient)} for the amplitude r of {judged.amplitude_of}"
         )
+    if judged.theorem is Theorem.EQUAL and judged.coefficient is not None:
+        yield f"delta A = {decimal(judged.coefficient)} in Sokolskii's normal form"
+    if judged.degree is not None:
+        yield (
+            f"the energy along the direction of the zero root is a x^{judged.degree} + ... with "
+            f"a = {decimal(judged.coefficient)} for the deviation x of {judged.along}"
+        )
     if judged.sides is not None:
         left, right = map(decimal, judged.sides)
         yield f"|H4| = {left} on the resonance, against {right}"
@@ -123,4 +130,6 @@ def _judged(judged: Judged) -> dict[str, Any]:
         "determinants": [{"order": order, "value": enclosure(value)} for order, value in judged.determinants],
         "coefficient": None if judged.coefficient is None else enclosure(judged.coefficient),
         "amplitude_of": judged.amplitude_of,
+        "along": judged.along,
+        "degree": judged.degree,
     }

@@ -18,10 +18,19 @@ DIGITS = 10
 
 #: Why nothing is decided.
 REASONS = {
-    Why.ZERO_ROOT: "A root is zero, or is not told from zero: normal forms of that case are not formed.",
+    Why.ZERO_ROOT: "A root is not told from zero, or others beside a zero one are not told apart: nothing is proved.",
     Why.TWO_ZERO_ROOTS: "Two or more roots are zero, the others are to the left: terms of higher order on a centre "
     "manifold of that dimension decide, which are not formed.",
-    Why.EQUAL_FREQUENCIES: "Frequencies coincide, or are not told apart: normal forms of that case are not formed.",
+    Why.EQUAL_FREQUENCIES: "Frequencies are equal or are not told apart, and what would decide then is not proved.",
+    Why.CONE_OPEN: "Frequencies are equal, with two eigenvectors for each root, and on the cone where H2 = 0 the "
+    "normal form of fourth order is not proved to be without zeros, nor to have a simple one: terms "
+    "of higher order may decide.",
+    Why.ZERO_TWO: "Zero is a double root with two eigenvectors, or a root of higher multiplicity, or this is not "
+    "excluded: normal forms of these cases are not formed.",
+    Why.ZERO_MORE: "A root is zero, the energy is not shown to be definite, and there are more than two degrees of "
+    "freedom: Sokolskii's theorem is of two.",
+    Why.ZERO_OPEN: "A root is zero, and the energy along its direction vanishes up to order 6, or is not told from "
+    "that: terms of higher order may decide.",
     Why.RESONANCE_OPEN: "A resonance up to order 4 is neither proved nor excluded.",
     Why.RESONANCE: "A resonance holds that the theorems for frequencies without resonances exclude.",
     Why.RESONANT_TERM_OPEN: "The resonant term of third order is not told from zero.",
@@ -46,6 +55,16 @@ THEOREMS = {
     Theorem.THIRD: "The resonant term of third order is not zero: the motion is unstable (Markeev).",
     Theorem.EQUAL: "The frequencies are equal exactly, with one eigenvector for each root: by the sign of a "
     "coefficient of the normal form of fourth order the motion is [[word]] (Sokolskii).",
+    Theorem.EQUAL_TWO: "The frequencies are equal exactly, with two eigenvectors for each root: by the zeros of "
+    "the normal form of fourth order on the cone where H2 = 0 the motion is [[word]] "
+    "(Sokolskii; Cabral and Meyer).",
+    Theorem.DEFINITE_HIGHER: "A root is zero.  With the other variables eliminated the energy is a x^M + ... for the "
+    "deviation x of [[name]], M = [[degree]] and a = [[a]]: a strict minimum or maximum, the "
+    "motion is stable (Dirichlet).",
+    Theorem.ZERO: "A root is zero.  With the other variables eliminated the energy is a x^M + ... for the "
+    "deviation x of [[name]], M = [[degree]] and a = [[a]]: by the parity of M and the sign of "
+    "a against that of the quadratic part the motion is [[word]] (Sokolskii, resonance of "
+    "first order).",
     Theorem.BRUNO: "No resonance up to order 4 holds, and H4 has no zero in the cone of actions Omega.I = 0: the "
     "motion is formally stable (Bruno); stability in Lyapunov's sense is not proved.",
     Theorem.ARNOLD: "No resonance up to order 4 holds, and H4 is not degenerate: invariant tori surround the motion, "
@@ -131,12 +150,33 @@ def _judged(found: Judged, whole: NormalForms, write: Medium) -> Iterator[Said]:
     elif found.theorem is Theorem.REDUCTION:
         yield from _centre(found, write)
     elif found.theorem in THEOREMS:
-        word = {"word": write.word(found.outcome.value)} if found.theorem is Theorem.EQUAL else {}
-        yield THEOREMS[found.theorem], dict[str, object](word)
+        if found.theorem is Theorem.EQUAL and found.coefficient is not None:
+            text = decimal(found.coefficient)
+            yield (
+                "In Sokolskii's normal form of equal frequencies delta A = [[value]].",
+                {"value": write.math(text, _tex(text))},
+            )
+        yield THEOREMS[found.theorem], _gaps(found, write)
     if found.why in REASONS and found.outcome is Outcome.UNDECIDED:
         yield REASONS[found.why], {}
         if whole.first is not None and not whole.first.open:
             yield "That is no matter: problem 6 has decided already.", {}
+
+
+def _gaps(found: Judged, write: Medium) -> dict[str, object]:
+    """What the sentence of a theorem names."""
+    text = THEOREMS[found.theorem]
+    gaps: dict[str, object] = {}
+    if "[[word]]" in text:
+        gaps["word"] = write.word(found.outcome.value)
+    if "[[degree]]" in text:
+        a = decimal(found.coefficient)
+        gaps |= {
+            "name": write.names((found.along,)),
+            "degree": write.math(str(found.degree), str(found.degree)),
+            "a": write.math(a, _tex(a)),
+        }
+    return gaps
 
 
 def _centre(found: Judged, write: Medium) -> Iterator[Said]:

@@ -24,14 +24,15 @@ from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.kinematics import Scene
 from mbsym.problems.equilibrium import Equilibrium
+from mbsym.problems.normal_forms.birkhoff import matrix_of as matrix_of_hamiltonian
 from mbsym.problems.normal_forms.centre import matrix_of
 from mbsym.problems.normal_forms.dissipative import judged_field, state_field
-from mbsym.problems.normal_forms.exact import over_tower
+from mbsym.problems.normal_forms.equal import equal_frequencies
+from mbsym.problems.normal_forms.exact import even_part, over_tower, two_eigenvectors
 from mbsym.problems.normal_forms.expansion import Expansion, expansion, faddeev
 from mbsym.problems.normal_forms.pairs import judged_on_border
-from mbsym.problems.normal_forms.problem import PRECISION, at_numbers, enclosed, twist
+from mbsym.problems.normal_forms.problem import ORDER, PRECISION, at_numbers, at_zero_root, enclosed, twist
 from mbsym.problems.normal_forms.result import Judged
-from mbsym.problems.normal_forms.twist import equal_frequencies
 
 
 class NotAlong(Failure):
@@ -99,13 +100,24 @@ def along(
         roots = _roots([_norm(tower, x) for x in wanted.values()], interval)
         _refuse_singular(tower, wanted, [factor for _, factor in roots], interval, name)
 
+        def two_eigenvectors_at(value: Any) -> bool:
+            """Where the discriminant vanishes: whether A^2 + w^2 does, exactly."""
+            factor = next(factor for root, factor in roots if root is value)
+            matrix = matrix_of_hamiltonian(over_tower(found, tower, rational).hamiltonian())
+            entries = two_eigenvectors(tower, matrix, even_part(matrix, tower.zero, tower.one)[1])
+            return all(x.is_zero() or _vanishes(tower, x, name, factor, value) for x in entries)
+
+        rational = {key: value for key, value in values.items() if key != name}
+
         def judge(value: Any, zero: Sequence[str]) -> Judged:
             there = {**values, name: value}
             if not conservative:
                 exact = isinstance(value, Fraction)
                 return judged_field(found, there) if exact else judged_on_border(found, there, zero)
-            if "discriminant" in zero and "product" not in zero:
-                return equal_frequencies(enclosed(to(4), there).hamiltonian())
+            if "product" in zero and not isinstance(value, Fraction):
+                return at_zero_root(to(ORDER), there)
+            if "discriminant" in zero and not isinstance(value, Fraction):
+                return equal_frequencies(enclosed(to(4), there).hamiltonian(), two_eigenvectors_at(value))
             decides = None if isinstance(value, Fraction) else _decides(tower, wanted, value, zero)
             return at_numbers(to, there, decides)
 

@@ -56,7 +56,7 @@ def on_pair(
     zero, one = source.zero, source.one
     matrix = matrix_of(field)
     q, p, column = _eigenvectors(matrix, root, zero, one, inverse, size)
-    conjugate = [row[column] for row in _adjugate(matrix, -root, zero, one)]
+    conjugate = [row[column] for row in adjugate(matrix, -root, zero, one)]
     third = _third(field, root, q, conjugate, matrix, inverse)
     return Reduced(zero, _dot(p, third, zero), tuple(a * b for a, b in zip(q, conjugate, strict=True)))
 
@@ -73,11 +73,11 @@ def on_double_pair(
     source = field[0].space
     m, zero, one = len(field), source.zero, source.one
     matrix = matrix_of(field)
-    whole, places = _adjugate(matrix, root, zero, one), range(m)
+    whole, places = adjugate(matrix, root, zero, one), range(m)
     i, j = max(((i, j) for i in places for j in places), key=lambda at: size(whole[at[0]][at[1]]))
     q, p = [row[j] for row in whole], whole[i]
-    conjugate = [row[j] for row in _adjugate(matrix, -root, zero, one)]
-    generalised = [row[j] for row in _adjugate_slope(matrix, root, zero, one)]
+    conjugate = [row[j] for row in adjugate(matrix, -root, zero, one)]
+    generalised = [row[j] for row in adjugate_slope(matrix, root, zero, one)]
     factor = inverse(_dot(p, generalised, zero))
     third = _third(field, root, q, conjugate, matrix, inverse)
     length = zero
@@ -138,14 +138,14 @@ def _eigenvectors(
 
     adj(root - A) is q p times a number, for a simple root.
     """
-    whole, places = _adjugate(matrix, root, zero, one), range(len(matrix))
+    whole, places = adjugate(matrix, root, zero, one), range(len(matrix))
     i, j = max(((i, j) for i in places for j in places), key=lambda at: size(whole[at[0]][at[1]]))
     q, p = [row[j] for row in whole], whole[i]
     factor = inverse(_dot(p, q, zero))
     return q, [x * factor for x in p], j
 
 
-def _adjugate(matrix: Sequence[Sequence[Any]], root: Any, zero: Any, one: Any) -> list[list[Any]]:
+def adjugate(matrix: Sequence[Sequence[Any]], root: Any, zero: Any, one: Any) -> list[list[Any]]:
     """adj(root - A)."""
     adjugates, _ = faddeev(matrix, zero, one)
     whole = adjugates[0]
@@ -154,7 +154,7 @@ def _adjugate(matrix: Sequence[Sequence[Any]], root: Any, zero: Any, one: Any) -
     return whole
 
 
-def _adjugate_slope(matrix: Sequence[Sequence[Any]], root: Any, zero: Any, one: Any) -> list[list[Any]]:
+def adjugate_slope(matrix: Sequence[Sequence[Any]], root: Any, zero: Any, one: Any) -> list[list[Any]]:
     """d/ds adj(s - A) at the root: Horner's rule for the derivative of sum B_k s^(m-1-k)."""
     adjugates, _ = faddeev(matrix, zero, one)
     m = len(matrix)

@@ -56,6 +56,11 @@ class Resonant:
         self._squares = None if coefficients is None else _rational_squares(tower, coefficients)
 
     @property
+    def zero(self) -> bool:
+        """Whether a root is zero exactly."""
+        return self.coefficients is not None and self.coefficients[0].is_zero()
+
+    @property
     def equal(self) -> bool:
         """Whether there are two frequencies that are equal exactly."""
         if self.coefficients is None or self.tower is None or len(self.coefficients) != 3:
@@ -115,6 +120,19 @@ def resonance(tower: Tower, coefficients: Sequence[Element], vector: Sequence[in
 def even_part(matrix: Sequence[Sequence[Any]], zero: Any, one: Any) -> list[Any]:
     """q(z) of det(lambda - A) = q(lambda^2), low to high: that of a Hamiltonian system."""
     return faddeev(matrix, zero, one)[1][::2]
+
+
+def two_eigenvectors(tower: Tower, matrix: Sequence[Sequence[Element]], trace: Element) -> list[Element]:
+    """The entries of A^2 + w^2, 2 w^2 = ``trace``: zero where each of two equal roots has two eigenvectors."""
+    m, half = len(matrix), trace / 2
+    found = []
+    for i in range(m):
+        for j in range(m):
+            total = half if i == j else tower.zero
+            for k in range(m):
+                total = total + matrix[i][k] * matrix[k][j]
+            found.append(total)
+    return found
 
 
 def in_ring(tower: Tower, ring: Ring, x: Element) -> Polynomial:

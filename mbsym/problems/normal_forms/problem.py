@@ -18,6 +18,7 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.normal_forms.birkhoff import diagonalised, matrix_of, normal_form
 from mbsym.problems.normal_forms.dissipative import focus, judged_field
+from mbsym.problems.normal_forms.equal import equal_frequencies
 from mbsym.problems.normal_forms.exact import (
     Resonant,
     even_part,
@@ -28,10 +29,12 @@ from mbsym.problems.normal_forms.exact import (
     primitive,
     rational_values,
     resonance,
+    two_eigenvectors,
 )
 from mbsym.problems.normal_forms.expansion import Expansion, Numbers, expansion
 from mbsym.problems.normal_forms.result import InSymbols, Judged, NormalForms, Outcome, Theorem, Why
-from mbsym.problems.normal_forms.twist import equal_frequencies, judged
+from mbsym.problems.normal_forms.twist import judged
+from mbsym.problems.normal_forms.zero_root import BALLS, Scalars, zero_root
 
 #: Working precision of enclosures, in bits.
 PRECISION = 320
@@ -93,11 +96,51 @@ def at_numbers(to: Callable[[int], Expansion], values: Mapping[str, Any], resona
     def lowered(order: int) -> Truncated:
         return enclosed(to(order), values).hamiltonian()
 
-    if resonant is None:
-        resonant = _exactly(to(4), values)
-        if resonant.equal:
-            return equal_frequencies(lowered(4))
+    if resonant is not None:
+        return judged(lowered, resonant, ORDER)
+    resonant = _exactly(to(4), values)
+    if resonant.zero:
+        return _with_zero_root(to(ORDER), values)
+    if resonant.equal:
+        return equal_frequencies(lowered(4), _two_eigenvectors(to(4), values))
     return judged(lowered, resonant, ORDER)
+
+
+def _two_eigenvectors(found: Expansion, values: Mapping[str, Any]) -> bool:
+    tower = Tower()
+    matrix = matrix_of(over_tower(found, tower, rational_values(values)).hamiltonian())
+    trace = even_part(matrix, tower.zero, tower.one)[1]
+    return all(x.is_zero() for x in two_eigenvectors(tower, matrix, trace))
+
+
+def _with_zero_root(found: Expansion, values: Mapping[str, Any]) -> Judged:
+    """A root is zero exactly, at rational values."""
+    tower = Tower()
+    numbers = over_tower(found, tower, rational_values(values))
+    balls = enclosed(found, values).hamiltonian()
+
+    def ball_of(x: Element) -> arb:
+        return tower.enclosed(x, {}).real
+
+    scalars = Scalars(
+        inverse=tower.reciprocal,
+        is_zero=lambda x: bool(x.is_zero()),
+        differs=lambda x: not ball_of(x).contains(0),
+        enclosed=ball_of,
+    )
+    return zero_root(numbers.hamiltonian(), balls, scalars, variables(found))
+
+
+def at_zero_root(found: Expansion, values: Mapping[str, Any]) -> Judged:
+    """The same at enclosed values at which a root is zero exactly: what else vanishes has to do so term by term."""
+    balls = enclosed(found, values).hamiltonian()
+    return zero_root(balls, balls, BALLS, variables(found))
+
+
+def variables(found: Expansion) -> tuple[str, ...]:
+    """The coordinates without the cyclic ones, and their momenta as ``p_name``."""
+    names = [name for i, name in enumerate(found.coordinates) if i not in found.cyclic]
+    return (*names, *(f"p_{name}" for name in names))
 
 
 def enclosed(found: Expansion, values: Mapping[str, Any]) -> Numbers:

@@ -37,6 +37,11 @@ class Theorem(StrEnum):
     THIRD = "Markeev, resonance of third order"
     FOURTH = "Markeev, resonance of fourth order"
     EQUAL = "Sokolskii, equal frequencies"
+    #: Of equal frequencies with two eigenvectors for each root.
+    EQUAL_TWO = "Sokolskii, equal frequencies with two eigenvectors"
+    #: One root is zero: H has a minimum or maximum by terms of higher order; or its normal form decides.
+    DEFINITE_HIGHER = "Dirichlet, by terms of higher order"
+    ZERO = "Sokolskii, zero frequency"
     BRUNO = "Bruno"
     ARNOLD = "Arnold"
     REDUCTION = "Lyapunov, Pliss: centre manifold"
@@ -51,6 +56,15 @@ class Why(StrEnum):
     ZERO_ROOT = "zero-root"
     TWO_ZERO_ROOTS = "two-zero-roots"
     EQUAL_FREQUENCIES = "equal-frequencies"
+    #: Of equal frequencies with two eigenvectors: the form of order 4 on the cone has a multiple zero, or no simple one
+    #: is proved.
+    CONE_OPEN = "cone-open"
+    #: Zero is a root of multiplicity two with two eigenvectors, or of a higher one.
+    ZERO_TWO = "zero-two"
+    #: A zero root in more than two degrees of freedom where H is not definite.
+    ZERO_MORE = "zero-more"
+    #: The energy along the kernel vanishes to the order looked at, or is not told from that.
+    ZERO_OPEN = "zero-open"
     #: Frequencies whose ratio is not told from a resonance.
     RESONANCE_OPEN = "resonance-open"
     #: A resonance that the theorems for non-resonant frequencies exclude.
@@ -88,7 +102,9 @@ class Judged(Shown):
     ``quadratic`` are the coefficients of I_j I_k (j <= k) of the normal form of order 4, where it was formed.
     ``determinants`` are D_4 and D_6 as far as they were needed; ``resonances`` those that hold exactly up to the order
     that was looked at.  Of one pair of imaginary roots: ``coefficient`` a of r' = d r + a r^3, r the amplitude of
-    ``amplitude_of`` in first approximation, ``frequencies`` its w.  ``checked``: the normal form, substituted.
+    ``amplitude_of`` in first approximation, ``frequencies`` its w.  Of equal frequencies with one eigenvector:
+    ``coefficient`` delta A of Sokolskii's normal form.  Of a zero root of a Hamiltonian system: ``coefficient`` a of
+    the energy a x^M + ... along its kernel, M ``degree``, x the variable ``along``.
     """
 
     outcome: Outcome
@@ -102,6 +118,8 @@ class Judged(Shown):
     amplitude_of: str = ""
     #: The two sides of Markeev's inequality of the resonance of fourth order: |H_4(k)| and what it is compared with.
     sides: tuple[Any, Any] | None = None
+    degree: int | None = None
+    along: str = ""
 
 
 @dataclass(frozen=True, repr=False)

@@ -12,8 +12,7 @@ Frequencies are enclosed; whatever is said to be different from zero is so by it
       H_4 = t^2 (H_4(k) + 2 sqrt(h h' 27) cos psi)
 
   unstable if |H_4(k)| < 2 sqrt(27 h h'), stable if it is greater (Markeev);
-* w_1 = w_2 with one eigenvector for each root: z'' = c z^2 z* + ... in axes that turn with the phase, stable for c < 0,
-  unstable for c > 0 (Sokolskii, J. Appl. Math. Mech. 38 (1974) 741);
+* w_1 = w_2: ``equal``; w_1 = 0: ``zero_root``;
 * more degrees of freedom, no resonance up to order 4: if H_4 does not vanish in the cone Omega.I = 0, I >= 0: formally
   stable (Bruno); if det d^2 H_4/dI^2 or the determinant bordered by Omega is not zero: stable for most initial states.
 
@@ -33,7 +32,6 @@ from flint import acb, acb_poly, arb, arb_mat, ctx
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.truncated import Space, Truncated
 from mbsym.problems.normal_forms.birkhoff import NormalForm, diagonalised, matrix_of, normal_form
-from mbsym.problems.normal_forms.centre import on_double_pair
 from mbsym.problems.normal_forms.checks import defects
 from mbsym.problems.normal_forms.expansion import faddeev
 from mbsym.problems.normal_forms.result import Judged, Outcome, Resonance, Theorem, Why
@@ -142,33 +140,6 @@ def judged(lowered: Callable[[int], Truncated], resonant: Decides, order: int = 
     if len(omega) > 2:
         return _many(lowered, omega, exact, known)
     return _two(lowered, omega, exact, least_open, order, known)
-
-
-def equal_frequencies(hamiltonian: Truncated) -> Judged:
-    """Two degrees of freedom with w_1 = w_2 exactly; H is needed to order 4.
-
-    Where the roots have one eigenvector each c of ``centre.on_double_pair`` decides: stable for c < 0, unstable for
-    c > 0 (Sokolskii).
-    """
-    sure = definite(hamiltonian)
-    if sure is not None:
-        return sure
-    _, coefficients = faddeev(matrix_of(hamiltonian), acb(0), acb(1))
-    square = coefficients[2].real / 2
-    if not square > 0:
-        return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.ZERO_ROOT)
-    w = square.sqrt()
-    n, m = 2, 4
-    rows = [hamiltonian.derivative(n + i) for i in range(n)] + [-hamiltonian.derivative(i) for i in range(n)]
-    space = Space(m, 3, acb(0), acb(1))
-    field = [Truncated(space, row.coefficients) for row in rows]
-    c = on_double_pair(field, acb(0, w), _inverse, _size).real
-    known: dict[str, Any] = {"frequencies": (w, -w), "coefficient": c}
-    if c < 0:
-        return Judged(Outcome.STABLE, Theorem.EQUAL, **known)
-    if c > 0:
-        return Judged(Outcome.UNSTABLE, Theorem.EQUAL, **known)
-    return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.EQUAL_FREQUENCIES, frequencies=(w, -w))
 
 
 def vectors(n: int, order: int) -> list[tuple[int, ...]]:

@@ -46,6 +46,8 @@ def _judged(found: Judged) -> dict[str, Any]:
         "resonances": [list(one.vector) for one in found.resonances],
         "coefficient": None if found.coefficient is None else enclosure(found.coefficient),
         "amplitude_of": found.amplitude_of,
+        "along": found.along,
+        "degree": found.degree,
     }
 
 
