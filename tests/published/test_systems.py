@@ -33,6 +33,8 @@ NO_MOTION = {
     "euler-poisson.yaml",
     "heavy-gyrostat.yaml",
     "kovalevskaya.yaml",
+    "goryachev-chaplygin.yaml",
+    "hess-appelrot.yaml",
     "four-bar.yaml",
     "gyrostat.yaml",
     "gyrostat-fast.yaml",

@@ -74,6 +74,8 @@ UNITS = {
     "euler-poisson": {**BODY, **HEAVY, "y0": "m", "z0": "m"},
     "heavy-gyrostat": {**BODY, **HEAVY, "z0": "m", "h": "kg*m^2/s"},
     "kovalevskaya": {"C": MOMENTS, **HEAVY},
+    "goryachev-chaplygin": {"C": MOMENTS, **HEAVY},
+    "hess-appelrot": {"A": MOMENTS, "C": MOMENTS, **HEAVY, "z0": "m"},
     "four-bar": {**dict.fromkeys(("l1", "l2", "l3", "l4"), "m"), "rho": "kg/m", "q1": "rad"},
     "gravity-gradient": {**ORBIT, **BODY, "m": "kg", "chi": "rad"},
     "gravity-gradient-quaternion": {**ORBIT, **BODY, "m": "kg", "chi": "rad", "p": "rad/s", "e1": "1"},

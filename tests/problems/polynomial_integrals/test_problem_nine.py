@@ -15,6 +15,7 @@ import mbsym
 from mbsym.analysis import polynomial
 from mbsym.analysis.pipeline import Analysis
 from mbsym.formulas.formula import Formula
+from mbsym.problems.polynomial_integrals import linear_relations
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main
 
@@ -110,3 +111,27 @@ def test_every_sentence_has_its_translations():
         for english, other in catalogue.items():
             assert english[:30] in source or english.startswith("Problem 9")
             assert set(re.findall(r"\[\[\w+\]\]", english)) == set(re.findall(r"\[\[\w+\]\]", other))
+
+
+def test_goryachev_and_chaplygins_integral_holds_on_the_level_of_the_area_integral():
+    """D. N. Goryachev (1900): r (p^2 + q^2) - m g x0/C p gamma3 for A = B = 4 C, gamma upwards."""
+    found = mbsym.load(SYSTEMS / "goryachev-chaplygin.yaml")
+    result = found.polynomial_integrals
+    assert not any(one.is_new for one in result.found.generators)
+    assert [one.level.name for one in result.levels] == ["angular momentum about axis 3"]
+    ((integral,),) = result.on_levels
+    assert str(integral) == "C*(p**2 + q**2)*r - x0*m*g*p*gamma3"
+    # The initial state of the file is on that level: 4 q gamma2 + r gamma3 = 4 (-12/25)(4/5) + (64/25)(3/5) = 0.
+    other = (SYSTEMS / "goryachev-chaplygin.yaml").read_text(encoding="utf-8").replace("4*C", "5*C")
+    assert mbsym.loads(other).polynomial_integrals.levels == ()
+
+
+def test_hess_relation_of_the_shipped_file():
+    """A x0 p + C z0 r divides its derivative (W. Hess, 1890); with another second moment of inertia nothing does."""
+    text = (SYSTEMS / "hess-appelrot.yaml").read_text(encoding="utf-8")
+    there = polynomial.setting(mbsym.loads(text))
+    found = linear_relations(there.field, (1, 1, 1, 2, 2, 2), ["A", "C", "x0", "z0", "m", "g"])
+    assert [str(there.formula(one.polynomial)) for one in found.relations] == ["A*x0*p + C*z0*r"]
+    assert found.complete
+    other = polynomial.setting(mbsym.loads(text.replace("[A, A*C*(x0**2 + z0**2)", "[A, A*C*(x0**2 + 2*z0**2)")))
+    assert linear_relations(other.field, (1, 1, 1, 2, 2, 2), ["A", "C", "x0", "z0", "m", "g"]).relations == ()
