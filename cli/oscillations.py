@@ -82,10 +82,10 @@ def command(file: Path, order: str, leading: str | None, settings: tuple[str, ..
 
 def _symbols(system: System) -> tuple[str, ...]:
     """Names that a result may have beside the parameters."""
-    from mbsym.analysis.oscillating import AMPLITUDE_NAME
+    from mbsym.model.oscillation_names import AMPLITUDE
 
     variables = (*system.coordinates, *system.velocities, *system.variables)
-    return (AMPLITUDE_NAME, *(f"{name}_0" for name in variables))
+    return (AMPLITUDE, *(f"{name}_0" for name in variables))
 
 
 def _check(system: System, leading: str | None, values: Mapping[str, Fraction], asked: Options) -> None:

@@ -8,18 +8,23 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import Defect, Failure
-from mbsym.mechanics.constraints.refusal import refused
+from mbsym.mechanics.constraints.refusal import refuse_constraints, refused
 from mbsym.mechanics.variables import angle_denominators, angles_of
-from mbsym.model.claims import Claim
+from mbsym.model.claims import CLAIMS, Claim
 from mbsym.problems import claims, stability
 from mbsym.problems.claims import ClaimResult
 from mbsym.problems.claims.counterexample import Trials
 
 if TYPE_CHECKING:
+    from mbsym.analysis.expanding import Expansion
+    from mbsym.analysis.oscillating import Oscillating
     from mbsym.analysis.pipeline import Analysis
 
 #: All claims together may take this part of the work that a run may take, and one of them this part.
 CLAIMS_SHARE, CLAIM_SHARE = 4, 16
+
+#: The stages in which expansions are derived that are claimed, by how the kinds of claim begin.
+_EXPANSIONS = {"oscillation": "claimed_oscillation", "slow manifold": "claimed_manifold"}
 
 
 def judged_claims(analysis: Analysis) -> tuple[ClaimResult, ...]:
@@ -36,7 +41,14 @@ def judged_claims(analysis: Analysis) -> tuple[ClaimResult, ...]:
         analysis.optional("trials")
     symbols = claims.Symbols.of(analysis)
     own, there = angle_denominators(system), set(angles_of(system))
-    arguments = {id(claim): [x for x in symbols.arguments(claim) if x not in there] for claim in system.claims}
+    arguments = {
+        id(claim): [x for x in symbols.arguments(claim) if x not in there]
+        for claim in system.claims
+        if not CLAIMS[claim.kind].oscillates  # their phase is no angle of the system
+    }
+    for kind, stage in _EXPANSIONS.items():
+        if any(claim.kind.startswith(kind) for claim in system.claims):
+            analysis.optional(stage)
     # Sines that only claims hold: those claims are judged in a ring of their own, and cost the others nothing.
     further = {key: some for key, some in arguments.items() if some and angle_denominators(system, some) != own}
     source = analysis
@@ -66,6 +78,26 @@ def _judged(source: Analysis, claim: Claim, allowance: int) -> tuple[ClaimResult
             source.defects.append(error)
             result = claims.undecided(source.system, claim, Defect.of(error).reason)
     return result, spent.work
+
+
+def claimed_oscillation(analysis: Analysis) -> Oscillating:
+    """The periodic solution of problem 12, to the highest order that is claimed."""
+    from mbsym.analysis.oscillating import oscillating
+
+    refuse_constraints(analysis.system, "not expanded")
+    return oscillating(analysis, _order(analysis, "oscillation"))
+
+
+def claimed_manifold(analysis: Analysis) -> Expansion:
+    """The slow manifold of problem 12, to the highest order that is claimed."""
+    from mbsym.analysis.expanding import expansion
+
+    refuse_constraints(analysis.system, "not expanded")
+    return expansion(analysis, _order(analysis, "slow manifold"))
+
+
+def _order(analysis: Analysis, kind: str) -> int:
+    return max([1, *(claim.order for claim in analysis.system.claims if claim.kind.startswith(kind))])
 
 
 def trials(analysis: Analysis) -> Trials:

@@ -20,6 +20,7 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.motion import relations
+from mbsym.model.oscillation_names import names_in, oscillation_names
 from mbsym.model.small import SmallParameter
 from mbsym.model.system import System, velocity_name
 from mbsym.problems.angle_field import in_angles
@@ -38,9 +39,6 @@ from mbsym.problems.vector_field import in_speeds
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
-
-#: What symbols of results are called, unless a description has the name for something else.
-PHASE, AMPLITUDE_NAME = "phase", "amplitude"
 
 
 @dataclass(frozen=True)
@@ -154,10 +152,12 @@ def oscillating(
         raise NoClosedForm(f"the equations do not depend on {small.name}")
     kept = [name for name in field.parameters if name != small.name]
     most = order if taylor else order + LATEST
-    tower = tower_over(kept, field.variables, order)
+    left = {*kept, small.name, *related, *given}
+    others = [name for name in system.parameter_names if name not in left]
+    tower = tower_over(kept, field.variables, order, others)
     rows = graded_rows(tower, field, small.name, powers, most)
     phase, symbols = names_of(system, field)
-    ring = _letters(system, kept, phase, symbols)
+    ring = _letters(system, [*kept, *others], phase, symbols)
     constants = {internal: tower.number(given[shown]) for internal, shown in symbols.items() if shown in given}
     there = Equations(
         tower,
@@ -229,20 +229,8 @@ def _field(analysis: Analysis, small: SmallParameter, order: int) -> tuple[Polyn
 
 def names_of(system: System, field: PolynomialField) -> tuple[str, dict[str, str]]:
     """What the phase is called, and the symbols of the tower by their own names."""
-    taken = {*system.parameter_names, *field.variables, *system.coordinates}
-
-    def free(name: str) -> str:
-        while name in taken:
-            name += "_"
-        taken.add(name)
-        return name
-
-    phase = free(PHASE)
-    symbols = {AMPLITUDE: free(AMPLITUDE_NAME)}
-    for name in field.variables:
-        plain = "".join(x if x.isalnum() else "_" for x in name).strip("_")
-        symbols[f"#{name}"] = free(f"{plain}_0")
-    return phase, symbols
+    found = oscillation_names(field.variables, names_in(system))
+    return found.phase, {AMPLITUDE: found.amplitude} | {f"#{name}": start for name, start in found.starts.items()}
 
 
 def _letters(system: System, kept: list[str], phase: str, symbols: Mapping[str, str]) -> Ring:

@@ -70,6 +70,8 @@ from mbsym.problems.stability import Stability
 from mbsym.problems.telling import ToldSystem
 
 if TYPE_CHECKING:
+    from mbsym.analysis.expanding import Expansion
+    from mbsym.analysis.oscillating import Oscillating
     from mbsym.analysis.small import SmallParameters
     from mbsym.mechanics.speeds import SpeedForm
     from mbsym.problems.brackets import Brackets
@@ -121,6 +123,8 @@ KNOW_SPEEDS = frozenset(
         "invariant_sets",
         "polynomial_integrals",
         "small_parameters",
+        "claimed_oscillation",
+        "claimed_manifold",
         "claims",
         "checks",
     )
@@ -387,6 +391,12 @@ class Analysis(Stages):
 
     claims = Derived["Analysis", tuple[ClaimResult, ...]](judging.judged_claims)
     trials = Derived["Analysis", Trials](judging.trials, JUDGED, says=True)
+    claimed_oscillation: Derived[Analysis, Oscillating] = Derived(
+        judging.claimed_oscillation, ("equations of motion",), says=True
+    )
+    claimed_manifold: Derived[Analysis, Expansion] = Derived(
+        judging.claimed_manifold, ("equations of motion",), says=True
+    )
     checks = Derived["Analysis", tuple[Check, ...]](second_routes.checks)
 
     def broken(self, names: Sequence[str]) -> NoResult | None:

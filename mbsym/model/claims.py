@@ -27,6 +27,9 @@ NECESSARY, SUFFICIENT = "necessary", "sufficient"
 #: What ``of`` names.
 COORDINATE, BODY, EXPRESSION, SUM = "coordinate", "body", "expression", "sum"
 
+#: Coefficients of higher powers of a small parameter cannot be claimed.
+MOST_ORDER = 6
+
 #: What the rows and columns of a matrix count.
 COORDINATES, INPUTS, OUTPUTS, STATES = "coordinates", "inputs", "outputs", "states"
 
@@ -36,6 +39,7 @@ class ClaimKind:
     """``of`` says what the key of that name holds, ``entry`` how many indices are given, ``axes`` what they count.
 
     ``rows`` and ``columns`` are what the indices of an entry count otherwise; with ``momenta`` it may be told in these.
+    Of an expansion the ``order`` is given, and one that ``oscillates`` is told in a phase, an amplitude and constants.
     ``homogeneous`` claims say that the quantity vanishes or is constant, so that a constant factor is immaterial.
     """
 
@@ -52,6 +56,8 @@ class ClaimKind:
     rows: str = COORDINATES
     columns: str = COORDINATES
     momenta: bool = False
+    order: bool = False
+    oscillates: bool = False
 
 
 CLAIMS: dict[str, ClaimKind] = {
@@ -102,6 +108,20 @@ CLAIMS: dict[str, ClaimKind] = {
         "an expression that is constant on every motion", state=False, homogeneous=True, momenta=True
     ),
     "condition": ClaimKind("an inequality among the stability conditions", state=False, inequality=True),
+    "oscillation": ClaimKind(
+        "of a variable, or a polynomial in variables: what stands before eps^order in the periodic solution of problem "
+        "12, in its phase, amplitude and constants (amplitude, phase, r_0)",
+        EXPRESSION, state=False, order=True, oscillates=True,
+    ),
+    "oscillation frequency": ClaimKind(
+        "what stands before eps^order in the rate of the phase of that solution", state=False, order=True,
+        oscillates=True,
+    ),
+    "slow manifold": ClaimKind(
+        "of a fast variable: what stands before eps^order in it on the slow manifold of problem 12; of a slow one: in "
+        "its rate there",
+        COORDINATE, state=False, order=True,
+    ),
     "value": ClaimKind("of an expression at a state; it may hold accelerations", EXPRESSION, accelerations=True),
 }  # fmt: skip
 
@@ -135,6 +155,7 @@ class Claim:
     ``of`` is the name of a coordinate, body or quantity, ``of_expression`` an expression instead; ``entry`` holds
     indices counted from 1; ``at`` a product of velocities; ``variable`` the symbol of a characteristic polynomial.
     A condition's ``role`` is necessary, sufficient (those of one place together), or "" for either.
+    ``order`` is the power of a small parameter.
     ``tolerance`` (absolute) or ``digits`` (significant ones that count) say how exact a number at a state is meant.
     ``state`` gives numbers for coordinates, velocities, parameters and t (or they are those of the initial state with
     ``at_initial``), and then ``printed`` keeps a decimal number as it was printed, with its digits.
@@ -147,6 +168,7 @@ class Claim:
     entry: tuple[int, ...] = ()
     at: Expression | None = None
     variable: str = ""
+    order: int = 0
     relation: str = ""
     right: Expression | None = None
     role: str = ""

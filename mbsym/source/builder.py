@@ -23,6 +23,7 @@ from mbsym.source.inputs import held_values, read_inputs, read_outputs
 from mbsym.source.keys import SYSTEM, VERSION
 from mbsym.source.linear import declare_linear, read_linear
 from mbsym.source.loads import read_loads
+from mbsym.source.oscillation_symbols import enter_symbols, leave_symbols
 from mbsym.source.placed import Node
 from mbsym.source.reading import Fields, Reading
 from mbsym.source.scope import Allowed, Scope
@@ -84,6 +85,7 @@ def build(node: Node, complaints: Complaints, by_use: bool = False, folder: Path
     outputs = read_outputs(fields.get("outputs"), reading)
     motion = read_motion(fields.get("motion"), reading)
     initial, start = read_initial(fields.get("initial"), reading)
+    enter_symbols(fields.get("claims"), fields.get("abbreviations"), reading)
     system = System(
         name=fields.text("name"),
         parameters=tuple(parameters),
@@ -116,7 +118,8 @@ def build(node: Node, complaints: Complaints, by_use: bool = False, folder: Path
     small = read_small(fields.get("small parameter"), reading, in_formulas(system))
     system = replace(system, small=small)
     names = [body.name for body in bodies]
-    claims = read_claims(fields.get("claims"), names, system, reading)
+    claims = read_claims(fields.get("claims"), names, system, reading, fields.get("small parameter") is not None)
+    leave_symbols(reading)
     system = replace(system, claims=claims)
     values = known_values(system)
     for draft, good in zip(drafts, sound, strict=True):

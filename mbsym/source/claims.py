@@ -6,13 +6,14 @@ import re
 from dataclasses import dataclass, replace
 
 from mbsym.expressions.parser import ascii_safe
-from mbsym.expressions.tree import ZERO, Expression, Name, Number, Operation
+from mbsym.expressions.tree import ZERO, Expression, Name, Number, Operation, names
 from mbsym.model.claims import (
     BODY,
     CLAIMS,
     COORDINATE,
     EXPRESSION,
     INITIAL_STATE,
+    MOST_ORDER,
     NECESSARY,
     SUFFICIENT,
     SUM,
@@ -26,6 +27,7 @@ from mbsym.model.momenta import momentum_names
 from mbsym.model.system import INERTIAL, System, rational
 from mbsym.source.bodies import read_body_name
 from mbsym.source.keys import CLAIM
+from mbsym.source.oscillation_symbols import OSCILLATION_KINDS, VARIABLES, kind_of_abbreviation
 from mbsym.source.placed import Mapping, Node, Scalar
 from mbsym.source.reading import Fields, Reading
 from mbsym.source.scope import NUMBER, Allowed, closest, did_you_mean
@@ -48,21 +50,25 @@ _MISSPELT = 0.8
 def read_abbreviations(node: Node | None, reading: Reading) -> tuple[Abbreviation, ...]:
     """Symbols in order: each may use every name of the system and the symbols above it."""
     found = []
-    allowed = Allowed("an abbreviation", (*_WITHOUT_INPUTS, "acceleration"))
+    allowed = Allowed("an abbreviation", (*_WITHOUT_INPUTS, "acceleration", *OSCILLATION_KINDS))
     entries = [] if node is None else list(reading.entries(node, "'abbreviations'"))
     reading.scope.later, reading.scope.ordered = {entry.key.text for entry in entries}, "abbreviations are"
     for entry in entries:
         errors = reading.errors
         value = reading.expression(entry.value, allowed)
-        if reading.scope.declare(entry.key.text, "abbreviation", entry.key.span) and reading.errors == errors:
+        kind = kind_of_abbreviation(value, reading)
+        if reading.scope.declare(entry.key.text, kind, entry.key.span) and reading.errors == errors:
             found.append(Abbreviation(entry.key.text, value, entry.key.span))
         reading.scope.later.discard(entry.key.text)
     return tuple(found)
 
 
-def read_claims(node: Node | None, bodies: list[str], system: System, reading: Reading) -> tuple[Claim, ...]:
+def read_claims(
+    node: Node | None, bodies: list[str], system: System, reading: Reading, small: bool = False
+) -> tuple[Claim, ...]:
     """A list of claims; a condition that is a chain of inequalities is several.
 
+    ``small``: the description has a small parameter, be it understood or not.
     Claims alone may name momenta, of a system in generalised velocities.
     """
     found: list[Claim] = []
@@ -71,14 +77,14 @@ def read_claims(node: Node | None, bodies: list[str], system: System, reading: R
     kinds.update(dict.fromkeys(momenta, "momentum"))
     for item in () if node is None else reading.items(node, "'claims'"):
         errors = reading.errors
-        claims = _claims(item, bodies, system, reading)
+        claims = _claims(item, bodies, system, reading, small)
         found += claims if reading.errors == errors else []
     for name in momenta:
         del kinds[name]
     return tuple(found)
 
 
-def _claims(item: Node, bodies: list[str], system: System, reading: Reading) -> list[Claim]:
+def _claims(item: Node, bodies: list[str], system: System, reading: Reading, small: bool) -> list[Claim]:
     hint = "write for example {claim: kinetic energy, equals: m*x_dot**2/2, place: eq. (1)}"
     fields = reading.fields(item, "a claim", CLAIM, hint)
     node = fields.require("claim", f"one of: {', '.join(CLAIMS)}")
@@ -90,7 +96,7 @@ def _claims(item: Node, bodies: list[str], system: System, reading: Reading) -> 
         _check_names(fields, reading)
         return []
     kind = _KINDS[word]
-    one = _Reader(kind, CLAIMS[kind], fields, bodies, system, reading)
+    one = _Reader(kind, CLAIMS[kind], fields, bodies, system, reading, small)
     return one.conditions() if one.kind.inequality else [one.single()]
 
 
@@ -121,6 +127,7 @@ class _Reader:
     bodies: list[str]
     system: System
     reading: Reading
+    small: bool = False
 
     def single(self) -> Claim:
         kind, fields = self.kind, self.fields
@@ -133,6 +140,7 @@ class _Reader:
             entry=self.entry() if kind.entry else (),
             at=self.product() if kind.at else None,
             variable=variable,
+            order=self.order(equals) if kind.order else 0,
             at_initial=self.at_initial,
             state=self.state(),
             printed=printed,
@@ -141,7 +149,10 @@ class _Reader:
             place=fields.text("place"),
             span=fields.key_span("claim"),
         )
-        if kind.of == EXPRESSION:
+        if kind.of == EXPRESSION and kind.order:
+            of = fields.required_expression("of", Allowed("what oscillates", (*VARIABLES, *_CONSTANTS)))
+            claim = replace(claim, of_expression=of)
+        elif kind.of == EXPRESSION:
             allowed = Allowed("the value of an expression", (*_PLACES, "acceleration"))
             claim = replace(claim, of_expression=fields.required_expression("of", allowed))
             fields.require("state", "write state: initial, or state: {coordinate: number}")
@@ -175,6 +186,7 @@ class _Reader:
             "component": kind.entry == 1,
             "at": kind.at,
             "variable": kind.variable,
+            "order": kind.order,
             "state": kind.state,
             "tolerance": kind.state,
             "digits": kind.state,
@@ -196,6 +208,8 @@ class _Reader:
         what = f"a claim about the {self.word}"
         if self.word.startswith(_CONSTANT_KINDS):
             return Allowed(what, (*_CONSTANTS, *(["variable"] if variable else [])))
+        if self.kind.oscillates:
+            return Allowed(what, (*_CONSTANTS, *OSCILLATION_KINDS))
         accelerations = ("acceleration",) if self.kind.accelerations else ()
         places = _WITHOUT_INPUTS if self.word == "first integral" else _PLACES
         momenta = ("momentum",) if self.kind.momenta and not self.system.speeds else ()
@@ -225,6 +239,30 @@ class _Reader:
             return ""
         del scope.kinds[scalar.text]
         return scalar.text
+
+    def order(self, equals: Expression) -> int:
+        """The power of a small parameter, of which the description has to have one."""
+        small = self.system.small
+        by_motion = self.kind.oscillates and self.system.motion and not self.system.speeds
+        if not self.small and not by_motion:
+            message = f"a claim about the {self.word} is about powers of a small parameter, and none is named"
+            hint = "add for example small parameter: eps"
+            self.reading.error("missing-key", message, self.fields.key_span("claim"), hint)
+        if small is not None and small.name in names(equals):
+            given = self.fields.get("equals")
+            message = f"what stands before a power of the small parameter {small.name} does not hold it"
+            span = None if given is None else given.span
+            self.reading.error("misplaced-name", message, span, "give the coefficient alone")
+        node = self.fields.require("order", "write for example order: 1")
+        scalar = None if node is None else self.reading.scalar(node, "'order'")
+        if scalar is None:
+            return 0
+        text = scalar.text.strip()
+        if not (text.isascii() and text.isdigit() and len(text) < 3 and int(text) <= MOST_ORDER):
+            message = f"{ascii_safe(scalar.text)} is no order"
+            self.reading.error("bad-number", message, scalar.span, f"write a whole number from 0 to {MOST_ORDER}")
+            return 0
+        return int(text)
 
     def tolerance(self) -> Expression | None:
         node = self.fields.get("tolerance")

@@ -262,6 +262,7 @@ CLAIM = {
     "component": "number of an axis, 1 to 3",
     "at": "the product of velocities whose coefficient is claimed: x_dot*phi_dot (1/2*c*x_dot**2 has c/2 at x_dot**2)",
     "variable": "the symbol of the characteristic polynomial",
+    "order": "of an expansion: the power of the small parameter whose coefficient is claimed",
     "that": "the inequality that is claimed, for a condition",
     "as": "of a condition: necessary, or sufficient (those of one place together); either when left out",
     "equals": "the formula or number as it was printed",

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from mbsym.expressions.table import CUBIC, ENDS, EXTRAPOLATE, HOLD, LINEAR, OUTSIDE_ZERO
-from mbsym.model.claims import CLAIMS, INITIAL_STATE, NECESSARY, SUFFICIENT
+from mbsym.model.claims import CLAIMS, INITIAL_STATE, MOST_ORDER, NECESSARY, SUFFICIENT
 from mbsym.model.linear import MATRICES
 from mbsym.model.loads import EXACT, GRAVITY_ORDERS
 from mbsym.model.system import LANGUAGES, SHAPES
@@ -228,6 +228,9 @@ def _list(most: int) -> Schema:
     return {"type": "array", "items": _reference("expression"), "maxItems": most}
 
 
+_ORDERS = [str(k) for k in range(MOST_ORDER + 1)]
+
+
 def _claim_values() -> dict[str, Schema]:
     state: Schema = {"type": "object", "patternProperties": {_NAME: _reference("expression")}}
     return {
@@ -236,6 +239,7 @@ def _claim_values() -> dict[str, Schema]:
         "entry": {"type": "array", "items": {"type": ["string", "integer"]}, "minItems": 2, "maxItems": 2},
         "component": {"enum": [1, 2, 3, "1", "2", "3"]},
         "variable": {"type": "string", "pattern": _NAME},
+        "order": {"anyOf": [{"type": "integer", "minimum": 0, "maximum": MOST_ORDER}, {"enum": _ORDERS}]},
         "that": {"type": "string"},
         "as": {"enum": [NECESSARY, SUFFICIENT]},
         "digits": {"anyOf": [{"type": "integer", "minimum": 1}, {"type": "string", "pattern": "^[1-9][0-9]{0,3}$"}]},

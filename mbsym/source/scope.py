@@ -49,6 +49,8 @@ _KINDS = {
     "unit vector": "a component of a unit vector",
     "quaternion": "a component of a quaternion",
     "momentum": "a momentum",
+    "oscillation": "a symbol of an oscillation",
+    "oscillation abbreviation": "an abbreviation that holds symbols of an oscillation",
 }
 _PLURALS = {
     "parameter": "parameters",
@@ -67,9 +69,11 @@ _PLURALS = {
     "unit vector": "components of unit vectors",
     "quaternion": "components of quaternions",
     "momentum": "momenta",
+    "oscillation": "symbols of an oscillation",
+    "oscillation abbreviation": "abbreviations of them",
 }
 #: Kinds of names that are told where the description has some.
-_RARE = ("input", "quaternion", "momentum")
+_RARE = ("input", "quaternion", "momentum", "oscillation", "oscillation abbreviation")
 
 
 @dataclass(frozen=True, slots=True)

@@ -290,6 +290,8 @@ def claim_shape(claim: Claim, system: System) -> dict[str, Shape]:
         shape["at"] = text(claim.at)
     if claim.variable:
         shape["variable"] = claim.variable
+    if kind.order:
+        shape["order"] = str(claim.order)
     if claim.at_initial:
         shape["state"] = INITIAL_STATE
     elif claim.state:

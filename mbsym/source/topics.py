@@ -66,7 +66,8 @@ def claim_kinds() -> str:
 
 
 def _keys(entry: ClaimKind) -> str:
-    needed = ["of, state" if entry.of == EXPRESSION else "of"] if entry.of else []
+    needed = ["of, state" if entry.of == EXPRESSION and not entry.order else "of"] if entry.of else []
+    needed += ["order"] if entry.order else []
     needed += {0: [], 1: ["component"], 2: ["entry"]}[entry.entry]
     needed += ["at"] if entry.at else []
     needed += ["variable"] if entry.variable else []

@@ -27,7 +27,7 @@ _NAMED = {
 
 #: Keys of records that hold no formulas.
 _FREE = ("sign", "meaning", "unit", *SIGNS)
-_CLAIM_FREE = ("claim", "component", "variable", "as", "tolerance", "digits", "place")
+_CLAIM_FREE = ("claim", "component", "variable", "order", "as", "tolerance", "digits", "place")
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _SPIN = re.compile(r"(omega\s*\[\s*)([^\]]*?)(\s*\])")

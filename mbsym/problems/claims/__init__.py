@@ -26,13 +26,17 @@ digits that were printed: 1.234 means 1.234 +- 0.0005 (0 means nothing but zero)
 how exact it is meant.  A number of 15 to 17 digits may come from double precision: what the rounding of doubles can
 explain, in evaluating this very quantity, is not held against it, and is told.
 
+What is claimed of an expansion in a small parameter is compared coefficient by coefficient with problem 12, in the
+symbols of its solution; a difference that another amplitude, other constants or another phase can explain leaves the
+claim undecided.
+
 Under roots of squares signs matter: sqrt(r**2) is r for r > 0 only.  What holds only for positive coordinates and
 parameters (those whose sign is not declared) is said to hold for these.
 """
 
 from __future__ import annotations
 
-from mbsym.model.claims import Claim
+from mbsym.model.claims import CLAIMS, Claim
 from mbsym.problems.claims.comparison import examined_formula
 from mbsym.problems.claims.conditions import examined_condition
 from mbsym.problems.claims.forms import in_parameters
@@ -92,6 +96,10 @@ def examine(derived: Derived, claim: Claim) -> ClaimResult:
     Raises NoClosedForm, NotRational or SingularPoint (and what ``derived`` raises) where it cannot be decided.
     """
     about = title(claim, derived.system)
+    if CLAIMS[claim.kind].order:
+        from mbsym.problems.claims import oscillations  # few claims are about expansions
+
+        return oscillations.examined(derived, claim, about)
     if derived.system.constraints:
         from mbsym.problems.claims import constrained  # most systems have no constraints
 

@@ -32,6 +32,7 @@ from mbsym.problems.stability import Stability
 if TYPE_CHECKING:
     from mbsym.mechanics.speeds import SpeedForm
     from mbsym.problems.canonical import Routh
+    from mbsym.problems.claims.oscillations import Told, ToldManifold
     from mbsym.problems.state_space import StateSpace
 
 EXACT = "holds exactly"
@@ -86,6 +87,10 @@ class Derived(Protocol):
     def integrals(self) -> Sequence[Integral]: ...
     @property
     def trials(self) -> Trials: ...
+    @property
+    def claimed_oscillation(self) -> Told: ...
+    @property
+    def claimed_manifold(self) -> ToldManifold: ...
 
 
 @dataclass(frozen=True)
@@ -147,9 +152,11 @@ def title(claim: Claim, system: System) -> str:
         of = claim.of if claim.of in SUMS else f"the equation of {claim.of}"
         words = f"coefficient of {text(claim.at or ZERO)} in {of}"
     elif claim.of_expression is not None:
-        words = f"value of {text(claim.of_expression)}"
+        words = f"{claim.kind} of {text(claim.of_expression)}"
     elif claim.of:
         words += f" of {claim.of}"
+    if kind.order:
+        words += f", order {claim.order}"
     if claim.entry:
         counted = zip(claim.entry, index_names(kind, system), strict=True)
         words += " [" + ", ".join(str(k) if kind.axes else names[k - 1] for k, names in counted) + "]"

@@ -29,9 +29,12 @@ def correction_names(order: int) -> tuple[str, ...]:
     return tuple(f"#amplitude {k}" for k in range(1, order + LATEST + 1))
 
 
-def tower_over(parameters: Sequence[str], variables: Sequence[str], order: int) -> Tower:
-    """Parameters, the amplitude and its corrections, a constant value ``#x`` of every variable x."""
-    return Tower((*parameters, AMPLITUDE, *(f"#{name}" for name in variables), *correction_names(order)))
+def tower_over(parameters: Sequence[str], variables: Sequence[str], order: int, others: Sequence[str] = ()) -> Tower:
+    """Parameters, the amplitude and its corrections, a constant value ``#x`` of every variable x.
+
+    ``others``: parameters that no equation holds, for what results are compared with.
+    """
+    return Tower((*parameters, AMPLITUDE, *(f"#{name}" for name in variables), *correction_names(order), *others))
 
 
 class ModeIsOpen(NoClosedForm):

@@ -32,7 +32,7 @@ def check_claim(claim: Claim, dimensions: Dimensions, scaled: bool) -> None:
     elif claim.kind in _FIXED:
         wanted, what = _FIXED[claim.kind]
         dimensions.expect(claim.equals, Form(wanted), what)
-    elif claim.of_expression is not None:
+    elif claim.of_expression is not None and not CLAIMS[claim.kind].order:
         dimensions.alike(claim.of_expression, claim.equals, "equal")
     elif claim.kind in CLAIMS:
         dimensions.with_name(claim.variable, Form() if scaled else Form(RATE)).of(claim.equals)

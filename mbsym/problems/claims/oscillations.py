@@ -1,0 +1,231 @@
+"""Claims about periodic solutions in powers of a small parameter, and about slow manifolds.
+
+The coefficient of eps^n of a variable x, or of a polynomial in variables, is compared with what problem 12 derives:
+
+    x = sum_n eps^n x_n(phase),      phase' = sum_n eps^n w_n
+
+in the symbols of the derived solution (``mbsym oscillations``): its amplitude, its constants at the phase 0, and
+parameters and variables with the powers of eps taken out that the description gives them.  The difference is decided
+in the field of these coefficients.  A solution may be written with another amplitude, other constants or another
+phase: a difference that such a choice can explain (``other_symbols``) leaves the claim undecided.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Protocol
+
+from mbsym.algebra.failures import Failure, NoClosedForm, SingularPoint
+from mbsym.algebra.quotients import Quotient
+from mbsym.algebra.tower import Element, Tower
+from mbsym.expressions.tree import Expression, Name, Negative, Number, Operation
+from mbsym.formulas.formula import Formula
+from mbsym.model.claims import Claim
+from mbsym.problems.claims.forms import in_parameters
+from mbsym.problems.claims.other_symbols import explained
+from mbsym.problems.claims.result import DIFFERS, EXACT, SCALED, UNDECIDED, ClaimResult, Derived
+from mbsym.problems.claims.symbols import Symbols
+from mbsym.problems.claims.wave_formulas import WaveFormulas
+from mbsym.problems.small_parameter.harmonics import Harmonics
+from mbsym.problems.small_parameter.oscillation_result import Oscillation
+from mbsym.problems.small_parameter.result import SlowManifold
+from mbsym.problems.vector_field import Transfer
+
+#: The kinds of claim that this is about.
+OSCILLATION, FREQUENCY, MANIFOLD = "oscillation", "oscillation frequency", "slow manifold"
+
+_OTHER_SYMBOLS = "with another amplitude, other constants or another phase it may hold: these are free to choose"
+_NOT_SURE = "with square roots in it the difference is not told from zero"
+
+
+class Told(Protocol):
+    """A solution with the ring in which it is told; ``symbols``: their names there by those in the solution."""
+
+    @property
+    def found(self) -> Oscillation: ...
+    @property
+    def phase(self) -> str: ...
+    @property
+    def symbols(self) -> Mapping[str, str]: ...
+
+    def formula(self, x: Element) -> Formula: ...
+    def wave(self, one: Harmonics) -> Formula: ...
+
+
+class ToldManifold(Protocol):
+    """A slow manifold with the ring in which it is told."""
+
+    @property
+    def manifold(self) -> SlowManifold: ...
+    @property
+    def transfer(self) -> Transfer: ...
+
+    def formula(self, c: Quotient) -> Formula: ...
+
+
+def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
+    """One claim of these kinds.  Raises NoClosedForm, Unavailable where there is nothing to compare it with."""
+    if claim.kind == MANIFOLD:
+        return _on_manifold(derived, claim, about)
+    told = derived.claimed_oscillation
+    formulas = _formulas(derived, told)
+    try:
+        claimed = formulas(claim.equals)
+    except SingularPoint:
+        raise NoClosedForm("the claimed formula divides by zero") from None
+    series = _frequencies(told.found) if claim.kind == FREQUENCY else _series(told, formulas, claim.of_expression)
+    truth = series[claim.order]
+    result = ClaimResult(claim, about, EXACT, told.wave(truth))
+    difference = claimed - truth
+    if difference.is_zero:
+        return result
+    result = replace(result, difference=told.wave(difference))
+    if not _surely_nonzero(difference):
+        return replace(result, outcome=UNDECIDED, remark=_NOT_SURE)
+    if explained(told.found, series, claim.order, claimed):
+        return replace(result, outcome=UNDECIDED, remark=_OTHER_SYMBOLS)
+    factor = _factor(told.found.tower, claimed, truth)
+    if factor is not None:
+        return replace(result, outcome=SCALED, factor=told.formula(factor), difference=None)
+    return replace(result, outcome=DIFFERS)
+
+
+def _formulas(derived: Derived, told: Told) -> WaveFormulas:
+    system, tower = derived.system, told.found.tower
+    known = {name: tower.parameter(name) for name in system.parameter_names if name in tower.parameters}
+    constants = {f"#{name}": value for name, value in told.found.constants}
+    for internal, shown in told.symbols.items():
+        known[shown] = constants.get(internal, told.found.amplitude)
+    defined: dict[str, Expression] = {one.name: one.value for one in system.relations}
+    defined |= {one.name: one.value for one in system.notation}
+    defined |= {one.name: one.value for one in system.abbreviations}
+    return WaveFormulas(tower, told.phase, known, defined)
+
+
+def _frequencies(found: Oscillation) -> list[Harmonics]:
+    """w_n of the rate of the phase."""
+    values = [found.frequency, *(found.frequency * x for x in found.corrections)]
+    return [Harmonics.constant(found.tower, x) for x in values]
+
+
+def _series(told: Told, formulas: WaveFormulas, of: Expression | None) -> Sequence[Harmonics]:
+    """The coefficients of powers of eps of a polynomial in variables."""
+    assert of is not None
+    return _Polynomial(told, formulas).series(of)[1]
+
+
+class _Polynomial:
+    """Values of polynomials in the variables: the power of eps that is taken out, and the coefficients from it on.
+
+    Terms of a sum have to have the same power: else nobody can say which coefficient is meant.
+    """
+
+    def __init__(self, told: Told, formulas: WaveFormulas) -> None:
+        found = told.found
+        self.found, self.formulas = found, formulas
+        self.powers = dict(found.powers)
+        self.waves = dict(zip(found.names, found.series, strict=True))
+
+    def series(self, expression: Expression) -> tuple[int, Sequence[Harmonics]]:
+        found = self.found
+        match expression:
+            case Name(name) if name in self.waves:
+                return self.powers.get(name, 0), self.waves[name]
+            case Name(name) if any(one.variable == name for one in found.drifts):
+                raise NoClosedForm(f"{name} may drift: its oscillation is not compared")
+            case Negative(operand):
+                power, inner = self.series(operand)
+                return power, [one.scaled(-found.tower.one) for one in inner]
+            case Operation("+" | "-" as operator, left, right):
+                (power, one), (other, two) = self.series(left), self.series(right)
+                if power != other:
+                    raise NoClosedForm(f"terms with different powers of {found.small} in one sum: not compared")
+                return power, [x + y if operator == "+" else x - y for x, y in zip(one, two, strict=True)]
+            case Operation("*", left, right):
+                return self._product(self.series(left), self.series(right))
+            case Operation("**", base, Number(exponent)) if exponent.denominator == 1 and 0 < exponent < 10:
+                power, factor = total = self.series(base)
+                for _ in range(int(exponent) - 1):
+                    total = self._product(total, (power, factor))
+                return total
+            case Operation("/", left, right):
+                power, inner = self.series(left)
+                inverse = found.tower.reciprocal(self.formulas.constant(right))
+                return power - self._power_of(right), [one.scaled(inverse) for one in inner]
+            case Number() | Name():
+                zero = Harmonics(found.tower, {})
+                return self._power_of(expression), [self.formulas(expression), *([zero] * found.order)]
+        raise NoClosedForm("no polynomial in the variables: not compared with expansions")
+
+    def _product(
+        self, one: tuple[int, Sequence[Harmonics]], other: tuple[int, Sequence[Harmonics]]
+    ) -> tuple[int, Sequence[Harmonics]]:
+        found = [Harmonics(self.found.tower, {})] * (self.found.order + 1)
+        for i, x in enumerate(one[1]):
+            for j, y in enumerate(other[1][: len(found) - i]):
+                found[i + j] = found[i + j] + x * y
+        return one[0] + other[0], found
+
+    def _power_of(self, constant: Expression) -> int:
+        match constant:
+            case Number():
+                return 0
+            case Name(name) if name not in self.formulas.defined:
+                return self.powers.get(name, 0)
+        raise NoClosedForm("a factor that is no number and no parameter: not compared with expansions")
+
+
+def _surely_nonzero(x: Harmonics) -> bool:
+    """Whether some coefficient is not zero, whatever its square roots are."""
+    for c in (c for pair in x.waves.values() for c in pair if not c.is_zero()):
+        try:
+            x.tower.reciprocal(c)
+        except Failure:
+            continue
+        return True
+    return False
+
+
+def _factor(tower: Tower, claimed: Harmonics, truth: Harmonics) -> Element | None:
+    """The number q with claimed = q truth; None where there is none."""
+    if claimed.is_zero or truth.is_zero or claimed.waves.keys() != truth.waves.keys():
+        return None
+    k = min(truth.waves)
+    top, bottom = next(
+        (x, y) for x, y in zip(claimed.waves[k], truth.waves[k], strict=True) if not (x.is_zero() and y.is_zero())
+    )
+    if bottom.is_zero():
+        return None
+    try:
+        factor = top / bottom
+    except Failure:
+        return None
+    if not factor.top.is_constant() or not factor.bottom.is_constant():
+        return None
+    return factor if (claimed - truth.scaled(factor)).is_zero else None
+
+
+def _on_manifold(derived: Derived, claim: Claim, about: str) -> ClaimResult:
+    """The coefficient of eps^n of a fast variable on the slow manifold, or of the rate of a slow one there."""
+    told = derived.claimed_manifold
+    found, form = told.manifold, derived.speed_form
+    assert form is not None
+    names, series = (found.fast, found.functions) if claim.of in found.fast else (found.slow, found.flow)
+    if claim.of not in names:
+        raise NoClosedForm(f"{claim.of} is neither fast nor slow there")
+    one = series[names.index(claim.of)]
+    if one.known is not None and claim.order >= one.known:
+        raise NoClosedForm(f"the coefficient of {found.field.small}^{claim.order} is not known")
+    coefficient = one.coefficients.get(claim.order)
+    ring = told.transfer.ring
+    truth = ring.zero if coefficient is None else told.formula(coefficient).polynomial
+    claimed = in_parameters(derived, Symbols.of(derived).polynomial(derived.parameters_scene, claim))
+    if told.transfer.images:
+        claimed = ring.substitute(claimed, told.transfer.images)
+    difference = ring.reduce(claimed - truth)
+    known = form.vanishes(difference)
+    result = ClaimResult(claim, about, EXACT, Formula(ring, truth))
+    if known is True:
+        return result
+    return replace(result, outcome=DIFFERS if known is False else UNDECIDED, difference=Formula(ring, difference))
