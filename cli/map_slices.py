@@ -138,6 +138,8 @@ def _largest(item: tuple[str, float]) -> float:
 
 def remarks(found: Stack) -> list[str]:
     """Sentences on what the table does not show."""
+    from mbsym_cli.map_table import borders_of_slices
+
     name = found.axis.name
     critical = [one for one in found.layers if one.critical]
     unseen = [one for one in critical if one.missing is not None and not one.broken]
@@ -157,6 +159,7 @@ def remarks(found: Stack) -> list[str]:
     large = sum(one.standing == "too large to be decided" for plane in _planes(found) for one in plane.strata)
     if large:
         told.append(f"no verdict at {counted(large, 'exact point')} between regions: too large to be decided")
+    told += borders_of_slices(_planes(found))
     seconds = sum(one.second is not None and one.confirmed for one in found.layers)
     checks = [plane.check for plane in _planes(found) if plane.check is not None]
     if seconds and found.sound:

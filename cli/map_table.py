@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -98,18 +98,31 @@ def remarks(found: PlaneMap | LineMap) -> list[str]:
 
 
 #: What a border is called; the reason behind the last one is in map.json.
-_ONSETS = {
-    Onset.SOFT: "soft: asymptotically stable at the border; where the pair crosses, small oscillations arise beyond",
+ONSETS = {
+    Onset.SOFT: "soft: asymptotically stable at the border, small oscillations arise beyond",
     Onset.HARD: "hard: unstable at the border already",
     Onset.OPEN: "open: terms of third order do not decide, or are not at hand",
+    Onset.NEITHER: "neither soft nor hard: roots are to the right on both sides or on none, or one side is not judged",
 }
+
+
+def borders_of_slices(planes: Iterable[PlaneMap]) -> Iterator[str]:
+    """The same of all slices, counted; map.json has each arc."""
+    arcs = [one for plane in planes for one in plane.arcs if one.soft is not None]
+    for onset, words in ONSETS.items():
+        alike = sum(_onset(one) is onset for one in arcs)
+        if alike:
+            yield f"imaginary pair, {counted(alike, 'arc')} of slices: {words}"
+    changing = sum(_onset(one) is None for one in arcs)
+    if changing:
+        yield f"imaginary pair, {counted(changing, 'arc')} of slices: soft in parts, hard in others"
 
 
 def borders(found: PlaneMap | LineMap) -> Iterator[str]:
     """Where a pair of roots is imaginary and the others are to the left: how stability is lost."""
     line = isinstance(found, LineMap)
     strata = [one for one in (found.corners if line else found.arcs) if one.soft is not None]
-    for onset, words in _ONSETS.items():
+    for onset, words in ONSETS.items():
         alike = [one for one in strata if _onset(one) is onset]
         if alike:
             places = [_place(found, one) for one in alike]

@@ -24,7 +24,7 @@ from mbsym.maps.mapping import Watch, asked, ends, unwatched
 from mbsym.maps.on_curves import ExactVerdicts
 from mbsym.maps.result import LineMap, Of, Shape, Standing, Stratum
 from mbsym.maps.section import Axis, Complaint, Fault, Section, Unfit, section
-from mbsym.maps.soft_borders import SoftBorders
+from mbsym.maps.soft_borders import Onset, SoftBorders, SoftOrHard, lost
 
 
 def line_map(
@@ -77,13 +77,18 @@ def line_map(
     borders = None
     if of is Of.STABILITY and not interrupted:
         borders = SoftBorders(analysis, there)
-        zeros = [
-            replace(one, soft=borders.at(line.zeros[one.number].number)) if one.imaginary else one for one in zeros
-        ]
+        zeros = [replace(one, soft=_soft(borders, line, regions, one)) if one.imaginary else one for one in zeros]
     return LineMap(
         of, there, kept, replace(found, factors=tuple(factors)), line, tuple(regions), tuple(zeros), lengths(line),
         interrupted, checked, borders=borders,
     )  # fmt: skip
+
+
+def _soft(borders: SoftBorders, line: Line, regions: list[Stratum], zero: Stratum) -> SoftOrHard:
+    """Of a zero at which a pair of roots is imaginary."""
+    sides = [regions[one.id].right for one in line.intervals if zero.number in one.ends]
+    why = lost([*sides, None][:2])
+    return SoftOrHard(Onset.NEITHER, why) if why else borders.at(line.zeros[zero.number].number)
 
 
 def lengths(line: Line) -> tuple[tuple[float, float], ...]:

@@ -3,7 +3,7 @@ and at every corner."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
@@ -22,7 +22,7 @@ from mbsym.maps.constant_points import beside
 from mbsym.maps.on_curves import ExactVerdicts
 from mbsym.maps.result import Of, PlaneMap, Shape, Standing, Stratum
 from mbsym.maps.section import Axis, Complaint, Fault, Section, Unfit, section
-from mbsym.maps.soft_borders import SoftBorders
+from mbsym.maps.soft_borders import Onset, SoftBorders, SoftOrHard, lost
 from mbsym.maps.verdicts import Judged, matrix_at, verdict_at
 from mbsym.problems.stability.exact import inertia
 
@@ -54,11 +54,14 @@ def plane_map(
         raise Unfit([Complaint(Fault.OUTSIDE, "", one.condition.about) for one in kept.broken])
     watch("boundaries", 0, 1)
     found = boundaries(there, [*(one.condition for one in kept.demands), *asked(there)])
-    return _with_borders(mapped(there, kept, found, of, watch), SoftBorders(analysis, there), watch)
+    return with_borders(mapped(there, kept, found, of, watch), SoftBorders(analysis, there), watch)
 
 
-def _with_borders(found: PlaneMap, borders: SoftBorders, watch: Watch) -> PlaneMap:
-    """The map with what terms of higher order say of arcs and corners where a pair of roots is imaginary."""
+def with_borders(found: PlaneMap, borders: SoftBorders, watch: Watch) -> PlaneMap:
+    """The map with what terms of higher order say of arcs and corners where a pair of roots is imaginary.
+
+    They say it where stability is lost: of the cells beside one has roots to the right, the other none.
+    """
     if found.of is not Of.STABILITY or found.interrupted:
         return found
     arcs, corners = list(found.arcs), list(found.corners)
@@ -67,13 +70,25 @@ def _with_borders(found: PlaneMap, borders: SoftBorders, watch: Watch) -> PlaneM
         for k, one in enumerate(arcs):
             if one.imaginary:
                 watch("soft or hard", k, len(arcs))
-                arcs[k] = replace(one, soft=borders.along(found.arrangement, found.arrangement.arcs[one.number]))
+                why = lost([None if x is None else x.right for x in found.beside(one)])
+                made = found.arrangement
+                told = SoftOrHard(Onset.NEITHER, why) if why else borders.along(made, made.arcs[one.number])
+                arcs[k] = replace(one, soft=told)
         for k, one in enumerate(corners):
             if one.imaginary:
-                corners[k] = replace(one, soft=borders.at(found.point_of(one)))
+                why = lost(list(_about(found, one)))
+                told = SoftOrHard(Onset.NEITHER, why) if why else borders.at(found.point_of(one))
+                corners[k] = replace(one, soft=told)
     except KeyboardInterrupt:
         interrupted = True
     return replace(found, arcs=tuple(arcs), corners=tuple(corners), interrupted=interrupted, borders=borders)
+
+
+def _about(found: PlaneMap, corner: Stratum) -> Iterator[int | None]:
+    """Roots to the right in the regions around a corner."""
+    around = [found.beside(found.arcs[k]) for k in found.arrangement.corners[corner.number].arcs]
+    for one in dict.fromkeys(x if x is None else x.number for pair in around for x in pair):
+        yield None if one is None else found.regions[one].right
 
 
 def mapped(

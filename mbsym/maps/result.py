@@ -65,8 +65,13 @@ class Stratum:
     soft: SoftOrHard | None = None
 
     @property
+    def right(self) -> int | None:
+        """How many roots are to the right; None where that is not known."""
+        return None if self.judged is None else self.judged.right
+
+    @property
     def imaginary(self) -> bool:
-        """Whether a pair of roots is imaginary there and none to the right: a border of flutter if it crosses."""
+        """Whether a pair of roots is imaginary there and none to the right: a border of flutter if it is lost there."""
         return self.judged is not None and self.judged.border is Border.IMAGINARY and self.judged.right == 0
 
     @property

@@ -35,10 +35,11 @@ from mbsym.analysis import Analysis
 from mbsym.maps.admissible import Admissibility, Demand, admissibility
 from mbsym.maps.boundaries import Boundaries, boundaries, norm_of_factors
 from mbsym.maps.constant import Constant, context_of
-from mbsym.maps.mapping import Judge, Watch, asked, box_of, ends, mapped, unwatched
+from mbsym.maps.mapping import Judge, Watch, asked, box_of, ends, mapped, unwatched, with_borders
 from mbsym.maps.result import Of, PlaneMap, Shape, Shown
 from mbsym.maps.section import Axis, Complaint, Fault, Law, Section, Unfit, section
 from mbsym.maps.seen import seen
+from mbsym.maps.soft_borders import SoftBorders
 
 #: Slices take seconds each: with more critical values than this none is begun.
 MOST_LEVELS = 120
@@ -150,7 +151,7 @@ def stack(
             limit=Limit.WORK,
             remedy=f"take a smaller interval of {axes[2].name}",
         )
-    slicing = _Slicing(there, kept, found, of, watch)
+    slicing = _Slicing(analysis, there, kept, found, of, watch)
     levels = levels_of(line)
     layers: list[Layer] = []
     interrupted = False
@@ -175,7 +176,10 @@ def stack(
 class _Slicing:
     """Makes the slices of one section."""
 
-    def __init__(self, there: Section, kept: Admissibility, found: Boundaries, of: Of, watch: Watch) -> None:
+    def __init__(
+        self, analysis: Analysis, there: Section, kept: Admissibility, found: Boundaries, of: Of, watch: Watch
+    ) -> None:
+        self.analysis = analysis
         self.section, self.kept, self.boundaries, self.of, self.watch = there, kept, found, of, watch
 
     def __call__(self, number: int, whole: int, z: Number, critical: bool, line: Line) -> Layer:
@@ -190,6 +194,7 @@ class _Slicing:
             return Layer(number, z, critical, missing=Missing.OUTSIDE, broken=kept.broken)
         try:
             plane = mapped(cut, kept, self._flat(cut, kept, z), self.of, told)
+            plane = with_borders(plane, SoftBorders(self.analysis, cut), told)
             if critical or plane.interrupted:
                 return Layer(number, z, critical, plane)
             told("another value", 0, 1)

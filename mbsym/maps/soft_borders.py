@@ -2,9 +2,10 @@
 
 At an exact point of an arc where problem 6 finds one pair +-i w and all other roots to the left, terms of third order
 decide (problem 11):  r' = a r^3 + ... on the centre manifold.  a < 0: the motion is asymptotically stable on the border
-and, where the pair crosses the axis, small oscillations arise beyond it (soft); whether it crosses is not looked at:
-x'' + (p^2 + x^2) x' + x = 0 is asymptotically stable at p = 0 and on both sides of it.  a > 0: it is unstable on the
-border already (hard).  Zero roots, more pairs and systems without such an expansion are left open, with the reason.
+and small stable oscillations arise beyond it (soft).  a > 0: it is unstable on the border already (hard).  Both are
+said only where stability is lost: of the cells beside the arc one has roots to the right, the other none.  Elsewhere
+(x'' + (p^2 + x^2) x' + x = 0 is asymptotically stable at p = 0 and on both sides of it) the border is neither.  Zero
+roots, more pairs and systems without such an expansion are left open, with the reason.
 
 ``at`` decides at a point, by enclosures; that the pair is imaginary is known exactly.  ``along`` decides on a whole
 arc: a is a fraction of polynomials on the curve, its zeros and poles are among the real roots of resultants, and one
@@ -55,6 +56,8 @@ class Onset(StrEnum):
     SOFT = "soft"
     HARD = "hard"
     OPEN = "open"
+    #: Nothing is lost there, or that is not known.
+    NEITHER = "neither"
 
 
 class Missing(StrEnum):
@@ -64,6 +67,10 @@ class Missing(StrEnum):
     MATRICES = "given-by-matrices"
     CONDITIONS = "unsolved-conditions"
     EXPANSION = "no-expansion"
+    #: Of what is neither soft nor hard: both cells beside have roots to the right, or none has; or one of them is not
+    #: in the map or not judged.
+    NO_LOSS = "no-loss"
+    ONE_SIDE = "one-side"
 
 
 @dataclass(frozen=True)
@@ -89,6 +96,14 @@ class SoftOrHard:
     coefficient: Any = None
     amplitude_of: str = ""
     stretches: tuple[Stretch, ...] | None = None
+
+
+def lost(beside: Sequence[int | None]) -> Missing | None:
+    """None where stability is lost between cells with so many roots to the right (None: not known); or why not."""
+    known = {one for one in beside if one is not None}
+    if 0 in known and len(known) > 1:
+        return None
+    return Missing.ONE_SIDE if None in beside or not beside else Missing.NO_LOSS
 
 
 class SoftBorders:
@@ -117,8 +132,11 @@ class SoftBorders:
             return Missing.EXPANSION
         axes = [axis.name for axis in self.section.axes]
         solved = {name: value.polynomial for name, value in motion.solved}
-        there = self.section
-        return found, Images(scene, axes, there.context, there.numbers, solved, there.constant)
+        there, constant = self.section, self.section.constant
+        if constant is not None and constant.text in system.parameter_names and not constant.images:
+            # the irrational value of the third axis of slices
+            constant = replace(constant, images={scene.ring.index("parameter", constant.text): fmpq_poly([0, 1])})
+        return found, Images(scene, axes, there.context, there.numbers, solved, constant)
 
     def at(self, place: Any) -> SoftOrHard:
         """At an exact point (of a line: an exact number) at which a pair of roots is imaginary."""

@@ -15,6 +15,7 @@ from mbsym.algebra.plane import Arc, Corner, Point
 from mbsym.algebra.plane.line import Zero
 from mbsym.maps.mapping import Judge
 from mbsym.maps.result import LineMap, PlaneMap, Shape, Standing, Stratum
+from mbsym.maps.soft_borders import Onset
 
 #: Rows beyond this number are refused.
 MOST_POINTS = 1_000_000
@@ -134,11 +135,14 @@ def _told(found: PlaneMap | LineMap, stratum: Stratum | None) -> tuple[str, str]
 
 
 def _border(found: PlaneMap | LineMap, stratum: Stratum, values: Sequence[Fraction]) -> str:
-    """``soft``, ``hard`` or ``open`` at a point with an imaginary pair and no root to the right."""
+    """``soft``, ``hard``, ``open`` or ``neither`` at a point with an imaginary pair and no root to the right."""
     if found.borders is None or not stratum.imaginary:
         return ""
     if stratum.shape is not Shape.ARC:
         return "" if stratum.soft is None else stratum.soft.onset.value
+    whole = found.arcs[stratum.number].soft
+    if whole is not None and whole.onset is Onset.NEITHER:
+        return whole.onset.value
     return found.borders.at(_place(values)).onset.value
 
 

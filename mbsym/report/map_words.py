@@ -87,7 +87,7 @@ def onset_words(strata: Sequence[Stratum], language: Language = ENGLISH) -> str:
     """
     seen: set[Onset] = set()
     for one in strata:
-        if one.soft is not None:
+        if one.soft is not None and one.soft.onset is not Onset.NEITHER:
             stretches = one.soft.stretches
             if one.shape is Shape.ARC and stretches is None:
                 return ""

@@ -23,12 +23,14 @@ from mbsym.maps.line_map import line_map
 from mbsym.maps.mapping import plane_map
 from mbsym.maps.result import PlaneMap, Stratum
 from mbsym.maps.section import Axis
+from mbsym.maps.slices import stack
 from mbsym.maps.soft_borders import Missing, Onset
 from mbsym.problems.normal_forms import Why
 from mbsym.report.language import Language
 from mbsym.report.map_words import onset_words
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main
+from mbsym_cli.map_table import borders_of_slices
 
 TEXT = """
 mbsym: 1
@@ -176,3 +178,62 @@ def test_what_is_written(tmp_path: Path) -> None:
     assert [row["border"] for row in rows] == ["soft", "hard", "open", ""]
     assert "hard for q from 0 to 0.333333; soft for q from 0.333333 to 1" in " ".join(done.stdout.split())
     assert "soft border in parts, hard in others" in (tmp_path / "out" / "map.tex").read_text()
+
+
+# --- where stability is not lost ---
+
+TOUCHING = """
+mbsym: 1
+name: a pair that touches the axis
+parameters: {p: {}, q: {}, k: {}}
+bodies:
+  - {name: one, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}
+loads:
+  - {potential: x**2/2 + y**2}
+  - {generalized force: {x: -DAMPING*x_dot - k*x_dot**3, y: -BESIDE*y_dot}}
+motion: {x: 0, y: 0}
+"""
+
+
+@pytest.mark.parametrize("damping", ["-(p**2)", "p**2"])
+def test_a_pair_that_only_touches_the_axis_is_no_border(damping: str) -> None:
+    """Damped, driven on both sides of p = 0."""
+    why, text = Missing.NO_LOSS, TOUCHING.replace("-DAMPING", damping).replace("BESIDE", "1")
+    found = line_map(mbsym.loads(text), Axis("p", Fraction(-1), Fraction(1)), {"q": Fraction(0), "k": Fraction(1)})
+    (zero,) = [one for one in found.corners if one.soft is not None]
+    assert zero.soft is not None
+    assert (zero.soft.onset, zero.soft.why) == (Onset.NEITHER, why)
+    assert onset_words([zero]) == ""
+    plane = mapped(text, "p", "q", k=1)
+    assert {(x.soft.onset, x.soft.why) for x in borders(plane) if x.soft} == {(Onset.NEITHER, why)}
+
+
+def test_a_border_between_two_unstable_cells_is_none() -> None:
+    """x is driven for p > 0, y for q > 0: at p = 0 stability is lost for q < 0 alone, and so with p and q exchanged."""
+    text = TOUCHING.replace("-DAMPING", "p").replace("-BESIDE", "q")
+    plane = mapped(text, "p", "q", k=1)
+    assert len(borders(plane)) == 2
+    for arc in plane.arcs:
+        there = plane.point_of(arc)
+        sides = {x.right for x in plane.beside(arc) if x is not None}
+        if arc.soft is not None:
+            assert sides == {0, 2}, there
+        else:
+            assert 0 not in sides or len(sides) == 1, there
+    assert Why.MORE_PAIRS in {one.soft.why for one in plane.corners if one.soft is not None}  # at p = q = 0
+
+
+def test_a_border_at_the_end_of_a_line_has_one_side() -> None:
+    found = line_map(mbsym.loads(TEXT), Axis("p", Fraction(1, 4), Fraction(1)), {"q": Fraction(1, 2), "s": Fraction(0)})
+    assert {one.soft.why for one in found.corners if one.soft is not None} <= {Missing.ONE_SIDE}
+
+
+def test_borders_of_slices() -> None:
+    """p = q^2 + z^2 - 2: critical is z = sqrt(2), irrational, where the parabola touches the axis p = 0."""
+    text = TEXT.replace("(p - q**2 -", "(p - q**2 - z**2 + 2 -").replace("s: {}", "s: {}, z: {}")
+    axes = [Axis(name, Fraction(-1), Fraction(1)) for name in ("q", "p")]
+    found = stack(mbsym.loads(text), [*axes, Axis("z", Fraction(4, 3), Fraction(3, 2))], {"s": Fraction(9)})
+    planes = [one.plane for one in found.layers if one.plane is not None]
+    seen = {(one.critical, x.soft.onset) for one in found.layers if one.plane for x in one.plane.arcs if x.soft}
+    assert seen == {(True, Onset.SOFT), (False, Onset.SOFT)}
+    assert any("of slices: soft" in line for line in borders_of_slices(planes))
