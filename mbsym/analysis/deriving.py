@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
 from mbsym.analysis import constrained, given
-from mbsym.analysis.poles import at_a_pole
+from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.mechanics.rest import given_values, missing_values
 from mbsym.problems import dissipation, energy, equations, equilibrium, stability
@@ -15,6 +15,8 @@ from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.stability import Stability
+from mbsym.problems.stability.reasons import Because
+from mbsym.problems.stability.verdict import undecided
 from mbsym.problems.telling import ToldSystem, told_system
 
 if TYPE_CHECKING:
@@ -52,8 +54,9 @@ def stability_of(analysis: Analysis) -> Stability:
     scene, linear = analysis.parameters_scene, analysis.judgeable
     found = stability.stability(scene, analysis.balance, linear, analysis.equilibrium, analysis.signs)
     values = None if found.numerical is None else stability.parameter_values(scene, analysis.equilibrium)
-    if values is not None and analysis.system.linear is None and at_a_pole(analysis, values):
-        return replace(found, numerical=None, spectra=())
+    divisor = "" if values is None or analysis.system.linear is not None else pole(analysis, values)
+    if divisor:
+        return replace(found, numerical=undecided(Because.POLE, divisor), spectra=())
     if found.numerical is None or not found.numerical.word.open or analysis.system.constraints:
         return found  # what looks further at open verdicts knows the open tree alone
     from mbsym.problems import open_verdicts  # what equilibria are judged by is not imported for nothing

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from mbsym.analysis.poles import at_a_pole
+from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.mechanics.generalized import generalized_forces
 from mbsym.problems import stability
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 def normal_forms_of(analysis: Analysis) -> NormalForms:
     """What terms of higher order decide; with numbers where the description gives all of them."""
-    from mbsym.problems.normal_forms import problem  # few ask for it
+    from mbsym.problems.normal_forms import Judged, Outcome, Theorem, Why, problem  # few ask for it
     from mbsym.problems.stabilisation.problem import on_motion
 
     found, scene = analysis.equilibrium, analysis.parameters_scene
@@ -28,12 +28,16 @@ def normal_forms_of(analysis: Analysis) -> NormalForms:
         raise Unavailable("conditions", NoResult(reason, "see problem 4", "conditions", "unsolved-conditions"))
     analysis.judgeable  # noqa: B018  raises where the first approximation, or time, says that no theorem applies
     values = stability.parameter_values(scene, found)
-    if values is not None and (not on_motion(scene, found, values) or at_a_pole(analysis, values)):
-        values = None
+    nothing = Why.NONE
+    if values is not None:
+        nothing = Why.POLE if pole(analysis, values) else Why.NONE if on_motion(scene, found, values) else Why.NO_MOTION
+    values = values if nothing is Why.NONE else None
     conservative, cyclic = ignorable(analysis)
     result = problem.normal_forms(scene, analysis.system, found, values, conservative, cyclic)
     judged = analysis.optional("stability")
     first = None if judged is None or judged.numerical is None else judged.numerical.word
+    if nothing is not Why.NONE:
+        result = replace(result, at_values=Judged(Outcome.UNDECIDED, Theorem.NONE, nothing))
     return replace(result, first=first)
 
 

@@ -10,14 +10,15 @@ from flint import fmpq
 
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.formulas.formula import Formula
 from mbsym.mechanics.generalized import generalized_forces
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
 
 
-def at_a_pole(analysis: Analysis, values: Mapping[str, Any]) -> bool:
-    """Whether T, U or an applied force holds the reciprocal of a polynomial in parameters that is zero at ``values``.
+def pole(analysis: Analysis, values: Mapping[str, Any]) -> str:
+    """A polynomial in parameters that is zero at ``values`` and by which T, U or an applied force divides; "" for none.
 
     The first approximation need not hold it: in U = -k x^2/2 - x^4/(b - 4) it does not, and there is no U for b = 4.
     """
@@ -28,13 +29,15 @@ def at_a_pole(analysis: Analysis, values: Mapping[str, Any]) -> bool:
         if g.kind == "reciprocal" and g.argument is not None and _vanishes(ring, g.argument, values)
     }
     if not poles:
-        return False
+        return ""
     energy = analysis.optional("energy")
     if energy is None:
-        return False
+        return ""
     told = [energy.force_function, energy.A0, *energy.A1, *(x for row in energy.A2 for x in row)]
     applied = generalized_forces(analysis.held_scene).values()
-    return bool(poles.intersection(occurring([*(x.polynomial for x in told), *applied])))
+    held = sorted(poles.intersection(occurring([*(x.polynomial for x in told), *applied])))
+    divisor = ring.generators[held[0]].argument if held else None
+    return "" if divisor is None else str(Formula(ring, divisor))
 
 
 def _vanishes(ring: Ring, p: Polynomial, values: Mapping[str, Any]) -> bool:

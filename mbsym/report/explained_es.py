@@ -66,6 +66,7 @@ EXPLAINED = {
     "The first approximation varies with {}; nothing is claimed.": "La primera aproximación varía con {0}; no se afirma nada.",
     "The motion does not exist there: {} has another value.": "El movimiento no existe allí: {0} tiene otro valor.",
     "The motion does not exist there: {} = {}, not 0.": "El movimiento no existe allí: {0} = {1}, no 0.",
+    "The description divides by {} there, which is 0: it gives no equations of motion.": "La descripción divide allí por {0}, que es 0: no da ecuaciones de movimiento.",
     "Whether the motion exists there is open: {} is about 0.": "No se sabe si el movimiento existe allí: {0} es aproximadamente 0.",
     # remarks
     "The characteristic polynomial is not written out: {}; at a point the verdict is exact.": "El polinomio característico no se escribe: {0}; en un punto la conclusión es exacta.",

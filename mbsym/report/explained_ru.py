@@ -66,6 +66,7 @@ EXPLAINED = {
     "The first approximation varies with {}; nothing is claimed.": "Первое приближение меняется вместе с {0}; ничего не утверждается.",
     "The motion does not exist there: {} has another value.": "Такого движения там нет: {0} имеет другое значение.",
     "The motion does not exist there: {} = {}, not 0.": "Такого движения там нет: {0} = {1}, а не 0.",
+    "The description divides by {} there, which is 0: it gives no equations of motion.": "Описание делит там на {0}, что равно 0: уравнений движения оно не даёт.",
     "Whether the motion exists there is open: {} is about 0.": "Существует ли там это движение, не выяснено: {0} приблизительно равно 0.",
     # remarks
     "The characteristic polynomial is not written out: {}; at a point the verdict is exact.": "Характеристический многочлен не выписан: {0}; в отдельной точке заключение точное.",

@@ -31,6 +31,8 @@ REASONS = {
     "freedom: Sokolskii's theorem is of two.",
     Why.ZERO_OPEN: "A root is zero, and the energy along its direction vanishes up to order 6, or is not told from "
     "that: terms of higher order may decide.",
+    Why.POLE: "At the given values the description divides by zero: there is nothing to be judged.",
+    Why.NO_MOTION: "At the given values the motion does not exist, or that is not shown.",
     Why.RESONANCE_OPEN: "A resonance up to order 4 is neither proved nor excluded.",
     Why.RESONANCE: "A resonance holds that the theorems for frequencies without resonances exclude.",
     Why.RESONANT_TERM_OPEN: "The resonant term of third order is not told from zero.",

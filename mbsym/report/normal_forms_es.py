@@ -53,6 +53,8 @@ SENTENCES = {
     "A root is zero.  With the other variables eliminated the energy is a x^M + ... for the deviation x of [[name]], M = [[degree]] and a = [[a]]: a strict minimum or maximum, the motion is stable (Dirichlet).": "Una raíz es nula. Eliminadas las demás variables la energía es $a x^M + \\ldots$ para la desviación x de [[name]], M = [[degree]] y a = [[a]]: un mínimo o máximo estricto, el movimiento es estable (Dirichlet).",
     "A root is zero.  With the other variables eliminated the energy is a x^M + ... for the deviation x of [[name]], M = [[degree]] and a = [[a]]: by the parity of M and the sign of a against that of the quadratic part the motion is [[word]] (Sokolskii, resonance of first order).": "Una raíz es nula. Eliminadas las demás variables la energía es $a x^M + \\ldots$ para la desviación x de [[name]], M = [[degree]] y a = [[a]]: por la paridad de M y el signo de a frente al de la parte cuadrática el movimiento es [[word]] (Sokolskii, resonancia de primer orden).",
     "In Sokolskii's normal form of equal frequencies delta A = [[value]].": "En la forma normal de Sokolskii de frecuencias iguales $\\delta A$ = [[value]].",
+    "At the given values the description divides by zero: there is nothing to be judged.": "Con los valores dados la descripción divide por cero: no hay nada que juzgar.",
+    "At the given values the motion does not exist, or that is not shown.": "Con los valores dados el movimiento no existe, o su existencia no se muestra.",
 }
 
 WORDS = {

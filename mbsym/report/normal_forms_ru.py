@@ -53,6 +53,8 @@ SENTENCES = {
     "A root is zero.  With the other variables eliminated the energy is a x^M + ... for the deviation x of [[name]], M = [[degree]] and a = [[a]]: a strict minimum or maximum, the motion is stable (Dirichlet).": "Один из корней нулевой. После исключения остальных переменных энергия имеет вид $a x^M + \\ldots$ для отклонения x переменной [[name]], M = [[degree]], a = [[a]]: строгий минимум или максимум, движение устойчиво (Дирихле).",
     "A root is zero.  With the other variables eliminated the energy is a x^M + ... for the deviation x of [[name]], M = [[degree]] and a = [[a]]: by the parity of M and the sign of a against that of the quadratic part the motion is [[word]] (Sokolskii, resonance of first order).": "Один из корней нулевой. После исключения остальных переменных энергия имеет вид $a x^M + \\ldots$ для отклонения x переменной [[name]], M = [[degree]], a = [[a]]: по чётности M и по знаку a относительно знака квадратичной части движение [[word]] (Сокольский, резонанс первого порядка).",
     "In Sokolskii's normal form of equal frequencies delta A = [[value]].": "В нормальной форме Сокольского для равных частот $\\delta A$ = [[value]].",
+    "At the given values the description divides by zero: there is nothing to be judged.": "При заданных значениях описание делит на нуль: судить не о чем.",
+    "At the given values the motion does not exist, or that is not shown.": "При заданных значениях движения нет, или его существование не показано.",
 }
 
 WORDS = {

@@ -5,6 +5,12 @@ from __future__ import annotations
 import pytest
 
 import mbsym
+from mbsym.problems.normal_forms import Outcome, Why
+from mbsym.problems.stability.word import Word
+from mbsym.report.language import Language
+from mbsym.report.normal_form_words import REASONS
+from mbsym.report.sections.normal_forms import lines as normal_form_lines
+from mbsym.report.sections.stability import lines as stability_lines
 
 #: U = -x^2/2 - x^4/(b - 4): its first approximation knows nothing of the pole.
 POLE = """
@@ -22,8 +28,20 @@ motion: {{x: 0}}
 @pytest.mark.parametrize(("b", "judged"), [(5, True), (4, False), (3, True)])
 def test_at_a_pole_of_the_description_there_is_no_verdict(b, judged):
     found = mbsym.loads(POLE.format(b=b))
-    assert (found.stability.numerical is not None) is judged
-    assert (found.normal_forms.at_values is not None) is judged
+    numerical, higher = found.stability.numerical, found.normal_forms.at_values
+    assert (numerical.word is not Word.UNDECIDED) is judged
+    assert (higher.outcome is not Outcome.UNDECIDED) is judged
+    if not judged:
+        why = "The description divides by b - 4 there, which is 0: it gives no equations of motion."
+        assert numerical.explanation == why
+        assert not found.stability.spectra
+        assert higher.why is Why.POLE
+        told = [*stability_lines(found.stability, found), *normal_form_lines(found.normal_forms, found)]
+        assert any("at the given values: undecided: the description divides by b - 4" in line for line in told)
+        assert REASONS[Why.POLE] in told
+        for name in ("ru", "es"):
+            assert "b - 4" in Language(name).say(why)
+            assert Language(name).say(why) != why
 
 
 def test_a_pole_of_what_is_derived_is_none_of_the_description():

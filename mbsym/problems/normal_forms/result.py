@@ -82,6 +82,9 @@ class Why(StrEnum):
     MIXED_ROOTS = "mixed-roots"
     #: Roots on the imaginary axis are proved at rational numbers only.
     IRRATIONAL = "irrational"
+    #: At the given values the description divides by zero; or the motion is not shown to exist.
+    POLE = "pole"
+    NO_MOTION = "no-motion"
 
 
 @dataclass(frozen=True)

@@ -68,6 +68,7 @@ class Because(Enum):
     NOT_THE_VALUE = auto()  # (of which parameter)
     MOTION_NOT_THERE = auto()  # (condition, value)
     MOTION_OPEN = auto()  # (condition)
+    POLE = auto()  # (divisor)
 
 
 @dataclass(frozen=True)

@@ -133,6 +133,7 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
     Because.NOT_THE_VALUE: "The motion does not exist there: {} has another value.".format,
     Because.MOTION_NOT_THERE: "The motion does not exist there: {} = {}, not 0.".format,
     Because.MOTION_OPEN: "Whether the motion exists there is open: {} is about 0.".format,
+    Because.POLE: "The description divides by {} there, which is 0: it gives no equations of motion.".format,
 }
 
 
