@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from mbsym.report.integrals_words import case_title, conditions_text, equations_text, level_title
+from mbsym.report.integrals_words import case_title, conditions_text, level_title
 
 if TYPE_CHECKING:
     from mbsym.analysis.polynomial import Setting
-    from mbsym.problems.polynomial_integrals import Along, Cases, Relations, Special
+    from mbsym.problems.polynomial_integrals import Along, Cases, Special
 
 
 def along_lines(there: Setting, found: Along, degree: int) -> Iterator[str]:
@@ -56,26 +56,6 @@ def cases_lines(there: Setting, found: Cases) -> Iterator[str]:
         )
     if found.unread:
         yield f"In {found.unread} families the rank drops elsewhere, too, under conditions that were not found."
-
-
-def relation_lines(there: Setting, found: Relations) -> Iterator[str]:
-    """Each relation with its conditions, and whether there are others."""
-
-    def write(p: Any) -> str:
-        return str(there.formula(p))
-
-    for one in found.relations:
-        yield f"{write(one.polynomial)} = 0"
-        if one.conditions:
-            yield f"  where {equations_text(one.conditions, write)}"
-        if one.nonzero:
-            yield f"  provided {', '.join(f'{write(p)} != 0' for p in one.nonzero)}"
-    if not found.relations:
-        yield "none was found" if not found.complete else "there are none (proved)"
-    elif found.complete:
-        yield "There are no other forms that are linear in the variables of least weight (proved)."
-    if not found.complete:
-        yield "Whether there are others is undecided: roots of parameters and families of forms were not followed."
 
 
 def _special(there: Setting, one: Special) -> Iterator[str]:

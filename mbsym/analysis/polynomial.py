@@ -55,6 +55,13 @@ class Setting:
             terms[tuple(exponents)] = c
         return Formula(self.transfer.ring, self.transfer.back(self.whole.context.from_dict(terms)))
 
+    def quotient(self, top: Any, bottom: Any) -> Formula:
+        """The same of a quotient of two over ``field``, in lowest terms."""
+        common = top.gcd(bottom)
+        ring = self.transfer.ring
+        upper, lower = (self.formula(p / common).polynomial for p in (top, bottom))
+        return Formula(ring, ring.reduce(ring.times(upper, ring.reciprocal(lower))))
+
 
 def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None) -> Setting:
     """The equations of motion as a polynomial field, with numbers in place of some parameters.

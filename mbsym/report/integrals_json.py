@@ -7,9 +7,18 @@ from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from typing import Any
 
+from mbsym.analysis.invariant_relations import InvariantRelations
 from mbsym.analysis.polynomial import Setting
 from mbsym.model.system import System
-from mbsym.problems.polynomial_integrals import Along, Cases, PolynomialIntegrals, Relations, Special
+from mbsym.problems.polynomial_integrals import (
+    Along,
+    Cases,
+    DarbouxPolynomials,
+    OnLevel,
+    PolynomialIntegrals,
+    Relations,
+    Special,
+)
 from mbsym.report.schemas import version
 
 #: The version of ``schemas/integrals.json`` that it follows.
@@ -23,7 +32,7 @@ def integrals_json(
     found: PolynomialIntegrals,
     line: Along | None = None,
     special: Cases | None = None,
-    linear: Relations | None = None,
+    invariant: InvariantRelations | None = None,
 ) -> str:
     """One JSON object, keys in a fixed order, the same text for the same input."""
     data: dict[str, Any] = {
@@ -34,7 +43,9 @@ def integrals_json(
         **integrals_data(there, found),
         "along": None if line is None else _along(there, line),
         "cases": None if special is None else _cases(there, special),
-        "relations": None if linear is None else _relations(there, linear),
+        "relations": None if invariant is None else _relations(there, invariant.linear),
+        "darboux": None if invariant is None else _darboux(there, invariant.darboux),
+        "zero_levels": None if invariant is None else _levels(there, invariant.levels),
     }
     return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
 
@@ -107,15 +118,43 @@ def _relations(there: Setting, linear: Relations) -> dict[str, Any]:
     }
 
 
+def _darboux(there: Setting, found: DarbouxPolynomials) -> dict[str, Any]:
+    def factor(p: Any) -> str:
+        return str(there.quotient(p, there.field.denominator))
+
+    return {
+        "degree": found.degree,
+        "weights": dict(zip(there.field.variables, found.weights, strict=True)),
+        "complete": found.complete,
+        "obstacle": None if found.obstacle is None else found.obstacle.value,
+        "polynomials": [
+            {"weight": one.weight, "formula": str(there.formula(one.polynomial)), "cofactor": factor(one.cofactor)}
+            for one in found.polynomials
+        ],
+        "not_found": [
+            {"weight": one.weight, "cofactor": factor(one.cofactor), "at_most": one.most - one.products}
+            for one in found.counts
+            if not one.complete
+        ],
+    }
+
+
+def _levels(there: Setting, levels: Iterable[OnLevel] | None) -> list[dict[str, Any]] | None:
+    if levels is None:
+        return None
+    return [{**_level(there, one), "complete": one.complete} for one in levels]
+
+
+def _level(there: Setting, level: OnLevel) -> dict[str, Any]:
+    return {
+        "zero": level.level.name,
+        "integrals": [{"weight": weight, "formula": str(there.formula(f))} for weight, f in level.integrals],
+    }
+
+
 def _special(there: Setting, one: Special) -> dict[str, Any]:
     return {
         "integrals": [{"weight": weight, "formula": str(there.formula(f))} for weight, f in one.integrals],
-        "on_levels": [
-            {
-                "zero": level.level.name,
-                "integrals": [{"weight": weight, "formula": str(there.formula(f))} for weight, f in level.integrals],
-            }
-            for level in one.levels
-        ],
+        "on_levels": [_level(there, level) for level in one.levels],
         "complete": one.complete,
     }

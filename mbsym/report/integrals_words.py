@@ -21,8 +21,13 @@ HEADING = "Polynomial first integrals up to weighted degree [[degree]]"
 
 def weights(found: PolynomialIntegrals) -> str:
     """``p, q, r: 1; gamma1, gamma2, gamma3: 2``."""
+    return weights_text(found.field.variables, found.grading.weights)
+
+
+def weights_text(variables: Sequence[str], given: Sequence[int]) -> str:
+    """The same of variables and their weights."""
     groups: dict[int, list[str]] = {}
-    for name, weight in zip(found.field.variables, found.grading.weights, strict=True):
+    for name, weight in zip(variables, given, strict=True):
         groups.setdefault(weight, []).append(name)
     return "; ".join(f"{', '.join(names)}: {weight}" for weight, names in groups.items())
 

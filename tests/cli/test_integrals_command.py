@@ -109,9 +109,25 @@ def test_hess_relation_is_told_with_its_condition():
     assert "A*x0*p + C*z0*r" in [one["formula"] for one in data["relations"]["relations"]]
     told = run(TOP, *NUMBERS, "--set", "A=5", "--degree", "1", "--relations").stdout
     assert "there are none (proved)" in told
+    assert data["darboux"]["polynomials"] == []  # for almost all parameters there is none
     text = run(TOP, "--set", "y0=0", "--degree", "1", "--relations").stdout
     assert "A*x0*p + C*z0*r = 0" in text
     assert "is undecided" in text
+
+
+def test_invariant_relations_and_levels_are_told_with_what_is_proved():
+    data = json.loads(run("systems/hess-appelrot.yaml", "--degree", "2", "--relations", "--json").stdout)
+    jsonschema.validate(data, schema("integrals"))
+    assert [one["formula"] for one in data["darboux"]["polynomials"]] == ["A*x0*p + C*z0*r"]
+    assert (data["darboux"]["complete"], data["darboux"]["not_found"]) == (True, [])
+    text = " ".join(run("systems/goryachev-chaplygin.yaml", "--relations").stdout.split())
+    assert "is zero, one of weight 3: C*(p**2 + q**2)*r - x0*m*g*p*gamma3" in text
+    assert "There is none of weight up to 4 with K not zero" in text
+    angles = " ".join(run("systems/spherical-pendulum.yaml", "--degree", "2", "--relations").stdout.split())
+    assert "Whether there are others is undecided: a K of that weight may hold products" in angles
+    assert "not looked for: the equations are not quasi-homogeneous" in angles
+    rotor = " ".join(run("systems/heavy-gyrostat.yaml", "--degree", "2", "--relations").stdout.split())
+    assert "weights are p, q, r" not in rotor  # the same as those of the integrals
 
 
 def test_systems_in_angles_have_rates_sines_and_cosines():

@@ -13,7 +13,9 @@ Weights are looked for under which the equations are quasi-homogeneous (Euler's 
 vector 2; without forces that are linear in it 1): then each weight stands for itself.  Integrals are told apart as
 functions by the rank of their gradients at a random state.
 
-Particular integrals have derivatives that vanish where another one does: df/dt = K V.  ``mbsym integrals`` asks more:
+Particular integrals have derivatives that vanish where another one does: df/dt = K V.  Darboux polynomials divide their
+own, df/dt = K f, and a motion that begins on f = 0 stays there: ``mbsym integrals --relations`` finds them, as Hess and
+Appelrot's A x0 p + C z0 r, or proves that there are none.  ``mbsym integrals`` asks more:
 at which values of a parameter, or under which conditions on parameters, there are others (of gyrostats, too, whose
 equations a further constant variable makes quasi-homogeneous).  ``mbsym symmetries`` finds those of symmetries whose
 fields are of degree one in the positions, polynomial or not; ``mbsym simulate --invariants`` watches what is found.
@@ -29,9 +31,10 @@ Example:
     ([(2, '')], True)
 """
 
+from mbsym.problems.polynomial_integrals.darboux import cofactor_of, darboux_polynomials
 from mbsym.problems.polynomial_integrals.families import cases
 from mbsym.problems.polynomial_integrals.gradings import Grading, grading
-from mbsym.problems.polynomial_integrals.homogenised import cases_of
+from mbsym.problems.polynomial_integrals.homogenised import cases_of, darboux_of
 from mbsym.problems.polynomial_integrals.levels import levels, on_level
 from mbsym.problems.polynomial_integrals.relations import linear_relations
 from mbsym.problems.polynomial_integrals.result import (
@@ -40,7 +43,11 @@ from mbsym.problems.polynomial_integrals.result import (
     Case,
     Cases,
     Count,
+    DarbouxCount,
+    DarbouxPolynomial,
+    DarbouxPolynomials,
     Generator,
+    Obstacle,
     OnLevel,
     PolynomialIntegrals,
     Polynomials,
@@ -58,8 +65,12 @@ __all__ = [
     "Case",
     "Cases",
     "Count",
+    "DarbouxCount",
+    "DarbouxPolynomial",
+    "DarbouxPolynomials",
     "Generator",
     "Grading",
+    "Obstacle",
     "OnLevel",
     "PolynomialIntegrals",
     "Polynomials",
@@ -70,6 +81,9 @@ __all__ = [
     "along",
     "cases",
     "cases_of",
+    "cofactor_of",
+    "darboux_of",
+    "darboux_polynomials",
     "grading",
     "levels",
     "linear_relations",

@@ -1,4 +1,4 @@
-"""Special parameters of fields that are not quasi-homogeneous: gyrostats, and their like.
+"""Special parameters, Darboux polynomials of fields that are not quasi-homogeneous: gyrostats, and their like.
 
 A variable h with h' = 0 of weight 1 makes them so: each term of x'_i is multiplied by the power of h that it lacks (a
 gyrostatic moment l becomes l h).  An integral of the larger field is one of the field itself at h = 1.  The converse
@@ -17,6 +17,7 @@ from flint import fmpq_mpoly_ctx
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.problems.polynomial_integrals.darboux import darboux_polynomials
 from mbsym.problems.polynomial_integrals.families import cases
 from mbsym.problems.polynomial_integrals.gradings import Grading, grading
 from mbsym.problems.polynomial_integrals.lifting import primitive
@@ -24,6 +25,7 @@ from mbsym.problems.polynomial_integrals.result import (
     UNITY,
     Case,
     Cases,
+    DarbouxPolynomials,
     Generator,
     OnLevel,
     PolynomialIntegrals,
@@ -48,16 +50,50 @@ def cases_of(
     """
     if usual.grading.homogeneous and (usual.grading.free or not usual.field.relations):
         return cases(usual, positive, budget)
-    field, found = homogenised(usual.field, kinds)
-    if field.relations and not found.free:
+    larger = _larger(usual, kinds, known)
+    if larger is None:
         raise NoClosedForm("special parameters are looked for where there is one unit vector or angle at most")
-    name = field.variables[-1]
-    listed = [(UNITY, field.generator(name))]
-    listed += [(title, _filled(field, f, found.weights)) for title, f in known]
-    larger = polynomial_integrals(field, found, usual.degree, listed)
+    name = larger.field.variables[-1]
     special = cases(larger, positive, budget)
     down = _Down(name)
     return replace(special, usual=usual, cases=tuple(down.case(one) for one in special.cases))
+
+
+def darboux_of(
+    usual: PolynomialIntegrals, kinds: Sequence[Sequence[str]], known: Sequence[tuple[str, Any]]
+) -> DarbouxPolynomials:
+    """``darboux_polynomials`` of any field with at most one relation; of others that they were not looked for.
+
+    Raises NoClosedForm where more monomials are coupled than the bounds allow.
+    """
+    if usual.grading.homogeneous and (usual.grading.free or not usual.field.relations):
+        return darboux_polynomials(usual)
+    larger = _larger(usual, kinds, known)
+    if larger is None:
+        return darboux_polynomials(usual)
+    found = darboux_polynomials(larger)
+    down = _Down(larger.field.variables[-1])
+    return replace(
+        found,
+        weights=found.weights[:-1],
+        polynomials=tuple(
+            replace(one, polynomial=down.polynomial(one.polynomial), cofactor=down.polynomial(one.cofactor))
+            for one in found.polynomials
+        ),
+        counts=tuple(replace(one, cofactor=down.polynomial(one.cofactor)) for one in found.counts),
+    )
+
+
+def _larger(
+    usual: PolynomialIntegrals, kinds: Sequence[Sequence[str]], known: Sequence[tuple[str, Any]]
+) -> PolynomialIntegrals | None:
+    """The integrals of the larger field; None where its relations are not integrals by their homogeneous parts."""
+    field, found = homogenised(usual.field, kinds)
+    if field.relations and not found.free:
+        return None
+    listed = [(UNITY, field.generator(field.variables[-1]))]
+    listed += [(title, _filled(field, f, found.weights)) for title, f in known]
+    return polynomial_integrals(field, found, usual.degree, listed)
 
 
 def homogenised(field: PolynomialField, kinds: Sequence[Sequence[str]]) -> tuple[PolynomialField, Grading]:

@@ -25,10 +25,12 @@ def lifted(
     leading: Exponents,
     level: Any = None,
     cofactor: Sequence[Exponents] = (),
+    factor: Any = None,
 ) -> Any | None:
     """The polynomial on these monomials with  df/dt = 0, primitive over ZZ[parameters], if it is one up to a factor.
 
     ``leading``: a monomial that occurs in it.  With a ``level`` V it is  df/dt = K V, K on the monomials ``cofactor``.
+    With a ``factor`` K, a polynomial, it is  df/dt = K f.
     None where there is none (or more than one that has ``leading``).  Raises NoClosedForm where it outgrows its bounds.
     """
     if len(support) > MOST_SUPPORT:
@@ -37,6 +39,8 @@ def lifted(
     order = [one for one in support if one != leading]
     columns = [*order, leading]
     images = [field.derivative(monomial(field, one)) for one in columns]
+    if factor is not None:
+        images = [image - factor * monomial(field, one) for image, one in zip(images, columns, strict=True)]
     if modulo:
         images = [field.reduced(one) for one in images]
     multiples = [monomial(field, one) * level for one in cofactor]
@@ -53,6 +57,8 @@ def lifted(
         total -= top * (common / bottom) * monomial(field, one)
     found = primitive(field, total)
     rate = field.derivative(found)
+    if factor is not None:
+        return found if rate == factor * found else None
     if level is not None:  # the level is primitive over the parameters: by Gauss' lemma it divides there, too
         return found if divmod(rate, level)[1] == 0 else None
     return found if (field.reduced(rate) if modulo else rate) == 0 else None

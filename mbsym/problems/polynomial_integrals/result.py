@@ -191,3 +191,54 @@ class Relations:
 
     relations: tuple[Relation, ...]
     complete: bool
+
+
+class Obstacle(Enum):
+    """Why cofactors of Darboux polynomials are not known to be finitely many, or were not all looked at."""
+
+    NOT_HOMOGENEOUS = "not-homogeneous"
+    MIXED = "mixed"
+    NOT_AT_REST = "not-at-rest"
+    TOO_MANY = "too-many"
+
+
+@dataclass(frozen=True)
+class DarbouxPolynomial:
+    """D f = K f with f = ``polynomial``, K = ``cofactor`` not zero, D the derivative times the field's denominator."""
+
+    polynomial: Any
+    weight: int
+    cofactor: Any
+
+
+@dataclass(frozen=True)
+class DarbouxCount:
+    """For one weight and cofactor: ``most`` as in ``Count``, ``products`` of those listed and of integrals."""
+
+    weight: int
+    cofactor: Any
+    most: int
+    products: int
+
+    @property
+    def complete(self) -> bool:
+        return self.most == self.products
+
+
+@dataclass(frozen=True)
+class DarbouxPolynomials:
+    """Those up to a ``degree``, no combinations of products of others and of integrals.
+
+    ``weights`` of the variables of the field; ``counts``: one for every cofactor that was looked at.  ``complete``:
+    there are no others with coefficients rational in the parameters; ``obstacle``: why that is not known.
+    """
+
+    degree: int
+    weights: tuple[int, ...]
+    polynomials: tuple[DarbouxPolynomial, ...]
+    counts: tuple[DarbouxCount, ...]
+    obstacle: Obstacle | None
+
+    @property
+    def complete(self) -> bool:
+        return self.obstacle is None and all(one.complete for one in self.counts)

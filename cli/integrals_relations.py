@@ -1,0 +1,86 @@
+"""``mbsym integrals --relations``: what is printed of invariant relations."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from mbsym.problems.polynomial_integrals.result import Obstacle
+from mbsym.report.integrals_words import equations_text, level_title, title, weights_text
+
+if TYPE_CHECKING:
+    from mbsym.analysis.polynomial import Setting
+    from mbsym.problems.polynomial_integrals import DarbouxPolynomials, OnLevel, PolynomialIntegrals, Relations
+
+#: Why it is not known that there are no other invariant relations.
+UNDECIDED = {
+    Obstacle.NOT_HOMOGENEOUS: "the equations are not quasi-homogeneous, nor are they with one constant more",
+    Obstacle.MIXED: "a K of that weight may hold products of variables, which is not looked at",
+    Obstacle.NOT_AT_REST: "K is read off at rest where one variable alone is not zero, and there is no rest there",
+    Obstacle.TOO_MANY: "there may be more K of one weight than are looked at",
+}
+
+
+def relation_lines(there: Setting, found: Relations) -> Iterator[str]:
+    """Each relation with its conditions, and whether there are others."""
+
+    def write(p: Any) -> str:
+        return str(there.formula(p))
+
+    for one in found.relations:
+        yield f"{write(one.polynomial)} = 0"
+        if one.conditions:
+            yield f"  where {equations_text(one.conditions, write)}"
+        if one.nonzero:
+            yield f"  provided {', '.join(f'{write(p)} != 0' for p in one.nonzero)}"
+    if not found.relations:
+        yield "none was found" if not found.complete else "there are none (proved)"
+    elif found.complete:
+        yield "There are no other forms that are linear in the variables of least weight (proved)."
+    if not found.complete:
+        yield "Whether there are others is undecided: roots of parameters and families of forms were not followed."
+
+
+def level_lines(there: Setting, found: PolynomialIntegrals, levels: tuple[OnLevel, ...] | None) -> Iterator[str]:
+    """What holds where an integral of the list is zero, and that nothing else does."""
+    if levels is None:
+        yield "not looked for: the equations are not quasi-homogeneous"
+        return
+    almost = ", for almost all values of the parameters" if there.field.parameters else ""
+    for level in levels:
+        for weight, f in level.integrals:
+            yield f"{level_title(weight, level)}: {there.formula(f)}"
+        where = f"where that of weight {level.level.weight} ({title(level.level)}) is zero"
+        other = "no other" if level.integrals else "none beyond those that hold everywhere"
+        if level.complete:
+            yield f"{where} there is {other} of weight up to {found.degree}{almost} (proved)."
+        else:
+            yield f"{where} there may be others of weight up to {found.degree}: not found within the budget."
+    if not levels:
+        yield "There is no integral in the list whose zeros could be looked at."
+
+
+def darboux_lines(there: Setting, usual: PolynomialIntegrals, found: DarbouxPolynomials) -> Iterator[str]:
+    """Each f with its K, and whether there are others."""
+    if found.weights != usual.grading.weights:
+        yield f"weights are {weights_text(there.field.variables, found.weights)} here"
+    almost = ", for almost all values of the parameters" if there.field.parameters else ""
+    for one in found.polynomials:
+        yield f"weight {one.weight}: {there.formula(one.polynomial)} = 0"
+        yield f"  K = {there.quotient(one.cofactor, there.field.denominator)}"
+    for count in found.counts:
+        if not count.complete:
+            cofactor = there.quotient(count.cofactor, there.field.denominator)
+            yield (
+                f"of weight {count.weight} with K = {cofactor} there are at most {count.most - count.products} more; "
+                "they were not found within the budget."
+            )
+    if found.obstacle is not None:
+        yield f"Whether there are others is undecided: {UNDECIDED[found.obstacle]}."
+    elif found.complete:
+        none = "Every other f of weight up to" if found.polynomials else "There is none of weight up to"
+        but = " is a combination of products of these and of integrals" if found.polynomials else ""
+        yield (
+            f"{none} {found.degree} with K not zero and coefficients that are rational (in the parameters)"
+            f"{but}{almost} (proved; unit vectors of any length)."
+        )
