@@ -23,8 +23,13 @@ if TYPE_CHECKING:
 #: All claims together may take this part of the work that a run may take, and one of them this part.
 CLAIMS_SHARE, CLAIM_SHARE = 4, 16
 
-#: The stages in which expansions are derived that are claimed, by how the kinds of claim begin.
-_EXPANSIONS = {"oscillation": "claimed_oscillation", "slow manifold": "claimed_manifold"}
+#: What is derived before the claims that need it, by how their kinds begin: not within the small budget of one claim.
+_EXPANSIONS = {
+    "oscillation": "claimed_oscillation",
+    "slow manifold": "claimed_manifold",
+    "normal form": "normal_forms",
+    "lyapunov": "normal_forms",
+}
 
 
 def judged_claims(analysis: Analysis) -> tuple[ClaimResult, ...]:

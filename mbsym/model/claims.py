@@ -122,6 +122,14 @@ CLAIMS: dict[str, ClaimKind] = {
         "its rate there",
         COORDINATE, state=False, order=True,
     ),
+    "normal form determinant": ClaimKind(
+        "D_4 of problem 11, of two degrees of freedom: H_4 at I = (Omega_2, -Omega_1), up to a factor without zeros",
+        state=False, homogeneous=True,
+    ),
+    "lyapunov coefficient": ClaimKind(
+        "a of r' = d r + a r^3 of problem 11, of one pair of imaginary roots; up to a positive factor",
+        state=False, homogeneous=True,
+    ),
     "value": ClaimKind("of an expression at a state; it may hold accelerations", EXPRESSION, accelerations=True),
 }  # fmt: skip
 

@@ -40,7 +40,10 @@ _PLACES = (*_WITHOUT_INPUTS, "input")
 _STATE = Allowed("the key of a state", ("coordinate", "velocity", "prescribed", "parameter", "time", "input"))
 _DECIMAL = re.compile(r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]{1,3})?\Z")
 #: Kinds that are about constants alone.
-_CONSTANT_KINDS = ("linear matrix", "subsystem matrix", "state matrix", "characteristic polynomial", "condition")
+_CONSTANT_KINDS = (
+    *("linear matrix", "subsystem matrix", "state matrix", "characteristic polynomial", "condition"),
+    *("normal form determinant", "lyapunov coefficient"),
+)
 _KINDS = {kind.lower(): kind for kind in CLAIMS}
 
 #: A kind that resembles a known one as much (1: equal) is read as that one, after a complaint.

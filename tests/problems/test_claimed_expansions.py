@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import pytest
+from conftest import SHIPPED
 
 import mbsym
-from mbsym.problems.claims import DIFFERS, EXACT, SCALED, UNDECIDED
+from mbsym.problems.claims import DIFFERS, EXACT, FACTOR, SCALED, UNDECIDED
 from mbsym.source import to_text, to_yaml
 
 OSCILLATOR = """mbsym: 1
@@ -200,3 +201,64 @@ def test_written_and_read_again():
     ).replace("m*w**2*x**2/2", "m*w**2*x**2/2 + eps*k*x**4")
     system = mbsym.loads(text).system
     assert mbsym.loads(to_yaml(system)).system == system == mbsym.loads(to_text(system)).system
+
+
+THREE_BODIES = (SHIPPED / "three-bodies.yaml").read_text(encoding="utf-8")
+
+
+def of_three_bodies(*formulas):
+    claims = "".join(f"  - {{claim: normal form determinant, equals: {one}}}\n" for one in formulas)
+    analysis = mbsym.loads(THREE_BODIES + claims)
+    found = analysis.claims[1:]
+    assert not analysis.defects
+    return found
+
+
+def test_deprits_determinant():
+    """D_4 vanishes where 644 w^2 - 541 w + 36 does, w = w1^2 w2^2 = 27 mu (1 - mu)/4; 1 - 4 w and 4 - 25 w do not.
+
+    A. Deprit & A. Deprit-Bartholome (1967).  In other polynomials mu_c is another one, of which two points tell.
+    """
+    w = "(27*mu*(1 - mu)/4)"
+    right = (f"(644*{w}**2 - 541*{w} + 36)/((1 - 4*{w})*(4 - 25*{w}))", f"644*{w}**2 - 541*{w} + 36")
+    wrong = (f"645*{w}**2 - 541*{w} + 36", f"644*{w}**2 - 542*{w} + 36", "1", "0")
+    other = (f"(644*{w}**2 - 541*{w} + 36)*(1 + mu)",)
+    found = of_three_bodies(*right, *wrong, *other)
+    assert [one.outcome for one in found] == [FACTOR] * 2 + [DIFFERS] * 4 + [UNDECIDED]
+    assert str(found[0].factor) == "16*a**2*m/n**2"
+    assert "mu = 1/100" in found[2].remark
+    assert "normalisation" in found[6].remark
+
+
+ONE_PAIR = """mbsym: 1
+name: One pair of imaginary roots
+parameters: {w: positive, b: real}
+bodies:
+  - {name: mass, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}
+loads:
+  - potential: w**2*x**2/2
+  - generalized force: {x: -x_dot**3}
+motion: {x: 0}
+claims:
+"""
+
+
+def test_the_first_lyapunov_coefficient():
+    """x'' + x'^3 + w^2 x = 0: a = -3 w^2/8 (J. Guckenheimer & P. Holmes, (3.4.11)).  Its sign is what counts."""
+    formulas = {
+        "-3*w**2/8": EXACT,
+        "-3*w**2": FACTOR,
+        "-1": FACTOR,
+        "3*w**2/8": DIFFERS,
+        "w**2 - 2": DIFFERS,
+        "-b": DIFFERS,
+        "-(1 + b**2)": UNDECIDED,
+        "-w**2 - w": UNDECIDED,
+    }
+    claims = "".join(f"  - {{claim: lyapunov coefficient, equals: {one}}}\n" for one in formulas)
+    analysis = mbsym.loads(ONE_PAIR + claims + "  - {claim: normal form determinant, equals: 1}\n")
+    found = analysis.claims
+    assert not analysis.defects
+    assert [one.outcome for one in found] == [*formulas.values(), UNDECIDED]
+    assert "opposite" in found[3].remark
+    assert "another case" in found[8].remark

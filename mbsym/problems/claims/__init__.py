@@ -100,6 +100,10 @@ def examine(derived: Derived, claim: Claim) -> ClaimResult:
         from mbsym.problems.claims import oscillations  # few claims are about expansions
 
         return oscillations.examined(derived, claim, about)
+    if claim.kind in ("normal form determinant", "lyapunov coefficient"):
+        from mbsym.problems.claims import normal_forms  # few claims are about terms of higher order
+
+        return normal_forms.examined(derived, claim, about)
     if derived.system.constraints:
         from mbsym.problems.claims import constrained  # most systems have no constraints
 

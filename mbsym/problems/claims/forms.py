@@ -11,6 +11,9 @@ from mbsym.model.claims import Claim
 from mbsym.problems.claims.result import Derived
 from mbsym.problems.knowledge import definition_in_parameters
 
+#: What is told of an unperturbed motion, by how the kinds of claim begin.
+_OF_THE_MOTION = ("linear", "subsystem", "state", "characteristic", "condition", "normal form", "lyapunov")
+
 _MOTION = ("velocity", "acceleration")
 
 
@@ -29,7 +32,7 @@ def in_parameters(derived: Derived, x: Polynomial) -> Polynomial:
 def on_relations(derived: Derived, claim: Claim, x: Polynomial) -> Polynomial:
     """Relations between parameters used; for the linear problem also the conditions under which the motion exists."""
     ring = derived.ring
-    if claim.kind.startswith(("linear", "subsystem", "state", "characteristic", "condition")):
+    if claim.kind.startswith(_OF_THE_MOTION):
         images = derived.equilibrium.determined(derived.parameters_scene)
     else:
         images = relations(derived.parameters_scene)

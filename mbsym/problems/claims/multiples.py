@@ -37,7 +37,7 @@ def closest_multiple(derived: Derived, claim: Claim, claimed: Polynomial, truth:
     ring = derived.ring
     if claimed.is_zero() or truth.is_zero():
         return None
-    above, below = _over_common_denominator(ring, claimed, truth)
+    above, below = over_common_denominator(ring, claimed, truth)
     first, second = dict(by_place(ring, claim, above)), dict(by_place(ring, claim, below))
     keys = sorted(first.keys() & second.keys(), key=partial(_importance, ring, claim))
     best: tuple[int, tuple[Polynomial, Polynomial], Polynomial] | None = None
@@ -78,7 +78,7 @@ def _accelerations(ring: Ring, x: Polynomial) -> bool:
     return any(degrees[k] > 0 for k, g in enumerate(ring.generators) if g.kind == "acceleration")
 
 
-def _over_common_denominator(ring: Ring, first: Polynomial, second: Polynomial) -> tuple[Polynomial, Polynomial]:
+def over_common_denominator(ring: Ring, first: Polynomial, second: Polynomial) -> tuple[Polynomial, Polynomial]:
     """Both times their denominators."""
     above, denominators = ring.fraction(first)
     below, others = ring.fraction(second)
@@ -123,7 +123,7 @@ def constant_factor(derived: Derived, claimed: Polynomial, truth: Polynomial) ->
     ring = derived.ring
     if claimed.is_zero() or truth.is_zero():
         return None
-    above, below = _over_common_denominator(ring, claimed, truth)
+    above, below = over_common_denominator(ring, claimed, truth)
     constant = {k for k in range(len(ring.generators)) if not is_moving(derived, ring.context.gen(k))}
     first, second = dict(split_off(ring, above, constant)), dict(split_off(ring, below, constant))
     if first.keys() != second.keys():

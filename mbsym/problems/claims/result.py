@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from mbsym.mechanics.speeds import SpeedForm
     from mbsym.problems.canonical import Routh
     from mbsym.problems.claims.oscillations import Told, ToldManifold
+    from mbsym.problems.normal_forms import NormalForms
     from mbsym.problems.state_space import StateSpace
 
 EXACT = "holds exactly"
@@ -85,6 +86,8 @@ class Derived(Protocol):
     def stability(self) -> Stability: ...
     @property
     def integrals(self) -> Sequence[Integral]: ...
+    @property
+    def normal_forms(self) -> NormalForms: ...
     @property
     def trials(self) -> Trials: ...
     @property

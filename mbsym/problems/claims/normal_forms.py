@@ -1,0 +1,216 @@
+"""Claims about normal forms: D_4 of two degrees of freedom, and the first Lyapunov coefficient of one pair of roots.
+
+Of D_4 only counts where it vanishes, of the coefficient only its sign: publications multiply them by what never does,
+or is positive.  Equal formulas agree; so do multiples by numbers, powers of parameters and what is not zero where
+problem 11 has the formula (frequencies, their difference, resonances).  With every other factor f = claimed/derived the
+claim is refuted by two points of the parameters at which f has different signs (of the coefficient: one at which
+f < 0), else it is undecided.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any
+
+from flint import arb, fmpq, fmpq_poly
+
+from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.formulas.formula import Formula
+from mbsym.model.claims import Claim
+from mbsym.model.system import System, rational
+from mbsym.problems.claims.forms import in_parameters, on_relations
+from mbsym.problems.claims.multiples import over_common_denominator
+from mbsym.problems.claims.result import DIFFERS, EXACT, FACTOR, UNDECIDED, ClaimResult, Derived
+from mbsym.problems.claims.symbols import Symbols
+from mbsym.problems.normal_forms.result import Focus, InSymbols
+
+#: The kinds of claim that this is about.
+DETERMINANT, COEFFICIENT = "normal form determinant", "lyapunov coefficient"
+
+_ANOTHER = "it is the derived one times what was not seen to vanish, nor not to: perhaps another normalisation"
+_MEETS = {">": lambda x: x > 0, ">=": lambda x: x >= 0, "!=": lambda x: x != 0}
+
+
+def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
+    """One claim of these kinds.  Raises NoClosedForm where problem 11 has no such formula."""
+    ring, forms = derived.ring, derived.normal_forms
+    found = forms.in_symbols
+    if isinstance(found, InSymbols) and claim.kind == DETERMINANT:
+        truth, positive = found.determinant, [found.trace, found.product, found.discriminant]
+        nonzero = [*positive, *(formula for _, formula in found.resonances)]
+    elif isinstance(found, Focus) and claim.kind == COEFFICIENT:
+        truth, positive = found.coefficient, [found.square]
+        nonzero = positive
+    else:
+        raise NoClosedForm(f"no {claim.kind} in parameters: {forms.no_symbols or 'problem 11 has another case'}")
+    claimed = in_parameters(derived, Symbols.of(derived).polynomial(derived.parameters_scene, claim))
+    claimed, known = on_relations(derived, claim, claimed), on_relations(derived, claim, truth.polynomial)
+    result = ClaimResult(claim, about, EXACT, truth)
+    difference = ring.reduce(claimed - known)
+    if ring.is_zero(difference):
+        return result
+    result = replace(result, difference=Formula(ring, difference))
+    if ring.is_zero(claimed) or ring.is_zero(known):
+        return replace(result, outcome=DIFFERS)
+    quotient = _Quotient.of(ring, claimed, known)
+    left = quotient.without([ring.fraction(one.polynomial)[0] for one in nonzero])
+    sign = derived.signs.sign(quotient.product)
+    agrees = left.is_monomial and derived.signs.never_zero(left.product)
+    if agrees and (claim.kind == DETERMINANT or sign == "positive"):
+        return replace(result, outcome=FACTOR, factor=quotient.formula, difference=None)
+    if claim.kind == COEFFICIENT and sign == "negative":
+        return replace(result, outcome=DIFFERS, remark="its sign is the opposite one")
+    remark = _contrary(derived, claim, left if claim.kind == DETERMINANT else quotient, positive)
+    return replace(result, outcome=DIFFERS if remark else UNDECIDED, remark=remark or _ANOTHER)
+
+
+def _contrary(derived: Derived, claim: Claim, quotient: _Quotient, positive: Sequence[Formula]) -> str:
+    """Where claimed/derived has the sign that it must not have; "" where no such place was found."""
+    seen: dict[bool, str] = {}
+    for at, value in _values(derived, quotient, [derived.ring.fraction(one.polynomial) for one in positive]):
+        seen.setdefault(value > 0, at)
+        if claim.kind == COEFFICIENT and value < 0:
+            return f"at {at} its sign is the opposite one"
+        if len(seen) == 2:
+            return f"claimed/derived is positive at {seen[True]}, negative at {seen[False]}"
+    return ""
+
+
+@dataclass(frozen=True)
+class _Quotient:
+    """top/bottom in lowest terms."""
+
+    ring: Ring
+    top: Polynomial
+    bottom: Polynomial
+
+    @staticmethod
+    def of(ring: Ring, x: Polynomial, y: Polynomial) -> _Quotient:
+        above, below = over_common_denominator(ring, x, y)
+        common = ring.common_factor(above, below)
+        top, bottom = ring.quotient(above, common), ring.quotient(below, common)
+        return _Quotient(ring, above, below) if top is None or bottom is None else _Quotient(ring, top, bottom)
+
+    @property
+    def product(self) -> Polynomial:
+        """It has the sign of the quotient."""
+        return self.ring.reduce(self.ring.times(self.top, self.bottom))
+
+    @property
+    def formula(self) -> Formula:
+        return Formula(self.ring, self.ring.reduce(self.ring.times(self.top, self.ring.reciprocal(self.bottom))))
+
+    @property
+    def is_monomial(self) -> bool:
+        return len(self.top) == 1 and len(self.bottom) == 1
+
+    def without(self, nonzero: Sequence[Polynomial]) -> _Quotient:
+        """Divided by everything that it shares with polynomials that vanish nowhere."""
+        parts = []
+        for part in (self.top, self.bottom):
+            for other in nonzero:
+                while not (common := self.ring.common_factor(part, other)).is_constant():
+                    shorter = self.ring.quotient(part, common)
+                    if shorter is None:
+                        break
+                    part = shorter
+            parts.append(part)
+        return _Quotient(self.ring, parts[0], parts[1])
+
+
+def _values(
+    derived: Derived, quotient: _Quotient, positive: Sequence[tuple[Polynomial, Any]]
+) -> Iterator[tuple[str, fmpq]]:
+    """Signs of the quotient where all conditions hold: along one parameter, between the zeros of everything.
+
+    The other parameters have the values of the description, or are 1.
+    """
+    ring, system = derived.ring, derived.system
+    product = quotient.product
+    conditions = [(p, relation) for p, relation in derived.signs.assumptions]
+    conditions += [(_times(ring, one), ">") for one in positive]
+    values = _start(system)
+    for name in values:
+        others = {other: x for other, x in values.items() if other != name}
+        if product.degrees()[ring.index("parameter", name)] <= 0:
+            continue
+        along = [_along(ring, p, name, others) for p in (product, *(p for p, _ in conditions))]
+        if any(one is None for one in along):
+            return
+        whole, *tests = (one for one in along if one is not None)
+        for x in _between([whole, *tests]):
+            sign = next((one.sign for one in system.parameters if one.name == name), "real")
+            if (sign == "positive" and x <= 0) or (sign == "negative" and x >= 0):
+                continue
+            if all(_MEETS[relation](p(x)) for p, (_, relation) in zip(tests, conditions, strict=True)):
+                yield f"{name} = {x}", whole(x)
+
+
+def _start(system: System) -> dict[str, fmpq]:
+    """A value for every parameter: its own if that is rational, else the sign's."""
+    found = {}
+    for one in system.parameters:
+        value = None if one.value is None else rational(one.value)
+        plain = Fraction(-1 if one.sign in ("negative", "nonpositive") else 1)
+        value = plain if value is None else value
+        found[one.name] = fmpq(value.numerator, value.denominator)
+    return found
+
+
+def _times(ring: Ring, fraction: tuple[Polynomial, Any]) -> Polynomial:
+    """A polynomial with the sign of a fraction."""
+    top, factors = fraction
+    for factor, exponent in factors:
+        if exponent % 2:
+            top = ring.times(top, factor)
+    return top
+
+
+def _along(ring: Ring, p: Polynomial, name: str, others: Mapping[str, fmpq]) -> fmpq_poly | None:
+    """A polynomial in one parameter; None where it holds anything but parameters."""
+    place = ring.index("parameter", name)
+    known = {ring.index("parameter", other): x for other, x in others.items()}
+    found: dict[int, fmpq] = {}
+    for monomial, c in p.terms():
+        term = fmpq(c)
+        for k, exponent in enumerate(monomial):
+            if exponent and k != place:
+                if k not in known:
+                    return None
+                term *= known[k] ** int(exponent)
+        found[int(monomial[place])] = found.get(int(monomial[place]), fmpq(0)) + term
+    return fmpq_poly([found.get(k, fmpq(0)) for k in range(max(found, default=0) + 1)])
+
+
+def _between(polynomials: Sequence[fmpq_poly]) -> Iterator[fmpq]:
+    """A rational number in each interval between neighbouring real zeros, and beyond the outermost."""
+    whole = fmpq_poly([1])
+    for one in polynomials:
+        if one.degree() > 0:
+            whole *= one
+    roots: list[Any] = [pair for factor, _ in whole.factor()[1] for pair in factor.numer().complex_roots()]
+    zeros = sorted(_rational(root.real) for root, _ in roots if root.imag == 0)
+    yield from map(fmpq, (zeros[0] - 1, zeros[-1] + 1) if zeros else (0,))
+    for low, high in pairwise(zeros):
+        if low < high:
+            yield _simple(low, high)
+
+
+def _rational(x: arb) -> fmpq:
+    mid, power = x.mid().man_exp()
+    return fmpq(int(mid)) * fmpq(2) ** int(power)
+
+
+def _simple(low: fmpq, high: fmpq) -> fmpq:
+    """A number of few digits between two different ones."""
+    middle = (low + high) / 2
+    digits = fmpq(1)
+    while True:
+        found = fmpq((middle * digits + fmpq(1, 2)).floor()) / digits
+        if low < found < high:
+            return found
+        digits *= 10
