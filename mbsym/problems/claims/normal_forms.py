@@ -3,8 +3,8 @@
 Of D_4 only counts where it vanishes, of the coefficient only its sign: publications multiply them by what never does,
 or is positive.  Equal formulas agree; so do multiples by numbers, powers of parameters and what is not zero where
 problem 11 has the formula (frequencies, their difference, resonances).  With every other factor f = claimed/derived the
-claim is refuted by two points of the parameters at which f has different signs (of the coefficient: one at which
-f < 0), else it is undecided.
+claim is refuted by two points in one piece of the parameters at which f has different signs (of the coefficient: one
+point at which f < 0), else it is undecided.
 """
 
 from __future__ import annotations
@@ -70,13 +70,15 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
 
 def _contrary(derived: Derived, claim: Claim, quotient: _Quotient, positive: Sequence[Formula]) -> str:
     """Where claimed/derived has the sign that it must not have; "" where no such place was found."""
-    seen: dict[bool, str] = {}
-    for at, value in _values(derived, quotient, [derived.ring.fraction(one.polynomial) for one in positive]):
-        seen.setdefault(value > 0, at)
-        if claim.kind == COEFFICIENT and value < 0:
-            return f"at {at} its sign is the opposite one"
-        if len(seen) == 2:
-            return f"claimed/derived is positive at {seen[True]}, negative at {seen[False]}"
+    before: tuple[str, fmpq] | None = None
+    for found in _values(derived, quotient, [derived.ring.fraction(one.polynomial) for one in positive]):
+        if claim.kind == COEFFICIENT and found is not None and found[1] < 0:
+            return f"at {found[0]} its sign is the opposite one"
+        if claim.kind == DETERMINANT and found is not None and before is not None and found[1] * before[1] < 0:
+            # Nothing but a zero of the quotient, or of its denominator, is between them.
+            signs = ("positive", "negative") if found[1] < 0 else ("negative", "positive")
+            return f"claimed/derived is {signs[0]} at {before[0]}, {signs[1]} at {found[0]}"
+        before = found
     return ""
 
 
@@ -124,10 +126,11 @@ class _Quotient:
 
 def _values(
     derived: Derived, quotient: _Quotient, positive: Sequence[tuple[Polynomial, Any]]
-) -> Iterator[tuple[str, fmpq]]:
-    """Signs of the quotient where all conditions hold: along one parameter, between the zeros of everything.
+) -> Iterator[tuple[str, fmpq] | None]:
+    """Signs of the quotient in the intervals between the zeros of everything, along each parameter upwards.
 
-    The other parameters have the values of the description, or are 1.
+    None where a condition does not hold, or ends: what stands side by side is in one piece of the region.  The other
+    parameters have the values of the description, or are 1.
     """
     ring, system = derived.ring, derived.system
     product = quotient.product
@@ -140,14 +143,18 @@ def _values(
             continue
         along = [_along(ring, p, name, others) for p in (product, *(p for p, _ in conditions))]
         if any(one is None for one in along):
-            return
+            continue
         whole, *tests = (one for one in along if one is not None)
+        sign = next((one.sign for one in system.parameters if one.name == name), "real")
+        tests.append(fmpq_poly([0, -1 if sign in ("negative", "nonpositive") else 1] if sign != "real" else [1]))
+        ends = [*(relation for _, relation in conditions), "!=" if sign == "nonzero" else ">"]
+        yield None
+        shared = any(one.gcd(whole).degree() > 0 for one in tests)
         for x in _between([whole, *tests]):
-            sign = next((one.sign for one in system.parameters if one.name == name), "real")
-            if (sign == "positive" and x <= 0) or (sign == "negative" and x >= 0):
-                continue
-            if all(_MEETS[relation](p(x)) for p, (_, relation) in zip(tests, conditions, strict=True)):
-                yield f"{name} = {x}", whole(x)
+            holds = all(_MEETS[relation](p(x)) for p, relation in zip(tests, ends, strict=True))
+            yield (f"{name} = {x}", whole(x)) if holds else None
+            if shared:
+                yield None
 
 
 def _start(system: System) -> dict[str, fmpq]:
@@ -194,10 +201,14 @@ def _between(polynomials: Sequence[fmpq_poly]) -> Iterator[fmpq]:
             whole *= one
     roots: list[Any] = [pair for factor, _ in whole.factor()[1] for pair in factor.numer().complex_roots()]
     zeros = sorted(_rational(root.real) for root, _ in roots if root.imag == 0)
-    yield from map(fmpq, (zeros[0] - 1, zeros[-1] + 1) if zeros else (0,))
+    if not zeros:
+        yield fmpq(0)
+        return
+    yield zeros[0] - 1
     for low, high in pairwise(zeros):
         if low < high:
             yield _simple(low, high)
+    yield zeros[-1] + 1
 
 
 def _rational(x: arb) -> fmpq:
