@@ -368,6 +368,14 @@ def test_renaming_there_and_back_gives_the_bytes(name: str) -> None:
     assert done(there, {"op": "rename body", "body": "zz nine", "name": old}, name=name) == text
 
 
+def test_the_values_of_renamed_variables_in_claims_about_oscillations_follow() -> None:
+    text = (SYSTEMS / "gyrostat-fast.yaml").read_text(encoding="utf-8")
+    there = done(text, {"op": "rename", "kind": "speed", "name": "r", "to": "spin"}, name="fast.yaml")
+    assert there.count("spin_0") == text.count("r_0") > 0
+    assert done(there, {"op": "rename", "kind": "speed", "name": "spin", "to": "r"}, name="fast.yaml") == text
+    assert refused(text, {"op": "rename", "kind": "parameter", "name": "lx", "to": "phase"}) == "repeated-name"
+
+
 @pytest.mark.parametrize("name", ["built.yaml", "built.txt"])
 def test_the_satellite_is_built_from_an_empty_text(name: str) -> None:
     """By operations alone, from what systems/satellite.yaml says; the system is that of the file."""

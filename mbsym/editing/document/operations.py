@@ -21,6 +21,8 @@ from mbsym.editing.document.written import (
     node_at,
 )
 from mbsym.model.momenta import momentum_names
+from mbsym.model.oscillation_names import names_in, oscillating_variables, oscillation_names
+from mbsym.model.system import velocity_name
 from mbsym.source.placed import Node, Scalar, Sequence
 from mbsym.source.scope import why_no_name
 
@@ -132,8 +134,19 @@ def _rename(found: Written, operation: Json) -> Meant:
         momentum = momentum_names(found.system)[old]
         if momentum == f"p_{old}" and not uses(found, f"p_{new}"):
             names[momentum] = f"p_{new}"
+    names |= _symbols(found, old, new)
     primitives, edits = renamed(found, names)
     return Meant(primitives, edits, names=names)
+
+
+def _symbols(found: Written, old: str, new: str) -> dict[str, str]:
+    """What claims about oscillations call the value of a variable at the phase 0."""
+    if found.system is None:
+        return {}
+    starts = oscillation_names(oscillating_variables(found.system), names_in(found.system)).starts
+    renamed_ = {old: new, velocity_name(old): velocity_name(new)}
+    symbols = {starts[name]: f"{other}_0" for name, other in renamed_.items() if name in starts}
+    return {one: other for one, other in symbols.items() if uses(found, one) and not uses(found, other)}
 
 
 def _variables(found: Written) -> set[str]:
