@@ -10,6 +10,7 @@ from mbsym.editing.keys import keys_in
 from mbsym.editing.place import Where, where
 from mbsym.expressions.tree import FUNCTIONS
 from mbsym.model.claims import CLAIMS
+from mbsym.model.oscillation_names import names_in, oscillating_variables, oscillation_names
 from mbsym.model.system import System, velocity_name
 from mbsym.source.keys import ALIASES, SIGNS
 
@@ -81,6 +82,9 @@ def _values(found: Where, text: str, system: System | None) -> Iterator[Suggesti
         return
     if key not in _FREE:
         yield from _names(text, system, "loads" in found.path or "claims" in found.path)
+        if system is not None and system.small is not None and found.path[0] in ("claims", "abbreviations"):
+            symbols = oscillation_names(oscillating_variables(system), names_in(system)).all
+            yield from (Suggestion(name, "name", "a symbol of an oscillation", name) for name in symbols)
 
 
 def _coordinates(system: System | None) -> Iterable[str]:

@@ -117,6 +117,17 @@ def test_values_are_what_may_stand_there(marked: str, wanted: set[str], unwanted
     assert not unwanted & found
 
 
+def test_claims_about_oscillations_name_their_symbols() -> None:
+    small = TEXT.replace("bodies:", "small parameter: {eps: {powers: {m: 1}}}\nbodies:", 1)
+    claim = "claims:\n  - claim: oscillation\n    equals: |\n"
+    names = [
+        {one.label for one in suggestions(*at(text + claim), read(text, "x.yaml")[0])}
+        & {"amplitude", "phase", "theta_0"}
+        for text in (small, TEXT)
+    ]
+    assert names == [{"amplitude", "phase", "theta_0"}, set()]
+
+
 def test_without_a_system_the_declared_names_are_found() -> None:
     text, line, column = at(replaced("    mass: m\n    coordinates", "    mass: |\n    coordinates"))
     found = {one.label for one in suggestions(text, line, column) if one.kind == "name"}
