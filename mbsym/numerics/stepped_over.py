@@ -13,7 +13,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
 
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.singular_positions import Search
@@ -64,6 +63,8 @@ def _least(constraints: Any, search: Search, times: Any, states: Any) -> Any:
 
 def _met(search: Search, times: Any, states: Any, middle: float) -> float | None:
     """When the curve comes within ``WITHIN`` of a singular position that is found from it; None if it does not."""
+    from scipy.interpolate import CubicHermiteSpline  # half of the time that importing numbers took
+
     n = len(states) // 2
     curve = CubicHermiteSpline(times, states[:n], states[n:], axis=1)
     at = np.linspace(times[0], times[-1], FINE)

@@ -251,6 +251,12 @@ def test_definiteness_where_values_have_denominators():
     one = next(x for x in family.sets if x.kind is Kind.STEADY and {"p", "gamma3"} == set(x.free))
     state = sympy.symbols("p q r gamma1 gamma2 gamma3")
     formulas = {name: x.to_sympy() for name, x in found.integrals}
+    symbols = sorted(set().union(*(formulas[name].free_symbols for name in family.integrals)), key=str)
+    first = [[sympy.lambdify(symbols, sympy.diff(formulas[x], s)) for s in state] for x in family.integrals]
+    second = [
+        [[sympy.lambdify(symbols, sympy.diff(formulas[x], s, t)) for t in state] for s in state]
+        for x in family.integrals
+    ]
     compared = set()
     for gamma3 in (Fraction(4, 5), Fraction(-4, 5)):
         for free in [Fraction(k, 40) for k in range(-60, 61, 7)]:
@@ -258,16 +264,15 @@ def test_definiteness_where_values_have_denominators():
             numbers = {"C": 3, "x0": 5, "m": 1, "g": 1, "p": 1, "gamma3": gamma3, "lambda1": free}
             numbers |= {name: _value(x, **numbers) for name, x in one.solved}
             numbers |= {name: _value(x, **numbers) for name, x in one.multipliers if x is not None}
-            at = {sympy.Symbol(name): sympy.Rational(str(x)) for name, x in numbers.items()}
-            parameters = {s: v for s, v in at.items() if s not in state}
-            parts = [formulas[name].subs(parameters) for name in family.integrals]
-            whole = parts[0] + sum(
-                parameters[sympy.Symbol(name)] * x for name, x in zip(family.multipliers, parts[1:], strict=True)
+            at = [Fraction(str(numbers[str(x)])) for x in symbols]
+            factors = [1, *(Fraction(str(numbers[name])) for name in family.multipliers)]
+            rows = [[one_of(*at) for one_of in row] for row in first]
+            assert all(sum(c * row[k] for c, row in zip(factors, rows, strict=True)) == 0 for k in range(6))  # exactly
+            gradients = np.array(rows, dtype=float)
+            hessian = sum(
+                float(c) * np.array([[f(*at) for f in row] for row in table], dtype=float)
+                for c, table in zip(factors, second, strict=True)
             )
-            place = {s: at[s] for s in state}
-            assert all(sympy.diff(whole, s).subs(place) == 0 for s in state)
-            gradients = np.array([[float(sympy.diff(x, s).subs(place)) for s in state] for x in parts])
-            hessian = np.array(sympy.hessian(whole, state).subs(place), dtype=float)
             _, singular, rows = np.linalg.svd(gradients)
             tangent = rows[np.sum(singular > 1e-9 * singular[0]) :].T
             eigenvalues = np.linalg.eigvalsh(tangent.T @ hessian @ tangent)
