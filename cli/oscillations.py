@@ -60,6 +60,7 @@ def command(file: Path, order: str, leading: str | None, settings: tuple[str, ..
     from mbsym.algebra.failures import Failure
     from mbsym.analysis import Analysis
     from mbsym.analysis.oscillating import oscillating
+    from mbsym.report.expansion_measured import orders_or_why
 
     try:
         with status(as_json, f"{file.name}: oscillations"):
@@ -70,13 +71,14 @@ def command(file: Path, order: str, leading: str | None, settings: tuple[str, ..
     except Failure as reason:
         complain(file, f"no expansion: {reason}" + (f"; {reason.remedy}" if reason.remedy else ""))
         sys.exit(FAILED)
-    measured, missing = _measured(file, system, found, bool(values), as_json)
+    with status(as_json, f"{file.name}: measuring"):
+        measured = orders_or_why(system, found, values)
     if as_json:
         from mbsym.report.oscillation_json import oscillations_json
 
-        click.echo(oscillations_json(system, values, found, measured, missing), nl=False)
+        click.echo(oscillations_json(system, values, found, measured), nl=False)
     else:
-        _show(file, system.name, found, measured, missing)
+        _show(file, system.name, found, measured)
     sys.exit(OK)
 
 
@@ -104,26 +106,7 @@ def _check(system: System, leading: str | None, values: Mapping[str, Fraction], 
             asked.complain("--set", "bad-assignment", f"{name} belongs to the small parameter: it stays a symbol")
 
 
-def _measured(
-    file: Path, system: System, found: Oscillating, settled: bool, quiet: bool
-) -> tuple[MeasuredOrders | None, str]:
-    """The errors; or why there are none."""
-    from mbsym.algebra.failures import Failure
-    from mbsym.numerics.scenario import Incomplete
-    from mbsym.simulation.oscillating import measured_orders
-
-    if settled:
-        return None, "numbers were put in that need not be those of the description"
-    try:
-        with status(quiet, f"{file.name}: measuring"):
-            return measured_orders(system, found), ""
-    except Incomplete:
-        return None, "the description does not give all numbers and an initial state"
-    except (Failure, ZeroDivisionError) as reason:
-        return None, str(reason)
-
-
-def _show(file: Path, name: str, told: Oscillating, measured: MeasuredOrders | None, missing: str) -> None:
+def _show(file: Path, name: str, told: Oscillating, measured: MeasuredOrders | str) -> None:
     from rich.text import Text
 
     from mbsym.report.oscillation_lines import lines
@@ -131,5 +114,5 @@ def _show(file: Path, name: str, told: Oscillating, measured: MeasuredOrders | N
 
     out = console()
     out.print(Text.assemble((name, "bold"), (f"  {printable(file)}", "dim")))
-    for line, heading in lines(told, measured, missing):
+    for line, heading in lines(told, measured):
         out.print(Text(line, "bold cyan" if heading else ""), soft_wrap=line.startswith("      "))

@@ -27,7 +27,7 @@ from mbsym.problems.angle_field import in_angles
 from mbsym.problems.normal_forms.taylor_field import taylor_field
 from mbsym.problems.small_parameter.graded_rows import graded_rows
 from mbsym.problems.small_parameter.harmonics import Harmonics
-from mbsym.problems.small_parameter.oscillation_result import Divisor, Oscillation
+from mbsym.problems.small_parameter.oscillation_result import Amplitude, Divisor, Oscillation
 from mbsym.problems.small_parameter.oscillations import (
     AMPLITUDE,
     LATEST,
@@ -47,7 +47,8 @@ class Oscillating:
 
     ``field``: the equations with their numbers; ``taylor``: it is a Taylor series about the motion, cut off; ``real``:
     by the signs of the parameters the frequency at eps = 0 is real and not zero; ``resonances``: the divisors that are
-    not known to be different from zero by them.
+    not known to be different from zero by them.  ``real_amplitude``: so is a determined amplitude.  ``velocities``:
+    variables that are rates of others.
     """
 
     found: Oscillation
@@ -58,6 +59,8 @@ class Oscillating:
     taylor: bool
     real: bool = False
     resonances: tuple[Divisor, ...] = ()
+    real_amplitude: bool = True
+    velocities: tuple[str, ...] = ()
 
     def formula(self, x: Element) -> Formula:
         return Formula(self.ring, in_letters(self.found.tower, self.ring, self.symbols, x))
@@ -179,6 +182,11 @@ def oscillating(
         raise NoClosedForm(
             f"{found.leading} does not oscillate where {small.name} = 0: the square of its frequency is < 0"
         )
+    size = _sign(analysis, tower, found.amplitude * found.amplitude)
+    if found.kind is Amplitude.DETERMINED and size == "negative":
+        raise NoClosedForm(
+            f"secular terms are removed only where the amplitude of {found.leading} is imaginary: its square is < 0"
+        )
     return Oscillating(
         found,
         ring,
@@ -188,6 +196,8 @@ def oscillating(
         taylor,
         sign == "positive",
         tuple(one for one in found.divisors if _sign(analysis, tower, one.value) not in ("positive", "negative")),
+        found.kind is Amplitude.FREE or size == "positive",
+        () if system.speeds else system.velocities,
     )
 
 

@@ -15,10 +15,13 @@ from mbsym.problems.small_parameter.result import Outcome
 
 if TYPE_CHECKING:
     from mbsym.analysis.expanding import Expansion
+    from mbsym.analysis.oscillating import Oscillating
     from mbsym.analysis.pipeline import Analysis
 
 #: Slow manifolds are expanded to the first of these orders at which the roots of the flow on it are judged.
 ORDERS = (2, 3)
+#: Periodic solutions are expanded to this order.
+OSCILLATION_ORDER = 2
 
 
 @dataclass(frozen=True, repr=False)
@@ -38,6 +41,9 @@ class Averaging(Shown):
 class SmallParameters(Shown):
     """``small``: the small parameter, "" where none is named; ``slow`` its slow manifold, or ``no_slow`` why not.
 
+    ``oscillation``: the periodic solution that is led by the variable which the description names as leading, or, where
+    there is no slow manifold, by the only one that oscillates where the small parameter is zero; ``no_oscillation``:
+    why there is none, with what can be done ("": none was asked for).
     ``averaged``: one for each prescribed quantity whose rate is a parameter, as it is for a fast phase.
     """
 
@@ -46,6 +52,8 @@ class SmallParameters(Shown):
     slow: Expansion | None = None
     no_slow: str = ""
     averaged: tuple[Averaging, ...] = ()
+    oscillation: Oscillating | None = None
+    no_oscillation: str = ""
 
     @property
     def nothing(self) -> bool:
@@ -65,7 +73,19 @@ def small_parameters_of(analysis: Analysis) -> SmallParameters:
     if system.small is None:
         return SmallParameters(averaged=averaged)
     slow, missing = _slow(analysis)
-    return SmallParameters(system.small.name, system.small.powers, slow, missing, averaged)
+    wave, none = _oscillation(analysis) if slow is None or system.small.leading else (None, "")
+    return SmallParameters(system.small.name, system.small.powers, slow, missing, averaged, wave, none)
+
+
+def _oscillation(analysis: Analysis) -> tuple[Oscillating | None, str]:
+    from mbsym.analysis.oscillating import oscillating
+
+    try:
+        return oscillating(analysis, OSCILLATION_ORDER), ""
+    except Failure as reason:
+        return None, f"{reason}; {reason.remedy}" if reason.remedy else str(reason)
+    except ZeroDivisionError as reason:
+        return None, str(reason)
 
 
 def _slow(analysis: Analysis) -> tuple[Expansion | None, str]:

@@ -11,15 +11,18 @@ from mbsym.algebra.failures import Failure
 
 if TYPE_CHECKING:
     from mbsym.analysis.expanding import Expansion
+    from mbsym.analysis.oscillating import Oscillating
     from mbsym.analysis.small import SmallParameters
     from mbsym.model.system import System
     from mbsym.simulation.averaged import Measured as MeasuredAverage
     from mbsym.simulation.expanded import Measured
+    from mbsym.simulation.oscillating import MeasuredOrders
 
 NO_NUMBERS = "the description does not give all numbers and an initial state"
 DIVIDED = "a denominator vanishes at the given numbers"
 
 _FLOWS: WeakKeyDictionary[SmallParameters, Measured | str] = WeakKeyDictionary()
+_WAVES: WeakKeyDictionary[SmallParameters, MeasuredOrders | str] = WeakKeyDictionary()
 _AVERAGES: WeakKeyDictionary[SmallParameters, dict[str, MeasuredAverage | str]] = WeakKeyDictionary()
 
 
@@ -45,6 +48,31 @@ def measured_or_why(
     except ZeroDivisionError:
         return DIVIDED
     except (NotMeasured, Failure, ValueError, OverflowError) as reason:
+        return str(reason)
+
+
+def oscillation_measured(found: SmallParameters, system: System) -> MeasuredOrders | str:
+    """The errors of the periodic solution at parts of the small parameter; why they were not measured."""
+    if found not in _WAVES:
+        assert found.oscillation is not None
+        _WAVES[found] = orders_or_why(system, found.oscillation)
+    return _WAVES[found]
+
+
+def orders_or_why(
+    system: System, told: Oscillating, values: Mapping[str, Fraction] | None = None
+) -> MeasuredOrders | str:
+    """The same of any periodic solution, with the ``values`` that it was made with."""
+    from mbsym.numerics.scenario import Incomplete
+    from mbsym.simulation.oscillating import measured_orders
+
+    try:
+        return measured_orders(system, told, values)
+    except Incomplete:
+        return NO_NUMBERS
+    except ZeroDivisionError:
+        return DIVIDED
+    except (Failure, ValueError, OverflowError) as reason:
         return str(reason)
 
 

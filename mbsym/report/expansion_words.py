@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -103,13 +103,18 @@ def opening(found: Expansion, write: Medium) -> Iterator[Said]:
     """What is expanded in what."""
     manifold = found.manifold
     small = write.names([manifold.field.small])
-    for name, power in manifold.field.powers:
-        yield (
-            "[[name]] is multiplied by the power [[power]] of [[small]].",
-            {"name": write.names([name]), "power": power, "small": small},
-        )
+    yield from scaled(manifold.field.powers, manifold.field.small, write)
     values: dict[str, object] = {"order": manifold.order, "small": small}
     yield SERIES, values | {"fast": write.names(manifold.fast), "slow": write.names(manifold.slow)}
+
+
+def scaled(powers: Iterable[tuple[str, int]], small: str, write: Medium) -> Iterator[Said]:
+    """What stands for its product with a power of the small parameter."""
+    for name, power in powers:
+        yield (
+            "[[name]] is multiplied by the power [[power]] of [[small]].",
+            {"name": write.names([name]), "power": power, "small": write.names([small])},
+        )
 
 
 def sentences(found: Expansion, write: Medium) -> Iterator[Said]:
@@ -266,10 +271,6 @@ def of_none(found: SmallParameters, write: Medium) -> Iterator[Said]:
         yield (
             "No slow manifold was found in powers of [[small]]: [[why]].",
             {"small": write.names([found.small]), "why": write.word(found.no_slow)},
-        )
-        yield (
-            "Periodic solutions in powers of [[small]] are looked for by mbsym oscillations.",
-            {"small": write.names([found.small])},
         )
 
 

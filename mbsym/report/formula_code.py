@@ -17,6 +17,7 @@ from mbsym.formulas.straight_line import listing
 from mbsym.problems.invariant_sets import InvariantSets, StationarySet
 from mbsym.problems.normal_forms import Focus, InSymbols, NormalForms
 from mbsym.problems.polynomial_integrals import Polynomials
+from mbsym.report import oscillation_words
 from mbsym.report.expansion_words import coefficients
 from mbsym.report.functions import Functions
 from mbsym.report.integrals_words import level_title, title
@@ -143,6 +144,9 @@ def _of_small_parameters(found: SmallParameters) -> Iterator[Told]:
     if found.slow is not None:
         for one in coefficients(found.slow):
             yield f"{one.variable}{chr(39) if one.rate else ''}, order {one.order}", one.formula
+    if found.oscillation is not None:
+        for one in oscillation_words.coefficients(found.oscillation):
+            yield f"periodic solution: {one.variable}{chr(39) if one.rate else ''}, order {one.order}", one.formula
     for each in found.averaged:
         if each.found is not None:
             yield f"effective potential, averaged over {each.phase}", each.found.potential

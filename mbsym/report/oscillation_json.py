@@ -3,31 +3,43 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from mbsym.analysis.oscillating import Oscillating
+from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
 from mbsym.problems.small_parameter.harmonics import Harmonics
 from mbsym.report.oscillation_words import numerator
 from mbsym.report.schemas import version
-from mbsym.simulation.oscillating import MeasuredOrders
+
+if TYPE_CHECKING:
+    from mbsym.analysis.oscillating import Oscillating
+    from mbsym.simulation.oscillating import MeasuredOrders
 
 #: The version of ``schemas/oscillations.json`` that it follows.
 FORMAT = 1
 
 
 def oscillations_json(
-    system: System, values: Mapping[str, Fraction], told: Oscillating, measured: MeasuredOrders | None, missing: str
+    system: System, values: Mapping[str, Fraction], told: Oscillating, measured: MeasuredOrders | str
 ) -> str:
     """One JSON object, keys in a fixed order, the same text for the same input."""
-    found = told.found
     data: dict[str, Any] = {
         "format": FORMAT,
         "version": version(),
         "system": system.name,
         "values": {name: str(value) for name, value in values.items()},
+        **oscillation_data(told),
+        "measured": measured_data(measured),
+    }
+    return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
+
+
+def oscillation_data(told: Oscillating) -> dict[str, Any]:
+    """A periodic solution; formulas in Python syntax."""
+    found = told.found
+    return {
         "small": found.small,
         "powers": dict(found.powers),
         "order": found.order,
@@ -61,20 +73,36 @@ def oscillations_json(
         "left_out": [{"variables": list(names), "square": str(told.formula(x))} for names, x in found.others],
         "forced": [list(names) for names in found.damped],
         "taylor": told.taylor,
+        "conditions": [str(x) for x in _positive(told)],
     }
-    if measured is None:
-        data["not_measured"] = missing
-    else:
-        data["measured"] = {
-            "small": measured.small,
-            "time": measured.time,
-            "parts": [str(x) for x in measured.parts],
-            "errors": [
-                {"variable": name, "errors": list(errors), "order": order}
-                for name, errors, order in zip(measured.names, measured.errors, measured.orders, strict=True)
-            ],
-        }
-    return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
+
+
+def _positive(told: Oscillating) -> Iterator[Formula]:
+    """Squares that have to be positive for frequency and amplitude to be real, and are not known to be."""
+    found = told.found
+    if not told.real:
+        yield told.formula(found.frequency * found.frequency)
+    if not told.real_amplitude:
+        yield told.formula(found.amplitude * found.amplitude)
+
+
+def measured_data(measured: MeasuredOrders | str) -> dict[str, Any]:
+    """A measurement in two digits, so that it is the same wherever it is made; ``reason``: why there is none."""
+    if isinstance(measured, str):
+        return {"reason": measured}
+    return {
+        "small": measured.small,
+        "time": float(f"{measured.time:.4g}"),
+        "parts": [str(x) for x in measured.parts],
+        "errors": [
+            {
+                "variable": name,
+                "errors": [float(f"{x:.2g}") for x in errors],
+                "order": None if order is None else round(order, 2),
+            }
+            for name, errors, order in zip(measured.names, measured.errors, measured.orders, strict=True)
+        ],
+    }
 
 
 def _series(told: Oscillating, series: Sequence[Harmonics]) -> list[dict[str, Any]]:

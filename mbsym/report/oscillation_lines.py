@@ -7,13 +7,14 @@ from collections.abc import Iterator, Sequence
 from mbsym.analysis.oscillating import Oscillating
 from mbsym.report.oscillation_words import DRIFTS, RATE, SOLUTION, measured_sentences, sentences
 from mbsym.report.said import filled
+from mbsym.report.sections.small_parameters import PLAIN
 from mbsym.simulation.oscillating import MeasuredOrders
 
 #: A line, and whether it is a heading.
 Line = tuple[str, bool]
 
 
-def lines(told: Oscillating, measured: MeasuredOrders | None, missing: str) -> Iterator[Line]:
+def lines(told: Oscillating, measured: MeasuredOrders | str) -> Iterator[Line]:
     """The series harmonic by harmonic, the rate of the phase, drifting variables, and what is said of them."""
     found = told.found
     small = found.small
@@ -31,10 +32,8 @@ def lines(told: Oscillating, measured: MeasuredOrders | None, missing: str) -> I
         rates = [_term(small, n, str(told.formula(x))) for n, x in enumerate(drift.rates)]
         waves = [_term(small, n, told.written(x)) for n, x in enumerate(drift.waves)]
         yield from _sum(drift.variable, [*(f"t*({x})" for x in rates if x), *waves])
-    for said in (*sentences(told), *(measured_sentences(told, measured) if measured else ())):
+    for said in (*sentences(told, PLAIN, drifts=True), *measured_sentences(told, measured, PLAIN)):
         yield f"    {filled(said)}", False
-    if measured is None:
-        yield f"    The error was not measured: {missing}.", False
 
 
 def _sum(name: str, terms: Sequence[str]) -> Iterator[Line]:

@@ -3,25 +3,37 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from mbsym.algebra.tower import Element
-from mbsym.analysis.oscillating import Oscillating
+from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula
+from mbsym.problems.small_parameter.harmonics import Harmonics
 from mbsym.problems.small_parameter.oscillation_result import Amplitude
+from mbsym.report.expansion_words import Coefficient, Medium, scaled
 from mbsym.report.said import Said
-from mbsym.simulation.oscillating import MeasuredOrders
+
+if TYPE_CHECKING:
+    from mbsym.analysis.oscillating import Oscillating
+    from mbsym.simulation.oscillating import MeasuredOrders
 
 SOLUTION = "Periodic solution up to order [[order]] of [[small]], led by [[leading]]"
 RATE = "The rate of the phase"
 DRIFTS = "Variables that no equation needs, but for their initial values"
 
+_SERIES = (
+    "Periodic solution up to order [[order]] of [[small]], led by [[leading]]: all variables as functions of "
+    "[[phase]], and the rate of it. The coefficient of the power k of [[small]] has the index (k)."
+)
 _FREE = (
-    "Secular terms are removed up to this order with any [[amplitude]]: the value of [[leading]] at the phase 0, where "
-    "it has no term sin([[phase]])."
+    "Secular terms are removed up to this order with any amplitude. Here it is [[amplitude]], the value of [[leading]] "
+    "at the phase 0, where it has no term [[sine]]."
 )
 _DETERMINED = (
-    "Secular terms are removed for one amplitude only: in first approximation [[leading]] is [[value]]*cos([[phase]])."
+    "Secular terms are removed for certain amplitudes only. That of this solution: in first approximation [[leading]] "
+    "is [[value]]."
 )
+_REAL_AMPLITUDE = "The amplitude is real and not zero where [[condition]]."
 _CONSTANTS = "[[names]]: the values of [[variables]] at the phase 0, which are constant where [[small]] = 0."
 _LEFT = (
     "Put into the equations at random rational parameters, it leaves terms of order [[left]] of [[small]] (verified)."
@@ -30,63 +42,93 @@ _NOTHING = "Put into the equations at random rational parameters, it leaves noth
 _TAYLOR = (
     "Of the equations, terms up to degree [[degree]] in the deviations were taken; the others are of higher order."
 )
-_REAL = "The frequency without [[small]] is real and not zero where [[square]] > 0."
-_NONZERO = "It holds where the frequency without [[small]] is not zero: [[frequency]] != 0."
-_RESONANCES = "Resonance, and in general no such solution, where one of these vanishes: [[divisors]]."
-_HARMONIC = "[[value]] (harmonic [[harmonic]], order [[order]], [[names]])"
+_REAL = "The frequency without [[small]] is real and not zero where [[condition]]."
+_NONZERO = "It holds where the frequency without [[small]] is not zero: [[condition]]."
+_RESONANCE = (
+    "Resonance, and in general no such solution, where [[condition]] (harmonic [[harmonic]], order [[order]], of "
+    "[[names]])."
+)
 _OTHERS = "Free oscillations of [[names]], whose frequency has the square [[square]], are left out."
 _DAMPED = "Without [[small]], roots of [[names]] are not all imaginary: only what is forced of them is here."
+_ASIDE = "[[names]], on which no equation depends, follow by quadrature: see mbsym oscillations."
 _MEASURED = (
-    "Measured at the numbers of the description, over one period, against motions that begin in the same state: with "
-    "[[small]] halved from [[from]] to [[to]] the errors fall by 2^k, k = [[orders]] (not proved)."
+    "Measured at the given numbers, over one period, against motions that begin in the same state: with [[small]] "
+    "halved from [[from]] to [[to]] the errors fall like its powers [[orders]] (not proved)."
 )
-_EXPECTED = "k = [[expected]] or more is expected of a right solution to this order, where [[small]] is small enough."
+_EXPECTED = "[[expected]] or more is expected of a right solution to this order, where [[small]] is small enough."
 _TOO_SLOW = (
     "The errors of [[names]] fall more slowly than expected: [[small]] is too large there, or something is wrong."
 )
+_NOT_MEASURED = "The error of the periodic solution was not measured: [[why]]."
+_NONE = "No periodic solution was expanded in powers of [[small]]: [[why]]."
+_NOT_ASKED = "Periodic solutions in powers of [[small]] are looked for by mbsym oscillations."
 #: How far below the expected order a measured one may be.
 SLACK = 0.25
 
 
-def sentences(told: Oscillating) -> Iterator[Said]:
-    """What kind of solution it is, what was checked and where it holds."""
+def opening(told: Oscillating, write: Medium) -> Iterator[Said]:
+    """What is expanded in what."""
     found = told.found
-    values: dict[str, object] = {
-        "small": found.small,
-        "leading": found.leading,
-        "phase": told.phase,
-        "order": found.order,
-    }
-    shown = told.formula(found.amplitude)
-    free = found.kind is Amplitude.FREE
-    yield (_FREE, values | {"amplitude": shown}) if free else (_DETERMINED, values | {"value": shown})
+    yield from scaled(found.powers, found.small, write)
+    yield _SERIES, _values(told, write)
+
+
+def coefficients(told: Oscillating) -> Iterator[Coefficient]:
+    """Of all variables, then of the rate of the phase; those that are zero are left out."""
+    found = told.found
+    for name, series in zip(found.names, found.series, strict=True):
+        plain = without_velocity(name) if name in told.velocities else name
+        for order, one in enumerate(series):
+            if not one.is_zero:
+                yield Coefficient(plain, plain != name, order, told.wave(one))
+    for order, x in enumerate((found.tower.one, *found.corrections)):
+        if not x.is_zero():
+            yield Coefficient(told.phase, True, order, told.formula(found.frequency * x))
+
+
+def sentences(told: Oscillating, write: Medium, drifts: bool = False) -> Iterator[Said]:
+    """What kind of solution it is, what was checked and where it holds; ``drifts``: they are shown."""
+    found, values = told.found, _values(told, write)
+    if found.kind is Amplitude.FREE:
+        values |= {"amplitude": write.formula(told.formula(found.amplitude)), "sine": write.formula(_wave(told, False))}
+        yield _FREE, values
+    else:
+        yield _DETERMINED, values | {"value": write.formula(_wave(told, True))}
+        if not told.real_amplitude:
+            square = told.formula(found.amplitude * found.amplitude)
+            yield _REAL_AMPLITUDE, {"condition": write.condition(square, ">")}
     if found.constants:
-        names = ", ".join(str(told.formula(x)) for _, x in found.constants)
-        yield _CONSTANTS, values | {"names": names, "variables": ", ".join(name for name, _ in found.constants)}
+        names = ", ".join(write.formula(told.formula(x)) for _, x in found.constants)
+        yield _CONSTANTS, values | {"names": names, "variables": write.names([name for name, _ in found.constants])}
     least = [one for one in found.residuals if one is not None]
     yield (_LEFT, values | {"left": min(least)}) if least else (_NOTHING, values)
     if told.taylor:
         yield _TAYLOR, {"degree": found.order + 1}
-    square = found.frequency * found.frequency
     if not told.real:
         rooted = any(d > 0 for d in found.frequency.top.degrees()[: -len(found.tower.parameters)])
-        if rooted:
-            yield _REAL, values | {"square": told.formula(square)}
-        else:
-            yield _NONZERO, values | {"frequency": told.formula(found.frequency)}
-    if told.resonances:
-        listed = "; ".join(
-            _HARMONIC.replace("[[value]]", str(numerator(told, one.value)))
-            .replace("[[harmonic]]", str(one.harmonic))
-            .replace("[[order]]", str(one.order))
-            .replace("[[names]]", ", ".join(one.variables))
-            for one in told.resonances
-        )
-        yield _RESONANCES, {"divisors": listed}
+        real = write.condition(told.formula(found.frequency * found.frequency), ">")
+        nonzero = write.condition(told.formula(found.frequency), "!=")
+        yield (_REAL, values | {"condition": real}) if rooted else (_NONZERO, values | {"condition": nonzero})
+    for one in told.resonances:
+        gaps = {"condition": write.condition(numerator(told, one.value), "="), "names": write.names(one.variables)}
+        yield _RESONANCE, {"harmonic": one.harmonic, "order": one.order, **gaps}
     for group, other in found.others:
-        yield _OTHERS, {"names": ", ".join(group), "square": told.formula(other)}
+        yield _OTHERS, {"names": write.names(group), "square": write.formula(told.formula(other))}
     for group in found.damped:
-        yield _DAMPED, values | {"names": ", ".join(group)}
+        yield _DAMPED, values | {"names": write.names(group)}
+    if found.drifts and not drifts:
+        yield _ASIDE, {"names": write.names([one.variable for one in found.drifts])}
+
+
+def _values(told: Oscillating, write: Medium) -> dict[str, object]:
+    names = {"small": told.found.small, "leading": told.found.leading, "phase": told.phase}
+    return {"order": told.found.order, **{key: write.names([name]) for key, name in names.items()}}
+
+
+def _wave(told: Oscillating, whole: bool) -> Formula:
+    """The amplitude times the cosine of the phase; or its sine."""
+    zero, one = told.found.tower.zero, told.found.tower.one
+    return told.wave(Harmonics(told.found.tower, {1: (told.found.amplitude, zero) if whole else (zero, one)}))
 
 
 def numerator(told: Oscillating, value: Element) -> Formula:
@@ -95,12 +137,15 @@ def numerator(told: Oscillating, value: Element) -> Formula:
     return told.formula(tower.made(value.top, tower.context.constant(1)))
 
 
-def measured_sentences(told: Oscillating, measured: MeasuredOrders) -> Iterator[Said]:
-    """The slopes, and whether they are what they have to be."""
+def measured_sentences(told: Oscillating, measured: MeasuredOrders | str, write: Medium) -> Iterator[Said]:
+    """The slopes, and whether they are what they have to be; or why there are none."""
+    if isinstance(measured, str):
+        yield _NOT_MEASURED, {"why": write.word(measured)}
+        return
     expected = told.found.order + 1
-    values: dict[str, object] = {"small": told.found.small, "expected": expected}
+    values: dict[str, object] = {"small": write.names([told.found.small]), "expected": expected}
     orders = ", ".join(
-        f"{'?' if order is None else format(order, '.2f')} ({name})"
+        f"{'?' if order is None else format(order, '.2f')} ({write.names([name])})"
         for name, order in zip(measured.names, measured.orders, strict=True)
     )
     ends = {
@@ -111,4 +156,10 @@ def measured_sentences(told: Oscillating, measured: MeasuredOrders) -> Iterator[
     yield _EXPECTED, values
     late = [n for n, k in zip(measured.names, measured.orders, strict=True) if k is not None and k < expected - SLACK]
     if late:
-        yield _TOO_SLOW, values | {"names": ", ".join(late)}
+        yield _TOO_SLOW, values | {"names": write.names(late)}
+
+
+def of_no_oscillation(small: str, reason: str, write: Medium) -> Iterator[Said]:
+    """Where none was found, or none was asked for."""
+    values: dict[str, object] = {"small": write.names([small])}
+    yield (_NONE, values | {"why": write.word(reason)}) if reason else (_NOT_ASKED, values)

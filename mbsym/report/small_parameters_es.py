@@ -3,7 +3,6 @@
 # ruff: noqa: E501
 
 SENTENCES = {
-    "Periodic solutions in powers of [[small]] are looked for by mbsym oscillations.": "Las soluciones periódicas en potencias de [[small]] las busca mbsym oscillations.",
     "Problem 12. Small parameters": "Problema 12. Parámetros pequeños",
     "Slow integral manifold up to order [[order]] of [[small]]: the fast variables [[fast]] as functions of the slow ones [[slow]], and the flow on it. The coefficient of the power k of [[small]] has the index (k).": "Variedad integral lenta hasta el orden [[order]] de [[small]]: las variables rápidas [[fast]] como funciones de las lentas [[slow]], y el flujo en ella. El coeficiente de la potencia k de [[small]] lleva el índice (k).",
     "The description names no small parameter, and no prescribed quantity has a parameter as its rate: nothing is expanded.": "La descripción no nombra ningún parámetro pequeño, y ninguna cantidad prescrita tiene un parámetro como velocidad: no hay nada que desarrollar.",

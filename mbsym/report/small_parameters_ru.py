@@ -3,7 +3,6 @@
 # ruff: noqa: E501
 
 SENTENCES = {
-    "Periodic solutions in powers of [[small]] are looked for by mbsym oscillations.": "Периодические решения по степеням [[small]] ищет команда mbsym oscillations.",
     "Problem 12. Small parameters": "Задача 12. Малые параметры",
     "Slow integral manifold up to order [[order]] of [[small]]: the fast variables [[fast]] as functions of the slow ones [[slow]], and the flow on it. The coefficient of the power k of [[small]] has the index (k).": "Медленное интегральное многообразие до порядка [[order]] по [[small]]: быстрые переменные [[fast]] как функции медленных [[slow]] и движение на нём. Коэффициент при степени k параметра [[small]] обозначен верхним индексом (k).",
     "The description names no small parameter, and no prescribed quantity has a parameter as its rate: nothing is expanded.": "В описании не назван малый параметр, и ни у одной заданной величины скорость не является параметром: раскладывать не по чему.",

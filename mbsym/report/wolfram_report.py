@@ -21,6 +21,7 @@ from mbsym.formulas.wolfram import (
     wolfram_text,
 )
 from mbsym.model.system import System
+from mbsym.report import oscillation_words
 from mbsym.report.canonical import forms_of
 from mbsym.report.conditions import Statement, provided, statements
 from mbsym.report.environment import rendered
@@ -116,6 +117,12 @@ def _of_small_parameters(found: SmallParameters) -> Iterator[tuple[str, str]]:
         for name, rate in (("slowManifold", False), ("slowFlow", True)):
             kept = (x for x in listed_ones if x.rate is rate)
             yield name, listed(f"{{{string(x.variable)}, {x.order}, {x.formula.wolfram()}}}" for x in kept)
+    if found.oscillation is not None:
+        told = (
+            f"{{{string(x.variable + (chr(39) if x.rate else ''))}, {x.order}, {x.formula.wolfram()}}}"
+            for x in oscillation_words.coefficients(found.oscillation)
+        )
+        yield "periodicSolution", listed(told)
     averaged = [one for one in found.averaged if one.found is not None]
     if averaged:
         both = (f"{{{string(x.phase)}, {x.found.potential.wolfram()}}}" for x in averaged if x.found is not None)

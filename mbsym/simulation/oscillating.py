@@ -23,6 +23,7 @@ from mbsym.model.system import System, velocity_name
 from mbsym.numerics.scenario import Scenario, exact, scenario
 from mbsym.numerics.states import scenario_in_states
 from mbsym.problems.small_parameter.harmonics import Harmonics
+from mbsym.problems.small_parameter.oscillation_result import Amplitude
 from mbsym.problems.small_parameter.oscillations import AMPLITUDE
 from mbsym.simulation.request import Request
 from mbsym.simulation.run import simulate
@@ -53,15 +54,22 @@ class MeasuredOrders:
 
 
 def measured_orders(
-    system: System, told: Oscillating, watch: Callable[[str], None] = lambda what: None
+    system: System,
+    told: Oscillating,
+    values: Mapping[str, Fraction] | None = None,
+    watch: Callable[[str], None] = lambda what: None,
 ) -> MeasuredOrders:
-    """Numbers of the description.  Raises Incomplete where some are missing, NoClosedForm where nothing oscillates."""
-    given = scenario(system)
+    """Numbers of the description, but for ``values`` of parameters and of symbols of the result, which it holds.
+
+    Raises Incomplete where some are missing, NoClosedForm where nothing oscillates.
+    """
+    put = {name: number(x) for name, x in (values or {}).items() if name in system.parameter_names}
+    given = scenario(system, put)
     found = told.found
     parameters = {name: Fraction(value) for name, value in given.parameters.items()}
     powers = dict(found.powers)
     whole = parameters[found.small] if found.small in told.field.parameters else Fraction(1)
-    symbols = _symbols(given, told, powers, whole)
+    symbols = _symbols(given, told, powers, whole, told.symbols.get(AMPLITUDE, "") not in (values or {}))
     errors: list[list[float]] = [[] for _ in found.names]
     time = 0.0
     simulated = not system.speeds
@@ -75,7 +83,7 @@ def measured_orders(
         time = 2 * pi / series.rate
         times = [time * k / ROWS for k in range(1, ROWS + 1)]
         if simulated:
-            rows = _simulated(system, given, told, numbers, powers, series, times, whole, part)
+            rows = _simulated(system, put, given, told, numbers, powers, series, times, whole, part)
         else:
             start = [series.at(0.0, name) * series.eps ** powers.get(name, 0) for name in found.names]
             rows = _integrated(told.field, found.names, numbers, start, times)
@@ -101,7 +109,9 @@ def _order(errors: Sequence[float], noise: float) -> float | None:
     return log(kept[-2] / kept[-1], 2) if len(kept) > 1 else None
 
 
-def _symbols(given: Scenario, told: Oscillating, powers: Mapping[str, int], eps: Fraction) -> dict[str, Fraction]:
+def _symbols(
+    given: Scenario, told: Oscillating, powers: Mapping[str, int], eps: Fraction, open_amplitude: bool
+) -> dict[str, Fraction]:
     """The amplitude and the constants that belong to the initial state, by their symbols in the tower."""
     found = told.found
     if given.system.speeds:
@@ -114,7 +124,7 @@ def _symbols(given: Scenario, told: Oscillating, powers: Mapping[str, int], eps:
     scaled = {name: Fraction(value) / eps ** powers.get(name, 0) for name, value in state.items()}
     values = {f"#{name}": scaled[name] for name, _ in found.constants if name in scaled}
     values[AMPLITUDE] = scaled[found.leading]
-    if values[AMPLITUDE] == 0:
+    if values[AMPLITUDE] == 0 and open_amplitude and found.kind is Amplitude.FREE:
         raise NoClosedForm(f"{found.leading} begins at zero: the initial state gives no amplitude")
     return values
 
@@ -160,6 +170,7 @@ class _Numeric:
 
 def _simulated(
     system: System,
+    put: Mapping[str, Expression],
     given: Scenario,
     told: Oscillating,
     numbers: Mapping[str, Fraction],
@@ -174,7 +185,7 @@ def _simulated(
 
     eps = whole * part
     changed = {told.found.small, *powers}
-    chosen: dict[str, Expression] = {name: number(x) for name, x in numbers.items() if name in changed}
+    chosen = {**put, **{name: number(x) for name, x in numbers.items() if name in changed}}
     shift = {entry.coordinate: _value(entry.value, given) for entry in system.motion} if told.taylor else {}
     start = {}
     for name in told.found.names:

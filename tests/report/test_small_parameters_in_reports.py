@@ -80,7 +80,7 @@ def test_a_small_parameter_in_coordinates_says_what_is_missing():
     name = mbsym.loads(source).system.parameter_names[0]
     analysis = Analysis(mbsym.loads(f"{source}\nsmall parameter: {name}\n").system, (12,))
     told, further = lines(analysis.small_parameters, analysis)
-    assert further == f"Periodic solutions in powers of {name} are looked for by mbsym oscillations."
+    assert further.startswith(f"No periodic solution was expanded in powers of {name}: the equations are not quasi-li")
     assert told == f"No slow manifold was found in powers of {name}: expansions are made of equations in speeds."
 
 

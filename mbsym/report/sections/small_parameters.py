@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 from mbsym.analysis.small import Averaging, SmallParameters
 from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
+from mbsym.report import oscillation_words
 from mbsym.report.expansion_json import expansion_data, measured_data
-from mbsym.report.expansion_measured import average_measured, flow_measured
+from mbsym.report.expansion_measured import average_measured, flow_measured, oscillation_measured
 from mbsym.report.expansion_words import (
     Medium,
     coefficients,
@@ -19,6 +20,8 @@ from mbsym.report.expansion_words import (
     opening,
     sentences,
 )
+from mbsym.report.oscillation_json import measured_data as oscillation_measured_data
+from mbsym.report.oscillation_json import oscillation_data
 from mbsym.report.plain import LONGEST, Write
 from mbsym.report.said import Said, filled
 
@@ -35,7 +38,17 @@ def data(found: SmallParameters, system: System, write: Write) -> dict[str, Any]
         "slow_manifold": None if slow is None else expansion_data(slow, write),
         "no_slow_manifold": found.no_slow,
         "measured": None if slow is None else measured_data(flow_measured(found, system)),
+        "oscillation": None if found.oscillation is None else _oscillation(found, system),
+        "no_oscillation": found.no_oscillation,
         "averaged": [_averaging(found, one, system, write) for one in found.averaged],
+    }
+
+
+def _oscillation(found: SmallParameters, system: System) -> dict[str, Any]:
+    assert found.oscillation is not None
+    return {
+        **oscillation_data(found.oscillation),
+        "measured": oscillation_measured_data(oscillation_measured(found, system)),
     }
 
 
@@ -65,9 +78,22 @@ def told(found: SmallParameters, system: System, write: Medium) -> Iterator[Said
         yield list(coefficients(found.slow))
         yield from sentences(found.slow, write)
         yield from of_measured(found.small, flow_measured(found, system), write)
+    yield from _wave(found, system, write)
     for one in found.averaged:
         measured = "" if one.found is None else average_measured(found, one.phase, system)
         yield from of_averaging(one, measured, write)
+
+
+def _wave(found: SmallParameters, system: System, write: Medium) -> Iterator[Said | list[Any]]:
+    """The periodic solution."""
+    told = found.oscillation
+    if told is not None:
+        yield from oscillation_words.opening(told, write)
+        yield list(oscillation_words.coefficients(told))
+        yield from oscillation_words.sentences(told, write)
+        yield from oscillation_words.measured_sentences(told, oscillation_measured(found, system), write)
+    elif found.small:
+        yield from oscillation_words.of_no_oscillation(found.small, found.no_oscillation, write)
 
 
 def lines(found: SmallParameters, analysis: Analysis) -> Iterator[str]:
