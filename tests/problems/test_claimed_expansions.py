@@ -75,6 +75,7 @@ def test_wrong_coefficients_are_refuted():
     )
     assert outcomes == [SCALED, DIFFERS, SCALED, DIFFERS, SCALED, DIFFERS, DIFFERS]
     assert str(found[0].factor) == "32/31"
+    assert found[1].remark == "in what stands before cos(3*phase)"
     assert str(found[3].difference) == "w"
 
 

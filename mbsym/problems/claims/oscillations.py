@@ -35,6 +35,9 @@ from mbsym.problems.vector_field import Transfer
 #: The kinds of claim that this is about.
 OSCILLATION, FREQUENCY, MANIFOLD = "oscillation", "oscillation frequency", "slow manifold"
 
+#: A difference of more terms is not shown.
+MOST_SHOWN = 40
+
 _OTHER_SYMBOLS = "with another amplitude, other constants or another phase it may hold: these are free to choose"
 _NOT_SURE = "with square roots in it the difference is not told from zero"
 
@@ -80,7 +83,8 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     difference = claimed - truth
     if difference.is_zero:
         return result
-    result = replace(result, difference=told.wave(difference))
+    shown = told.wave(difference)
+    result = replace(result, difference=shown if shown.terms <= MOST_SHOWN else None)
     if not _surely_nonzero(difference):
         return replace(result, outcome=UNDECIDED, remark=_NOT_SURE)
     if explained(told.found, series, claim.order, claimed):
@@ -88,7 +92,20 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     factor = _factor(told.found.tower, claimed, truth)
     if factor is not None:
         return replace(result, outcome=SCALED, factor=told.formula(factor), difference=None)
-    return replace(result, outcome=DIFFERS)
+    return replace(result, outcome=DIFFERS, remark=_where(difference, told.phase, shown.terms))
+
+
+def _where(difference: Harmonics, phase: str, terms: int) -> str:
+    """The harmonics that differ: a difference of very many terms tells less."""
+    found = []
+    for k, pair in sorted(difference.waves.items()):
+        angle = phase if k == 1 else f"{k}*{phase}"
+        found += [
+            f"{wave}({angle})" if k else "1" for wave, c in zip(("cos", "sin"), pair, strict=True) if not c.is_zero()
+        ]
+    if not any(difference.waves):
+        return f"by {terms} terms" if terms > MOST_SHOWN else ""
+    return f"in what stands before {', '.join(found)}" + (f": {terms} terms" if terms > MOST_SHOWN else "")
 
 
 def _formulas(derived: Derived, told: Told) -> WaveFormulas:
