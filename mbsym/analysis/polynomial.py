@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -12,6 +13,7 @@ from flint import fmpq
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.analysis.symmetric import symmetries_of
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.motion import relations
 from mbsym.mechanics.oracle import Oracle, State
@@ -165,12 +167,16 @@ def polynomials_of(analysis: Analysis) -> Polynomials:
     there = setting(analysis)
     found = integrals_of(there, DEGREE)
     on = [one for one in (on_level(found, level) for level in levels(found)) if one.integrals]
+    symmetries = None
+    with suppress(Failure):  # the integrals stand without them
+        symmetries = symmetries_of(analysis)
     return Polynomials(
         found,
         tuple(there.formula(there.field.generator(name)) for name in there.field.variables),
         tuple(there.formula(one.polynomial) for one in found.generators),
         tuple(on),
         tuple(tuple(there.formula(f) for _, f in one.integrals) for one in on),
+        symmetries,
     )
 
 
@@ -192,6 +198,12 @@ def check(analysis: Analysis) -> Check | None:
         for one, formula in zip(found.found.generators, found.formulas, strict=True)
         if one.is_new
     ]
+    if found.symmetries is not None:
+        new += [
+            Integral(f"integral of symmetry {k}", "symmetry", "", one.integral, PROVED)
+            for k, one in enumerate(found.symmetries.symmetries, start=1)
+            if not one.name
+        ]
     if not new:
         return None
     return replace(perturbation.check_integrals(truth, analysis.programs, new), name="polynomial integrals")

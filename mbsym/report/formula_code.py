@@ -21,6 +21,7 @@ from mbsym.report import oscillation_words
 from mbsym.report.expansion_words import coefficients
 from mbsym.report.functions import Functions
 from mbsym.report.integrals_words import level_title, title
+from mbsym.report.symmetry_words import field_text
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -96,6 +97,10 @@ def _of_polynomials(found: Polynomials) -> Iterator[Told]:
         for (weight, _), formula in zip(level.integrals, formulas, strict=True):
             k += 1
             yield f"{k}. {level_title(weight, level)}", formula
+    for symmetry in () if found.symmetries is None else found.symmetries.symmetries:
+        if not symmetry.name:
+            k += 1
+            yield f"{k}. integral of the symmetry {field_text(symmetry)}", symmetry.integral
 
 
 def _of_invariant_sets(found: InvariantSets) -> Iterator[Told]:

@@ -41,12 +41,11 @@ from mbsym.report.html_description import (
 )
 from mbsym.report.html_diagram import diagram
 from mbsym.report.html_environment import page
+from mbsym.report.html_integrals import of_polynomials, of_symmetries
 from mbsym.report.html_motion import asked_motion
 from mbsym.report.html_told import longer, told_passages, told_terms
 from mbsym.report.inertias import accepted_inertias
-from mbsym.report.integrals_words import level_title
 from mbsym.report.integrals_words import sentences as polynomial_sentences
-from mbsym.report.integrals_words import title as title_of_integral
 from mbsym.report.invariant_words import Medium as InvariantMedium
 from mbsym.report.invariant_words import closing, family_title, of_family, of_set, opening
 from mbsym.report.latex_description import shown_points
@@ -71,7 +70,6 @@ if TYPE_CHECKING:
     from mbsym.problems.constraints import Constraints
     from mbsym.problems.invariant_sets import InvariantSets
     from mbsym.problems.normal_forms import NormalForms
-    from mbsym.problems.polynomial_integrals import Polynomials
     from mbsym.problems.reduction import Reduction
     from mbsym.problems.stabilisation import Stabilisation
 
@@ -133,7 +131,8 @@ def context(
         "reduction_sentences": lambda about: list(_of_reduction(about, names)),
         "constraint": lambda value: constraint_in_words(value, names),
         "stabilisation_sentences": lambda one: list(_of_stabilisation(one, names)),
-        "polynomial_integrals": _of_polynomials,
+        "polynomial_integrals": of_polynomials,
+        "polynomial_symmetries": of_symmetries,
         "polynomial_sentences": lambda one: list(_filled(polynomial_sentences(one.found))),
         "normal_form_sentences": lambda one: list(_of_normal_forms(one, names)),
         "invariant_paragraphs": lambda one: list(_of_invariant_sets(one, names)),
@@ -201,17 +200,6 @@ def _of_reduction(about: Reduction, names: MathNames) -> Iterator[Markup]:
         nonzero=lambda value: shown.math(shown.inline(value), mo("≠"), "<mn>0</mn>"),
     )
     yield from _filled(reduction_sentences(about, write))
-
-
-def _of_polynomials(result: Polynomials) -> list[tuple[str, Markup]]:
-    """The integrals of problem 9: what each is, and its formula in MathML."""
-    told = []
-    for one, formula in zip(result.found.generators, result.formulas, strict=True):
-        told.append((f"{title_of_integral(one)} (weight {one.weight}):", shown.math(shown.inline(formula))))
-    for level, formulas in zip(result.levels, result.on_levels, strict=True):
-        for (weight, _), formula in zip(level.integrals, formulas, strict=True):
-            told.append((f"{level_title(weight, level)}:", shown.math(shown.inline(formula))))
-    return told
 
 
 def _of_normal_forms(found: NormalForms, names: MathNames) -> Iterator[Markup]:

@@ -21,6 +21,7 @@ FURTHER = (
     "invariant_sets",
     "normal_forms",
     "polynomial_integrals",
+    "symmetries",
     "small_parameters",
     "oscillations",
 )

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from mbsym.formulas.formula import Formula
 from mbsym.problems.polynomial_integrals import Polynomials
+from mbsym.problems.symmetries import Symmetry
+from mbsym.report import symmetry_words
 from mbsym.report.integrals_words import LEVEL, LISTED, sentences, title
 from mbsym.report.language import Language
 from mbsym.report.latex_formulas import formula
@@ -41,3 +43,28 @@ def of_list(result: Polynomials, tongue: Language) -> list[str]:
         tongue.sentence(text, **{name: told(value) for name, value in values.items()})
         for text, values in sentences(result.found)
     ]
+
+
+def of_symmetries(result: Polynomials, tongue: Language) -> list[tuple[str, Formula | None]]:
+    """What every symmetry gives, with the integral where problem 7 does not list it; what is known of the list."""
+    found = result.symmetries
+    if found is None:
+        return []
+    told: list[tuple[str, Formula | None]] = [(tongue.sentence(symmetry_words.OPENING), None)]
+    for one in found.symmetries:
+        words = {"field": _field(one), "name": escaped(tongue.say(one.name))}
+        told.append((tongue.sentence(symmetry_words.gives(one), **words), None if one.name else one.integral))
+    return told + [(tongue.sentence(text, **values), None) for text, values in symmetry_words.sentences(found)]
+
+
+def _field(one: Symmetry) -> str:
+    """``$\\delta x = -y$, $\\delta t = 1$, $\\Gamma = b y$``."""
+    ring = one.integral.ring
+    parts = []
+    for name, xi in one.directions:
+        known = ring.has("coordinate", name)
+        moved = formula(Formula(ring, ring.generator("coordinate", name))) if known else f"\\mathrm{{{escaped(name)}}}"
+        parts.append(f"$\\delta {moved} = {formula(xi)}$")
+    parts += [] if one.time.is_zero else [f"$\\delta t = {formula(one.time)}$"]
+    parts += [] if one.gauge.is_zero else [f"$\\Gamma = {formula(one.gauge)}$"]
+    return ", ".join(parts)

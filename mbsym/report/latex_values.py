@@ -56,7 +56,7 @@ from mbsym.report.latex_formulas import (
     row,
     tensor,
 )
-from mbsym.report.latex_integrals import of_integrals, of_list, weights_of
+from mbsym.report.latex_integrals import of_integrals, of_list, of_symmetries, weights_of
 from mbsym.report.latex_invariant import of_invariant_sets
 from mbsym.report.latex_labels import Labels, prefix_of
 from mbsym.report.latex_normal_forms import of_normal_forms
@@ -148,6 +148,7 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "polynomial_integrals": lambda one: of_integrals(one, tongue),
         "polynomial_weights": lambda one: weights_of(one),
         "polynomial_sentences": lambda one: of_list(one, tongue),
+        "polynomial_symmetries": lambda one: of_symmetries(one, tongue),
         "OPENING": OPENING,
         "normal_form_sentences": lambda one: of_normal_forms(one, names, tongue),
         "invariant_paragraphs": lambda one: of_invariant_sets(one, names, tongue),

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from typing import Any
 
+from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
 from mbsym.problems.symmetries import Symmetries, Symmetry
 from mbsym.report.schemas import version
@@ -22,19 +23,26 @@ def symmetries_json(system: System, values: Mapping[str, Fraction], found: Symme
         "version": version(),
         "system": system.name,
         "values": {name: str(value) for name, value in values.items()},
-        "directions": "speeds" if found.in_speeds else "coordinates",
-        "complete": found.complete,
-        "symmetries": [_one(one) for one in found.symmetries],
+        **symmetries_data(found, str),
     }
     return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
 
 
-def _one(one: Symmetry) -> dict[str, Any]:
+def symmetries_data(found: Symmetries, write: Callable[[Formula], Any]) -> dict[str, Any]:
+    """What is found, without what it belongs to."""
     return {
-        "field": {name: str(xi) for name, xi in one.directions},
-        "time": str(one.time),
-        "gauge": str(one.gauge),
-        "integral": str(one.integral),
+        "directions": "speeds" if found.in_speeds else "coordinates",
+        "complete": found.complete,
+        "symmetries": [_one(one, write) for one in found.symmetries],
+    }
+
+
+def _one(one: Symmetry, write: Callable[[Formula], Any]) -> dict[str, Any]:
+    return {
+        "field": {name: write(xi) for name, xi in one.directions},
+        "time": write(one.time),
+        "gauge": write(one.gauge),
+        "integral": write(one.integral),
         "name": one.name,
         "new": one.is_new,
         "told_apart": one.sure.value,

@@ -8,6 +8,15 @@ from mbsym.problems.polynomial_integrals import Sure
 from mbsym.problems.symmetries import Symmetries, Symmetry
 from mbsym.report.said import Said
 
+#: In reports: what a symmetry gives.
+OPENING = (
+    "Symmetries (Noether) with fields of degree one in the positions and Gamma of degree two, both free of the time:"
+)
+KNOWN = "The field [[field]] gives an integral that is known ([[name]])."
+DEPENDS = "The field [[field]] gives no further integral ([[name]]; verified at a random state)."
+GIVES = "The field [[field]] gives a further integral, no function of those of problem 7 (proved):"
+OPEN = "The field [[field]] gives an integral of which it is undecided whether it is a function of those of problem 7:"
+
 HEADING = "Symmetries with fields of degree one in the positions and Gamma of degree two, both free of the time"
 
 
@@ -17,6 +26,13 @@ def field_text(one: Symmetry) -> str:
     parts += [f"time: {one.time}"] if not one.time.is_zero else []
     parts += [f"Gamma = {one.gauge}"] if not one.gauge.is_zero else []
     return "; ".join(parts)
+
+
+def gives(one: Symmetry) -> str:
+    """The sentence of a report; behind those of what has no name the integral stands."""
+    if one.name:
+        return DEPENDS if one.sure is Sure.VERIFIED else KNOWN
+    return GIVES if one.is_new else OPEN
 
 
 def title(one: Symmetry) -> str:

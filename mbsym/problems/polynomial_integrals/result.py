@@ -5,11 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.formulas.formula import Formula
 from mbsym.problems.polynomial_integrals.gradings import Grading
+
+if TYPE_CHECKING:
+    from mbsym.problems.symmetries.result import Symmetries
 
 
 class Sure(Enum):
@@ -166,7 +169,8 @@ class Cases:
 class Polynomials:
     """What problem 9 tells of a system: the integrals found, and those that hold where one of them is zero.
 
-    ``variables`` of the field; ``formulas`` of the generators, ``on_levels`` of ``levels``, one by one.
+    ``variables`` of the field; ``formulas`` of the generators, ``on_levels`` of ``levels``, one by one;
+    ``symmetries`` are None where they outgrew a bound.
     """
 
     found: PolynomialIntegrals
@@ -174,6 +178,7 @@ class Polynomials:
     formulas: tuple[Formula, ...]
     levels: tuple[OnLevel, ...]
     on_levels: tuple[tuple[Formula, ...], ...]
+    symmetries: Symmetries | None = None
 
 
 @dataclass(frozen=True)

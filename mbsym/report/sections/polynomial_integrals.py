@@ -8,9 +8,12 @@ from typing import TYPE_CHECKING, Any
 from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
 from mbsym.problems.polynomial_integrals import Polynomials
+from mbsym.problems.symmetries import Symmetry
+from mbsym.report import symmetry_words
 from mbsym.report.integrals_words import level_title, sentences, title, weights
 from mbsym.report.plain import LONGEST, Write
 from mbsym.report.said import filled
+from mbsym.report.symmetries_json import symmetries_data
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -47,6 +50,7 @@ def data(result: Polynomials, system: System, write: Write) -> dict[str, Any]:
             }
             for one, formulas in zip(result.levels, result.on_levels, strict=True)
         ],
+        "symmetries": None if result.symmetries is None else symmetries_data(result.symmetries, write),
     }
 
 
@@ -61,6 +65,17 @@ def lines(result: Polynomials, analysis: Analysis) -> Iterator[str]:
         for (weight, _), formula in zip(level.integrals, formulas, strict=True):
             yield f"{level_title(weight, level)}: {_short(formula)}"
     yield from map(filled, sentences(found))
+    if result.symmetries is not None:
+        yield symmetry_words.OPENING
+        for symmetry in result.symmetries.symmetries:
+            said = filled((symmetry_words.gives(symmetry), {"field": _field(symmetry), "name": symmetry.name}))
+            yield said if symmetry.name else f"{said} {_short(symmetry.integral)}"
+        yield from map(filled, symmetry_words.sentences(result.symmetries))
+
+
+def _field(one: Symmetry) -> str:
+    text = symmetry_words.field_text(one)
+    return text if len(text) <= LONGEST else "(see the reports)"
 
 
 def _short(formula: Formula) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
 import jsonschema
@@ -135,3 +136,50 @@ def test_hess_relation_of_the_shipped_file():
     assert found.complete
     other = polynomial.setting(mbsym.loads(text.replace("[A, A*C*(x0**2 + z0**2)", "[A, A*C*(x0**2 + 2*z0**2)")))
     assert linear_relations(other.field, (1, 1, 1, 2, 2, 2), ["A", "C", "x0", "z0", "m", "g"]).relations == ()
+
+
+def test_symmetries_are_in_the_reports(tmp_path):
+    """A cart that is pushed by a constant F: t -> t + s changes L by d(F x)/dt, so that the energy less F x is kept."""
+    words = ["run", SYSTEMS / "cart-pendulum.yaml", "--problems", "7,9", "--format", "json,latex,html,python"]
+    done = CliRunner().invoke(main, [*map(str, words), "--language", "ru", "--out", str(tmp_path)])
+    assert done.exit_code == 0, done.output
+    data = json.loads((tmp_path / "results.json").read_text("utf-8"))
+    jsonschema.validate(data, schema("results"))
+    symmetries = data["polynomial_integrals"]["symmetries"]
+    assert [(one["field"], one["gauge"], one["new"]) for one in symmetries["symmetries"]] == [({}, "F*x", True)]
+    tex = (tmp_path / "report.tex").read_text("utf-8")
+    assert "$\\delta t = 1$, $\\Gamma = F x$ даёт новый интеграл" in tex
+    told = "The field time: 1; Gamma = F*x gives a further integral"
+    assert told in (tmp_path / "report.html").read_text("utf-8")
+    assert "integral of the symmetry time: 1" in (tmp_path / "model.py").read_text("utf-8")
+
+
+def test_symmetries_that_are_denied():
+    """Friction ends the symmetry in time, though not that of L; what problem 7 lists is not called new."""
+    damped = Analysis(mbsym.load(SYSTEMS / "simple-pendulum.yaml").system, problems=(9,)).polynomial_integrals
+    assert damped.symmetries is not None
+    assert (damped.symmetries.symmetries, damped.symmetries.complete) == ((), True)
+    sphere = Analysis(mbsym.load(SYSTEMS / "spherical-pendulum.yaml").system, problems=(9,)).polynomial_integrals
+    assert sphere.symmetries is not None
+    assert [one.name for one in sphere.symmetries.symmetries] == ["momentum of psi", "generalised energy"]
+
+
+def test_sentences_of_symmetries_have_their_translations():
+    from mbsym.problems.symmetries import Symmetries
+    from mbsym.report import symmetries_es, symmetries_ru, symmetry_words
+
+    found = Analysis(mbsym.load(SYSTEMS / "spherical-pendulum.yaml").system, problems=(9,)).polynomial_integrals
+    listed = found.symmetries.symmetries
+    said = {
+        symmetry_words.OPENING,
+        symmetry_words.KNOWN,
+        symmetry_words.DEPENDS,
+        symmetry_words.GIVES,
+        symmetry_words.OPEN,
+    }
+    for some, complete, symbols, compared in product((listed, ()), *[(True, False)] * 3):
+        said |= {text for text, _ in symmetry_words.sentences(Symmetries(some, complete, 3, False, symbols, compared))}
+    for catalogue in (symmetries_ru.SENTENCES, symmetries_es.SENTENCES):
+        assert said == set(catalogue)
+        for english, other in catalogue.items():
+            assert set(re.findall(r"\[\[\w+\]\]", english)) == set(re.findall(r"\[\[\w+\]\]", other))
