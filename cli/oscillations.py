@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping
-from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from mbsym_cli.console import BAD_INPUT, FAILED, OK, complain, read_description, status
+from mbsym_cli.console import BAD_INPUT, FAILED, OK, OutPath, complain, read_description, status
+from mbsym_cli.files import folder_for
 from mbsym_cli.options import Options
+from mbsym_cli.oscillation_files import FORMATS, check, drawn, symbols
 from mbsym_cli.section_options import read_settings
 
 if TYPE_CHECKING:
     from mbsym.analysis.oscillating import Oscillating
-    from mbsym.model.system import System
     from mbsym.simulation.oscillating import MeasuredOrders
 
 MOST_ORDER = 6
@@ -27,8 +26,18 @@ MOST_ORDER = 6
 @click.option("--order", "-n", default="2", metavar="N", show_default=True, help="Up to this power.")
 @click.option("--of", "leading", metavar="NAME", help="The variable whose oscillation leads, where there are several.")
 @click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Put in a number; repeatable.")
+@click.option("--format", "formats", metavar="LIST", help="Draw figures: svg, pdf, png.")
+@click.option("--out", "-o", type=OutPath(path_type=Path, file_okay=False), help="Folder.  [default: reports/NAME]")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON instead of text.")
-def command(file: Path, order: str, leading: str | None, settings: tuple[str, ...], as_json: bool) -> None:
+def command(
+    file: Path,
+    order: str,
+    leading: str | None,
+    settings: tuple[str, ...],
+    formats: str | None,
+    out: Path | None,
+    as_json: bool,
+) -> None:
     """Find periodic motions of FILE near those of its linear part, in powers of a small parameter, exactly.
 
     The method of Poincare and Lindstedt: frequencies are corrected so that no secular terms remain; where that is
@@ -38,7 +47,8 @@ def command(file: Path, order: str, leading: str | None, settings: tuple[str, ..
     eps; what must not vanish (resonances) is listed.
 
     The series are put into the equations exactly.  Where FILE has numbers, their error is measured against runs at
-    parts of eps.
+    parts of eps.  Figures show the series and a simulation from the same state over three periods: oscillation (over
+    time), oscillation-planes (each variable and its rate), and oscillation-angles where FILE has speeds.
 
     Exit codes: 0 found and checked; 1 there is no such solution, or none was found within the budget; 2 something is
     wrong.
@@ -48,14 +58,18 @@ def command(file: Path, order: str, leading: str | None, settings: tuple[str, ..
       mbsym oscillations systems/spring-pendulum.yaml --of theta
       mbsym oscillations systems/gyrostat-fast.yaml --order 2
       mbsym oscillations systems/gyrostat-fast.yaml --set lx=0 --json
+      mbsym oscillations systems/gyrostat-fast.yaml --format png --out figures
     """
     system = read_description(file, unconstrained="oscillations", moving="oscillations")
     asked = Options()
     most = asked.whole("--order", order, 1, MOST_ORDER)
-    values = {} if system is None else read_settings(settings, system, asked, _symbols(system))
+    values = {} if system is None else read_settings(settings, system, asked, symbols(system))
     if system is not None:
-        _check(system, leading, values, asked)
-    if asked.refused(None if system is None else file) or system is None or most is None:
+        check(system, leading, values, asked)
+    kinds = () if formats is None else asked.words("--format", formats, FORMATS, "format")
+    if out is not None and formats is None:
+        asked.complain("--out", "wrong-use", "nothing is written without --format", "add --format png")
+    if asked.refused(None if system is None else file) or system is None or most is None or kinds is None:
         sys.exit(BAD_INPUT)
     from mbsym.algebra.failures import Failure
     from mbsym.analysis import Analysis
@@ -79,31 +93,7 @@ def command(file: Path, order: str, leading: str | None, settings: tuple[str, ..
         click.echo(oscillations_json(system, values, found, measured), nl=False)
     else:
         _show(file, system.name, found, measured)
-    sys.exit(OK)
-
-
-def _symbols(system: System) -> tuple[str, ...]:
-    """Names that a result may have beside the parameters."""
-    from mbsym.model.oscillation_names import AMPLITUDE
-
-    variables = (*system.coordinates, *system.velocities, *system.variables)
-    return (AMPLITUDE, *(f"{name}_0" for name in variables))
-
-
-def _check(system: System, leading: str | None, values: Mapping[str, Fraction], asked: Options) -> None:
-    if system.small is None and (not system.motion or system.speeds):
-        asked.complain("FILE", "missing-key", "the description names no small parameter", "add 'small parameter: eps'")
-    known = (*system.coordinates, *system.velocities, *system.variables)
-    if leading and leading not in known:
-        asked.complain(
-            "--of", "unknown-name", f"there is no variable called {leading[:60]!r}", f"one of: {', '.join(known)}"
-        )
-    small = system.small
-    for name, value in values.items():
-        if small is None:
-            break
-        if name == small.name or (name in dict(small.powers) and value != 0):  # zero has no power
-            asked.complain("--set", "bad-assignment", f"{name} belongs to the small parameter: it stays a symbol")
+    sys.exit(drawn(file, folder_for(file, out), system, found, values, kinds, as_json) if kinds else OK)
 
 
 def _show(file: Path, name: str, told: Oscillating, measured: MeasuredOrders | str) -> None:

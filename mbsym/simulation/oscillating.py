@@ -69,7 +69,7 @@ def measured_orders(
     parameters = {name: Fraction(value) for name, value in given.parameters.items()}
     powers = dict(found.powers)
     whole = parameters[found.small] if found.small in told.field.parameters else Fraction(1)
-    symbols = _symbols(given, told, powers, whole, told.symbols.get(AMPLITUDE, "") not in (values or {}))
+    symbols = symbol_values(given, told, powers, whole, values or {})
     errors: list[list[float]] = [[] for _ in found.names]
     time = 0.0
     simulated = not system.speeds
@@ -79,7 +79,7 @@ def measured_orders(
         numbers = {name: value * part ** powers.get(name, 0) for name, value in parameters.items()}
         if found.small in numbers:
             numbers[found.small] = eps
-        series = _Numeric(told, parameters | symbols, eps)
+        series = Numeric(told, parameters | symbols, eps)
         time = 2 * pi / series.rate
         times = [time * k / ROWS for k in range(1, ROWS + 1)]
         if simulated:
@@ -109,10 +109,13 @@ def _order(errors: Sequence[float], noise: float) -> float | None:
     return log(kept[-2] / kept[-1], 2) if len(kept) > 1 else None
 
 
-def _symbols(
-    given: Scenario, told: Oscillating, powers: Mapping[str, int], eps: Fraction, open_amplitude: bool
+def symbol_values(
+    given: Scenario, told: Oscillating, powers: Mapping[str, int], eps: Fraction, put: Mapping[str, Fraction]
 ) -> dict[str, Fraction]:
-    """The amplitude and the constants that belong to the initial state, by their symbols in the tower."""
+    """The amplitude and the constants that belong to the initial state, by their symbols in the tower.
+
+    Raises NoClosedForm where an amplitude is needed, not ``put`` in, and zero.
+    """
     found = told.found
     if given.system.speeds:
         seen = scenario_in_states(given)
@@ -120,20 +123,22 @@ def _symbols(
     else:
         state = dict(zip((*given.system.coordinates, *given.system.velocities), given.state, strict=True))
         for entry in given.system.motion if told.taylor else ():
-            state[entry.coordinate] -= _value(entry.value, given)
+            state[entry.coordinate] -= value_of(entry.value, given)
     scaled = {name: Fraction(value) / eps ** powers.get(name, 0) for name, value in state.items()}
     values = {f"#{name}": scaled[name] for name, _ in found.constants if name in scaled}
     values[AMPLITUDE] = scaled[found.leading]
-    if values[AMPLITUDE] == 0 and open_amplitude and found.kind is Amplitude.FREE:
+    needed = found.kind is Amplitude.FREE and told.symbols.get(AMPLITUDE) not in put
+    if needed and values[AMPLITUDE] == 0:
         raise NoClosedForm(f"{found.leading} begins at zero: the initial state gives no amplitude")
     return values
 
 
-def _value(x: Expression, given: Scenario) -> Fraction:
+def value_of(x: Expression, given: Scenario) -> Fraction:
+    """An expression in parameters at their numbers."""
     return exact(x, given.parameters)
 
 
-class _Numeric:
+class Numeric:
     """The series at numbers, in balls."""
 
     def __init__(self, told: Oscillating, values: Mapping[str, Fraction], eps: Fraction) -> None:
@@ -167,6 +172,17 @@ class _Numeric:
                 (c * (k * phase).cos() + s * (k * phase).sin() for k, (c, s) in self.waves[name].items()), arb(0)
             )
 
+    def over(self, times: Any, name: str) -> Any:
+        """x and x' at many times, shape (2, m), in double precision."""
+        import numpy as np
+
+        phase, found = self.rate * times, np.zeros((2, len(times)))
+        for k, pair in self.waves[name].items():
+            c, s = (float(x.mid()) for x in pair)
+            found[0] += c * np.cos(k * phase) + s * np.sin(k * phase)
+            found[1] += k * self.rate * (s * np.cos(k * phase) - c * np.sin(k * phase))
+        return found
+
 
 def _simulated(
     system: System,
@@ -175,7 +191,7 @@ def _simulated(
     told: Oscillating,
     numbers: Mapping[str, Fraction],
     powers: Mapping[str, int],
-    series: _Numeric,
+    series: Numeric,
     times: Sequence[float],
     whole: Fraction,
     part: Fraction,
@@ -186,7 +202,7 @@ def _simulated(
     eps = whole * part
     changed = {told.found.small, *powers}
     chosen = {**put, **{name: number(x) for name, x in numbers.items() if name in changed}}
-    shift = {entry.coordinate: _value(entry.value, given) for entry in system.motion} if told.taylor else {}
+    shift = {entry.coordinate: value_of(entry.value, given) for entry in system.motion} if told.taylor else {}
     start = {}
     for name in told.found.names:
         start[name] = Fraction(float(series.at(0.0, name))) * eps ** powers.get(name, 0)
