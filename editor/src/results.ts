@@ -243,9 +243,10 @@ export function panel(host: HTMLElement, model: Model): void {
     unseen = window.setTimeout(compare, UNSEEN_AFTER);
   });
   model.on("view", (view) => {
+    window.clearTimeout(timer);
+    if (!model.fresh) return; // typed on meanwhile: another look follows
     compare();
     if (!live.checked || current()) return;
-    window.clearTimeout(timer);
     if (view.complaints.some((one) => one.severity === "error")) {
       if (job !== null) {
         void stop();
