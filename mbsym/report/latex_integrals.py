@@ -58,13 +58,13 @@ def of_symmetries(result: Polynomials, tongue: Language) -> list[tuple[str, Form
 
 
 def _field(one: Symmetry) -> str:
-    """``$\\delta x = -y$, $\\delta t = 1$, $\\Gamma = b y$``."""
+    """``$\\xi_{x} = -y$, $\\tau = 1$, $\\Gamma = b y$``."""
     ring = one.integral.ring
     parts = []
     for name, xi in one.directions:
         known = ring.has("coordinate", name)
         moved = formula(Formula(ring, ring.generator("coordinate", name))) if known else f"\\mathrm{{{escaped(name)}}}"
-        parts.append(f"$\\delta {moved} = {formula(xi)}$")
-    parts += [] if one.time.is_zero else [f"$\\delta t = {formula(one.time)}$"]
+        parts.append(f"$\\xi_{{{moved}}} = {formula(xi)}$")
+    parts += [] if one.time.is_zero else [f"$\\tau = {formula(one.time)}$"]
     parts += [] if one.gauge.is_zero else [f"$\\Gamma = {formula(one.gauge)}$"]
     return ", ".join(parts)

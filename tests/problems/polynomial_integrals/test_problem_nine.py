@@ -148,7 +148,7 @@ def test_symmetries_are_in_the_reports(tmp_path):
     symmetries = data["polynomial_integrals"]["symmetries"]
     assert [(one["field"], one["gauge"], one["new"]) for one in symmetries["symmetries"]] == [({}, "F*x", True)]
     tex = (tmp_path / "report.tex").read_text("utf-8")
-    assert "$\\delta t = 1$, $\\Gamma = F x$ даёт новый интеграл" in tex
+    assert "$\\tau = 1$, $\\Gamma = F x$ даёт новый интеграл" in tex
     told = "The field time: 1; Gamma = F*x gives a further integral"
     assert told in (tmp_path / "report.html").read_text("utf-8")
     assert "integral of the symmetry time: 1" in (tmp_path / "model.py").read_text("utf-8")
