@@ -6,16 +6,10 @@ from pathlib import Path
 
 import click
 
-from mbsym_cli.console import BAD_INPUT, OutPath
+from mbsym_cli.console import OutPath
 from mbsym_cli.files import folder_for
-from mbsym_cli.options import Options
-from mbsym_cli.section_options import distinct, read_axis, read_settings
-from mbsym_cli.simulation_inputs import read_held
-from mbsym_cli.study import leave, prevented
-
-KINDS = ("stability", "signature", "equilibria")
-ROUTES = ("regions", "boxes")
-FORMATS = ("svg", "pdf", "png", "json", "tex")
+from mbsym_cli.map_command import FORMATS, map_command
+from mbsym_cli.study import leave
 
 
 @click.command("map")
@@ -67,8 +61,9 @@ def command(
     With --of equilibria every region of the plane says how many relative equilibria there are, and how many of them
     are stable; written are equilibria-map.svg, .pdf, .png, .json and .tex.
 
-    Where a pair of roots becomes imaginary, terms of third order say whether the border is soft or hard (problem 11):
-    at the arc's exact point and, where formulas are small enough, along the whole arc, with points where it changes.
+    Where stability is lost by a pair of imaginary roots terms of third order say whether the border is soft or hard
+    (problem 11): at the arc's exact point and, where formulas are small enough, along the whole arc, with points where
+    it changes; of slices, too.  Boxes have no borders, and nothing is said of any.
 
     Written are map.svg, map.pdf, map.png, map.json (every region, arc and corner), map.tex (to \\input) and, with
     --locate, located.csv.  Exit codes: 0 done, 1 there is nothing to judge or files could not be written, 2 something
@@ -85,54 +80,7 @@ def command(
     """
     leave(
         file,
-        lambda: _command(
+        lambda: map_command(
             file, folder_for(file, out), (across, up, deep), settings, of, route, locate, formats, language, quiet
         ),
     )
-
-
-def _command(
-    file: Path,
-    folder: Path,
-    texts: tuple[str | None, str | None, str | None],
-    settings: tuple[str, ...],
-    of: str,
-    route: str,
-    locate: Path | None,
-    formats: str,
-    language: str,
-    quiet: bool,
-) -> int:
-    """Reads everything, complains about everything, then draws."""
-    from mbsym.report.language import LANGUAGES
-    from mbsym_cli.equilibria_map_run import fitting, of_equilibria
-    from mbsym_cli.map_run import Request, read_located, run
-
-    system = read_held(file, "map", constrained=True, moving=False)
-    asked = Options()
-    what, how = asked.word("--of", of, KINDS, "map"), asked.word("--by", route, ROUTES, "route")
-    wanted = asked.words("--format", formats, FORMATS, "format")
-    asked.word("--language", language, LANGUAGES, "language")
-    if system is None:
-        asked.refused()
-        return BAD_INPUT
-    if texts[2] is not None and texts[1] is None:
-        asked.complain("--z", "missing-option", "slices of a line are no pictures", "give the second parameter as --y")
-    if how == "boxes" and (texts[1] is None or texts[2] is not None):
-        asked.complain("--by", "missing-option", "boxes are of planes", "give two parameters, as --x and --y")
-    further = [(name, text) for name, text in (("--y", texts[1]), ("--z", texts[2])) if text is not None]
-    axes = [read_axis(text, name, system, asked) for name, text in (("--x", texts[0]), *further)]
-    found = [axis for axis in axes if axis is not None]
-    values = read_settings(settings, system, asked)
-    distinct(found, values, asked)
-    whole = len(found) == len(axes)
-    points = None if locate is None or not whole else read_located(locate, [axis.name for axis in found], asked)
-    numbers = {}
-    if what == "equilibria":
-        numbers = fitting(file, system, texts, found, values, locate is not None or how == "boxes", asked)
-    code = prevented(file, folder, True, asked)
-    if code:
-        return code
-    if what == "equilibria":
-        return of_equilibria(file, folder, system, found, numbers, wanted, language, quiet)
-    return run(Request(file, folder, system, found, values, str(what), wanted, language, points, quiet, str(how)))

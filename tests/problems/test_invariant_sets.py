@@ -192,6 +192,15 @@ def test_orbital_equilibria_in_quaternions():
                 assert _all_hold(one.first.necessary, **numbers, A=A, B=B, C=C)
 
 
+@pytest.mark.slow
+def test_pieces_of_the_sets_of_kovalevskayas_top_are_no_defect():
+    """Zeros of Kovalevskaya's integral, a sum of two squares, are stationary: r = gamma3 = 0 is no set of its own."""
+    found = mbsym.load("systems/kovalevskaya.yaml").invariant_sets
+    assert all(one.invariant is not Proof.FAILED for family in found.families for one in family.sets)
+    assert all(family.parts for family in found.families[:2])
+    assert not found.complete
+
+
 def test_a_wrong_sign_in_the_equations_is_seen():
     """The integrals, and so the sets, are those of other equations: what is not invariant is never called so."""
     loaded = mbsym.load("systems/clebsch-poisson.yaml")

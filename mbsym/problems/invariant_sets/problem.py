@@ -68,14 +68,22 @@ def _family(arena: Arena, whole: Polynomial) -> tuple[Family, tuple[Polynomial, 
     kept = [place for place in kept if place.vanishes(arena.denominator) is not True]
     looked = [_set(place, whole) for place in kept[:MOST_SETS]]
     sets = [one for one in looked if one is not None]
-    # A piece of a larger set may be cut off it by what was divided by; alone it need not be invariant.
-    parts = [one for one in sets if arena.floating and one.invariant is Proof.FAILED]
+    # A piece of a larger set may be cut off it by what was divided by; alone it need not be invariant.  The whole is,
+    # where K is an integral; where that is not seen a set that is not invariant stays, and is told as a defect.
+    failed = [one for one in sets if one.invariant is Proof.FAILED]
+    parts = failed if arena.floating or (failed and _conserved(arena)) else []
     sets = [one for one in sets if one not in parts]
     # A branch on which no point was found modulo a prime may be empty, or may not: nothing is said of it.
     unfinished = found.unfinished + max(0, len(kept) - MOST_SETS) + looked.count(None)
     sets.sort(key=lambda one: (one.dimension, one.union))
     names = tuple(arena.name(g) for g in arena.multipliers)
     return Family(arena.names, names, tuple(sets), unfinished, singular, len(parts)), found.generic
+
+
+def _conserved(arena: Arena) -> bool:
+    """Whether d/dt of every integral vanishes where the relations between the variables hold."""
+    place = _on_relations(arena, Branch(()))
+    return place is not None and all(place.vanishes(arena.derivative(p)) is True for p in arena.integrals)
 
 
 def _angles(arena: Arena, whole: Polynomial) -> tuple[list[tuple[int, int]], Polynomial]:
