@@ -12,7 +12,7 @@ SENTENCES = {
     "V[[k]], [[name]]: [[formula]].": "V[[k]], [[name]]: [[formula]].",
     "Between the variables: [[relations]].": "Entre las variables: [[relations]].",
     "It has no stationary points for almost all parameters (proved).": "No tiene puntos estacionarios para casi todos los parámetros (demostrado).",
-    "Branches left aside by the budget: [[n]]; there may be further sets.": "Ramas dejadas de lado por el presupuesto: [[n]]; puede haber más conjuntos.",
+    "Branches left aside, because they are beyond the budget or no point of them was found: [[n]]; some may be empty, and there may be further sets.": "Ramas dejadas de lado por exceder el presupuesto o porque no se halló ningún punto de ellas: [[n]]; algunas pueden ser vacías, y puede haber más conjuntos.",
     "Set [[number]], steady motions: [[equations]].": "Conjunto [[number]], movimientos estacionarios: [[equations]].",
     "They form a family of dimension [[union]].": "Forman una familia de dimensión [[union]].",
     "Set [[number]], an invariant manifold of dimension [[dimension]] for fixed multipliers: [[equations]].": "Conjunto [[number]], una variedad invariante de dimensión [[dimension]] para multiplicadores fijos: [[equations]].",

@@ -12,7 +12,7 @@ SENTENCES = {
     "V[[k]], [[name]]: [[formula]].": "V[[k]], [[name]]: [[formula]].",
     "Between the variables: [[relations]].": "Между переменными: [[relations]].",
     "It has no stationary points for almost all parameters (proved).": "Стационарных точек при почти всех параметрах нет (доказано).",
-    "Branches left aside by the budget: [[n]]; there may be further sets.": "Ветви, оставленные в стороне из-за бюджета: [[n]]; возможны и другие множества.",
+    "Branches left aside, because they are beyond the budget or no point of them was found: [[n]]; some may be empty, and there may be further sets.": "Ветви, оставленные в стороне, потому что они выходят за пределы бюджета или на них не найдено ни одной точки: [[n]]; некоторые могут быть пустыми, возможны и другие множества.",
     "Set [[number]], steady motions: [[equations]].": "Множество [[number]], стационарные движения: [[equations]].",
     "They form a family of dimension [[union]].": "Они образуют семейство размерности [[union]].",
     "Set [[number]], an invariant manifold of dimension [[dimension]] for fixed multipliers: [[equations]].": "Множество [[number]], инвариантное многообразие размерности [[dimension]] при фиксированных множителях: [[equations]].",

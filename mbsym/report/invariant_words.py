@@ -62,7 +62,11 @@ def of_family(family: Family, write: Medium) -> Iterator[Said]:
     if not (family.sets or family.unfinished or family.singular or family.parts):
         yield "It has no stationary points for almost all parameters (proved).", {}
     if family.unfinished:
-        yield "Branches left aside by the budget: [[n]]; there may be further sets.", {"n": family.unfinished}
+        yield (
+            "Branches left aside, because they are beyond the budget or no point of them was found: [[n]]; some may be "
+            "empty, and there may be further sets.",
+            {"n": family.unfinished},
+        )
     if family.singular:
         yield "Branches on which the coordinates are singular, left aside: [[n]].", {"n": family.singular}
     if family.parts:
