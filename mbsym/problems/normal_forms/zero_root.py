@@ -34,7 +34,7 @@ from mbsym.problems.normal_forms.checks import defects
 from mbsym.problems.normal_forms.expansion import faddeev, inverted
 from mbsym.problems.normal_forms.nilpotent import on_zero_root
 from mbsym.problems.normal_forms.result import Judged, Outcome, Theorem, Why
-from mbsym.problems.normal_forms.twist import NotVerified
+from mbsym.problems.normal_forms.twist import NotVerified, signed
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ def zero_root(whole: Truncated, enclosed: Truncated, scalars: Scalars, names: Se
         return Judged(Outcome.UNSTABLE, Theorem.FIRST)
     if not all(z.real < 0 and z.imag.contains(0) for z in roots):
         return _open(Why.ZERO_TWO)
-    frequencies = tuple((-z.real).sqrt() for z in roots)
+    frequencies = tuple(signed(enclosed, [(-z.real).sqrt() for z in roots]))
     place = _along(whole, scalars)
     if place is None:
         return _open(Why.ZERO_TWO, frequencies)

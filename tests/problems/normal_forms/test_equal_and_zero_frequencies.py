@@ -186,6 +186,12 @@ def test_where_nothing_is_said_of_a_zero_root(text: str, why: Why) -> None:
     assert (found.outcome, found.why) == (Outcome.UNDECIDED, why)
 
 
+@pytest.mark.parametrize("sign", [1, -1])
+def test_the_frequency_beside_a_zero_root_has_the_sign_of_its_energy(sign: int) -> None:
+    (w,) = with_zero_root(f"c(px*px, 0.5) + c(j, {sign}) + x*x*x*x").frequencies
+    assert w.overlaps(arb(sign))
+
+
 def test_canonical_coordinates_do_not_matter() -> None:
     """The mixed coordinates: with enclosures of exact zeros nothing more is decided, and nothing else."""
     found = with_zero_root("c(px*px, 0.5) - j + x*x*x", mixed=True)
