@@ -215,6 +215,12 @@ def test_a_copy_of_a_branch_moves_by_itself() -> None:
     assert [body.attached_to for body in system.bodies] == ["0", "cart", "cart"]
 
 
+def test_a_copy_of_the_first_body_says_what_it_hangs_on() -> None:
+    """Only the first body need not say it."""
+    system = read(done(PENDULUM, {"op": "duplicate branch", "body": "cart"}), "x.yaml")[0]
+    assert [body.attached_to for body in system.bodies] == ["0", "cart", "0", "cart 2"]
+
+
 def test_renaming_words_and_no_parts_of_words() -> None:
     after = done(PENDULUM, {"op": "rename", "kind": "parameter", "name": "l", "to": "length"})
     assert after == PENDULUM.replace("l: {p", "length: {p").replace("- -l", "- -length").replace(

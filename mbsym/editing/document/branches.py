@@ -131,6 +131,11 @@ def duplicate(found: Written, operation: Json) -> Meant:
         if turned != text:
             change: Primitive = Rekey(one.path[2:], turned) if one.is_key else Replace(one.path[2:], turned)
             copies[which] = applied_to(copies[which], change)
+    root = copies[branch[0]]
+    if isinstance(root, dict) and child(node_at(tree, ("bodies", branch[0])) or tree, "attached to") is None:
+        copies[branch[0]] = applied_to(
+            root, Add(("attached to",), "0", after="name")
+        )  # only the first body need not say it
     last, primitives = branch[-1] + 1, []
     for done, index in enumerate(branch):
         primitives.append(Add(("bodies", last + done), copies[index]))
