@@ -3,6 +3,9 @@
 import { ask } from "./dialogs.js";
 import { make } from "./elements.js";
 import { entriesOf, nodeAt, remove, set, single, valueOf, vector, type Group, type Row, type Section } from "./fields.js";
+import { addFields } from "./formentry.js";
+import { items } from "./formitems.js";
+import { lines } from "./systemform.js";
 import type { Model } from "./model.js";
 import type { Body, Operation, Path } from "./seam.js";
 import { along, SOLIDS } from "./shapes.js";
@@ -157,6 +160,27 @@ async function helper(model: Model, path: Path, at: Path): Promise<void> {
   await model.change(() => [set(at, `[${found().join(", ")}]`), set([...path, "inertia about"], "mass centre")], "inertia of a homogeneous body");
 }
 
+const ALONG: [string, string][] = [["1", "along axis 1"], ["2", "along axis 2"], ["3", "along axis 3"], ["quaternion", "quaternion"]];
+
+/** Unit vectors and quaternions by name; or one word for all of them. */
+function orientation(model: Model, path: Path, owner: string): Section {
+  const at: Path = [...path, "orientation"];
+  const node = nodeAt(model, at);
+  const drop = (name: string) => ({ words: "×", label: `Delete ${name} from orientation`, act: () => model.change([remove([...at, name])], `${name} deleted`) });
+  const groups: Group[] = node?.kind === "scalar"
+    ? [{ label: "Told by", rows: [single(model, "orientation", "Orientation told by", at, { wide: true })] }]
+    : entriesOf(node).map(([name]): Group => ({
+        label: name,
+        rows: [single(model, `orientation-${name}`, `Orientation: ${name}`, [...at, name], { options: [["", "–"], ...ALONG] })],
+        actions: [drop(name)],
+      }));
+  const act = () => addFields(model, "Orientation: add a vector", [
+    { key: "name", sort: "text", words: "a unit vector fixed in the frame before, or a quaternion", optional: false },
+    { key: "what", sort: "choice", words: "", optional: false, choices: ALONG.map(([value]) => value) },
+  ], (values) => [{ op: "insert", path: [...at, values.get("name")!], source: values.get("what")! }]);
+  return { title: "Orientation", owner, groups, actions: [{ words: "Add a vector", label: "Add a vector to orientation", act }], closed: groups.length === 0 };
+}
+
 export function bodySections(model: Model, body: Body): Section[] {
   const { path } = body;
   const bodies = model.understood?.bodies ?? [];
@@ -193,11 +217,17 @@ export function bodySections(model: Model, body: Body): Section[] {
       })],
     },
   ];
-  const shown = new Set(["name", "attached to", "rotation", "connection point", "relative velocity", "mass", "mass centre", "mass center", "inertia about", "inertia at", "inertia", "gyrostatic moment", "gyrostatic momentum", "coordinates"]);
+  const shown = new Set(["name", "attached to", "rotation", "connection point", "relative velocity", "mass", "mass centre", "mass center", "inertia about", "inertia at", "inertia", "gyrostatic moment", "gyrostatic momentum", "coordinates", "shapes", "speeds", "orientation"]);
   const others = entriesOf(nodeAt(model, path)).filter(([key]) => !shown.has(key));
-  const sections: Section[] = [{ title: `Body ${bodies.indexOf(body) + 1}: ${body.name}`, groups: general }];
+  const owner = body.name;
+  const sections: Section[] = [
+    { title: `Body ${bodies.indexOf(body) + 1}: ${body.name}`, key: "body", owner, groups: general },
+    { ...lines(model, [...path, "speeds"], "Speeds", "a speed"), owner },
+    orientation(model, path, owner),
+    items(model, "shapes", [...path, "shapes"], "Shapes", "a shape", { owner }),
+  ];
   if (others.length > 0) {
-    sections.push({ title: "More of this body", groups: others.map(([key]) => ({ label: key, rows: [single(model, `more-${key}`, key, [...path, key], { wide: true })] })) });
+    sections.push({ title: "More of this body", owner, groups: others.map(([key]) => ({ label: key, rows: [single(model, `more-${key}`, key, [...path, key], { wide: true })] })) });
   }
   return sections;
 }

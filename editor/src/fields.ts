@@ -32,12 +32,19 @@ export interface Action {
 export interface Group {
   label: string;
   rows: Row[];
+  /** In place of the label: what it is called, to be changed there. */
+  name?: Row;
   actions?: Action[];
 }
 
 export interface Section {
   title: string;
-  groups: Group[];
+  /** What stays the same while the title counts. */
+  key?: string;
+  /** Whose fields they are: those of another one are drawn anew. */
+  owner?: string;
+  /** Worked out only where the section is open, if it is a function. */
+  groups: Group[] | (() => Group[]);
   actions?: Action[];
   closed?: boolean;
 }
@@ -95,11 +102,12 @@ export function single(model: Model, key: string, label: string, path: Path, mor
   };
 }
 
-/** Three components. Where there is no vector yet the first that is typed makes one; three empty ones delete it. */
-export function vector(model: Model, key: string, label: string, path: Path, placeholders: string[] = ["0", "0", "0"]): Row[] {
+/** `count` components. Where there is no vector yet the first that is typed makes one; only empty ones delete it. */
+export function vector(model: Model, key: string, label: string, path: Path, placeholders: string[] = [], count = 3): Row[] {
   const node = nodeAt(model, path);
+  const indices = Array.from({ length: count }, (_, index) => index);
   const parts = node?.kind === "sequence" ? (node.children ?? []) : [];
-  return [0, 1, 2].map((index) => ({
+  return indices.map((index) => ({
     key: `${key}-${index + 1}`,
     label: `${label}, ${index + 1}`,
     value: valueOf(model, parts[index] ?? null),
@@ -110,13 +118,13 @@ export function vector(model: Model, key: string, label: string, path: Path, pla
       const now = nodeAt(model, path);
       const known = now?.kind === "sequence" ? (now.children ?? []).map((child) => valueOf(model, child)) : [];
       const value = typed.trim() || "0";
-      if (now?.kind === "sequence" && known.length === 3) {
+      if (now?.kind === "sequence" && known.length === indices.length) {
         const after = known.map((old, other) => (other === index ? value : old));
         if (typed.trim() === "" && after.every((one) => one === "0")) return [remove(path)];
         return known[index] === value ? [] : [set([...path, index], value)];
       }
       if (typed.trim() === "") return [];
-      return [set(path, `[${[0, 1, 2].map((other) => (other === index ? value : (known[other] ?? "0"))).join(", ")}]`)];
+      return [set(path, `[${indices.map((other) => (other === index ? value : (known[other] ?? "0"))).join(", ")}]`)];
     },
   }));
 }
@@ -130,9 +138,26 @@ interface Drawn {
   shown: string;
 }
 
+interface Part {
+  element: HTMLElement;
+  /** What it was drawn for: another one is drawn anew. */
+  signature: string;
+  /** What its buttons do now. */
+  actions: Action[];
+}
+
+interface Folded extends Part {
+  title: HTMLElement;
+  groups: HTMLElement;
+  buttons: HTMLElement;
+  owner: string | undefined;
+}
+
 export class Form {
   private readonly drawn = new Map<string, Drawn>();
-  private signature = "";
+  private readonly sections = new Map<string, Folded>();
+  private readonly groups = new Map<string, Part>();
+  private shown: Section[] = [];
 
   constructor(
     private readonly host: HTMLElement,
@@ -140,44 +165,79 @@ export class Form {
     private readonly name: string,
   ) {}
 
+  /** Draws what is new and fills the rest: elements stay, and with them the focus and what is being typed. */
   show(sections: Section[]): void {
-    const signature = JSON.stringify(
-      sections.map((section) => [section.title, section.groups.map((group) => [group.label, group.rows.map((row) => [row.key, row.options])])]),
-    );
-    if (signature !== this.signature) this.build(sections);
-    this.signature = signature;
-    for (const section of sections) for (const group of section.groups) for (const row of group.rows) this.fill(row);
+    this.shown = sections;
+    const focused = this.host.contains(document.activeElement) ? document.activeElement?.id : null;
+    const groups = new Set<string>();
+    const elements = sections.map((section) => this.section(section, groups));
+    placed(this.host, elements);
+    for (const [key, part] of [...this.groups]) if (!groups.has(key) && !this.isFolded(part.element)) this.groups.delete(key);
+    for (const [key, drawn] of this.drawn) if (!this.host.contains(drawn.input)) this.drawn.delete(key);
+    if (focused && document.activeElement?.id !== focused) document.getElementById(focused)?.focus();
   }
 
-  private build(sections: Section[]): void {
-    const before = this.host.contains(document.activeElement) ? document.activeElement?.id : null;
-    const open = new Map([...this.host.querySelectorAll("details")].map((one) => [one.dataset["title"], one.open]));
-    this.drawn.clear();
-    this.host.replaceChildren(
-      ...sections.map((section) =>
-        make(
-          "details",
-          { "data-title": section.title, open: open.get(section.title) ?? !section.closed },
-          make("summary", {}, section.title),
-          ...section.groups.map((group) => this.group(group)),
-          section.actions ? make("div", { class: "actions" }, ...section.actions.map(button)) : null,
-        ),
-      ),
-    );
-    if (before) document.getElementById(before)?.focus();
+  private isFolded(element: HTMLElement): boolean {
+    return element.closest("details")?.open === false;
   }
 
-  private group(group: Group): HTMLElement {
+  private section(section: Section, seen: Set<string>): HTMLElement {
+    const key = section.key ?? section.title;
+    const folded = this.sections.get(key) ?? this.folded(key, section);
+    if (folded.owner !== section.owner) {
+      for (const known of [...this.groups.keys()]) if (known.startsWith(`${key}|`)) this.groups.delete(known);
+      folded.groups.replaceChildren();
+      folded.owner = section.owner;
+    }
+    if (folded.title.textContent !== section.title) folded.title.textContent = section.title;
+    folded.actions = section.actions ?? [];
+    const labels = folded.actions.map((one) => one.label).join("|");
+    if (labels !== folded.signature) folded.buttons.replaceChildren(...buttons(folded));
+    folded.buttons.hidden = folded.actions.length === 0;
+    folded.signature = labels;
+    if ((folded.element as HTMLDetailsElement).open) {
+      const groups = typeof section.groups === "function" ? section.groups() : section.groups;
+      placed(folded.groups, groups.map((group) => this.groupOf(key, group, seen)));
+      for (const group of groups) for (const row of rowsOf(group)) this.fill(row);
+    }
+    return folded.element;
+  }
+
+  private folded(key: string, section: Section): Folded {
+    const title = make("summary", {}, section.title);
+    const [groups, actions] = [make("div", {}), make("div", { class: "actions" })];
+    const element = make("details", { "data-title": key, open: !section.closed }, title, groups, actions);
+    element.addEventListener("toggle", () => element.open && this.show(this.shown));
+    const made: Folded = { element, title, groups, buttons: actions, signature: "", actions: [], owner: section.owner };
+    this.sections.set(key, made);
+    return made;
+  }
+
+  private groupOf(section: string, group: Group, seen: Set<string>): HTMLElement {
+    const rows = rowsOf(group).map((row) => [row.key, row.label, row.options]);
+    const signature = JSON.stringify([group.label, rows, (group.actions ?? []).map((one) => [one.words, one.label])]);
+    const key = `${section}|${signature}`;
+    const known = this.groups.get(key) ?? this.group(group, signature);
+    known.actions = group.actions ?? [];
+    this.groups.set(key, known);
+    seen.add(key);
+    return known.element;
+  }
+
+  private group(group: Group, signature: string): Part {
+    const part: Part = { element: make("div", {}), signature, actions: group.actions ?? [] };
+    const name = group.name ? this.input(group.name) : null;
     const inputs = group.rows.map((row) => this.input(row));
     const id = group.rows[0] ? `${this.name}-${group.rows[0].key}` : null;
-    const label = group.rows.length === 1 ? make("label", { for: id }, group.label) : make("span", { class: "label" }, group.label);
-    const attributes = group.rows.length > 1 ? { role: "group", "aria-label": group.label } : {};
-    return make(
+    const label = name ?? (group.rows.length === 1 ? make("label", { for: id }, group.label) : make("span", { class: "label" }, group.label));
+    const attributes = group.rows.length > 1 || name ? { role: "group", "aria-label": group.label } : {};
+    part.element = make(
       "div",
       { class: "field", ...attributes },
       label,
-      make("div", { class: `inputs of-${Math.min(4, group.rows.length)}` }, ...inputs, ...(group.actions ?? []).map(button)),
+      make("div", { class: `inputs of-${Math.min(4, group.rows.length)}` }, ...inputs, ...buttons(part)),
     );
+    return part;
   }
 
   private input(row: Row): HTMLElement {
@@ -259,6 +319,20 @@ export class Form {
   }
 }
 
-function button(action: Action): HTMLElement {
-  return make("button", { type: "button", "aria-label": action.label, title: action.label, click: () => void action.act() }, action.words);
+const rowsOf = (group: Group): Row[] => (group.name ? [group.name, ...group.rows] : group.rows);
+
+/** Buttons that do what the part says when they are pressed. */
+function buttons(part: Part): HTMLElement[] {
+  return part.actions.map((action, index) =>
+    make("button", { type: "button", "aria-label": action.label, title: action.label, click: () => void part.actions[index]?.act() }, action.words),
+  );
+}
+
+/** Exactly these children, in this order; what stays is not moved, so that it keeps the focus. */
+function placed(host: HTMLElement, children: HTMLElement[]): void {
+  const wanted = new Set<Element>(children);
+  for (const child of [...host.children]) if (!wanted.has(child)) child.remove();
+  children.forEach((child, index) => {
+    if (host.children[index] !== child) host.insertBefore(child, host.children[index] ?? null);
+  });
 }

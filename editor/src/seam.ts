@@ -106,6 +106,8 @@ export interface FileState {
   journal: { text: string; written: string } | null;
   version: string;
   schema: unknown;
+  /** Kind of claim -> what its "of" names, and its keys. */
+  claims: Record<string, { of: string; keys: string[] }>;
   functions: unknown[];
   languages: string[];
   /** The last event that was told before the file was read. */

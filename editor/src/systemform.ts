@@ -1,11 +1,11 @@
 // The form of the system: everything that belongs to no single body.
 
-import { ask } from "./dialogs.js";
-import { make } from "./elements.js";
-import { entriesOf, nodeAt, remove, set, single, valueOf, type Group, type Row, type Section } from "./fields.js";
+import { addFields, quoted, record as inBraces } from "./formentry.js";
+import { items } from "./formitems.js";
+import { entriesOf, nodeAt, remove, set, single, valueOf, type Action, type Group, type Row, type Section } from "./fields.js";
+import type { Field } from "./formkinds.js";
 import type { Model } from "./model.js";
-import type { Path, TreeNode } from "./seam.js";
-import { CLAIMS, CONSTRAINTS, LOADS, type Skeleton } from "./skeletons.js";
+import type { Operation, Path } from "./seam.js";
 
 const SIGNS: [string, string][] = [
   ["", "–"],
@@ -45,29 +45,52 @@ function shortKey(section: string, value: string): string {
   return { prescribed: "rate", inputs: "meaning", motion: "value", initial: "position" }[section] ?? "value";
 }
 
-/** In a list between braces commas, colons and brackets would end a value. */
-export function quoted(value: string): string {
-  return /[,:{}[\]#]|^[&*!|>'"%@`]|^\s|\s$|^[-?]\s/.test(value) && !/^[[{]/.test(value) ? `'${value.replaceAll("'", "''")}'` : value;
-}
-
 interface Column {
   key: string;
   options?: [string, string][];
   formula?: boolean;
 }
 
+/** What something is called, in place of its label: another name is one wherever it is used. */
+function nameRow(section: string, name: string, title: string): Row {
+  return {
+    key: `${section}-${name}-name`,
+    label: `Name of ${name} in ${title.toLowerCase()}`,
+    value: name,
+    set: (typed) => (typed.trim() && typed.trim() !== name ? [{ op: "rename", kind: "parameter", name, to: typed.trim() }] : []),
+  };
+}
+
+/** Deletes an entry; and where the order counts, moves it up. */
+function entryActions(model: Model, path: Path, title: string, before: Path | null): Action[] {
+  const name = String(path.at(-1));
+  const drop = { words: "×", label: `Delete ${name} from ${title.toLowerCase()}`, act: () => model.change([remove(path)], `${name} deleted`) };
+  if (!before) return [drop];
+  return [{ words: "↑", label: `Move ${name} up in ${title.toLowerCase()}`, act: () => model.change([{ op: "move", path, before }], `${name} moved up`) }, drop];
+}
+
+/** What the names of a section are names of, so that they can be changed there. */
+const NAMING = new Set(["parameters", "prescribed", "inputs", "notation", "abbreviations"]);
+
 /** Records by name: parameters, prescribed motions, inputs, the motion, the initial state. */
-function records(model: Model, section: string, title: string, columns: Column[], names: string[], adding: string): Section {
+function records(model: Model, section: string, title: string, columns: Column[], adding: string): Section {
+  const list = nodeAt(model, [section]);
+  // Parameters may be a list of names alone: a first sign or meaning makes records of them.
+  const listed = list?.kind === "sequence" ? (list.children ?? []) : [];
+  const names = listed.length > 0 ? listed.map((child) => valueOf(model, child)) : entriesOf(list).map(([name]) => name);
   const isFirst = (key: string) => (value: string) => shortKey(section, value) === key;
-  const groups = names.map((name): Group => ({
+  const groups = names.map((name, index): Group => ({
     label: name,
+    ...(NAMING.has(section) ? { name: nameRow(section, name, title) } : {}),
     rows: columns.map(({ key, options, formula }) => {
       if (section === "parameters" && key === "value") return parameterValue(model, name);
       return part(model, section, name, key, isFirst(key), { ...(options ? { options } : {}), formula: formula ?? false, placeholder: key, wide: key === "meaning" });
     }),
-    actions: nodeAt(model, [section, name]) ? [{ words: "×", label: `Delete ${name} from ${title.toLowerCase()}`, act: () => model.change([remove([section, name])], `${name} deleted`) }] : [],
+    actions: listed.length > 0
+      ? [{ words: "×", label: `Delete ${name} from ${title.toLowerCase()}`, act: () => model.change([remove([section, index])], `${name} deleted`) }]
+      : entryActions(model, [section, name], title, null),
   }));
-  return { title, groups, actions: [adder(model, section, title, adding)], closed: names.length === 0 };
+  return { title, groups, actions: [adder(model, section, title, adding, columns)], closed: names.length === 0 };
 }
 
 /** With the parameter, or under `values`, where this description has them. */
@@ -78,82 +101,49 @@ function parameterValue(model: Model, name: string): Row {
   return { ...single(model, own.key, own.label, ["values", name], { formula: true, placeholder: "value" }) };
 }
 
-/** `name: formula` lines. */
-function formulas(model: Model, section: string, title: string, adding: string): Section {
-  const groups = entriesOf(nodeAt(model, [section])).map(([name]): Group => ({
+/** `name: formula` lines; `ordered`: later ones may use earlier ones. */
+function formulas(model: Model, section: string, title: string, adding: string, ordered = false): Section {
+  return { ...lines(model, [section], title, adding, ordered, NAMING.has(section)), key: title };
+}
+
+/** Entries `name: value` at a path. */
+export function lines(model: Model, path: Path, title: string, adding: string, ordered = false, naming = false): Section {
+  const section = path.join("-");
+  const entries = entriesOf(nodeAt(model, path));
+  const groups = entries.map(([name], index): Group => ({
     label: name,
-    rows: [single(model, `${section}-${name}`, `${title}: ${name}`, [section, name], { formula: true, wide: true })],
-    actions: [{ words: "×", label: `Delete ${name} from ${title.toLowerCase()}`, act: () => model.change([remove([section, name])], `${name} deleted`) }],
+    ...(naming ? { name: nameRow(section, name, title) } : {}),
+    rows: [single(model, `${section}-${name}`, `${title}: ${name}`, [...path, name], { formula: true, wide: true })],
+    actions: entryActions(model, [...path, name], title, ordered && index > 0 ? [...path, entries[index - 1]![0]] : null),
   }));
-  return { title, groups, actions: [adder(model, section, title, adding)], closed: groups.length === 0 };
+  const fields: Field[] = [
+    { key: "name", sort: "text", words: "", optional: false },
+    { key: "equals", sort: "formula", words: "", optional: false },
+  ];
+  const act = () => addFields(model, `${title}: add ${adding}`, fields, (values) => [{ op: "insert", path: [...path, values.get("name")!], source: values.get("equals")! }]);
+  return { title, groups, actions: [{ words: `Add ${adding}`, label: `Add ${adding}`, act }], closed: groups.length === 0 };
 }
 
-/** Asks for a name and a first value. */
-function adder(model: Model, section: string, title: string, adding: string) {
-  return {
-    words: `Add ${adding}`,
-    label: `Add ${adding}`,
-    act: async () => {
-      const name = make("input", { type: "text", autofocus: true, autocomplete: "off" });
-      const value = make("input", { type: "text", autocomplete: "off" });
-      const record = !["relations", "notation", "abbreviations", "values", "outputs", "units"].includes(section);
-      const done = await ask(`${title}: add ${adding}`, [make("label", {}, "Name ", name), make("label", {}, record ? `First value (${shortKey(section, "1")})` : "Equals", value)], [
-        { words: "Add", value: true, main: true },
-        { words: "Cancel", value: false },
-      ], false);
-      if (!done || name.value.trim() === "") return;
-      const first = value.value.trim();
-      const source = first !== "" ? first : section === "parameters" ? "real" : section === "initial" || section === "motion" ? "0" : "";
-      if (source === "") return model.say(`${name.value.trim()} needs a value`);
-      await model.change([{ op: "insert", path: [section, name.value.trim()], source }], `${name.value.trim()} added to ${title.toLowerCase()}`);
-    },
+/** Asks for a name and what belongs to it. */
+function adder(model: Model, section: string, title: string, adding: string, columns: Column[]): Action {
+  const ofCoordinates = section === "initial" || section === "motion";
+  const name = ofCoordinates ? "coordinate" : "name";
+  const fields = [
+    { key: name, sort: "text" as const, words: "", optional: false },
+    ...columns.map(({ key, options, formula }): Field =>
+      options
+        ? { key, sort: "choice", words: "", optional: true, choices: options.map(([value]) => value).filter(Boolean) }
+        : { key, sort: formula ? "formula" : "text", words: "", optional: !(section === "prescribed" && key === "rate") },
+    ),
+  ];
+  const wanted = (values: Map<string, string>): Operation[] => {
+    const pairs = columns.map(({ key }): [string, string] => [key, values.get(key) ?? ""]).filter(([, value]) => value !== "");
+    const [only] = pairs;
+    const short = pairs.length === 1 && only![0] === shortKey(section, only![1]) ? only![1] : null;
+    const none = section === "parameters" ? "real" : ofCoordinates ? "0" : "{}";
+    return [{ op: "insert", path: [section, values.get(name)!], source: pairs.length === 0 ? none : (short ?? inBraces(pairs)) }];
   };
-}
-
-/** Loads, constraints, claims: each item with its own keys, as they are written. */
-function items(model: Model, section: string, title: string, adding: string, skeletons: Skeleton[]): Section {
-  const found = nodeAt(model, [section])?.children ?? [];
-  const groups = found.flatMap((item, index) => itemGroups(model, section, item, index));
-  return {
-    title: found.length > 0 ? `${title} (${found.length})` : title,
-    groups,
-    actions: [{ words: `Add ${adding}`, label: `Add ${adding}`, act: () => addItem(model, section, title, adding, skeletons) }],
-    closed: found.length === 0 || section === "claims",
-  };
-}
-
-function itemGroups(model: Model, section: string, item: TreeNode, index: number): Group[] {
-  const path: Path = [section, index];
-  const drop = { words: "×", label: `Delete number ${index + 1} of ${section}`, act: () => model.change([remove(path)], `number ${index + 1} of ${section} deleted`) };
-  const label = `${index + 1}`;
-  if (item.kind !== "mapping") return [{ label, rows: [single(model, `${section}-${index}`, `${section} ${index + 1}`, path, { wide: true })], actions: [drop] }];
-  const rows = entriesOf(item).flatMap(([key, value]): [string, Path][] =>
-    value.kind === "mapping" && section !== "claims" ? entriesOf(value).map(([inner]): [string, Path] => [`${key}: ${inner}`, [...path, key, inner]]) : [[key, [...path, key]]],
-  );
-  return rows.map(([words, at], row): Group => ({
-    label: row === 0 ? `${label}. ${words}` : words,
-    rows: [single(model, `${section}-${index}-${words}`, `${section} ${index + 1}: ${words}`, at, { wide: true })],
-    actions: row === 0 ? [drop] : [],
-  }));
-}
-
-async function addItem(model: Model, section: string, title: string, adding: string, skeletons: Skeleton[]): Promise<void> {
-  const kind = make("select", { autofocus: true }, ...skeletons.map((one, index) => make("option", { value: index }, one.kind)));
-  const source = make("input", { type: "text", autocomplete: "off", spellcheck: "false", value: skeletons[0]!.source });
-  kind.addEventListener("change", () => {
-    source.value = skeletons[Number(kind.value)]!.source;
-  });
-  const done = await ask(`${title}: add ${adding}`, [
-    make("label", {}, "Kind ", kind),
-    make("label", {}, "As it will be written ", source),
-    make("p", { class: "hint" }, "The names in capitals stand for what has to be filled in, here or in the form."),
-  ], [
-    { words: "Add", value: true, main: true },
-    { words: "Cancel", value: false },
-  ], false);
-  if (!done || source.value.trim() === "") return;
-  const length = nodeAt(model, [section])?.children?.length ?? 0;
-  await model.change([{ op: "insert", path: [section, length], source: source.value.trim() }], `added to ${title.toLowerCase()}`);
+  return { words: `Add ${adding}`, label: `Add ${adding} to ${title.toLowerCase()}`, act: () => addFields(model, `${title}: add ${adding}`, fields, wanted) };
 }
 
 function assumptions(model: Model): Section {
@@ -163,42 +153,55 @@ function assumptions(model: Model): Section {
     rows: [single(model, `assumption-${index}`, `Assumption ${index + 1}`, ["assumptions", index], { wide: true })],
     actions: [{ words: "×", label: `Delete assumption ${index + 1}`, act: () => model.change([remove(["assumptions", index])], "assumption deleted") }],
   }));
-  return {
-    title: "Assumptions",
-    groups,
-    closed: groups.length === 0,
-    actions: [{ words: "Add an assumption", label: "Add an assumption", act: async () => {
-      const input = make("input", { type: "text", autofocus: true, autocomplete: "off", placeholder: "alpha > -1" });
-      const done = await ask("Add an assumption", [make("label", {}, "Inequality ", input)], [{ words: "Add", value: true, main: true }, { words: "Cancel", value: false }], false);
-      if (!done || !input.value.trim()) return;
-      const length = nodeAt(model, ["assumptions"])?.children?.length ?? 0;
-      await model.change([{ op: "insert", path: ["assumptions", length], source: input.value.trim() }], "assumption added");
-    } }],
+  const fields: Field[] = [{ key: "inequality", sort: "text", words: "alpha > -1", optional: false }];
+  const act = () => addFields(model, "Add an assumption", fields, (values) => [{ op: "insert", path: ["assumptions", nodeAt(model, ["assumptions"])?.children?.length ?? 0], source: values.get("inequality")! }]);
+  return { title: "Assumptions", groups, closed: groups.length === 0, actions: [{ words: "Add an assumption", label: "Add an assumption", act }] };
+}
+
+/** Names in a list, typed with commas between them. */
+function list(model: Model, key: string, words: string): Group {
+  const node = nodeAt(model, [key]);
+  const value = node?.kind === "sequence" ? (node.children ?? []).map((child) => valueOf(model, child)).join(", ") : valueOf(model, node);
+  const typed = (value: string): Operation[] => {
+    const names = value.replace(/^\s*\[|\]\s*$/g, "").trim();
+    return names ? [set([key], `[${names}]`)] : nodeAt(model, [key]) ? [remove([key])] : [];
   };
+  return { label: words, rows: [single(model, `system-${key}`, words, [key], { value, wide: true, placeholder: "–", set: typed })] };
 }
 
 export function systemSections(model: Model): Section[] {
-  const names = (section: string): string[] => entriesOf(nodeAt(model, [section])).map(([name]) => name);
   const line = (key: string, label: string): Group => ({ label, rows: [single(model, `system-${key.replaceAll(" ", "-")}`, label, [key], { wide: true })] });
-  const listed = nodeAt(model, ["parameters"]);
-  const parameters = listed?.kind === "sequence" ? [] : names("parameters");
-  const known = new Set(["mbsym", "name", "description", "source", "dimensionless time", "parameters", "prescribed", "inputs", "values", "bodies", "loads", "constraints", "relations", "notation", "abbreviations", "assumptions", "motion", "initial", "claims"]);
+  const languages = (model.file.languages ?? []).map((one): [string, string] => [one, one]);
+  const known = new Set(["mbsym", "name", "description", "source", "dimensionless time", "parameters", "prescribed", "inputs", "values", "bodies", "loads", "constraints", "relations", "notation", "abbreviations", "assumptions", "motion", "initial", "claims", "outputs", "units", "latex", "dependent", "reactions", "order", "language"]);
   const rest = entriesOf(model.understood?.tree ?? null).filter(([key]) => !known.has(key));
   return [
     { title: "System", groups: [line("name", "Name"), line("description", "Description"), line("source", "Source"), line("dimensionless time", "Dimensionless time")] },
-    records(model, "parameters", "Parameters", [{ key: "sign", options: SIGNS }, { key: "value", formula: true }, { key: "meaning" }], parameters, "a parameter"),
-    records(model, "prescribed", "Prescribed motions", [{ key: "rate", formula: true }, { key: "initial", formula: true }, { key: "meaning" }], names("prescribed"), "a prescribed motion"),
-    records(model, "inputs", "Inputs", [{ key: "meaning" }], names("inputs"), "an input"),
-    items(model, "loads", "Loads", "a load", LOADS),
-    items(model, "constraints", "Constraints", "a constraint", CONSTRAINTS),
+    records(model, "parameters", "Parameters", [{ key: "sign", options: SIGNS }, { key: "value", formula: true }, { key: "meaning" }], "a parameter"),
+    records(model, "prescribed", "Prescribed motions", [{ key: "rate", formula: true }, { key: "initial", formula: true }, { key: "meaning" }], "a prescribed motion"),
+    records(model, "inputs", "Inputs", [{ key: "meaning" }], "an input"),
+    items(model, "loads", ["loads"], "Loads", "a load"),
+    items(model, "constraints", ["constraints"], "Constraints", "a constraint"),
     formulas(model, "relations", "Relations", "a relation"),
-    records(model, "motion", "Unperturbed motion", [{ key: "value", formula: true }, { key: "rate", formula: true }], names("motion"), "a coordinate"),
-    formulas(model, "notation", "Notation", "a symbol"),
+    records(model, "motion", "Unperturbed motion", [{ key: "value", formula: true }, { key: "rate", formula: true }], "a coordinate"),
+    formulas(model, "notation", "Notation", "a symbol", true),
     assumptions(model),
-    records(model, "initial", "Initial state", [{ key: "position", formula: true }, { key: "velocity", formula: true }], names("initial"), "a coordinate"),
+    records(model, "initial", "Initial state", [{ key: "position", formula: true }, { key: "velocity", formula: true }], "a coordinate"),
     formulas(model, "values", "Values", "a value"),
-    formulas(model, "abbreviations", "Abbreviations", "an abbreviation"),
-    items(model, "claims", "Claims", "a claim", CLAIMS),
+    formulas(model, "abbreviations", "Abbreviations", "an abbreviation", true),
+    items(model, "claims", ["claims"], "Claims", "a claim"),
+    formulas(model, "outputs", "Outputs", "an output"),
+    formulas(model, "units", "Units", "a unit"),
+    formulas(model, "latex", "Names in LaTeX", "a name in LaTeX"),
+    {
+      title: "Choices",
+      closed: true,
+      groups: [
+        list(model, "dependent", "Dependent"),
+        list(model, "reactions", "Reactions of joints"),
+        list(model, "order", "Order"),
+        { label: "Language of LaTeX", rows: [single(model, "system-language", "Language of LaTeX", ["language"], { options: [["", "–"], ...languages] })] },
+      ],
+    },
     ...(rest.length > 0 ? [{ title: "More", closed: true, groups: rest.map(([key]) => line(key, key)) }] : []),
   ];
 }

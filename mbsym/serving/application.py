@@ -155,6 +155,7 @@ class Editor:
             "journal": None if offered is None else {"text": offered.text, "written": offered.written},
             "version": mbsym.__version__,
             "schema": json_schema(),
+            "claims": _claims(),
             "functions": list(FUNCTIONS),
             "languages": list(LANGUAGES),
             "formats": [{"name": name, "title": FORMATS[name].title} for name in FORMATS],
@@ -334,6 +335,18 @@ def _known_language(language: str | None) -> None:
 
     if language and language not in LANGUAGES:
         raise Wrong(f"languages are {', '.join(LANGUAGES)}")
+
+
+@lru_cache
+def _claims() -> dict[str, Any]:
+    """Kind of claim -> what its ``of`` names ("" if it has none) and its keys, for the page's forms."""
+    from mbsym.model.claims import CLAIMS
+    from mbsym.source.claims import keys_of
+
+    return {
+        word: {"of": kind.of, "keys": [*(key for key, needed in keys_of(kind).items() if needed), "place"]}
+        for word, kind in CLAIMS.items()
+    }
 
 
 @lru_cache

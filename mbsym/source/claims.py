@@ -120,6 +120,24 @@ def _check_names(fields: Fields, reading: Reading) -> None:
         del scope.kinds[variable]
 
 
+def keys_of(kind: ClaimKind) -> dict[str, bool]:
+    """Of each key that some kinds of claim have, whether this one has it."""
+    return {
+        "of": bool(kind.of),
+        "entry": kind.entry == 2,
+        "component": kind.entry == 1,
+        "at": kind.at,
+        "variable": kind.variable,
+        "order": kind.order,
+        "that": kind.inequality,
+        "as": kind.inequality,
+        "equals": not kind.inequality,
+        "state": kind.state,
+        "tolerance": kind.state,
+        "digits": kind.state,
+    }
+
+
 @dataclass(slots=True)
 class _Reader:
     """One claim being read: its kind and keys, and what they may name."""
@@ -179,21 +197,7 @@ class _Reader:
 
     def refuse_keys(self) -> None:
         """Keys that mean nothing for this kind of claim."""
-        kind = self.kind
-        wanted = {
-            "equals": not kind.inequality,
-            "that": kind.inequality,
-            "as": kind.inequality,
-            "of": bool(kind.of),
-            "entry": kind.entry == 2,
-            "component": kind.entry == 1,
-            "at": kind.at,
-            "variable": kind.variable,
-            "order": kind.order,
-            "state": kind.state,
-            "tolerance": kind.state,
-            "digits": kind.state,
-        }
+        kind, wanted = self.kind, keys_of(self.kind)
         self.fields.exclude(f"claim: {self.word}", [key for key, needed in wanted.items() if not needed])
         if "tolerance" in self.fields.found:
             self.fields.exclude("tolerance", ["digits"])

@@ -6,9 +6,11 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 import windows
+import yaml
 from conftest import SHIPPED
 from windows import Window, serving
 
@@ -23,6 +25,11 @@ def system_of(text: str) -> System:
     system, complaints = read(text, "system.yaml")
     assert system is not None, complaints.sorted()
     return system
+
+
+def yaml_of(text: str) -> dict[str, Any]:
+    """The description as plain data, read by another reader of YAML than ours."""
+    return dict(yaml.safe_load(text))
 
 
 def shipped(name: str) -> str:
@@ -52,12 +59,6 @@ def show(address: tuple[str, Path], opened: Callable[..., Window]) -> Show:
 
 
 SATELLITE = shipped("satellite")
-#: Its notation, and what the paper prints to be checked: as text, as one would paste a table of formulas.
-PRINTED = "\n".join(
-    SATELLITE[SATELLITE.index(first) : len(SATELLITE) if last is None else SATELLITE.index(last)]
-    for first, last in (("notation:", "dimensionless time:"), ("# What the paper prints", None))
-)
-
 PARAMETERS = {
     "R": ("positive", "50", "radius of the orbit"),
     "omega0": ("positive", "0.5", "orbital angular velocity"),
@@ -130,46 +131,61 @@ def build_bodies(window: Window) -> None:
         window.body(name).focus()
 
 
+def printed(section: str) -> list[tuple[str, str]]:
+    """The lines `name: formula` of a section of the satellite's description."""
+    lines = yaml_of(SATELLITE)[section]
+    return [(str(name), str(value)) for name, value in lines.items()]
+
+
+def claims_as_fields() -> list[dict[str, str]]:
+    """What the paper prints, as its fields: the kind first, since the others depend on it."""
+    found = []
+    for claim in yaml_of(SATELLITE)["claims"]:
+        fields = {"Kind": str(claim.pop("claim"))}
+        for key, value in claim.items():
+            several = enumerate(value, 1) if isinstance(value, list) else ()
+            fields |= {f"{key}, {index}": str(one) for index, one in several} or {key: str(value)}
+        found.append(fields)
+    return found
+
+
 def test_the_satellite_is_built_by_clicks_and_keys(show: Show) -> None:
-    """From an empty page to Figures 3 and 4: the saved file is `systems/satellite.yaml` as a system, and every claim of
-    the paper holds."""
+    """From an empty page to Figures 3 and 4, through fields alone: the saved file is `systems/satellite.yaml` as a
+    system, and every claim of the paper holds."""
     window = show("")
+    window.page.get_by_label("as the text changes").uncheck()  # nothing of what is half built is derived
     window.form_of("System")
     window.field("Name", "Satellite with a gravitational stabilizer")
     window.field("Description", system_of(SATELLITE).description)
     window.field("Dimensionless time", "omega0")
-    for name, (sign, value, meaning) in PARAMETERS.items():
-        if name == "R":  # one by its fields, the others as one record
-            window.add("Add a parameter", name, sign)
-            window.field(f"{name}: value", value)
-            window.field(f"{name}: meaning", meaning)
-        else:
-            window.add("Add a parameter", name, f"{{sign: {sign}, value: {value}, meaning: {meaning}}}")
-    window.add("Add a prescribed motion", "chi", "omega0")
-    window.field("chi: meaning", "angle of the orbital motion")
+    window.add(
+        "Add a parameter to parameters",
+        *(
+            {"name": name, "sign": sign, "value": value, "meaning": meaning}
+            for name, (sign, value, meaning) in PARAMETERS.items()
+        ),
+    )
+    chi = {"name": "chi", "rate": "omega0", "meaning": "angle of the orbital motion"}
+    window.add("Add a prescribed motion to prescribed motions", chi)
     build_bodies(window)
     window.form_of("System")
-    window.add("Add a load", "newton", "{newtonian gravity: {constant: nu, centre: 0, about: orbital frame, order: 2}}")
-    window.add("Add a relation", "nu", "omega0**2*R**3")
-    for name in INITIAL:
-        window.page.locator("#form summary").filter(has_text="Unperturbed motion").locator("..").get_by_role(
-            "button", name="Add a coordinate"
-        ).click()
-        window.page.keyboard.type(name)
-        window.press("Enter")
-        window.settled()
-    for name, (position, velocity) in INITIAL.items():
-        place = window.page.locator("#form summary").filter(has_text="Initial state").locator("..")
-        place.get_by_role("button", name="Add a coordinate").click()
-        window.page.keyboard.type(name)
-        window.press("Tab")
-        window.typed(f"{{position: {position}, velocity: {velocity}}}")
-        window.press("Enter")
-        window.settled()
-    window.page.locator(".cm-content").click()
-    window.press("Control+End")
-    window.page.keyboard.insert_text(f"\n{PRINTED}")
-    window.settled()
+    newton = {"Kind": "newtonian gravity", "constant": "nu", "centre": "0", "about": "orbital frame", "order": "2"}
+    window.add("Add a load", newton)
+    window.add("Add a relation", {"name": "nu", "equals": "omega0**2*R**3"})
+    window.add("Add a coordinate to unperturbed motion", *({"coordinate": name} for name in INITIAL))
+    window.add("Add a symbol", *({"name": name, "equals": formula} for name, formula in printed("notation")))
+    window.add("Add an assumption", *({"inequality": str(one)} for one in yaml_of(SATELLITE)["assumptions"]))
+    window.add(
+        "Add a coordinate to initial state",
+        *(
+            {"coordinate": name, "position": position, "velocity": velocity}
+            for name, (position, velocity) in INITIAL.items()
+        ),
+    )
+    window.add(
+        "Add an abbreviation", *({"name": name, "equals": formula} for name, formula in printed("abbreviations"))
+    )
+    window.add("Add a claim", *claims_as_fields())
     assert window.complaints == []
     built = system_of(window.text)
     assert built == system_of(SATELLITE)

@@ -137,16 +137,25 @@ class Window:
             self.press("Tab")
         self.settled()
 
-    def add(self, button: str, *values: str) -> None:
-        """A button of the form that asks for some values, one after the other."""
+    def add(self, button: str, *entries: dict[str, str]) -> None:
+        """A button of the form, and its dialog filled in field by field: once for each entry, without closing it."""
         self.page.locator("#form").get_by_role("button", name=button, exact=True).click()
-        self.page.locator("dialog[open]").wait_for()
-        for index, value in enumerate(values):
-            if index:
-                self.press("Tab")
-            self.press("Control+a")
-            self.typed(value)
-        self.press("Enter")
+        for entry in entries:
+            dialog = self.page.locator("dialog[open]")
+            dialog.wait_for()
+            for label, value in entry.items():
+                field = dialog.get_by_label(label, exact=True)
+                if field.evaluate("e => e.tagName") == "SELECT":
+                    field.select_option(value)
+                else:
+                    field.fill(value)
+            last = entry is entries[-1]
+            mark = None if last else dialog.evaluate("e => e.querySelector('h2').id")
+            dialog.get_by_role("button", name="Add" if last else "Add, then another", exact=True).click()
+            if mark:  # the next one
+                self.until(
+                    f"document.querySelector('dialog[open] h2') && document.querySelector('dialog[open] h2').id !== '{mark}'"
+                )
         self.page.locator("dialog").wait_for(state="detached")  # closed, and acted upon
         self.settled()
 

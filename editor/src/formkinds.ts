@@ -1,0 +1,140 @@
+// What kinds of loads, constraints, claims and shapes there are, and the fields of each: read from the schema of
+// descriptions and from what the server tells of claims, so that no second list of them has to be kept.
+
+import type { Model } from "./model.js";
+
+export interface Field {
+  /** The key it stands under; "": the value of the kind itself. */
+  key: string;
+  sort: "formula" | "text" | "choice" | "body" | "list" | "ends" | "pairs";
+  /** What it means, as the schema says it. */
+  words: string;
+  /** May be left out. */
+  optional: boolean;
+  choices?: string[];
+  count?: number;
+  /** What the two ends have beside their bodies. */
+  end?: "point" | "axis";
+}
+
+export interface Kind {
+  /** What it is called in a list of kinds. */
+  words: string;
+  /** The key, or for a claim the word, that says the kind. */
+  key: string;
+  fields: Field[];
+}
+
+interface Schema {
+  type?: string | string[];
+  enum?: unknown[];
+  items?: Schema;
+  minItems?: number;
+  maxItems?: number;
+  properties?: Record<string, Schema>;
+  required?: string[];
+  description?: string;
+  $ref?: string;
+  $defs?: Record<string, Schema>;
+}
+
+/** The keys that name a body. */
+const BODIES = new Set(["body", "axes", "centre", "about", "reaction on", "on"]);
+
+/** Kinds that are given in one of two ways. */
+const WAYS: Record<string, [words: string, keys: string[]][]> = {
+  "uniform gravity": [
+    ["size and direction", ["acceleration", "direction"]],
+    ["as a vector", ["vector"]],
+  ],
+  spring: [
+    ["on a coordinate", ["coordinate", "stiffness", "rest"]],
+    ["between points", ["between", "stiffness", "length"]],
+  ],
+  damper: [
+    ["on a coordinate", ["coordinate", "coefficient"]],
+    ["between points", ["between", "coefficient"]],
+  ],
+};
+
+function refers(schema: Schema | undefined, name: string): boolean {
+  return schema?.$ref === `#/$defs/${name}`;
+}
+
+function field(key: string, schema: Schema, optional: boolean): Field {
+  const made = { key, words: schema.description ?? "", optional };
+  const [many, items] = [schema.minItems === schema.maxItems ? schema.maxItems : undefined, schema.items];
+  if (refers(schema, "vector")) return { ...made, sort: "list", count: 3 };
+  if (refers(schema, "expression")) return { ...made, sort: "formula" };
+  if (refers(items, "point")) return { ...made, sort: "ends", end: "point" };
+  if (refers(items, "axis")) return { ...made, sort: "ends", end: "axis" };
+  if (schema.type === "array" && many) return { ...made, sort: "list", count: many };
+  if (schema.enum) return { ...made, sort: "choice", choices: [...new Set(schema.enum.map(String))] };
+  if (schema.type === "object" && !schema.properties) return { ...made, sort: "pairs" };
+  return { ...made, sort: BODIES.has(key) ? "body" : "text" };
+}
+
+function definitions(model: Model): Record<string, Schema> {
+  return (model.file.schema as Schema | null)?.$defs ?? {};
+}
+
+/** Kinds of loads or constraints: `{kind: {key: value}}`. */
+function wrapped(model: Model, definition: string): Kind[] {
+  const kinds: Kind[] = [];
+  const seen = new Set<string>();
+  for (const [key, schema] of Object.entries(definitions(model)[definition]?.properties ?? {})) {
+    // Other spellings of a kind mean the same.
+    const same = JSON.stringify(schema);
+    if (seen.has(same)) continue;
+    seen.add(same);
+    if (!schema.properties) {
+      kinds.push({ words: key, key, fields: [field("", schema, false)] });
+      continue;
+    }
+    const fields = Object.entries(schema.properties)
+      .filter(([inner]) => inner !== "center")
+      .map(([inner, one]) => field(inner, one, !schema.required?.includes(inner)));
+    const ways = WAYS[key] ?? [["", fields.map((one) => one.key)]];
+    for (const [words, keys] of ways) {
+      kinds.push({ words: words ? `${key}: ${words}` : key, key, fields: fields.filter((one) => keys.includes(one.key)) });
+    }
+  }
+  return kinds;
+}
+
+function claims(model: Model): Kind[] {
+  const known = definitions(model)["claim"]?.properties ?? {};
+  const late = ["state", "tolerance", "digits", "as", "place"];
+  return Object.entries(model.file.claims ?? {}).map(([word, { of, keys }]) => {
+    const fields = keys.map((key): Field => {
+      const made = field(key, known[key] ?? {}, late.includes(key));
+      return key === "of" && of === "body" ? { ...made, sort: "body" } : made;
+    });
+    return { words: word, key: word, fields };
+  });
+}
+
+function shapes(model: Model): Kind[] {
+  const known = definitions(model)["body"]?.properties?.["shapes"]?.items?.properties ?? {};
+  const place = ["at", "rotation"].map((key): Field => {
+    const made = field(key, known[key] ?? {}, true);
+    return key === "rotation" ? { ...made, sort: "text" } : made;
+  });
+  return Object.entries(known)
+    .filter(([key]) => !["at", "rotation"].includes(key))
+    .map(([key, schema]) => ({ words: key, key, fields: [field("", schema, false), ...place] }));
+}
+
+/** How an item holds its kind: around its fields, as the value of `claim`, or beside them. */
+export type Style = "wrapped" | "flat" | "beside";
+
+export interface Sort {
+  style: Style;
+  kinds: Kind[];
+}
+
+export function sortOf(model: Model, section: string): Sort {
+  if (section === "claims") return { style: "flat", kinds: claims(model) };
+  if (section === "shapes") return { style: "beside", kinds: shapes(model) };
+  return { style: "wrapped", kinds: wrapped(model, section === "loads" ? "load" : "constraint") };
+}
