@@ -153,9 +153,7 @@ class Window:
             mark = None if last else dialog.evaluate("e => e.querySelector('h2').id")
             dialog.get_by_role("button", name="Add" if last else "Add, then another", exact=True).click()
             if mark:  # the next one
-                self.until(
-                    f"document.querySelector('dialog[open] h2') && document.querySelector('dialog[open] h2').id !== '{mark}'"
-                )
+                self.until(f"(document.querySelector('dialog[open] h2')?.id ?? '{mark}') !== '{mark}'")
         self.page.locator("dialog").wait_for(state="detached")  # closed, and acted upon
         self.settled()
 
