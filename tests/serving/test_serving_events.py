@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 from collections.abc import AsyncIterator, Awaitable, Callable
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import pytest
@@ -17,7 +18,9 @@ from mbsym.serving.events import Events, encoded
 
 
 def heard(work: Callable[[], Awaitable[Any]]) -> Any:
-    return asyncio.run(work())  # type: ignore[arg-type]
+    """In a thread of its own: a browser of other tests may have left a loop that runs in this one."""
+    with ThreadPoolExecutor(1) as beside:
+        return beside.submit(lambda: asyncio.run(work())).result()  # type: ignore[arg-type]
 
 
 async def next_of(stream: AsyncIterator[str]) -> tuple[str, dict[str, Any]]:

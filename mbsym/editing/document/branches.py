@@ -189,11 +189,6 @@ def delete_branch(found: Written, operation: Json) -> Meant:
     return Meant([Remove(path) for path in ordered], select=("bodies",), taken=list(taken))
 
 
-def _place(path: Path) -> tuple[str, int]:
-    step = path[1] if len(path) > 1 else -1
-    return str(path[0]), step if isinstance(step, int) else -1
-
-
 def _check_outside(found: Written, branch: list[int], names: set[str]) -> None:
     """Other bodies may not use the coordinates of a branch that goes."""
     word = pattern(sorted(names)) if names else None
