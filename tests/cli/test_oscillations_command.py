@@ -67,3 +67,25 @@ def test_a_damped_pendulum_has_none():
     done = run("systems/simple-pendulum.yaml")
     assert done.exit_code == 1
     assert "no pair of imaginary roots was found for theta, theta_dot" in " ".join(done.stderr.split())
+
+
+COUPLED = """mbsym: 1
+name: Two oscillators
+parameters: {k: {sign: positive}, c: {sign: real}, eps: {sign: positive}}
+small parameter: eps
+bodies:
+  - {name: mass, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}
+loads:
+  - potential: k*(x**2 + y**2)/2 + c*(x - y)**2/2 + eps*x**4/4
+"""
+
+
+def test_frequencies_of_one_block_that_may_be_in_resonance_are_listed(tmp_path):
+    """The squares k and k + 2 c are equal where c = 0, and as 1 to 9 where c = 4 k."""
+    path = tmp_path / "coupled.yaml"
+    path.write_text(COUPLED, encoding="utf-8")
+    told = " ".join(run(str(path), "--of", "x", "--order", "1").stdout.split())
+    assert "where 2*c = 0 (harmonic 1, order 1, of x_dot, y_dot, x, y)" in told
+    assert "where 2*(c - 4*k) = 0 (harmonic 3, order 1, of x_dot, y_dot, x, y)" in told
+    data = json.loads(run(str(path), "--of", "x", "--order", "1", "--json").stdout)
+    assert {(one["harmonic"], one["vanishes"]) for one in data["resonances"]} == {(1, "2*c"), (3, "2*(c - 4*k)")}

@@ -19,7 +19,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from mbsym.algebra.failures import NoClosedForm
-from mbsym.algebra.tower import Element
+from mbsym.algebra.tower import MOST_ROOTS, Element
 from mbsym.problems.normal_forms.expansion import faddeev
 from mbsym.problems.small_parameter.generating import Generating, Mode
 from mbsym.problems.small_parameter.harmonics import Harmonics
@@ -187,22 +187,33 @@ class Orders:
                 f"resonance: in the order {order} of the small parameter, {', '.join(names)} are driven at {told}, "
                 "which is a frequency of their own; secular terms cannot be removed, the oscillations exchange energy",
             )
-        self._divided(names, matrix, k, order)
+        self._divided(block, k, order, answer)
         return answer[:size], answer[size:] or [zero] * size
 
-    def _divided(self, names: tuple[str, ...], matrix: list[list[Element]], k: int, order: int) -> None:
-        """Notes chi(i k omega) of a block with an even characteristic polynomial chi."""
-        coefficients = faddeev(matrix, self.tower.zero, self.tower.one)[1]
-        if any(not c.is_zero() for c in coefficients[-2::-2]) or len(matrix) % 2:
+    def _divided(self, block: tuple[int, ...], k: int, order: int, answer: Sequence[Element]) -> None:
+        """Notes chi(i k omega) of a block with an even characteristic polynomial chi.
+
+        Of the block that oscillates by itself, chi without lambda^2 + omega^2: the product of omega_j^2 - (k omega)^2
+        over its other frequencies; none where no denominator of the ``answer`` shares a factor with it (normal
+        oscillations that the force does not couple).
+        """
+        tower, names = self.tower, tuple(self.system.names[i] for i in block)
+        coefficients = faddeev(self.system.block_matrix(block), tower.zero, tower.one)[1]
+        if any(not c.is_zero() for c in coefficients[-2::-2]) or len(block) % 2:
             return
+        even = coefficients[::2]  # of lambda^2, from low to high
+        if block == self.mode.block:
+            even = _without(even, self.mode.square)
         square = -(self.mode.square * (k * k))
-        value = self.tower.zero
-        for c in reversed(coefficients[::2]):
+        value = tower.zero
+        for c in reversed(even):
             value = value * square + c
         known = any(one.variables == names and one.harmonic == k for one in self.divisors)
-        if known or self.tower.rational(value / self.mode.square) is not None:
+        if known or tower.rational(value / self.mode.square) is not None:
             return  # of multiples of the frequency itself it is said already that they are not zero
-        if self.tower.rational(value) is None:
+        if block == self.mode.block and _cancelled(value, answer):
+            return
+        if tower.rational(value) is None:
             self.divisors.append(Divisor(names, k, order, value))
 
     def _led(self, forcing: Sequence[Harmonics], order: int) -> list[Harmonics]:
@@ -241,6 +252,7 @@ class Orders:
             raise Resonance(
                 f"resonance: two oscillations of {', '.join(self.system.names[i] for i in block)} have one frequency"
             )
+        self._divided(block, 1, order, [*answer, shift])
         known = [(zero, zero)] * size
         for n, j in enumerate(kept):
             known[j] = (answer[n], answer[len(kept) + n])
@@ -276,6 +288,23 @@ class Orders:
 
 
 Pair = tuple[Element, Element]
+
+
+def _without(polynomial: Sequence[Element], square: Element) -> list[Element]:
+    """The quotient by mu + square, of which it is a multiple; coefficients from low to high."""
+    found = [polynomial[-1]]
+    for c in reversed(polynomial[1:-1]):
+        found.append(c - square * found[-1])
+    return found[::-1]
+
+
+def _cancelled(value: Element, answer: Sequence[Element]) -> bool:
+    """Whether surely nothing of ``value`` is left in denominators; of one with square roots there is no telling."""
+    if all(x.is_zero() for x in answer):
+        return True
+    if any(d > 0 for p in (value.top, *(x.bottom for x in answer)) for d in p.degrees()[:MOST_ROOTS]):
+        return False
+    return all(value.top.gcd(x.bottom).is_constant() for x in answer)
 
 
 def _at_imaginary(tower: Any, adjugates: Sequence[Any], speed: Element) -> tuple[Any, Any]:

@@ -102,6 +102,37 @@ def test_two_oscillators_at_one_to_two(tmp_path):
         oscillating(point(tmp_path, loads, "x, y"), 2)
 
 
+COUPLED = "potential: w**2*(x**2 + y**2)/2 + k*(x - y)**2/2 + {}"
+
+
+def test_the_other_frequency_of_two_coupled_oscillators_is_named(tmp_path):
+    """u = (x + y)/2 with the square w^2 of its frequency, v = (x - y)/2 with w^2 + 2 k, and the force of eps x^4/4.
+
+    By hand along u = a cos T: v_1'' + (w^2 + 2 k) v_1 = -u_0^3/2 = -a^3 (3 cos T + cos 3T)/8, so that the harmonic 1 is
+    divided by w^2 + 2 k - w^2, and 3 by w^2 + 2 k - 9 w^2.  y_1 = x_1 - 2 v_1 holds 3 a^3/(8 k) cos T.
+    """
+    told = oscillating(point(tmp_path, [COUPLED.format("eps*x**4/4")], "x, y"), 1, leading="x")
+    assert str(told.formula(told.found.frequency)) == "w"
+    shown = {one.harmonic: str(numerator(told, one.value)) for one in told.resonances}
+    assert shown == {1: "2*k", 3: "2*(k - 4*w**2)"}
+    x, y = (told.found.series[told.found.names.index(name)][1].wave(1)[0] for name in "xy")
+    ring = told.ring
+    a, k = told.formula(told.found.amplitude).polynomial, ring.generator("parameter", "k")
+    assert ring.is_zero(ring.times(told.formula(y - x).polynomial, 8 * k) - 3 * a**3)
+
+
+def test_where_nothing_is_divided_no_frequency_is_named(tmp_path):
+    """Along u = x = y the force eps (x + y)^3 drives u alone; one oscillator has no other frequency."""
+    told = oscillating(point(tmp_path, [COUPLED.format("eps*(x + y)**4/4")], "x, y"), 1, leading="x")
+    assert told.found.divisors == ()
+    told = oscillating(point(tmp_path, ["potential: w**2*x**2/2 + eps*x**4/4"]), 2)
+    assert told.found.divisors == ()
+    # x_0^2 holds the harmonics 0 and 2 only; the squares of frequencies hold a root
+    loads = ["potential: w**2*(x**2 + 2*y**2)/2 + k*x*y + eps*x**3"]
+    told = oscillating(point(tmp_path, loads, "x, y"), 1, leading="x")
+    assert {one.harmonic for one in told.found.divisors} == {0, 2}
+
+
 def test_a_pendulum_about_its_rest_by_its_amplitude(tmp_path):
     """No small parameter is named: that is the size of the deviation.  A planted 1 in 1000 is seen in the residuals."""
     loads = ["potential: -w**2*cos(x)"]
