@@ -44,7 +44,7 @@ def command(
     possible for some amplitudes only, or not at all, that is told.  FILE names the small parameter ('small parameter:
     eps', or powers of it in parameters and variables); without it, the deviations from the unperturbed motion are
     small, of order eps.  Coefficients hold the parameters, the amplitude and the values that stay constant without
-    eps; what must not vanish (resonances) is listed.
+    eps; resonances that were divided by are listed (not those among damped variables that lead together).
 
     The series are put into the equations exactly.  Where FILE has numbers, their error is measured against runs at
     parts of eps.  Figures show the series and a simulation from the same state over three periods: oscillation (over
