@@ -276,7 +276,8 @@ class ForceFunction(Acting):
     """A free force function U(q, t), added to L; a ``potential`` in the description is stored as U = -potential.
 
     ``spelled`` remembers which of the two the description used ("force function" or "potential") and is only for
-    writing it back; ``expression`` is what stands in the file.
+    writing it back; ``expression`` is what stands in the file.  Where that holds unit vectors of bodies it is kept as
+    ``in_vectors``, and ``expression`` is the same function of the angles that these replace.
     """
 
     conservative = True
@@ -284,6 +285,12 @@ class ForceFunction(Acting):
     expression: Expression
     spelled: str = "force function"
     span: Span | None = _span()
+    in_vectors: Expression | None = None
+
+    @property
+    def written(self) -> Expression:
+        """What stands in the file."""
+        return self.expression if self.in_vectors is None else self.in_vectors
 
     def measured(self) -> Iterator[Measured]:
         yield Measured(self.expression, ENERGY, f"a {self.spelled}")

@@ -208,7 +208,7 @@ class _Loads:
                     "Isotropic damper between {} and {}, coefficient {}: dissipation function {} with their relative "
                 )
                 return _words(said + "velocity {}.", *data, r, _math(mi("v")))
-            case ForceFunction(value, spelled):
+            case ForceFunction(spelled=spelled, written=value):
                 before = sign("\u2212") if spelled == "potential" else ""
                 left = _math(before, mi("U"), mo("="), expression(value, self.names))
                 return _words("{}: {}.", spelled.capitalize(), left)

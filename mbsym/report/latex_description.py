@@ -280,7 +280,7 @@ class _Loads:
                     c=self.math(coefficient),
                     r=f"\\tfrac{{1}}{{2}}\\, {_bracketed(coefficient, 2, self.names)}\\, v^2",
                 )
-            case ForceFunction(value, spelled):
+            case ForceFunction(spelled=spelled, written=value):
                 sign = "-" if spelled == "potential" else ""
                 return f"{tr(spelled.capitalize())}: ${sign}U = {self.math(value)}$."
             case Rayleigh(value):

@@ -37,7 +37,7 @@ from mbsym.source.settings import (
     read_relations,
 )
 from mbsym.source.small import read_small
-from mbsym.source.speeds import check_speeds, declare_speeds, read_speeds
+from mbsym.source.speeds import check_speeds, declare_speeds, read_speeds, vectors_in_angles
 from mbsym.source.symbols import read_symbols
 from mbsym.source.tables import read_tables
 
@@ -78,6 +78,7 @@ def build(node: Node, complaints: Complaints, by_use: bool = False, folder: Path
         for body, own, draft in zip(bodies, speeds, drafts, strict=True)
     ]
     loads = read_loads(fields.get("loads"), [body.name for body in bodies], reading)
+    loads = tuple(vectors_in_angles(load, bodies) for load in loads)
     constraints, dependent = _constraints(fields, [body.name for body in bodies], reading)
     matrices = None if linear is None else read_linear(*linear, len(inputs), reading)
     parameters += declared_by_use(reading)

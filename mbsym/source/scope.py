@@ -73,7 +73,7 @@ _PLURALS = {
     "oscillation abbreviation": "abbreviations of them",
 }
 #: Kinds of names that are told where the description has some.
-_RARE = ("input", "quaternion", "momentum", "oscillation", "oscillation abbreviation")
+_RARE = ("input", "unit vector", "quaternion", "momentum", "oscillation", "oscillation abbreviation")
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +93,9 @@ NUMBER = Allowed("a numerical value", (), KINKED)
 ANGLE = Allowed("a rotation angle", ("coordinate", "prescribed", "parameter", "time"))
 RADIUS = Allowed("a connection point", ("coordinate", "prescribed", "parameter", "time"))
 VELOCITY = Allowed("a relative velocity", ("coordinate", "velocity", "prescribed", "parameter", "time"))
-POTENTIAL = Allowed("a force function or potential", ("coordinate", "prescribed", "parameter", "time"), ("abs",))
+POTENTIAL = Allowed(
+    "a force function or potential", ("coordinate", "unit vector", "prescribed", "parameter", "time"), ("abs",)
+)
 DISSIPATION = Allowed("a dissipation function", ("coordinate", "velocity", "prescribed", "parameter", "time"), ("abs",))
 FORCE = Allowed("a force", ("coordinate", "velocity", "prescribed", "parameter", "time", "input"), KINKED)
 ASSUMPTION = Allowed("an assumption", ("parameter", "notation"))

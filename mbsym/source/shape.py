@@ -222,8 +222,8 @@ def load_shape(load: Load) -> tuple[str, Shape]:
             return "damper", {"between": [_point(first), _point(second)], "coefficient": text(coefficient)}
         case IsotropicDamper(first, second, coefficient):
             return "isotropic damper", {"between": [_point(first), _point(second)], "coefficient": text(coefficient)}
-        case ForceFunction(expression, spelled):
-            return spelled, text(expression)
+        case ForceFunction(spelled=spelled):
+            return spelled, text(load.written)
         case Rayleigh(expression):
             return "rayleigh", text(expression)
         case GeneralizedForce(components):

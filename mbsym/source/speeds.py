@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import fields, is_dataclass
+from dataclasses import fields, is_dataclass, replace
 from functools import partial
 
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Span
 from mbsym.expressions.rates import without_velocity
 from mbsym.expressions.tree import (
+    ONE,
     ZERO,
     Call,
     Expression,
@@ -22,7 +23,9 @@ from mbsym.expressions.tree import (
     negative,
     substitute,
 )
+from mbsym.model.loads import ForceFunction, Load
 from mbsym.model.speeds import OMEGA, QUATERNION, Quaternion, Speed, UnitVector
+from mbsym.model.substitution import folded
 from mbsym.model.system import INERTIAL, Body, System, Vector, velocity_name
 from mbsym.source import placed
 from mbsym.source.bodies import Draft, read_body_name
@@ -214,11 +217,7 @@ def angular_velocity(system: System, body: str) -> Vector:
     spin: list[Expression] = [ZERO, ZERO, ZERO]
     for name in system.path(body)[1:]:
         for axis, angle in system.body(name).rotation.turns():
-            i, j = axis % 3, (axis + 1) % 3
-            s, c = Call("sin", angle), Call("cos", angle)
-            old = (spin[i], spin[j])
-            spin[i] = add(multiply(c, old[0]), multiply(s, old[1]))
-            spin[j] = add(multiply(c, old[1]), negative(multiply(s, old[0])))
+            spin = _turned(spin, axis, angle)
             for coordinate in system.coordinates:
                 slope = differentiate(angle, coordinate)
                 spin[axis - 1] = add(spin[axis - 1], multiply(slope, Name(velocity_name(coordinate))))
@@ -226,6 +225,33 @@ def angular_velocity(system: System, body: str) -> Vector:
                 spin[axis - 1] = add(spin[axis - 1], multiply(differentiate(angle, item.name), item.rate))
             spin[axis - 1] = add(spin[axis - 1], differentiate(angle, "t"))
     return spin[0], spin[1], spin[2]
+
+
+def vectors_in_angles(load: Load, bodies: Sequence[Body]) -> Load:
+    """A force function of unit vectors with these as functions of the angles beside: e = C_a3 C_a2 C_a1 e_axis."""
+    if not isinstance(load, ForceFunction):
+        return load
+    held, images = names(load.expression), dict[str, Expression]()
+    for body in bodies:
+        for vector in body.orientation:
+            if isinstance(vector, UnitVector) and held & {*vector.components}:
+                columns: list[Expression] = [ONE if axis == vector.axis else ZERO for axis in (1, 2, 3)]
+                for axis, angle in body.rotation.turns():
+                    columns = _turned(columns, axis, angle)
+                images |= dict(zip(vector.components, columns, strict=True))
+    if not images:
+        return load
+    return replace(load, expression=folded(load.expression, images), in_vectors=load.expression)
+
+
+def _turned(v: Sequence[Expression], axis: int, angle: Expression) -> list[Expression]:
+    """C_a(x) v."""
+    i, j = axis % 3, (axis + 1) % 3
+    s, c = Call("sin", angle), Call("cos", angle)
+    turned = list(v)
+    turned[i] = add(multiply(c, v[i]), multiply(s, v[j]))
+    turned[j] = add(multiply(c, v[j]), negative(multiply(s, v[i])))
+    return turned
 
 
 def _check_orientation(system: System, body: Body, draft: Draft, reading: Reading) -> None:
@@ -247,12 +273,15 @@ def _check_orientation(system: System, body: Body, draft: Draft, reading: Readin
     used = {name: place for name, place in _uses(system, body) if name in own}
     for name, place in used.items():
         message = f"the angle '{name}' stands in {place}: {what} cannot take its place"
-        reading.error("orientation", message, span, "leave 'orientation' out, or write the load as a force or torque")
+        hint = "leave 'orientation' out, or write the load as a force or torque"
+        hint += "" if whole or place != "a load" else ", or as a potential of the unit vectors"
+        reading.error("orientation", message, span, hint)
 
 
 def _uses(system: System, body: Body) -> list[tuple[str, str]]:
     """Names in other places than the angles of a body's joint, with these places."""
-    found = [(name, "a load") for load in system.loads for name in _held(load)]
+    loads = (replace(x, expression=x.written) if isinstance(x, ForceFunction) else x for x in system.loads)
+    found = [(name, "a load") for load in loads for name in _held(load)]
     found += [(name, "a constraint") for one in system.constraints for name in _held(one)]
     found += [(name, "its connection point") for x in body.connection_point for name in names(x)]
     for other in system.bodies:

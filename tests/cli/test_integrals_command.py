@@ -130,6 +130,19 @@ def test_invariant_relations_and_levels_are_told_with_what_is_proved():
     assert "weights are p, q, r" not in rotor  # the same as those of the integrals
 
 
+def test_clebschs_condition_for_kirchhoffs_equations_is_found():
+    """One integral more of degree two where A (k2 - k3) + B (k3 - k1) + C (k1 - k2) = 0 (Clebsch 1870)."""
+    data = json.loads(run("systems/kirchhoff.yaml", "--degree", "2", "--cases", "--json").stdout)
+    assert all(one["complete"] for one in data["cases"]["cases"])
+    told = [one["vanishing"] for one in data["cases"]["cases"] if len(one["vanishing"]) == 1]
+    assert told == [["A*(k2 - k3) + B*(k3 - k1) + C*(k1 - k2)"]]
+    line = ("A=1", "B=2", "C=3", "k1=1", "k2=2")
+    words = [word for one in line for word in ("-s", one)]
+    text = run("systems/kirchhoff.yaml", *words, "--vary", "k3=1/2:5").stdout
+    assert "k3 = 3\n" in text
+    assert "At all other values of k3" in text
+
+
 def test_systems_in_angles_have_rates_sines_and_cosines():
     """The spherical pendulum: its energy, and the momentum of psi, sin(theta)^2 psi_dot."""
     data = json.loads(run("systems/spherical-pendulum.yaml", "--json").stdout)

@@ -39,6 +39,7 @@ NO_MOTION = {
     "kovalevskaya.yaml",
     "goryachev-chaplygin.yaml",
     "hess-appelrot.yaml",
+    "kirchhoff.yaml",
     "four-bar.yaml",
     "gyrostat.yaml",
     "gyrostat-fast.yaml",

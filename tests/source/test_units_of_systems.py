@@ -76,6 +76,7 @@ UNITS = {
     "kovalevskaya": {"C": MOMENTS, **HEAVY},
     "goryachev-chaplygin": {"C": MOMENTS, **HEAVY},
     "hess-appelrot": {"A": MOMENTS, "C": MOMENTS, **HEAVY, "z0": "m"},
+    "kirchhoff": {**BODY, **dict.fromkeys(("k1", "k2", "k3"), "kg*m^2/s^2")},
     "four-bar": {**dict.fromkeys(("l1", "l2", "l3", "l4"), "m"), "rho": "kg/m", "q1": "rad"},
     "gravity-gradient": {**ORBIT, **BODY, "m": "kg", "chi": "rad"},
     "gravity-gradient-quaternion": {**ORBIT, **BODY, "m": "kg", "chi": "rad", "p": "rad/s", "e1": "1"},
