@@ -70,7 +70,7 @@ class Editor:
     @asynccontextmanager
     async def _living(self, _: Starlette) -> AsyncIterator[None]:
         self._loop = asyncio.get_running_loop()
-        tasks = [asyncio.create_task(self._watch()), asyncio.create_task(asyncio.to_thread(self.jobs.warm))]
+        tasks = [asyncio.create_task(self._watch()), asyncio.create_task(asyncio.to_thread(self._head_start))]
         try:
             yield
         finally:
@@ -79,6 +79,21 @@ class Editor:
             for task in tasks:
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
+
+    def _head_start(self) -> None:
+        """Derives the file as it stands while the page is being opened, which will ask for it in these words.
+
+        What the page asks for before that is answered once for nobody: whatever has to be loaded for it then is.
+        """
+        with suppress(Unreadable):
+            content, path = self.storage.read(), self.storage.path
+            if content.digest:
+                body = {"text": content.text, "format": looking.spelling(content.text, path.name)}
+                self.jobs.ahead(self._task("derive", body))
+            told = self._file()
+            with suppress(Exception):  # whoever asks hears of it
+                looking.view(told["text"], self._named(told), self._folder)
+        self.jobs.warm()
 
     async def _watch(self) -> None:
         """Tells when somebody else has written the file; ends jobs that nobody listens to."""

@@ -3,6 +3,8 @@
 One process waits ready, with everything loaded, so that a job begins without the wait for imports; where the system can
 fork (Linux) it comes from one that has loaded them already.  A process that dies costs its job, which fails with words.
 
+A job may be begun ahead of its page (``ahead``): what it tells is kept until a page asks for the very same.
+
 Events are dictionaries: those of ``tasks``, with the ``job`` they belong to, and ``done``, ``failed`` (words),
 ``cancelled`` (words); exactly one of these three ends a job.
 """
@@ -77,6 +79,10 @@ class _Job:
     tell: Callable[[Event], None]
     process: _Process | None = None
     over: bool = False
+    #: Nothing is loaded yet, so that its process begins by itself instead of waiting for one to be forked from.
+    cold: bool = False
+    #: What nobody has asked for yet.
+    kept: list[Event] | None = None
     lock: threading.Lock = field(default_factory=threading.Lock)
 
     def say(self, event: Event) -> None:
@@ -85,7 +91,15 @@ class _Job:
             if self.over:
                 return
             self.over = event["kind"] in _ENDS
-            self.tell({"job": self.name, **event})
+            (self.tell if self.kept is None else self.kept.append)({"job": self.name, **event})
+
+    def tell_kept(self) -> None:
+        """From now on it is told to somebody, what was kept first; of what is being done only the last word."""
+        with self.lock:
+            kept, self.kept = self.kept or [], None
+            for k, event in enumerate(kept):
+                if event["kind"] != "progress" or k == len(kept) - 1:
+                    self.tell(event)
 
     def end(self, words: str, kind: str = "cancelled") -> None:
         self.say({"kind": kind, "words": words})
@@ -100,6 +114,7 @@ class Jobs:
         self._tell, self._seconds, self._memory = tell, seconds, memory
         self._context = _context()
         self._running: dict[str, _Job] = {}
+        self._ahead: tuple[dict[str, Any], _Job] | None = None
         self._spare: _Process | None = None
         self._lock = threading.Lock()
         self._spare_lock = threading.Lock()
@@ -113,6 +128,26 @@ class Jobs:
                 with suppress(OSError):
                     self._spare = self._started()
 
+    def ahead(self, task: Mapping[str, Any]) -> None:
+        """Begins what a page will ask for; the first task of its kind that is another one ends it."""
+        job = _Job(str(next(self._numbers)), str(task["kind"]), "", self._tell, cold=True, kept=[])
+        with self._lock:
+            if self._closed or self._ahead is not None:
+                return
+            self._ahead = dict(task), job
+            self._running[job.name] = job
+        self._attended(job, task)
+
+    def _found_ahead(self, task: Mapping[str, Any]) -> _Job | None:
+        """The job that was begun ahead where it is this one; where it is of another text it ends."""
+        if self._ahead is None or self._ahead[0]["kind"] != task["kind"]:
+            return None
+        (asked, job), self._ahead = self._ahead, None
+        if asked == dict(task) and not (job.kept and job.kept[-1]["kind"] == "cancelled"):
+            return job
+        threading.Thread(target=job.end, args=("another text is asked for",), daemon=True).start()
+        return None
+
     def begin(self, task: Mapping[str, Any], page: str = "", tell: Callable[[Event], None] | None = None) -> str:
         """The name of a job that has begun.
 
@@ -124,15 +159,22 @@ class Jobs:
             if self._closed:
                 job.say({"kind": "cancelled", "words": "the server ends"})
                 return job.name
-            own = [x for x in self._running.values() if x.tell is self._tell]
+            begun = self._found_ahead(task) if tell is None else None
+            if begun is not None:
+                job, job.page = begun, page
+            own = [x for x in self._running.values() if x.tell is self._tell and x is not job]
             old = [x for x in own if tell is None and (x.kind, x.page) == (job.kind, page)]
             others = [x for x in own if x not in old] if tell is None else []
-            self._running[job.name] = job
+            if begun is None:
+                self._running[job.name] = job
         for one in old:
             one.end("begun again")
         for one in others[: max(0, len(others) + 1 - MOST_AT_ONCE)]:
             one.end("it made room for another")
-        threading.Thread(target=self._attend, args=(job, dict(task)), daemon=True, name=f"job {job.name}").start()
+        if begun is None:
+            self._attended(job, task)
+        else:
+            job.tell_kept()
         return job.name
 
     def cancel(self, name: str) -> bool:
@@ -183,11 +225,15 @@ class Jobs:
 
     # --- one job, in a thread that waits for it -----------------------------------------------------------------------
 
+    def _attended(self, job: _Job, task: Mapping[str, Any]) -> None:
+        threading.Thread(target=self._attend, args=(job, dict(task)), daemon=True, name=f"job {job.name}").start()
+
     def _attend(self, job: _Job, task: dict[str, Any]) -> None:
         try:
-            job.process = process = self._taken()
-        except OSError as error:
-            job.say({"kind": "failed", "words": f"no process can be started: {error.strerror or error}"})
+            job.process = process = self._started(cold=True) if job.cold else self._taken()
+        except Exception as error:  # as few processes as the system has left, or an interpreter that cannot be found
+            words = getattr(error, "strerror", None) or str(error) or type(error).__name__
+            job.say({"kind": "failed", "words": f"no process can be started: {words}"})
             self._forget(job)
             return
         try:
@@ -245,12 +291,13 @@ class Jobs:
         threading.Thread(target=self.warm, daemon=True, name="spare").start()
         return taken
 
-    def _started(self) -> _Process:
+    def _started(self, cold: bool = False) -> _Process:
+        context = multiprocessing.get_context("spawn") if cold else self._context
         ours, theirs = multiprocessing.Pipe()
         before = {name: os.environ.get(name) for name in _SINGLE}
         os.environ.update(_SINGLE)
         try:
-            process = self._context.Process(target=attend, args=(theirs, self._memory), daemon=True)  # type: ignore[attr-defined]
+            process = context.Process(target=attend, args=(theirs, self._memory, cold), daemon=True)  # type: ignore[attr-defined]
             process.start()
         except BaseException:
             ours.close()

@@ -40,11 +40,12 @@ def warm() -> None:
             pass
 
 
-def attend(connection: Connection, memory: int) -> None:
-    """What a process does; never returns."""
+def attend(connection: Connection, memory: int, cold: bool = False) -> None:
+    """What a process does; never returns.  A ``cold`` one has its task already, and loads what that needs."""
     code = 1
     try:
-        warm()
+        if not cold and "mbsym.serving.warmed" not in sys.modules:  # else it was forked from one that is warm
+            warm()
         connection.send({"kind": "ready"})
         task: dict[str, Any] = connection.recv()
         _hang_on(connection.fileno())

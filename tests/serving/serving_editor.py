@@ -50,5 +50,6 @@ def edited(path: Path, deliver: Any = None) -> Iterator[Client]:
 
     editor = Editor(path, Services(path.parent / "reports" / path.stem, deliver), TOKEN, 8000)
     editor.jobs.warm = lambda: None  # type: ignore[method-assign]
+    editor.jobs.ahead = lambda task: None  # type: ignore[method-assign]
     with TestClient(editor.guard, base_url=f"http://{HOST}", raise_server_exceptions=False) as http:
         yield Client(editor, http, path)

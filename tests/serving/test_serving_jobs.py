@@ -66,6 +66,47 @@ def test_sections_come_one_by_one_in_their_order(told: Told) -> None:
     assert events[-1]["kind"] == "done"
 
 
+def test_what_was_begun_ahead_is_told_whole_to_who_asks_for_the_same() -> None:
+    found = Told()
+    try:
+        found.jobs.ahead(task("derive"))
+        while not (found.jobs._ahead and found.jobs._ahead[1].over):
+            time.sleep(0.01)
+        assert found.queue.empty()  # nobody has asked
+        name = found.jobs.begin(task("derive"), "a tab")
+        events = found.until_over(name)[name]
+        again = found.jobs.begin(task("derive"), "a tab")
+        later = found.until_over(again)[again]
+    finally:
+        found.jobs.close()
+    told = [[(x["kind"], x.get("problem")) for x in these if x["kind"] != "progress"] for these in (events, later)]
+    assert again != name
+    assert told[0] == told[1]
+    assert [x["html"] for x in events if x.get("problem") == "6"] == [
+        x["html"] for x in later if x.get("problem") == "6"
+    ]
+
+
+@pytest.mark.parametrize("ended", [False, True])
+def test_what_was_begun_ahead_of_another_text_or_has_ended_early_is_nobodys(ended: bool) -> None:
+    found = Told()
+    try:
+        found.jobs.ahead(task("derive", PENDULUM + "\n# another\n" * (not ended)))
+        assert found.jobs._ahead
+        first = found.jobs._ahead[1]
+        if ended:
+            found.jobs.cancel_all("nobody is there")
+        name = found.jobs.begin(task("derive"), "a tab")
+        events = found.until_over(name)[name]
+        assert name != first.name
+        assert events[-1]["kind"] == "done"
+        while not first.over:
+            time.sleep(0.01)
+        assert found.queue.empty()  # not a word of the other
+    finally:
+        found.jobs.close()
+
+
 def test_a_job_is_cancelled_by_the_next_of_its_page_only(told: Told) -> None:
     first = told.jobs.begin(task("derive"), "one tab")
     other = told.jobs.begin(task("derive", problems=[1]), "another tab")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import socket
 import sys
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -21,6 +22,7 @@ from click.testing import CliRunner
 from serving_editor import PENDULUM
 
 from mbsym.serving.application import Services
+from mbsym.serving.jobs import Jobs
 from mbsym.serving.server import serving
 from mbsym_cli.files import deliver
 from mbsym_cli.main import main
@@ -67,6 +69,32 @@ def test_results_come_as_events(address: str) -> None:
     assert {x["job"] for x in found} == {job}
     assert [x["problem"] for x in found if x["kind"] == "section"] == ["system", "1", "checks", "summary"]
     assert found[-1]["kind"] == "done"
+
+
+def test_the_file_is_derived_before_the_page_asks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first derivation of the text as it stands in the file is the one that was begun with the server."""
+    asked: list[str] = []
+    own = Jobs._attended
+    monkeypatch.setattr(
+        Jobs, "_attended", lambda self, job, task: (asked.append(task["kind"]), own(self, job, task))[1]
+    )
+    path = tmp_path / "pendulum.yaml"
+    path.write_text(PENDULUM, encoding="utf-8")
+    with serving(path, Services(tmp_path / "reports", deliver)) as address:
+        while asked != ["derive"]:
+            time.sleep(0.01)
+        with httpx.stream("GET", f"{address}api/events", timeout=60) as stream:
+            lines = stream.iter_lines()
+            next(lines)
+            job = posted(address, "derive", text=PENDULUM, format="yaml", page="a tab").json()["job"]
+            for line in lines:
+                if line.startswith("data: "):
+                    event = json.loads(line[6:])
+                    assert event["job"] == job
+                    if event["kind"] in ("done", "failed", "cancelled"):
+                        break
+    assert event["kind"] == "done"
+    assert asked == ["derive"]
 
 
 def test_reports_are_written_beside_the_file(address: str) -> None:
