@@ -172,8 +172,11 @@ def test_a_damped_oscillator_has_the_real_parts_of_its_roots() -> None:
 
 @pytest.mark.slow
 def test_henon_and_heiles_at_an_eighth() -> None:
-    """E = 1/8, x = 0, y = -0.25, py = 0, a chaotic orbit: near 0.045 (Benettin, Galgani & Strelcyn 1976)."""
-    found = exponents(dynamics(HENON_HEILES), 4000, 2.0)
+    """E = 1/8, x = 0, y = -0.25, py = 0, a chaotic orbit: near 0.045 (Benettin, Galgani & Strelcyn 1976).
+
+    Over 4000 the last bits of the arithmetic decide between 0.045 and 0.061.
+    """
+    found = exponents(dynamics(HENON_HEILES), 16_000, 2.0)
     assert 0.03 < found.values[0] < 0.06
     assert found.parting is Parting.POSITIVE
     assert abs(found.values[0] + found.values[3]) < 2e-3  # pairs of opposite sign

@@ -28,6 +28,9 @@ NODES, DEGREE, WINDOW = 24, 11, 60.0
 #: The least window, in the same distances.
 LEAST_WINDOW = 12.0
 
+#: From so many places of the past a run is repeated at most.
+REPETITIONS = 4
+
 #: Behind the position, this many distances further.
 BEYOND = 1.5
 
@@ -85,19 +88,25 @@ def bridge(
 def _history(
     led: Any, begin: Callable[[float, Any], Run], past: Sequence[tuple[float, Any]], times: Any
 ) -> tuple[Any, Any] | None:
-    """Those of the times that the past reaches, and states at them from a repetition of the run; None without any."""
-    start, state = next((one for one in reversed(past) if one[0] <= times[0]), past[0])
-    times = times[times > start]
-    if not len(times):
-        return None
-    try:
-        states = begin(start, state).fill(times)
-    except Breakdown as earlier:  # other steps than before, one of which came too near
-        if earlier.filled is None or not earlier.filled.shape[1]:
-            return None
-        states = earlier.filled
-        times = times[: states.shape[1]]
-    return times, led(times, states)
+    """Those of the times that the past reaches, and states at them from a repetition of the run; None without any.
+
+    A repetition from amid the run takes other steps, one of which may come too near long before the stop; then it is
+    tried from further back, as far as the beginning.
+    """
+    befores = [one for one in reversed(past) if one[0] <= times[0]] or [past[0]]
+    longest: tuple[Any, Any] | None = None
+    for start, state in (*befores[: REPETITIONS - 1], *befores[REPETITIONS - 1 :][-1:]):
+        wanted = times[times > start]
+        try:
+            states = begin(start, state).fill(wanted) if len(wanted) else None
+        except Breakdown as earlier:
+            states = earlier.filled
+        made = 0 if states is None else states.shape[1]
+        if made > (0 if longest is None else len(longest[0])):
+            longest = wanted[:made], states
+        if made == len(wanted):
+            break
+    return None if longest is None else (longest[0], led(*longest))
 
 
 def _distance(
