@@ -68,6 +68,8 @@ def darboux_lines(there: Setting, usual: PolynomialIntegrals, found: DarbouxPoly
     for one in found.polynomials:
         yield f"weight {one.weight}: {there.formula(one.polynomial)} = 0"
         yield f"  K = {there.quotient(one.cofactor, there.field.denominator)}"
+        if not one.defined:
+            yield "  no relation of motions: the equations are not defined where it is zero"
     for count in found.counts:
         if not count.complete:
             cofactor = there.quotient(count.cofactor, there.field.denominator)

@@ -128,7 +128,12 @@ def _darboux(there: Setting, found: DarbouxPolynomials) -> dict[str, Any]:
         "complete": found.complete,
         "obstacle": None if found.obstacle is None else found.obstacle.value,
         "polynomials": [
-            {"weight": one.weight, "formula": str(there.formula(one.polynomial)), "cofactor": factor(one.cofactor)}
+            {
+                "weight": one.weight,
+                "formula": str(there.formula(one.polynomial)),
+                "cofactor": factor(one.cofactor),
+                "defined": one.defined,
+            }
             for one in found.polynomials
         ],
         "not_found": [

@@ -42,6 +42,7 @@ from mbsym.problems.polynomial_integrals.modular import (
     monomials,
     times,
 )
+from mbsym.problems.polynomial_integrals.regular import is_regular_on
 from mbsym.problems.polynomial_integrals.result import (
     DarbouxCount,
     DarbouxPolynomial,
@@ -187,7 +188,8 @@ class _Search:
                 with suppress(NoClosedForm):  # too long to be written: the count stays incomplete
                     f = lifted(self.field, list(support), False, leading, factor=cofactor)
                 if f is not None:
-                    own = _Factor(DarbouxPolynomial(f, weight, cofactor), self.there.terms(f))
+                    one = DarbouxPolynomial(f, weight, cofactor, is_regular_on(self.field, f))
+                    own = _Factor(one, self.there.terms(f))
                     self.factors.append(own)
                     rows, _ = echelon([*rows, own.terms], columns, prime)
         return DarbouxCount(weight, cofactor, len(most), len(rows))

@@ -19,6 +19,7 @@ from flint import fmpq_mpoly_ctx
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.problems.polynomial_integrals.lifting import coefficients, primitive
+from mbsym.problems.polynomial_integrals.regular import is_regular_on
 from mbsym.problems.polynomial_integrals.result import Relation, Relations
 
 #: Cases that are followed for one leading variable, and terms of an equation.
@@ -266,8 +267,15 @@ class _Leading:
         conditions = tuple(p.compose(*images, ctx=self.field.context) for p in kept)
         apart = {str(p): p for p in state.nonzero}
         nonzero = tuple(p.compose(*images, ctx=self.field.context) for p in apart.values())
-        nonzero = tuple(p for p in nonzero if divmod(self.field.denominator, p)[1] != 0)  # those hold always
-        return Relation(back, conditions, nonzero) if divides(self.field, back, conditions) else None
+        # What holds variables stems from the denominator: that, and what divides it, is not zero at any system.
+        nonzero = tuple(
+            p
+            for p in nonzero
+            if not any(p.degrees()[k] for k in self.field.places) and divmod(self.field.denominator, p)[1] != 0
+        )
+        if not divides(self.field, back, conditions) or not is_regular_on(self.field, back, conditions):
+            return None
+        return Relation(back, conditions, nonzero)
 
     def _follows(self, p: Any, others: Sequence[Any]) -> bool:
         """Whether a condition is one of the others, once what is linear in a parameter has been put in."""

@@ -209,11 +209,15 @@ class Obstacle(Enum):
 
 @dataclass(frozen=True)
 class DarbouxPolynomial:
-    """D f = K f with f = ``polynomial``, K = ``cofactor`` not zero, D the derivative times the field's denominator."""
+    """D f = K f with f = ``polynomial``, K = ``cofactor`` not zero, D the derivative times the field's denominator.
+
+    ``defined``: the field is so at points with f = 0; where it is not, f = 0 is no relation of motions.
+    """
 
     polynomial: Any
     weight: int
     cofactor: Any
+    defined: bool = True
 
 
 @dataclass(frozen=True)
