@@ -1,14 +1,12 @@
-"""Operations on bodies: added, renamed, hung elsewhere, copied and taken out with what hangs on them."""
+"""Operations on bodies: added, renamed, hung elsewhere, taken out with what hangs on them (copied: ``copies``)."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from mbsym.editing.document.meaning import Json, Meant, setting, word_of
-from mbsym.editing.document.primitives import Add, Primitive, Rekey, Remove, Replace, Shift, applied_to
+from mbsym.editing.document.primitives import Primitive, Remove, Shift
 from mbsym.editing.document.understood import coordinates_of
-from mbsym.editing.document.words import body_renamed, pattern, places, words_of
-from mbsym.editing.document.written import Data, Path, Refused, Written, child, data_of, node_at, spelled_path
+from mbsym.editing.document.words import body_renamed, pattern, places
+from mbsym.editing.document.written import Data, Path, Refused, Written, child, node_at, spelled_path
 from mbsym.source.bodies import is_body_name
 from mbsym.source.placed import Mapping, Node, Scalar, Sequence
 
@@ -27,7 +25,7 @@ def _flat(node: Node | None) -> str:
     return " ".join(node.text.split()) if isinstance(node, Scalar) else ""
 
 
-def _index(found: Written, name: str) -> int:
+def index_of(found: Written, name: str) -> int:
     for index, (one, _) in enumerate(bodies_of(found)):
         if one == name:
             return index
@@ -49,7 +47,7 @@ def _parent(found: Written, operation: Json) -> str:
     if to is None or to == "0":
         return "0"
     name = word_of(operation, "to")
-    _index(found, name)
+    index_of(found, name)
     return name
 
 
@@ -63,7 +61,7 @@ def add_body(found: Written, operation: Json) -> Meant:
 
 def rename_body(found: Written, operation: Json) -> Meant:
     old, given = " ".join(word_of(operation, "body").split()), word_of(operation, "name")
-    index = _index(found, old)
+    index = index_of(found, old)
     if " ".join(given.split()) == old:
         return Meant([])
     new = _new_name(found, given)
@@ -71,7 +69,7 @@ def rename_body(found: Written, operation: Json) -> Meant:
     return Meant(primitives, edits, ("bodies", index), bodies={old: new})
 
 
-def _branch(found: Written, name: str) -> list[int]:
+def branch_of(found: Written, name: str) -> list[int]:
     """A body and what hangs on it."""
     inside, indices = {name}, []
     for index, (one, parent) in enumerate(bodies_of(found)):
@@ -84,13 +82,13 @@ def _branch(found: Written, name: str) -> list[int]:
 def reattach(found: Written, operation: Json) -> Meant:
     """The body hangs on another one; what it hangs on stands before it, so the branch may move behind it."""
     name = " ".join(word_of(operation, "body").split())
-    index, parent = _index(found, name), _parent(found, operation)
-    branch = _branch(found, name)
-    if parent != "0" and _index(found, parent) in branch:
+    index, parent = index_of(found, name), _parent(found, operation)
+    branch = branch_of(found, name)
+    if parent != "0" and index_of(found, parent) in branch:
         raise Refused("cyclic-bodies", f"{parent} hangs on {name} itself", "a body hangs on one outside its own branch")
     path = spelled_path(found.tree, ("bodies", index, "attached to"))
     primitives: list[Primitive] = [setting(found, path, parent, None)]
-    place = -1 if parent == "0" else _index(found, parent)
+    place = -1 if parent == "0" else index_of(found, parent)
     if place > index:
         count = len(bodies_of(found))
         target = place + 1 if place + 1 < count else None
@@ -101,48 +99,7 @@ def reattach(found: Written, operation: Json) -> Meant:
     return Meant(primitives, select=("bodies", index))
 
 
-def duplicate(found: Written, operation: Json) -> Meant:
-    """The bodies of a branch again, behind it, under new names and with new coordinates."""
-    name = " ".join(word_of(operation, "body").split())
-    _index(found, name)
-    branch, tree = _branch(found, name), found.tree
-    assert isinstance(tree, Mapping)
-    bodies, taken = bodies_of(found), {one for one, _ in bodies_of(found)}
-    names: dict[str, str] = {}
-    coordinates: dict[str, str] = {}
-    words = words_of(found)
-    for index in branch:
-        names[bodies[index][0]] = _free(bodies[index][0], lambda one: one in taken, " ")
-        taken.add(names[bodies[index][0]])
-        for own in _own_names(found, tree, index):
-            coordinates[own] = _free(own, lambda other: other in words, "")
-            words.add(coordinates[own])
-    inner = [one for one in places(found) if one.path[0] == "bodies" and one.path[1] in branch]
-    word = pattern(list(coordinates)) if coordinates else None
-    copies: dict[int, Data] = {index: data_of(node_at(tree, ("bodies", index)) or tree) for index in branch}
-    for one in sorted(inner, key=lambda one: (one.is_key, -len(one.path))):
-        which = one.path[1]
-        assert isinstance(which, int)
-        text = one.node.text
-        if one.role == "formula":
-            turned = text if word is None else word.sub(lambda match: coordinates[match[1]], text)
-        else:
-            turned = names.get(" ".join(text.split()), text)
-        if turned != text:
-            change: Primitive = Rekey(one.path[2:], turned) if one.is_key else Replace(one.path[2:], turned)
-            copies[which] = applied_to(copies[which], change)
-    root = copies[branch[0]]
-    if isinstance(root, dict) and child(node_at(tree, ("bodies", branch[0])) or tree, "attached to") is None:
-        copies[branch[0]] = applied_to(
-            root, Add(("attached to",), "0", after="name")
-        )  # only the first body need not say it
-    last, primitives = branch[-1] + 1, []
-    for done, index in enumerate(branch):
-        primitives.append(Add(("bodies", last + done), copies[index]))
-    return Meant([*primitives], select=("bodies", last))
-
-
-def _own_names(found: Written, tree: Mapping, index: int) -> list[str]:
+def own_names(found: Written, tree: Mapping, index: int) -> list[str]:
     """Coordinates, speeds and vectors that a body declares."""
     body = node_at(tree, ("bodies", index))
     own = [] if body is None else coordinates_of(found, tree, body, index)
@@ -152,20 +109,15 @@ def _own_names(found: Written, tree: Mapping, index: int) -> list[str]:
     return own
 
 
-def _free(name: str, is_taken: Callable[[str], bool], between: str) -> str:
-    stem = name.rstrip("0123456789").rstrip() or name
-    return next(one for one in (f"{stem}{between}{k}" for k in range(2, 1000)) if not is_taken(one))
-
-
 def delete_branch(found: Written, operation: Json) -> Meant:
     """A branch with everything that names its bodies or their coordinates."""
     name = " ".join(word_of(operation, "body").split())
-    _index(found, name)
-    branch, tree = _branch(found, name), found.tree
+    index_of(found, name)
+    branch, tree = branch_of(found, name), found.tree
     assert isinstance(tree, Mapping)
     gone = {bodies_of(found)[index][0] for index in branch}
-    names = {one for index in branch for one in _own_names(found, tree, index)}
-    names |= {f"{one}{k}" for one in _vectors(found, branch) for k in range(4)}
+    names = {one for index in branch for one in own_names(found, tree, index)}
+    names |= {f"{one}{k}" for one in vectors(found, branch) for k in range(4)}
     taken: dict[Path, None] = {}
     while True:
         word = pattern(sorted(names)) if names else None
@@ -201,6 +153,6 @@ def _check_outside(found: Written, branch: list[int], names: set[str]) -> None:
             raise Refused("used-elsewhere", message, "change that body first")
 
 
-def _vectors(found: Written, branch: list[int]) -> list[str]:
+def vectors(found: Written, branch: list[int]) -> list[str]:
     nodes = (node_at(found.tree, ("bodies", index, "orientation")) for index in branch)
     return [entry.key.text for node in nodes if isinstance(node, Mapping) for entry in node.entries]

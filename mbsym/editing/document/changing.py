@@ -30,9 +30,10 @@ MOST_OPERATIONS = 200
 def changes(text: str, name: str, operations: Items[Map[str, Any]], folder: Folder | None = None) -> Json:
     """The edits of a text that operations mean, or why they are not done.
 
-    ``{"edits": [{"from", "to", "insert"}], "select": path, "taken": [path]}`` with offsets in ``text``, the edits in
-    order and none overlapping another; ``taken`` is what was taken out because it named what is gone, by its paths in
-    the text as it was.  Otherwise ``{"complaints": [...]}``, and nothing is meant to be done: where one operation of
+    ``{"edits": [{"from", "to", "insert"}], "select": path, "taken": [path], "left": [path]}`` with offsets in ``text``,
+    the edits in order and none overlapping another; ``taken`` is what was taken out because it named what is gone, or
+    copied with a branch, ``left`` what names such a branch and was not copied, by their paths in the text as it was.
+    Otherwise ``{"complaints": [...]}``, and nothing is meant to be done: where one operation of
     several cannot be done, none is.
 
     An edit that would say anything else than the operation is refused (``not-so``).
@@ -50,6 +51,7 @@ def changes(text: str, name: str, operations: Items[Map[str, Any]], folder: Fold
         pieces = Pieces(found.text)
         select: Path = ()
         taken: list[Path] = []
+        left: list[Path] = []
         for operation in operations:
             if not isinstance(operation, Map):
                 raise Refused("bad-operation", "an operation is a mapping with the key 'op'")
@@ -59,6 +61,7 @@ def changes(text: str, name: str, operations: Items[Map[str, Any]], folder: Fold
             done = meant(found, operation)
             found = _done(found, done, pieces)
             select, taken = done.select, [*taken, *done.taken]
+            left += done.left
         if applied(normalised(text), pieces.edits()) != found.text:
             raise Refused("not-so", "these operations do not go together", "do them one after another")
     except Refused as refused:
@@ -74,7 +77,8 @@ def changes(text: str, name: str, operations: Items[Map[str, Any]], folder: Fold
         }
         for one in pieces.edits()
     ]
-    return {"edits": edits, "select": list(select), "taken": [list(path) for path in taken]}
+    told = {"taken": [list(path) for path in taken], "left": [list(path) for path in left]}
+    return {"edits": edits, "select": list(select), **told}
 
 
 #: What a text may not hold for operations to be done: a change of one place would be one of others.

@@ -22,14 +22,15 @@ _DEEPEST = 12
 class Meant:
     """What an operation means: primitives one after another; or, of a renaming, all at once with their edits.
 
-    ``select`` is the path to look at afterwards, ``taken`` what goes with it without being named, ``names`` the names
-    that become others.
+    ``select`` is the path to look at afterwards, ``taken`` what goes, or is copied, with it without being named,
+    ``left`` what is not copied, ``names`` the names that become others.
     """
 
     primitives: list[Primitive]
     edits: list[Edit] | None = None
     select: Path = ()
     taken: list[Path] = field(default_factory=list)
+    left: list[Path] = field(default_factory=list)
     names: dict[str, str] = field(default_factory=dict)
     bodies: dict[str, str] = field(default_factory=dict)
 

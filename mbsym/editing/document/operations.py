@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from mbsym.editing.document.branches import add_body, delete_branch, duplicate, reattach, rename_body
+from mbsym.editing.document.branches import add_body, delete_branch, reattach, rename_body
+from mbsym.editing.document.copies import duplicate
 from mbsym.editing.document.meaning import Json, Meant, path_of, setting, word_of
 from mbsym.editing.document.primitives import Add, Primitive, Remove, Shift
 from mbsym.editing.document.spelling import value_of

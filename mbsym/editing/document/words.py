@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from collections.abc import Mapping as Map
 from dataclasses import dataclass
 from typing import Literal
 
@@ -240,3 +241,8 @@ def body_renamed(found: Written, old: str, new: str) -> tuple[list[Primitive], l
 
 def _spin(match: re.Match[str], old: str, new: str) -> str:
     return match[1] + (new if match[2] == old else match[2]) + match[3]
+
+
+def spins_renamed(text: str, names: Map[str, str]) -> str:
+    """A formula with bodies by other names in omega[body][k], the only formula that names bodies."""
+    return _SPIN.sub(lambda match: match[1] + names.get(match[2], match[2]) + match[3], text)

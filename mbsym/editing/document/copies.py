@@ -1,0 +1,240 @@
+"""A branch copied: its bodies under new names, and with them what acts on them, ties them, and where they begin."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
+
+from mbsym.editing.document.branches import bodies_of, branch_of, index_of, own_names, vectors
+from mbsym.editing.document.meaning import Json, Meant, word_of
+from mbsym.editing.document.primitives import Add, Rekey, Replace, applied_to
+from mbsym.editing.document.words import Place, pattern, places, spins_renamed, words_of
+from mbsym.editing.document.written import Data, Path, Written, child, data_of, node_at
+from mbsym.source.keys import ALIASES
+from mbsym.source.placed import Mapping, Scalar, Sequence
+
+#: Sections of one entry for each name, which a copy needs of its own.
+_BY_NAME = ("motion", "initial", "limits", "units", "values")
+
+#: Lists of coordinates, and of bodies, that a copy belongs to as the first does.
+_LISTED = ("order", "reactions")
+
+#: Keys under which a load says on what it acts; others only measure, or say in whose axes.
+_ACTED_ON = ("body", "reaction on", "coordinate")
+
+
+@dataclass(slots=True)
+class _Copying:
+    """Old names and new ones: of bodies, and of what stands in formulas; ``others`` are those of the other bodies."""
+
+    found: Written
+    bodies: dict[str, str] = field(default_factory=dict)
+    symbols: dict[str, str] = field(default_factory=dict)
+    others: set[str] = field(default_factory=set)
+    #: What the branch hangs on.
+    parent: str = "0"
+    #: What may name something, by section and item.
+    places: dict[Path, list[Place]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for one in places(self.found):
+            self.places.setdefault(one.path[:2], []).append(one)
+
+    def turned(self, one: Place) -> str:
+        text = one.node.text
+        if one.role != "formula":
+            return self.bodies.get(" ".join(text.split()), text)
+        named = spins_renamed(text, self.bodies)
+        return pattern(list(self.symbols)).sub(lambda match: self.symbols[match[1]], named) if self.symbols else named
+
+    def names_own(self, one: Place) -> bool:
+        return self.turned(one) != one.node.text
+
+    def names_others(self, one: Place) -> bool:
+        """Whether it names another body, or a coordinate of one; neither the fixed axes nor, as a body, the parent."""
+        if one.role != "formula":
+            name = " ".join(one.node.text.split())
+            return name not in (*self.bodies, self.parent, "0", "ground")
+        return bool(self.others and pattern(sorted(self.others)).search(one.node.text))
+
+    def copy(self, path: Path) -> Data:
+        """What stands at a path (a body, a load, an entry of a section), with the new names."""
+        node = node_at(self.found.tree, path)
+        assert node is not None
+        data: Data = [data_of(node)]
+        for one in sorted(self.places.get(path[:2], ()), key=lambda one: (one.is_key, -len(one.path))):
+            inner = one.path[len(path) :]
+            if one.path[: len(path)] != path or (one.is_key and not inner):
+                continue
+            turned = self.turned(one)
+            if turned != one.node.text:
+                at: Path = (0, *inner)
+                data = applied_to(data, Rekey(at, turned) if one.is_key else Replace(at, turned))
+        assert isinstance(data, list)
+        return data[0]
+
+
+def duplicate(found: Written, operation: Json) -> Meant:
+    """The bodies of a branch again, behind it, under new names and with new coordinates, and what is theirs:
+
+    loads on them (a spring between the branch and another body, too), constraints that tie nothing else (but the fixed
+    axes and what the branch hangs on), their motion, initial state, limits, units, places in lists.  ``taken`` is what
+    was copied so; ``left`` what names the branch and was not copied.
+    """
+    name = " ".join(word_of(operation, "body").split())
+    first, tree = index_of(found, name), found.tree
+    branch = branch_of(found, name)
+    assert isinstance(tree, Mapping)
+    copying = _names(found, tree, branch, bodies_of(found)[first][1])
+    copies = {index: copying.copy(("bodies", index)) for index in branch}
+    root = copies[branch[0]]
+    if isinstance(root, dict) and child(node_at(tree, ("bodies", branch[0])) or tree, "attached to") is None:
+        copies[branch[0]] = applied_to(
+            root, Add(("attached to",), "0", after="name")
+        )  # only the first body need not say it
+    last, primitives = branch[-1] + 1, []
+    for done, index in enumerate(branch):
+        primitives.append(Add(("bodies", last + done), copies[index]))
+    done_with = Meant([*primitives], select=("bodies", last))
+    _with_items(copying, done_with, "loads", _load)
+    _with_items(copying, done_with, "constraints", _constraint)
+    _with_entries(copying, done_with)
+    _left_over(copying, done_with)
+    return done_with
+
+
+# --- names ------------------------------------------------------------------------------------------------------------
+
+
+def _names(found: Written, tree: Mapping, branch: list[int], parent: str) -> _Copying:
+    bodies, taken = bodies_of(found), {one for one, _ in bodies_of(found)}
+    words, copying = words_of(found), _Copying(found, parent=parent)
+    every = [(own_names(found, tree, index), vectors(found, [index])) for index in range(len(bodies))]
+    for names, turning in every:
+        words |= {*names, *(one for vector in turning for one in _components(vector))}
+    for index, (name, _) in enumerate(bodies):
+        names, turning = every[index]
+        if index not in branch:
+            copying.others |= {*names, *(one for vector in turning for one in _components(vector))}
+            continue
+        copying.bodies[name] = free(name, taken.__contains__, " ")
+        taken.add(copying.bodies[name])
+        for own in names:
+            inner = own in turning  # a vector, with its components
+            called = free(own, partial(_is_taken, words, inner), "")
+            new = {own: called}
+            if inner:
+                new |= dict(zip(_components(own), _components(called), strict=True))
+            copying.symbols |= new
+            words |= set(new.values())
+    return copying
+
+
+def _is_taken(words: set[str], inner: bool, name: str) -> bool:
+    return not words.isdisjoint([name, *(_components(name) if inner else ())])
+
+
+def _components(vector: str) -> list[str]:
+    return [f"{vector}{k}" for k in range(4)]
+
+
+def free(name: str, is_taken: Callable[[str], bool], between: str) -> str:
+    stem = name.rstrip("0123456789").rstrip() or name
+    return next(one for one in (f"{stem}{between}{k}" for k in range(2, 1000)) if not is_taken(one))
+
+
+# --- loads and constraints --------------------------------------------------------------------------------------------
+
+
+def _with_items(
+    copying: _Copying, done: Meant, section: str, way: Callable[[_Copying, Path], tuple[Data | None, bool]]
+) -> None:
+    """Copies of items behind the last one: ``way`` answers the copy, or None, and whether something is left out."""
+    nodes = node_at(copying.found.tree, (section,))
+    count = len(nodes.items) if isinstance(nodes, Sequence) else 0
+    added = 0
+    for index in range(count):
+        path: Path = (section, index)
+        if not any(map(copying.names_own, copying.places.get(path, ()))):
+            continue
+        copy, in_part = way(copying, path)
+        if copy is not None:
+            done.primitives.append(Add((section, count + added), copy))
+            done.taken.append(path)
+            added += 1
+        if copy is None or in_part:
+            done.left.append(path)
+
+
+def _load(copying: _Copying, path: Path) -> tuple[Data | None, bool]:
+    node, here = node_at(copying.found.tree, path), copying.places.get(path, [])
+    entry = node.entries[0] if isinstance(node, Mapping) and node.entries else None
+    kind = "" if entry is None else ALIASES.get(entry.key.text, entry.key.text)
+    if kind == "generalized force" and entry is not None:
+        return _forces(copying, (*path, entry.key.text), entry.key.text)
+    if kind == "newtonian gravity":  # acts on all bodies as it is
+        return None, True
+    if isinstance(node, Mapping) and entry is not None and isinstance(entry.value, Scalar):
+        # A function of coordinates: its derivatives by those of other bodies are not to be counted twice.
+        return (None, True) if any(map(copying.names_others, here)) else (copying.copy(path), False)
+    acted = [one for one in here if one.path[-1] in _ACTED_ON]
+    return (copying.copy(path), False) if any(map(copying.names_own, acted)) else (None, True)
+
+
+def _forces(copying: _Copying, path: Path, kind: str) -> tuple[Data | None, bool]:
+    """Of generalised forces those on the branch."""
+    node = node_at(copying.found.tree, path)
+    names = [entry.key.text for entry in node.entries] if isinstance(node, Mapping) else []
+    own: dict[str, Data] = {
+        copying.symbols[name]: copying.copy((*path, name)) for name in names if name in copying.symbols
+    }
+    rest = [one for one in copying.places.get(path[:2], ()) if not one.is_key and one.path[-1] not in copying.symbols]
+    in_part = any(map(copying.names_own, rest))
+    return ({kind: own} if own else None), in_part
+
+
+def _constraint(copying: _Copying, path: Path) -> tuple[Data | None, bool]:
+    if any(map(copying.names_others, copying.places.get(path, ()))):
+        return None, True
+    return copying.copy(path), False
+
+
+# --- what is told of coordinates and bodies by name -------------------------------------------------------------------
+
+
+def _with_entries(copying: _Copying, done: Meant) -> None:
+    tree = copying.found.tree
+    assert isinstance(tree, Mapping)
+    tied = any(path[0] == "constraints" for path in done.taken)
+    tied = tied and not any(path[0] == "constraints" for path in done.left)
+    for entry in tree.entries:
+        key, node = entry.key.text, entry.value
+        section = ALIASES.get(key, key)
+        if section in _BY_NAME and isinstance(node, Mapping):
+            own = [one.key.text for one in node.entries if one.key.text in copying.symbols]
+            after = own[-1] if own else None
+            for name in own:
+                new = copying.symbols[name]
+                done.primitives.append(Add((key, new), copying.copy((key, name)), after=after))
+                done.taken.append((key, name))
+                after = new
+        elif isinstance(node, Sequence) and (section in _LISTED or (section == "dependent" and tied)):
+            _listed(copying, done, key, node)
+
+
+def _listed(copying: _Copying, done: Meant, key: str, node: Sequence) -> None:
+    added = 0
+    for index in range(len(node.items)):
+        if any(map(copying.names_own, copying.places.get((key, index), ()))):
+            done.primitives.append(Add((key, len(node.items) + added), copying.copy((key, index))))
+            done.taken.append((key, index))
+            added += 1
+
+
+def _left_over(copying: _Copying, done: Meant) -> None:
+    """Claims, outputs, notation and the rest are about what was there before."""
+    told = {*done.taken, *done.left}
+    for unit, here in copying.places.items():
+        if unit[0] != "bodies" and unit not in told and any(map(copying.names_own, here)):
+            done.left.append(unit)
