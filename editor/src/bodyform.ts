@@ -10,53 +10,10 @@ import type { Model } from "./model.js";
 import type { Body, Operation, Path } from "./seam.js";
 import { along, SOLIDS } from "./shapes.js";
 import { FIXED_WORDS } from "./structure.js";
-
-const AXES: [string, string][] = [["", "–"], ["0", "0"], ["1", "1"], ["2", "2"], ["3", "3"]];
-
-/** The items of a list as a person would say them; none where there is no list. */
-function list(model: Model, path: Path): string[] {
-  return (nodeAt(model, path)?.children ?? []).map((child) => valueOf(model, child));
-}
+import { list, turns } from "./turns.js";
 
 function derived(body: Body, key: string): string {
   return body.fields[key]?.derived?.source ?? "";
-}
-
-/** Up to three turns: number of the axis, angle. Both lists are written together, or the one place that changes. */
-function rotation(model: Model, path: Path): Group[] {
-  const [axesPath, anglesPath] = [[...path, "rotation", "axes"], [...path, "rotation", "angles"]];
-  const turn = (index: number): Row[] => {
-    const change = (which: "axes" | "angles") => (typed: string): Operation[] => {
-      const axes = list(model, axesPath);
-      const angles = list(model, anglesPath);
-      const both = axes.length > 0 && angles.length > 0;
-      const value = typed.trim() || "0";
-      const own = which === "axes" ? axes : angles;
-      if (both && index < own.length && value !== "") {
-        const after = own.map((old, other) => (other === index ? value : old));
-        const others = which === "axes" ? angles : axes;
-        if (after.every((one) => one === "0") && others.every((one) => one === "0")) return [remove([...path, "rotation"])];
-        return own[index] === value ? [] : [set([...path, "rotation", which, index], value)];
-      }
-      if (typed.trim() === "") return [];
-      const length = Math.max(3, axes.length, angles.length);
-      const filled = (known: string[], mine: boolean): string =>
-        Array.from({ length }, (_, other) => (mine && other === index ? value : (known[other] ?? "0"))).join(", ");
-      const [newAxes, newAngles] = [filled(axes, which === "axes"), filled(angles, which === "angles")];
-      if (!nodeAt(model, [...path, "rotation"])) return [set([...path, "rotation"], `{axes: [${newAxes}], angles: [${newAngles}]}`)];
-      return [set(axesPath, `[${newAxes}]`), set(anglesPath, `[${newAngles}]`)];
-    };
-    const [axesNode, anglesNode] = [nodeAt(model, [...axesPath, index]), nodeAt(model, [...anglesPath, index])];
-    return [
-      { key: `axis-${index + 1}`, label: `Rotation axis ${index + 1}`, value: valueOf(model, axesNode), options: AXES, node: axesNode, set: change("axes") },
-      { key: `angle-${index + 1}`, label: `Rotation angle ${index + 1}`, value: valueOf(model, anglesNode), placeholder: "0", formula: true, node: anglesNode, set: change("angles") },
-    ];
-  };
-  const turns = [0, 1, 2].map(turn);
-  return [
-    { label: "Numbers of rotation axes", rows: turns.map(([axis]) => axis!) },
-    { label: "Rotation angles", rows: turns.map(([, angle]) => angle!) },
-  ];
 }
 
 /** Principal moments or the whole tensor, as it is written; which of both is a choice of its own. */
@@ -196,7 +153,7 @@ export function bodySections(model: Model, body: Body): Section[] {
       rows: [{ key: "parent", label: "Previous body", value: body.parent ?? "0", options: parents, node: nodeAt(model, [...path, "attached to"]),
         set: (to) => [{ op: "reattach", body: body.name, to: to === "0" ? null : to }] }],
     },
-    ...rotation(model, path),
+    ...turns(model, path),
     { label: "Connection point", rows: vector(model, "point", "Connection point", [...path, "connection point"]) },
     { label: "Relative velocity", rows: vector(model, "velocity", "Relative velocity", [...path, "relative velocity"], components(derived(body, "relative velocity"))) },
     { label: "Mass", rows: [single(model, "mass", "Mass", [...path, "mass"], { formula: true })] },

@@ -4,6 +4,7 @@
 import { make } from "./elements.js";
 import { formula } from "./mathml.js";
 import type { Model } from "./model.js";
+import { released } from "./pressing.js";
 import type { Complaint, Operation, Path, TreeNode } from "./seam.js";
 
 export interface Row {
@@ -35,6 +36,8 @@ export interface Group {
   /** In place of the label: what it is called, to be changed there. */
   name?: Row;
   actions?: Action[];
+  /** A row of a matrix: all of it in one line. */
+  matrix?: boolean;
 }
 
 export interface Section {
@@ -235,7 +238,7 @@ export class Form {
       "div",
       { class: "field", ...attributes },
       label,
-      make("div", { class: `inputs of-${Math.min(4, group.rows.length)}` }, ...inputs, ...buttons(part)),
+      make("div", { class: group.matrix ? "inputs of-matrix" : `inputs of-${Math.min(4, group.rows.length)}` }, ...inputs, ...buttons(part)),
     );
     return part;
   }
@@ -265,7 +268,7 @@ export class Form {
         input.value = drawn.shown;
         this.preview(drawn);
       }) as EventListener);
-      input.addEventListener("blur", () => this.complain(drawn));
+      input.addEventListener("blur", () => released(() => this.complain(drawn)));
     }
     return make("span", { class: row.wide ? "one wide" : "one" }, input, note);
   }

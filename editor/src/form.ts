@@ -5,6 +5,7 @@ import { bodySections } from "./bodyform.js";
 import { make } from "./elements.js";
 import { Form } from "./fields.js";
 import type { Model } from "./model.js";
+import { released } from "./pressing.js";
 import { systemSections } from "./systemform.js";
 
 export function panel(host: HTMLElement, model: Model): void {
@@ -35,7 +36,13 @@ export function panel(host: HTMLElement, model: Model): void {
     } else systemForm.show(systemSections(model));
   }
 
-  model.on("view", show);
+  let first = true;
+  model.on("view", (view) => {
+    // A system that is given by its matrices has no bodies to begin with.
+    if (first && view.tree?.children?.some((one) => one.path[0] === "linear system")) choose("system");
+    else released(show);
+    first = false;
+  });
   model.on("selection", (name) => (name === null ? show() : choose("body")));
   show();
 }

@@ -6,6 +6,7 @@ import type { Field, Kind, Style } from "./formkinds.js";
 import type { Model } from "./model.js";
 import type { Operation } from "./seam.js";
 import { FIXED_WORDS } from "./structure.js";
+import { AXES } from "./turns.js";
 
 type Input = HTMLInputElement | HTMLSelectElement;
 
@@ -79,6 +80,19 @@ function filled(model: Model, one: Field, label: string): Filled {
   if (one.sort === "pairs") {
     const [name, value] = [text(`${label}: coordinate`, "coordinate", "names-of-coordinates"), text(`${label}: formula`, "formula")];
     return row([name, value], () => (plain(name) ? record([[plain(name), quoted(plain(value) || "0")]]) : ""));
+  }
+  if (one.sort === "turns") {
+    const axes = [1, 2, 3].map((index) => choice(`${label}, axis ${index}`, AXES));
+    const angles = [1, 2, 3].map((index) => text(`${label}, angle ${index}`, "angle"));
+    const source = (): string => {
+      const used = axes.map((axis, index) => [plain(axis), plain(angles[index]!)] as const).filter(([axis, angle]) => axis || angle);
+      return used.length === 0 ? "" : `{axes: [${used.map(([axis]) => axis || "0").join(", ")}], angles: [${used.map(([, angle]) => quoted(angle || "0")).join(", ")}]}`;
+    };
+    return row([...axes, ...angles], source);
+  }
+  if (one.sort === "state") {
+    const [word, numbers] = [choice(label, [["", "–"], ["initial", "the initial state"]]), text(`${label}: numbers`, "or numbers, theta: 0.1, psi: 0")];
+    return row([word, numbers], () => (plain(numbers) ? `{${plain(numbers).replace(/^\{|\}$/g, "")}}` : plain(word)));
   }
   if (one.sort === "choice" || one.sort === "body") {
     const options = one.sort === "body" ? bodyOptions(model) : (one.choices ?? []).map((word): [string, string] => [word, word]);

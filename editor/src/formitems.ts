@@ -5,6 +5,7 @@ import { entriesOf, nodeAt, remove, set, single, valueOf, vector, type Action, t
 import { sortOf, type Field, type Kind, type Sort } from "./formkinds.js";
 import type { Model } from "./model.js";
 import type { Operation, Path, TreeNode } from "./seam.js";
+import { turns } from "./turns.js";
 
 /** Where the value of a field stands in an item. */
 function placeOf(item: Path, sort: Sort, kind: Kind, key: string): Path {
@@ -50,6 +51,8 @@ function groupsOf(model: Model, key: string, label: string, path: Path, field: F
       actions: found.length > 1 ? [{ words: "×", label: `Delete ${name} of ${label}`, act: () => model.change([remove([...path, name])]) }] : [],
     }));
   }
+  if (field.sort === "turns") return turns(model, path.slice(0, -1), `${key}-`, `${label}: `);
+  if (field.sort === "state") return stateGroups(model, key, label, path, words);
   if (field.sort === "choice" || field.sort === "body") {
     const options = field.sort === "body" ? bodyOptions(model) : (field.choices ?? []).map((one): [string, string] => [one, one]);
     const now = valueOf(model, nodeAt(model, path));
@@ -58,6 +61,32 @@ function groupsOf(model: Model, key: string, label: string, path: Path, field: F
     return [{ label: words, rows: [single(model, key, note, path, { options: all })] }];
   }
   return [{ label: words, rows: [single(model, key, note, path, { wide: true, formula: field.sort === "formula", placeholder: field.optional ? "–" : "" })] }];
+}
+
+/** "initial", or values by name. */
+function stateGroups(model: Model, key: string, label: string, path: Path, words: string): Group[] {
+  const node = nodeAt(model, path);
+  const fields: Field[] = [
+    { key: "name", sort: "text", words: "", optional: false },
+    { key: "number", sort: "formula", words: "", optional: false },
+  ];
+  const add = (values: Map<string, string>): Operation[] => {
+    const [name, number] = [values.get("name")!, values.get("number")!];
+    return nodeAt(model, path)?.kind === "mapping" ? [{ op: "insert", path: [...path, name], source: number }] : [set(path, `{${name}: ${number}}`)];
+  };
+  const plus: Action = { words: "+", label: `Add a number to ${words} of ${label}`, act: () => addFields(model, `${label}: ${words}`, fields, add) };
+  const found = entriesOf(node);
+  if (found.length === 0) {
+    return [{ label: words, rows: [single(model, key, `${label}: ${words}`, path, { options: [["", "–"], ["initial", "the initial state"]] })], actions: [plus] }];
+  }
+  return found.map(([name], index): Group => ({
+    label: `${words}: ${name}`,
+    rows: [single(model, `${key}-${name}`, `${label}: ${words}, ${name}`, [...path, name], { formula: true })],
+    actions: [
+      { words: "×", label: `Delete ${name} from ${words} of ${label}`, act: () => model.change([remove(found.length > 1 ? [...path, name] : path)]) },
+      ...(index === found.length - 1 ? [plus] : []),
+    ],
+  }));
 }
 
 /** A body and a vector in its axes. */

@@ -6,7 +6,7 @@ import type { Model } from "./model.js";
 export interface Field {
   /** The key it stands under; "": the value of the kind itself. */
   key: string;
-  sort: "formula" | "text" | "choice" | "body" | "list" | "ends" | "pairs";
+  sort: "formula" | "text" | "choice" | "body" | "list" | "ends" | "pairs" | "turns" | "state";
   /** What it means, as the schema says it. */
   words: string;
   /** May be left out. */
@@ -35,6 +35,7 @@ interface Schema {
   required?: string[];
   description?: string;
   $ref?: string;
+  anyOf?: Schema[];
   $defs?: Record<string, Schema>;
 }
 
@@ -70,6 +71,8 @@ function field(key: string, schema: Schema, optional: boolean): Field {
   if (refers(items, "axis")) return { ...made, sort: "ends", end: "axis" };
   if (schema.type === "array" && many) return { ...made, sort: "list", count: many };
   if (schema.enum) return { ...made, sort: "choice", choices: [...new Set(schema.enum.map(String))] };
+  if (schema.anyOf?.some((one) => one.type === "object")) return { ...made, sort: "state" };
+  if (schema.properties?.["axes"]) return { ...made, sort: "turns" };
   if (schema.type === "object" && !schema.properties) return { ...made, sort: "pairs" };
   return { ...made, sort: BODIES.has(key) ? "body" : "text" };
 }
@@ -116,10 +119,7 @@ function claims(model: Model): Kind[] {
 
 function shapes(model: Model): Kind[] {
   const known = definitions(model)["body"]?.properties?.["shapes"]?.items?.properties ?? {};
-  const place = ["at", "rotation"].map((key): Field => {
-    const made = field(key, known[key] ?? {}, true);
-    return key === "rotation" ? { ...made, sort: "text" } : made;
-  });
+  const place = ["at", "rotation"].map((key): Field => field(key, known[key] ?? {}, true));
   return Object.entries(known)
     .filter(([key]) => !["at", "rotation"].includes(key))
     .map(([key, schema]) => ({ words: key, key, fields: [field("", schema, false), ...place] }));

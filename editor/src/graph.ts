@@ -89,8 +89,9 @@ class Graph {
     }
     this.drawEdges();
     this.zoomTo(this.zoom);
-    this.hint.textContent =
-      this.bodies.length === 0 ? "No bodies yet: “Add body” hangs the first one on the fixed axes." : "";
+    const matrices = this.model.understood?.tree?.children?.some((one) => one.path[0] === "linear system");
+    const none = matrices ? "No bodies: this system is given by its matrices." : "No bodies yet: “Add body” hangs the first one on the fixed axes.";
+    this.hint.textContent = this.bodies.length === 0 ? none : "";
     this.hint.hidden = this.bodies.length > 0;
     if (this.awaited !== null && this.layout.nodes.has(this.awaited)) {
       const name = this.awaited;
@@ -348,7 +349,7 @@ class Graph {
 
   private fit(): void {
     const { clientWidth, clientHeight } = this.scroller;
-    this.zoomTo(Math.min(1, clientWidth / this.layout.width, clientHeight / this.layout.height));
+    this.zoomTo(Math.min(1, clientWidth / this.layout.width, (clientHeight - 40) / this.layout.height));
   }
 
   private wheel(event: WheelEvent): void {

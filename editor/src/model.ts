@@ -156,6 +156,11 @@ export class Model extends Listeners<Events> {
     return this.pending > 0;
   }
 
+  /** Fulfilled when all operations that were asked for are done. */
+  get idle(): Promise<unknown> {
+    return this.changes;
+  }
+
   /** Whether `view` is what the server understands of the text as it is now. */
   get fresh(): boolean {
     return this.viewed === this.text;

@@ -25,7 +25,7 @@ export function panel(host: HTMLElement, model: Model): void {
     ask("equilibria", "Equilibria", "All relative equilibria at the values"),
   );
   const stale = make("p", { class: "picture-stale", role: "status" });
-  const place = make("div", { class: "picture-place" });
+  const place = make("div", { class: "picture-place undrawn" });
   host.replaceChildren(buttons, stale, place);
   const viewer = new Viewer(place);
   viewer.onSelect = (name) => model.select(name);
@@ -60,6 +60,7 @@ export function panel(host: HTMLElement, model: Model): void {
       const now = JSON.stringify(answer);
       if (now === drawn) return;
       drawn = now;
+      place.classList.remove("undrawn");
       jobs.clear();
       viewer.show(answer);
       viewer.select(model.selected);

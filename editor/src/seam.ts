@@ -91,8 +91,10 @@ export interface Edit {
 export interface Changed {
   edits?: Edit[];
   select?: Path;
-  /** What goes, too, because it names what is deleted. */
+  /** What goes, too, because it names what is deleted; or is copied with a branch. */
   taken?: Path[];
+  /** What names a branch that is copied and is not copied itself. */
+  left?: Path[];
   complaints?: Complaint[];
 }
 

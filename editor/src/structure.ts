@@ -2,9 +2,10 @@
 
 import { asked, ask, confirmed } from "./dialogs.js";
 import { make } from "./elements.js";
+import { nodeAt, valueOf } from "./fields.js";
 import { branch, FIXED } from "./layout.js";
 import type { Model } from "./model.js";
-import type { Changed, Path, Tie } from "./seam.js";
+import type { Changed, Operation, Path } from "./seam.js";
 
 /** The name of the fixed axes for people. */
 export const FIXED_WORDS = "fixed axes (0)";
@@ -43,41 +44,51 @@ export class Structure {
     if (outcome.done) this.show(name);
   }
 
+  /** Loads, constraints, motion and initial state go along; where something cannot, it is said before. */
   async duplicate(body: string): Promise<void> {
     if (body === FIXED) return this.model.say("the fixed axes cannot be duplicated");
+    const copied = [body, ...branch(this.bodies, body)];
+    const planned = await this.planned({ op: "duplicate branch", body });
+    if (!planned) return;
+    if (planned.left?.length) {
+      const list = [
+        line(copied.length === 1 ? "Body" : `${copied.length} bodies`, copied),
+        ...this.told("Copied with it: ", planned.taken ?? []),
+        ...this.told("Not copied: ", planned.left),
+      ];
+      const said = "The copy has names and coordinates of its own. What is not copied stays as it is, about the first alone:";
+      if (!(await confirmed(`Duplicate ${body}?`, [make("p", {}, said), make("ul", {}, ...list)], "Duplicate"))) return;
+    }
     const before = new Set(this.bodies.map((one) => one.name));
-    const count = branch(this.bodies, body).length + 1;
-    const outcome = await this.model.change(
-      [{ op: "duplicate branch", body }],
-      count === 1 ? `${body} duplicated` : `${body} duplicated with what hangs on it: ${count} bodies`,
-    );
+    const along = this.grouped(planned.taken ?? []).map(([section, names]) => `${section} ${names.join(", ")}`);
+    const what = copied.length === 1 ? `${body} duplicated` : `${body} duplicated with what hangs on it: ${copied.length} bodies`;
+    const outcome = await this.model.change([{ op: "duplicate branch", body }], [what, ...along].join("; "));
     const first = this.bodies.find((one) => !before.has(one.name));
     if (outcome.done && first) this.show(first.name);
   }
 
-  /** Names the bodies, loads and constraints that go, and asks. */
+  /** What an operation would come to; null where it is refused, which is said. */
+  private async planned(operation: Operation): Promise<Changed | null> {
+    await this.model.idle;
+    let answer: Changed;
+    try {
+      answer = await this.model.request<Changed>("change", { operations: [operation] });
+    } catch (failure) {
+      this.model.say(failure instanceof Error ? failure.message : String(failure));
+      return null;
+    }
+    if (answer.edits) return answer;
+    this.model.say(answer.complaints?.map((one) => one.message).join("; ") || "this cannot be done here");
+    return null;
+  }
+
+  /** Names the bodies, and all that goes since it names them, and asks. */
   async remove(body: string): Promise<void> {
     if (body === FIXED) return this.model.say("the fixed axes cannot be deleted");
     const going = [body, ...branch(this.bodies, body)];
-    const gone = new Set(going);
-    const view = this.model.understood;
-    const touching = (ties: Tie[]): string[] =>
-      ties.filter((tie) => tie.bodies.some((one) => gone.has(one))).map((tie) => tie.name || tie.kind);
-    const planned = await this.model
-      .request<Changed>("change", { operations: [{ op: "delete branch", body }] })
-      .catch(() => null);
-    const others = (planned?.taken ?? []).filter(([section]) => !["bodies", "loads", "constraints"].includes(String(section)));
-    const [loads, constraints] = [touching(view?.loads ?? []), touching(view?.constraints ?? [])];
-    const line = (what: string, names: string[]): HTMLElement | null =>
-      names.length === 0 ? null : make("li", {}, make("strong", {}, `${what}: `), names.join(", "));
-    const list = make(
-      "ul",
-      {},
-      line(going.length === 1 ? "Body" : `${going.length} bodies`, going),
-      line("Loads on them", loads),
-      line("Constraints on them", constraints),
-      line("What names them", others.map(named)),
-    );
+    const planned = await this.planned({ op: "delete branch", body });
+    if (!planned) return;
+    const list = make("ul", {}, line(going.length === 1 ? "Body" : `${going.length} bodies`, going), ...this.told("", planned.taken ?? []));
     const done = await confirmed(
       `Delete ${body}?`,
       [make("p", {}, "This goes; one undo brings it back:"), list],
@@ -87,6 +98,30 @@ export class Structure {
     const parent = this.bodies.find((one) => one.name === body)?.parent ?? FIXED;
     const outcome = await this.model.change([{ op: "delete branch", body }], `${going.join(", ")} deleted`);
     if (outcome.done) this.show(parent);
+  }
+
+  /** What goes or comes with bodies, by section. */
+  private told(begin: string, paths: Path[]): HTMLElement[] {
+    return this.grouped(paths).map(([section, names]) => {
+      const on = section === "loads" || section === "constraints" ? " on them" : "";
+      return line(begin ? `${begin}${section}` : `${section[0]!.toUpperCase()}${section.slice(1)}${on}`, names);
+    });
+  }
+
+  /** Places by section, in the words of a person: "claims", ["3 (kinetic energy)", "4"]. */
+  private grouped(paths: Path[]): [string, string[]][] {
+    const found = new Map<string, string[]>();
+    for (const path of paths) found.set(String(path[0]), [...(found.get(String(path[0])) ?? []), this.called(path)]);
+    return [...found];
+  }
+
+  private called(path: Path): string {
+    const [view, last] = [this.model.understood, path[1]];
+    const tie = [...(view?.loads ?? []), ...(view?.constraints ?? [])].find((one) => one.path.join() === path.join());
+    if (tie || typeof last !== "number") return tie?.name || String(last ?? "all of it");
+    const item = nodeAt(this.model, path);
+    const kind = valueOf(this.model, nodeAt(this.model, [...path, "claim"]));
+    return item?.kind === "scalar" ? valueOf(this.model, item) : kind ? `${last + 1} (${kind})` : String(last + 1);
   }
 
   canCarry(body: string, to: string): boolean {
@@ -117,7 +152,6 @@ export class Structure {
   }
 }
 
-/** A place for people: "claims 3", "motion theta". */
-function named(path: Path): string {
-  return path.map((step) => (typeof step === "number" ? String(step + 1) : step)).join(" ");
+function line(what: string, names: string[]): HTMLElement {
+  return make("li", {}, make("strong", {}, `${what}: `), names.join(", "));
 }

@@ -4,6 +4,7 @@ import { addFields, quoted, record as inBraces } from "./formentry.js";
 import { items } from "./formitems.js";
 import { entriesOf, nodeAt, remove, set, single, valueOf, type Action, type Group, type Row, type Section } from "./fields.js";
 import type { Field } from "./formkinds.js";
+import { limits, linearSystem, smallParameter, tables } from "./formtables.js";
 import type { Model } from "./model.js";
 import type { Operation, Path } from "./seam.js";
 
@@ -52,7 +53,7 @@ interface Column {
 }
 
 /** What something is called, in place of its label: another name is one wherever it is used. */
-function nameRow(section: string, name: string, title: string): Row {
+export function nameRow(section: string, name: string, title: string): Row {
   return {
     key: `${section}-${name}-name`,
     label: `Name of ${name} in ${title.toLowerCase()}`,
@@ -158,27 +159,33 @@ function assumptions(model: Model): Section {
   return { title: "Assumptions", groups, closed: groups.length === 0, actions: [{ words: "Add an assumption", label: "Add an assumption", act }] };
 }
 
-/** Names in a list, typed with commas between them. */
 function list(model: Model, key: string, words: string): Group {
-  const node = nodeAt(model, [key]);
+  return names(model, `system-${key}`, words, [key]);
+}
+
+/** Names in a list, typed with commas between them. */
+export function names(model: Model, key: string, words: string, path: Path, label = words): Group {
+  const node = nodeAt(model, path);
   const value = node?.kind === "sequence" ? (node.children ?? []).map((child) => valueOf(model, child)).join(", ") : valueOf(model, node);
   const typed = (value: string): Operation[] => {
     const names = value.replace(/^\s*\[|\]\s*$/g, "").trim();
-    return names ? [set([key], `[${names}]`)] : nodeAt(model, [key]) ? [remove([key])] : [];
+    return names ? [set(path, `[${names}]`)] : nodeAt(model, path) ? [remove(path)] : [];
   };
-  return { label: words, rows: [single(model, `system-${key}`, words, [key], { value, wide: true, placeholder: "–", set: typed })] };
+  return { label: words, rows: [single(model, key, label, path, { value, wide: true, placeholder: "–", set: typed })] };
 }
 
 export function systemSections(model: Model): Section[] {
   const line = (key: string, label: string): Group => ({ label, rows: [single(model, `system-${key.replaceAll(" ", "-")}`, label, [key], { wide: true })] });
   const languages = (model.file.languages ?? []).map((one): [string, string] => [one, one]);
-  const known = new Set(["mbsym", "name", "description", "source", "dimensionless time", "parameters", "prescribed", "inputs", "values", "bodies", "loads", "constraints", "relations", "notation", "abbreviations", "assumptions", "motion", "initial", "claims", "outputs", "units", "latex", "dependent", "reactions", "order", "language"]);
+  const known = new Set(["mbsym", "name", "description", "source", "dimensionless time", "parameters", "prescribed", "inputs", "values", "bodies", "loads", "constraints", "relations", "notation", "abbreviations", "assumptions", "motion", "initial", "claims", "outputs", "units", "latex", "limits", "tables", "small parameter", "linear system", "dependent", "reactions", "order", "language"]);
   const rest = entriesOf(model.understood?.tree ?? null).filter(([key]) => !known.has(key));
   return [
     { title: "System", groups: [line("name", "Name"), line("description", "Description"), line("source", "Source"), line("dimensionless time", "Dimensionless time")] },
     records(model, "parameters", "Parameters", [{ key: "sign", options: SIGNS }, { key: "value", formula: true }, { key: "meaning" }], "a parameter"),
     records(model, "prescribed", "Prescribed motions", [{ key: "rate", formula: true }, { key: "initial", formula: true }, { key: "meaning" }], "a prescribed motion"),
     records(model, "inputs", "Inputs", [{ key: "meaning" }], "an input"),
+    ...linearSystem(model),
+    tables(model),
     items(model, "loads", ["loads"], "Loads", "a load"),
     items(model, "constraints", ["constraints"], "Constraints", "a constraint"),
     formulas(model, "relations", "Relations", "a relation"),
@@ -189,6 +196,8 @@ export function systemSections(model: Model): Section[] {
     formulas(model, "values", "Values", "a value"),
     formulas(model, "abbreviations", "Abbreviations", "an abbreviation", true),
     items(model, "claims", ["claims"], "Claims", "a claim"),
+    smallParameter(model),
+    limits(model),
     formulas(model, "outputs", "Outputs", "an output"),
     formulas(model, "units", "Units", "a unit"),
     formulas(model, "latex", "Names in LaTeX", "a name in LaTeX"),

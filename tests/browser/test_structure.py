@@ -104,6 +104,30 @@ def test_a_branch_is_dragged_to_another_body(show: Show) -> None:
     assert window.text == changed
 
 
+def test_duplicating_says_what_goes_along_and_what_does_not(show: Show) -> None:
+    window = show(SATELLITE)
+    window.body("rod").click()
+    window.press("d")
+    dialog = window.page.locator("dialog[open]")
+    said = dialog.inner_text()
+    assert "2 bodies: rod, point mass" in said
+    assert "Copied with it: motion: delta, sigma" in said
+    assert "Copied with it: initial: delta, sigma" in said
+    assert "Not copied: claims" in said
+    window.press("Escape")
+    dialog.wait_for(state="detached")
+    assert window.text == SATELLITE
+    window.press("d")
+    window.in_dialog()
+    assert window.bodies["point mass 2"] == "rod 2"
+    system, complaints = read(window.text, "system.yaml")
+    assert system is not None, complaints.sorted()
+    assert {"delta2", "sigma2"} <= set(system.coordinates)
+    window.press("Control+z")
+    window.settled()
+    assert window.text == SATELLITE
+
+
 def test_deleting_lists_what_goes(show: Show) -> None:
     window = show((SHIPPED / "four-bar.yaml").read_text(encoding="utf-8"))
     window.body("coupler").click()
@@ -120,7 +144,7 @@ def test_deleting_lists_what_goes(show: Show) -> None:
     window.page.locator("dialog[open]").wait_for()
     said = window.page.locator("dialog[open]").inner_text()
     assert "3 bodies: satellite, rod, point mass" in said
-    assert "claims 1, claims 2" in said  # direction cosines of the satellite
+    assert "Claims: 1 (direction cosine), 2 (direction cosine)" in said  # of the satellite
     window.press("Escape")
     assert window.text == SATELLITE
 

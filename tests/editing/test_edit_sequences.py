@@ -157,7 +157,7 @@ def _own(body: Json) -> set[str]:
 
 
 def meant(data: Json, op: Json) -> Json:
-    """What a description says after an operation that is neither a copy nor refused."""
+    """What a description says after an operation that is neither a copy (``_copied``) nor refused."""
     data = deepcopy(data)
     match op["op"]:
         case "set" if op["path"][0] == "bodies":
@@ -340,15 +340,45 @@ def untouched(text: str, view: Json, answer: Json, op: Json) -> None:
         assert {text[one["from"] : one["to"]].strip("'\"") for one in answer["edits"]} <= {op["body"]}
 
 
+def _copied(before: Json, after: Json, op: Json) -> None:
+    """The branch again by other names, behind it; so what acts on its coordinates, and how they move and begin."""
+    branch, old = _branch(before, op["body"]), _bodies(before)
+    first = [one for one in before["bodies"] if one["name"] in branch]
+    copies = [one for one in after["bodies"] if one["name"] not in old]
+    assert len(copies) == len(first)
+    own = map(_own, copies)
+    assert not set().union(*own) & set().union(*(_own(one) for one in before["bodies"]))
+    pairs = [(_listed(one), _listed(copy)) for one, copy in zip(first, copies, strict=True)]
+    names = {name: new for one, copy in pairs for name, new in zip(one, copy, strict=True)}
+    bodies = {one["name"]: copy["name"] for one, copy in zip(first, copies, strict=True)}
+    word = re.compile(rf"(?<!\w)({'|'.join(names)})(?!\w)") if names else None
+
+    def renamed(text: str) -> str:
+        return bodies.get(text, text if word is None else word.sub(lambda found: names[found[1]], text))
+
+    for one, copy in zip(first, copies, strict=True):
+        assert copy == {"attached to": "0"} | _everywhere(one, renamed)
+    wanted = deepcopy(before)
+    acting = [one for one in before.get("loads", []) if set(names) & _words(one)]
+    if acting:
+        wanted["loads"] += [_everywhere(one, renamed) for one in acting]
+    for section in ("motion", "initial"):
+        told = {name: one for name, one in before.get(section, {}).items() if name in names}
+        if told:
+            wanted[section] |= {names[name]: _everywhere(one, renamed) for name, one in told.items()}
+    assert after | {"bodies": [one for one in after["bodies"] if one["name"] in old]} == wanted
+
+
+def _listed(body: Json) -> list[str]:
+    """Coordinates of a body, in their order."""
+    own = _own(body)
+    angles = body.get("rotation", {}).get("angles", [])
+    return [one for one in body.get("coordinates", angles) if one in own]
+
+
 def _same_meaning(before: Json, after: Json, op: Json) -> None:
     if op["op"] == "duplicate branch":
-        old, new = _bodies(before), _bodies(after)
-        copies = [one for one in new if one not in old]
-        assert len(copies) == len(_branch(before, op["body"]))
-        rest = after | {"bodies": [one for one in after["bodies"] if one["name"] in old]}
-        assert rest == before
-        own = [_own(one) for one in after["bodies"] if one["name"] in copies]
-        assert not set().union(*own) & set().union(*(_own(one) for one in before["bodies"]))
+        _copied(before, after, op)
         return
     wanted = meant(before, op)
     if op["op"] in ("reattach", "delete branch"):
