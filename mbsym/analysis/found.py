@@ -1,18 +1,21 @@
-"""First integrals beyond problem 7 at numbers for all parameters: of symmetries, and polynomials; for runs."""
+"""First integrals beyond problem 7: at numbers for all parameters, for runs; and those of problem 9, for reports."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import Failure
-from mbsym.analysis.polynomial import DEGREE, integrals_of, setting, with_known
+from mbsym.analysis.polynomial import DEGREE, Setting, integrals_of, setting, with_known
 from mbsym.analysis.symmetric import symmetries_of
 from mbsym.problems.integrals import PROVED, Integral
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
+    from mbsym.problems.polynomial_integrals import PolynomialIntegrals
+    from mbsym.problems.symmetries import Symmetries
 
 #: Of systems with more coordinates it is not tried: a run would wait for it.
 MOST_COORDINATES = 3
@@ -30,18 +33,46 @@ def found_integrals(analysis: Analysis, values: Mapping[str, Fraction]) -> tuple
         return ()
     numbers = {one.name: values[one.name] for one in system.parameters if one.name in values}
     found: list[Integral] = []
-    try:
-        for one in symmetries_of(analysis, numbers).new:
-            along = ", ".join(name for name, _ in one.directions) or "time"
-            found.append(Integral(f"integral of a symmetry ({along})", SYMMETRY, along, one.integral, PROVED))
-    except Failure:
-        pass
-    try:
+    with suppress(Failure):
+        found += _of_symmetries(symmetries_of(analysis, numbers))
+    with suppress(Failure, ZeroDivisionError):
         there = with_known(setting(analysis, numbers), found)
-        for new in integrals_of(there, DEGREE).new:
-            if new.independent:
-                name = f"integral of weight {new.weight}"
-                found.append(Integral(name, POLYNOMIAL, str(new.weight), there.formula(new.polynomial), PROVED))
-    except (Failure, ZeroDivisionError):
-        pass
+        found += _polynomials(there, integrals_of(there, DEGREE))
     return tuple(found)
+
+
+def beyond(analysis: Analysis) -> tuple[Integral, ...]:
+    """Those of problem 9 that are no functions of problem 7's and of each other; each proved for the symbols there are.
+
+    Raises Unavailable where problem 9 has no result, or stands on a check that has failed.
+    """
+    result = analysis.polynomial_integrals
+    found = [] if result.symmetries is None else _of_symmetries(result.symmetries)
+    there = setting(analysis)
+    if not found:
+        return tuple(_polynomials(there, result.found))
+    try:
+        return (*found, *_polynomials(there, integrals_of(with_known(there, found), DEGREE)))
+    except Failure:
+        return tuple(found)
+
+
+def _of_symmetries(symmetries: Symmetries) -> list[Integral]:
+    found = []
+    for one in symmetries.new:
+        along = ", ".join(name for name, _ in one.directions) or "time"
+        found.append(Integral(f"integral of a symmetry ({along})", SYMMETRY, along, one.integral, PROVED))
+    return found
+
+
+def _polynomials(there: Setting, found: PolynomialIntegrals) -> list[Integral]:
+    """The second of one weight is called by its number, too."""
+    listed: list[Integral] = []
+    count: dict[int, int] = {}
+    for one in found.new:
+        if one.independent:
+            number = count[one.weight] = count.get(one.weight, 0) + 1
+            which = str(one.weight) if number == 1 else f"{one.weight} ({number})"
+            formula = there.formula(one.polynomial)
+            listed.append(Integral(f"integral of weight {which}", POLYNOMIAL, which, formula, PROVED))
+    return listed

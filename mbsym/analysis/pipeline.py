@@ -22,6 +22,7 @@ from mbsym.analysis import (
     constrained,
     deriving,
     forms,
+    found,
     given,
     higher,
     invariant,
@@ -122,6 +123,7 @@ KNOW_SPEEDS = frozenset(
         "first_order",
         "invariant_sets",
         "polynomial_integrals",
+        "further_integrals",
         "small_parameters",
         "claimed_oscillation",
         "claimed_manifold",
@@ -216,9 +218,17 @@ class Analysis(Stages):
         return tuple(PROBLEMS[number] for number in self.problems)
 
     def stage(self, number: int) -> Stage:
-        """Stage of a numbered problem, derived now if it was not before; what is ``withheld`` counts as missing."""
+        """Stage of a numbered problem, derived now if it was not before; what is ``withheld`` counts as missing.
+
+        Where problem 9 is asked for, too, the list of problem 7 goes on with what is found there.
+        """
         stage = self.stage_of(PROBLEMS[number].attribute)
-        return replace(stage, value=None, failure=self.withheld[number]) if number in self.withheld else stage
+        if number in self.withheld:
+            return replace(stage, value=None, failure=self.withheld[number])
+        if number == 7 and 9 in self.problems and stage.failure is None:
+            further = self.stage_of("further_integrals").value
+            return replace(stage, value=(*stage.value, *further)) if further else stage
+        return stage
 
     def result(self, name: str, compute: Callable[[], Any]) -> Any:
         """The value of a stage; one that does not know constraints, or speeds, has none where there are some."""
@@ -347,6 +357,10 @@ class Analysis(Stages):
         polynomial.polynomials_of,
         ("equations of motion", "polynomial integrals"),
         says=True,
+    )
+
+    further_integrals = Derived["Analysis", tuple[Integral, ...]](
+        found.beyond, ("equations of motion", "polynomial integrals"), says=True
     )
 
     invariant_sets: Problem[InvariantSets] = Problem(

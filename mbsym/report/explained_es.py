@@ -94,6 +94,8 @@ EXPLAINED = {
     "momentum of {}": "momento generalizado de {0}",
     "linear momentum along axis {}": "cantidad de movimiento a lo largo del eje {0}",
     "angular momentum about axis {}": "momento cinético respecto al eje {0}",
+    "integral of weight {}": "integral de peso {0}",
+    "integral of a symmetry ({})": "integral de una simetría ({0})",
     # self-check
     "recursion in body axes": "recursión en ejes de los cuerpos",
     "placement in inertial axes": "posición en ejes inerciales",

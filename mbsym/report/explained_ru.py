@@ -94,6 +94,8 @@ EXPLAINED = {
     "momentum of {}": "обобщённый импульс {0}",
     "linear momentum along axis {}": "количество движения вдоль оси {0}",
     "angular momentum about axis {}": "кинетический момент относительно оси {0}",
+    "integral of weight {}": "интеграл веса {0}",
+    "integral of a symmetry ({})": "интеграл симметрии ({0})",
     # self-check
     "recursion in body axes": "рекурсия в осях тел",
     "placement in inertial axes": "положение в инерциальных осях",

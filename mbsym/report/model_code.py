@@ -177,8 +177,8 @@ def first_integrals(analysis: Analysis, problems: Sequence[int]) -> Integrals:
     stage = analysis.stage(7)
     if stage.failure is not None:
         return Integrals((), code.program, (), stage.failure.reason)
-    in_speeds = ("unit vectors", "quaternion", "speed momentum")
-    found: Sequence[Integral] = [item for item in stage.value if item.kind not in in_speeds]
+    elsewhere = ("unit vectors", "quaternion", "speed momentum", "symmetry", "polynomial")
+    found: Sequence[Integral] = [item for item in stage.value if item.kind not in elsewhere]
     named = [NamedIntegral(name, item.name, item.status) for item, name in zip(found, identifiers(found), strict=True)]
     system = analysis.system
     lagrangian: dict[tuple[str, str], Node] = {(ENERGY, "time"): generalized_energy(code, system)}

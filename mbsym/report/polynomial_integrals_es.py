@@ -24,4 +24,5 @@ SENTENCES = {
 WORDS = {
     "function of the integrals of problem 7": "función de las integrales del problema 7",
     "further integral": "integral nueva",
+    "polynomial integrals": "integrales polinomiales",
 }

@@ -21,4 +21,8 @@ SENTENCES = {
     "Whether that of weight [[weight]] ([[name]]) is independent of those before it is undecided.": "Независим ли интеграл веса [[weight]] ([[name]]) от предыдущих, не выяснено.",
 }
 
-WORDS = {"function of the integrals of problem 7": "функция интегралов задачи 7", "further integral": "новый интеграл"}
+WORDS = {
+    "function of the integrals of problem 7": "функция интегралов задачи 7",
+    "further integral": "новый интеграл",
+    "polynomial integrals": "полиномиальные интегралы",
+}

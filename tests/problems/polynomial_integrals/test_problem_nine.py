@@ -57,6 +57,33 @@ def test_a_mistake_is_found_by_the_self_check(kovalevskaya):
     assert polynomial.check(other).failed
 
 
+def test_problem_seven_goes_on_with_what_is_found():
+    """Both asked for: one list, and hers in it as proved; alone, problem 7 says what it said."""
+    system = mbsym.loads(KOVALEVSKAYA).system
+    both, alone = Analysis(system, problems=(7, 9)), Analysis(system, problems=(7,))
+    usual = [one.name for one in alone.stage(7).value]
+    listed = both.stage(7).value
+    assert [one.name for one in listed] == [*usual, "integral of weight 4"]
+    assert (listed[-1].status, str(listed[-1].formula)) == ("proved", str(both.polynomial_integrals.formulas[-1]))
+    assert [one.name for one in both.integrals] == usual  # what problem 9 stands on is as it was
+    generic = Analysis(mbsym.load(SYSTEMS / "euler-poisson.yaml").system, problems=(7, 9))
+    assert [one.name for one in generic.stage(7).value] == usual
+
+
+def test_what_problem_seven_goes_on_with_falls_with_the_check(monkeypatch):
+    analysis = Analysis(mbsym.loads(KOVALEVSKAYA).system, problems=(7, 9))
+    usual = analysis.integrals
+    wrong = analysis.ring.generator("coordinate", "r")
+    right = polynomial.Integral
+    monkeypatch.setattr(
+        polynomial,
+        "Integral",
+        lambda name, kind, of, f, status: right(name, kind, of, Formula(f.ring, f.polynomial + wrong), status),
+    )
+    assert analysis.stage(7).value == usual
+    assert analysis.stage(9).failure.short == "withdrawn"
+
+
 def test_goryachev_and_chaplygins_is_told_with_its_level(tmp_path):
     path = tmp_path / "chaplygin.yaml"
     path.write_text(CHAPLYGIN, encoding="utf-8")
