@@ -1,11 +1,14 @@
 """The editor in a real browser: from a key to the complaints shown, a step of the arrow keys, the first results.
 
-For the satellite of the paper and a chain of 50 bodies; the peer is the same machine drawing an empty frame.
+For the satellite of the paper and a chain of 50 bodies, and frames a second while all of these move; the peer is the
+same machine drawing frames of a page that holds nothing.
 Run: PYTHONPATH=tests:tests/browser python tests/bench/window_bench.py
 """
 
 from __future__ import annotations
 
+import subprocess
+import sys
 import tempfile
 import time
 from pathlib import Path
@@ -79,11 +82,38 @@ def measured(chromium: object, name: str, text: str, folder: Path) -> None:
     print(f"  frame with the picture {frame:.0f} ms")
 
 
+RATE = """async (count) => {
+  const stamps = [];
+  for (let i = 0; i <= count; i += 1) stamps.push(await new Promise(requestAnimationFrame));
+  return 1000 * count / (stamps[count] - stamps[0]);
+}"""
+GRAVITY = "loads:\n- uniform gravity: {acceleration: 9.81, direction: [0, -1, 0]}\ninitial:\n"
+
+
+def moving(chromium: object, bodies: int, folder: Path) -> None:
+    """The picture of a chain that swings, five seconds of it again and again."""
+    path, drawn = folder / "swinging.yaml", folder / "swinging.html"
+    start = "".join(f"  q{i}: {{position: 0.05, velocity: 0}}\n" for i in range(1, bodies + 1))
+    path.write_text(chain(bodies) + GRAVITY + start, encoding="utf-8")
+    command = [sys.executable, "-m", "mbsym_cli", "view", str(path), "--time", "5", "--out", str(drawn), "--quiet"]
+    subprocess.run(command, check=True)
+    page = chromium.new_page(viewport={"width": 1280, "height": 720})  # type: ignore[attr-defined]
+    empty = page.evaluate(RATE, 60)
+    page.goto(drawn.as_uri())
+    page.locator(".viewer-play", has_text="Pause").wait_for()
+    page.evaluate(RATE, 60)  # drawn coarser, should that be needed
+    rate = page.evaluate(RATE, 120)
+    size = page.evaluate("(({width, height}) => [width, height])(document.querySelector('canvas'))")
+    page.close()
+    print(f"{bodies} bodies in motion: {rate:.0f} frames a second of {size[0]} x {size[1]}; nothing: {empty:.0f}")
+
+
 def main() -> None:
     with sync_playwright() as running, tempfile.TemporaryDirectory() as folder:
         chromium = running.chromium.launch(executable_path=CHROMIUM, args=OPTIONS)
         measured(chromium, "satellite", (SYSTEMS / "satellite.yaml").read_text(encoding="utf-8"), Path(folder))
         measured(chromium, "chain of 50", chain(50), Path(folder))
+        moving(chromium, 50, Path(folder))
 
 
 if __name__ == "__main__":
