@@ -107,6 +107,8 @@ export class Model extends Listeners<Events> {
   private lastHeard: string;
   /** Whether the journal lacks the last changes. */
   private unkept = false;
+  /** Said once: the folder takes no journal. */
+  private unkeptSaid = false;
   /** Under this word the jobs of this page are begun: other pages of the file leave them alone. */
   private readonly page = crypto.randomUUID();
   private hearing = hearing();
@@ -424,9 +426,12 @@ export class Model extends Listeners<Events> {
     this.unkept = true;
     try {
       await this.post("journal", { text: this.text, digest: this.file.digest });
-      this.unkept = false;
-    } catch {
-      // The status line tells that the server is away; it is tried again when it is back.
+      this.unkept = this.unkeptSaid = false;
+    } catch (failure) {
+      // That the server is away is told elsewhere, and it is tried again when it is back.
+      if (!(failure instanceof Refused) || this.unkeptSaid) return;
+      this.unkeptSaid = true;
+      this.say(`what is not saved is kept in this page only: ${failure.message}`);
     }
   }
 

@@ -10,7 +10,7 @@ from starlette.requests import ClientDisconnect, Request
 from starlette.responses import JSONResponse, Response
 
 from mbsym.algebra.failures import LOG
-from mbsym.serving.guard import TooLarge
+from mbsym.serving.guard import TooLarge, TooSlow
 from mbsym.serving.requests import Wrong
 from mbsym.serving.storage import Unreadable, Unwritable
 
@@ -20,8 +20,8 @@ Work = Callable[[Mapping[str, Any], Request], Awaitable[Any]]
 Handler = Callable[[Request], Awaitable[Response]]
 
 
-def refused(status: int, code: str, words: str) -> Response:
-    return JSONResponse({"error": code, "message": words}, status_code=status)
+def refused(status: int, code: str, words: str, headers: Mapping[str, str] | None = None) -> Response:
+    return JSONResponse({"error": code, "message": words}, status, headers)
 
 
 def posted(work: Work) -> Handler:
@@ -50,6 +50,8 @@ def safely(work: Handler) -> Handler:
             return Response(status_code=400)
         except TooLarge as error:
             return refused(413, "too-large", str(error))
+        except TooSlow as error:
+            return refused(408, "too-slow", str(error), {"connection": "close"})
         except Wrong as error:
             return refused(400, "request", str(error))
         except (Unwritable, Unreadable) as error:

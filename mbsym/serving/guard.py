@@ -7,6 +7,7 @@ another origin.
 
 from __future__ import annotations
 
+import asyncio
 import hmac
 import json
 from collections.abc import Awaitable, Callable, MutableMapping
@@ -20,6 +21,9 @@ Application = Callable[[Scope, Receive, Send], Awaitable[None]]
 
 #: Bytes of a request's body: a description of the longest in JSON.
 MOST_BYTES = 2_000_000
+
+#: Seconds within which a body is there: the page is on this machine.
+MOST_SECONDS = 30.0
 
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' data: blob:; "
@@ -41,6 +45,10 @@ class TooLarge(Exception):
     """The body of a request; raised amid reading it."""
 
 
+class TooSlow(Exception):
+    """The body of a request; raised amid waiting for it."""
+
+
 class Guard:
     """Wraps an application, which sees paths without the token.
 
@@ -49,6 +57,7 @@ class Guard:
 
     def __init__(self, inner: Application, token: str, port: int = 0, most: int = MOST_BYTES) -> None:
         self.inner, self.token, self.port, self.most = inner, token, port, most
+        self.seconds = MOST_SECONDS
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] == "lifespan":
@@ -69,11 +78,19 @@ class Guard:
                 message["headers"] = [*message.get("headers", []), *HEADERS]
             await send(message)
 
-        read = 0
+        read, end = 0, asyncio.get_running_loop().time() + self.seconds
+        whole = False
 
         async def receiving() -> Message:
-            nonlocal read
-            message = await receive()
+            nonlocal read, whole
+            if whole:  # it is waited for the page to go
+                return await receive()
+            try:
+                async with asyncio.timeout_at(end):
+                    message = await receive()
+            except TimeoutError as error:
+                raise TooSlow(f"a request is there within {self.seconds:g} s") from error
+            whole = not message.get("more_body", False)
             read += len(message.get("body", b""))
             if read > self.most:
                 raise TooLarge(f"a request has at most {self.most} bytes")
@@ -86,6 +103,9 @@ class Guard:
         except TooLarge:
             if not began:
                 await _answer(send, 413, "too-large", f"a request has at most {self.most} bytes")
+        except TooSlow as error:
+            if not began:
+                await _answer(send, 408, "too-slow", str(error))
 
     def _refusal(self, scope: Scope) -> tuple[int, str, str] | None:
         """Why a request is not even read."""

@@ -12,6 +12,7 @@ from pathlib import Path
 from time import monotonic, sleep
 
 import uvicorn
+from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from mbsym.serving.application import Editor, Services
 
@@ -19,6 +20,22 @@ from mbsym.serving.application import Editor, Services
 TOKEN_BYTES = 32
 
 LOOPBACK = "127.0.0.1"
+
+
+#: So many connections at once; where half as many are there, those that ask nothing make room.
+MOST_CONNECTIONS = 64
+
+
+class Connection(H11Protocol):
+    """Whoever connects and says nothing keeps nobody out."""
+
+    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
+        super().connection_made(transport)
+        if len(self.connections) > MOST_CONNECTIONS // 2:
+            silent = [one for one in self.connections if isinstance(one, Connection) and one.cycle is None]
+            for one in silent:
+                if one is not self and one.transport is not None:
+                    one.transport.close()
 
 
 class Server(uvicorn.Server):
@@ -52,6 +69,7 @@ def _server(path: Path, services: Services, line: socket.socket) -> tuple[Server
     config = uvicorn.Config(
         editor.guard,
         lifespan="on",
+        http=Connection,
         ws="none",
         access_log=False,
         log_level="error",
@@ -59,7 +77,7 @@ def _server(path: Path, services: Services, line: socket.socket) -> tuple[Server
         server_header=False,
         date_header=False,
         h11_max_incomplete_event_size=65_536,
-        limit_concurrency=64,
+        limit_concurrency=MOST_CONNECTIONS,
         timeout_keep_alive=60,
         timeout_graceful_shutdown=5,
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import subprocess
@@ -189,3 +190,52 @@ def test_a_new_file_begins_with_a_description(tmp_path: Path) -> None:
             assert not (tmp_path / name).exists(), "nothing is written before it is saved"
             assert client.post("save", text=found["text"], digest=found["digest"]).status_code == 200
             assert (tmp_path / name).read_text() == found["text"]
+
+
+def test_on_a_full_disk_the_old_file_and_the_old_journal_stay(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with edited(path) as client:
+        assert client.post("journal", text=OTHER).status_code == 200
+
+        def full(handle: int) -> None:
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+        monkeypatch.setattr(os, "fsync", full)
+        for name in ("save", "journal"):
+            answer = client.post(name, text=OTHER + "# more\n", digest=client.file()["digest"])
+            assert answer.status_code == 422
+            assert "No space left" in answer.json()["message"]
+        assert path.read_text() == PENDULUM
+        assert client.file()["journal"]["text"] == OTHER
+        assert not strays(path.parent)
+
+
+def test_a_file_that_became_a_folder_is_left_alone(path: Path) -> None:
+    with edited(path) as client:
+        digest = client.file()["digest"]
+        path.unlink()
+        path.mkdir()
+        for force in (False, True):
+            answer = client.post("save", text=OTHER, digest=digest, force=force)
+            assert answer.status_code == 422, "with words, and no page is lost for it"
+            assert answer.json()["message"]
+        assert client.post("journal", text=OTHER).status_code == 200, "what is typed is kept all the same"
+        assert client.http.get(f"/{TOKEN}/api/digest").status_code == 200
+        assert path.is_dir()
+        path.rmdir()
+        assert client.post("save", text=OTHER, digest=digest, force=True).status_code == 200
+        assert path.read_text() == OTHER
+    assert not strays(path.parent)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="links as POSIX has them")
+def test_a_journal_that_is_a_link_leads_to_no_other_file(path: Path, tmp_path: Path) -> None:
+    """Somebody laid a link where the journal will stand: what it leads to is neither read nor written."""
+    precious = tmp_path / "precious"
+    precious.write_text(json.dumps({"text": "secret", "written": "now"}))
+    journal = path.with_name(f".{path.name}.mbsym-journal")
+    journal.symlink_to(precious)
+    with edited(path) as client:
+        assert client.file()["journal"] is None
+        assert client.post("journal", text=OTHER).status_code == 200
+    assert json.loads(precious.read_text())["text"] == "secret"
+    assert not journal.is_symlink()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio
+import threading
 from collections.abc import Iterator
 from typing import Any
 
@@ -11,6 +13,8 @@ pytest.importorskip("starlette")
 pytest.importorskip("httpx")
 
 from serving_editor import HOST, PENDULUM, TOKEN, Client, edited
+
+from mbsym.serving.guard import Guard
 
 
 @pytest.fixture(scope="module")
@@ -160,3 +164,37 @@ def test_markup_in_a_description_stays_text(client: Client) -> None:
     found = client.post("formula", source="m*l**2*sin(x)/2").json()
     assert found["mathml"].startswith("<math>")
     assert "<script" not in found["mathml"]
+
+
+def test_half_a_request_is_not_waited_for(client: Client) -> None:
+    """A body that never ends: the answer says so, and other requests go on meanwhile."""
+    scope = {
+        "type": "http",
+        "method": "POST",
+        "path": f"/{TOKEN}/api/look",
+        "query_string": b"",
+        "headers": [
+            (b"host", HOST.encode()),
+            (b"origin", f"http://{HOST}".encode()),
+            (b"content-type", b"application/json"),
+        ],
+    }
+    heard: list[Any] = []
+    sent = iter([{"type": "http.request", "body": b"{", "more_body": True}])
+
+    async def receive() -> Any:
+        found = next(sent, None)
+        if found is None:
+            await asyncio.sleep(60)
+        return found
+
+    async def send(message: Any) -> None:
+        heard.append(message)
+
+    guard = Guard(client.editor.guard.inner, TOKEN, 8000)
+    guard.seconds = 0.05
+    thread = threading.Thread(target=lambda: asyncio.run(guard(scope, receive, send)))
+    thread.start()
+    thread.join(20)
+    assert [one["status"] for one in heard if one["type"] == "http.response.start"] == [408]
+    assert (b"connection", b"close") in heard[0]["headers"]

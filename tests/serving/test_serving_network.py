@@ -139,3 +139,14 @@ def test_a_port_that_is_taken_is_told(address: str, monkeypatch: Any, tmp_path: 
     done = CliRunner().invoke(main, ["edit", "x.yaml", "--no-browser", "--port", str(urlsplit(address).port)])
     assert done.exit_code == 2
     assert "in use" in done.output
+
+
+def test_who_connects_and_says_nothing_keeps_nobody_out(address: str) -> None:
+    """More connections of somebody else than there may be: the page is heard all the same."""
+    place = urlsplit(address)
+    silent = [socket.create_connection((place.hostname, place.port), timeout=10) for _ in range(96)]
+    try:
+        assert httpx.get(f"{address}api/digest", timeout=10).status_code == 200
+    finally:
+        for line in silent:
+            line.close()
