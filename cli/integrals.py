@@ -71,7 +71,7 @@ def command(
     from mbsym.analysis import Analysis
     from mbsym.analysis.invariant_relations import invariant_relations
     from mbsym.analysis.polynomial import integrals_of, setting
-    from mbsym.problems.polynomial_integrals import along, cases_of
+    from mbsym.problems.polynomial_integrals import along_of, cases_of
 
     try:
         with status(as_json, f"{file.name}: polynomial integrals"):
@@ -81,7 +81,7 @@ def command(
                 sys.exit(BAD_INPUT)
             found = integrals_of(there, request.degree, request.weights)
             axis = request.axis
-            line = None if axis is None else along(found, axis.low, axis.high)
+            line = None if axis is None else along_of(found, there.kinds, there.known, axis.low, axis.high)
             positive = [one.name for one in system.parameters if one.sign == "positive"]
             special = cases_of(found, there.kinds, there.known, positive, request.seconds) if cases else None
             invariant = invariant_relations(there, found, positive) if relations else None

@@ -5,15 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from mbsym.report.integrals_words import case_title, conditions_text, level_title
+from mbsym.report.integrals_words import case_title, conditions_text, level_title, weights_text
 
 if TYPE_CHECKING:
     from mbsym.analysis.polynomial import Setting
-    from mbsym.problems.polynomial_integrals import Along, Cases, Special
+    from mbsym.problems.polynomial_integrals import Along, Cases, PolynomialIntegrals, Special
 
 
-def along_lines(there: Setting, found: Along, degree: int) -> Iterator[str]:
+def along_lines(there: Setting, usual: PolynomialIntegrals, found: Along) -> Iterator[str]:
     """The values, what there is at each, and what is known of the others."""
+    if found.weights not in (None, usual.grading.weights):
+        yield f"weights are {weights_text(there.field.variables, found.weights or ())} here"
+    degree = usual.degree
+    length = "" if found.weights is None else "; unit vectors of any length"
     for one in found.values:
         yield f"{found.name} = {one.value}"
         yield from _special(there, one)
@@ -30,12 +34,13 @@ def along_lines(there: Setting, found: Along, degree: int) -> Iterator[str]:
     elif found.whole:
         yield (
             f"{others} {interval}, rational or not, there is none of weight up to {degree} "
-            "(proved, but for algebraic numbers whose polynomials over the integers need coefficients beyond 10^9)."
+            "(proved, but for algebraic numbers whose polynomials over the integers need coefficients beyond 10^9"
+            f"{length})."
         )
     else:
         yield (
             f"{others} {interval} with numerator and denominator up to 10^9 there is none of weight up to {degree} "
-            "(proved); irrational values are undecided."
+            f"(proved{length}); irrational values are undecided."
         )
 
 

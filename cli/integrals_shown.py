@@ -50,7 +50,7 @@ def show(file: Path, name: str, there: Setting, found: PolynomialIntegrals, furt
 
 def _sections(there: Setting, found: PolynomialIntegrals, further: Further) -> Iterator[tuple[str, Iterator[str]]]:
     if further.line is not None:
-        yield "Special values", along_lines(there, further.line, found.degree)
+        yield "Special values", along_lines(there, found, further.line)
     if further.cases is not None:
         yield "Special cases", cases_lines(there, further.cases)
     relations = further.relations

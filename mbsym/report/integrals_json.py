@@ -84,6 +84,7 @@ def _along(there: Setting, line: Along) -> dict[str, Any]:
         "values": [{"value": str(one.value), **_special(there, one)} for one in line.values],
         "undecided_at": [str(one) for one in line.undecided],
         "undecided_at_zeros_of": [[str(c) for c in p.coeffs()] for p in line.irrational],
+        "weights": None if line.weights is None else dict(zip(there.field.variables, line.weights, strict=True)),
         "no_others": line.whole,
         "no_other_rational": line.usual,
     }

@@ -34,7 +34,7 @@ Example:
 from mbsym.problems.polynomial_integrals.darboux import cofactor_of, darboux_polynomials
 from mbsym.problems.polynomial_integrals.families import cases
 from mbsym.problems.polynomial_integrals.gradings import Grading, grading
-from mbsym.problems.polynomial_integrals.homogenised import cases_of, darboux_of
+from mbsym.problems.polynomial_integrals.homogenised import along_of, cases_of, darboux_of
 from mbsym.problems.polynomial_integrals.levels import levels, on_level
 from mbsym.problems.polynomial_integrals.relations import linear_relations
 from mbsym.problems.polynomial_integrals.result import (
@@ -79,6 +79,7 @@ __all__ = [
     "Special",
     "Sure",
     "along",
+    "along_of",
     "cases",
     "cases_of",
     "cofactor_of",

@@ -3,13 +3,14 @@
 A variable h with h' = 0 of weight 1 makes them so: each term of x'_i is multiplied by the power of h that it lacks (a
 gyrostatic moment l becomes l h).  An integral of the larger field is one of the field itself at h = 1.  The converse
 holds for integrals that are such for every length of the unit vector; others, that need its length to be 1, are not
-looked for: lists of cases are not said to be complete.
+looked for: lists of cases are not said to be complete, and that there are no other values is said of any length.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from itertools import product
 from typing import Any
 
@@ -23,6 +24,7 @@ from mbsym.problems.polynomial_integrals.gradings import Grading, grading
 from mbsym.problems.polynomial_integrals.lifting import primitive
 from mbsym.problems.polynomial_integrals.result import (
     UNITY,
+    Along,
     Case,
     Cases,
     DarbouxPolynomials,
@@ -32,6 +34,7 @@ from mbsym.problems.polynomial_integrals.result import (
     Special,
 )
 from mbsym.problems.polynomial_integrals.search import polynomial_integrals
+from mbsym.problems.polynomial_integrals.values import along
 
 #: Weights that are tried for each kind of variables.
 MOST_WEIGHT = 2
@@ -57,6 +60,27 @@ def cases_of(
     special = cases(larger, positive, budget)
     down = _Down(name)
     return replace(special, usual=usual, cases=tuple(down.case(one) for one in special.cases))
+
+
+def along_of(
+    usual: PolynomialIntegrals,
+    kinds: Sequence[Sequence[str]],
+    known: Sequence[tuple[str, Any]],
+    low: Fraction,
+    high: Fraction,
+) -> Along:
+    """``along`` of any field with at most one relation.
+
+    Raises what ``along`` raises, NoClosedForm where the larger field has relations that are not homogeneous.
+    """
+    if usual.grading.homogeneous and (usual.grading.free or not usual.field.relations):
+        return along(usual, low, high)
+    larger = _larger(usual, kinds, known)
+    if larger is None:
+        raise NoClosedForm("special values are looked for where there is one unit vector or angle at most")
+    found = along(larger, low, high)
+    down = _Down(larger.field.variables[-1])
+    return replace(found, values=tuple(map(down.special, found.values)), weights=larger.grading.weights[:-1])
 
 
 def darboux_of(

@@ -130,7 +130,8 @@ class Along:
     it does, and what there is was not found, or not all of it.  ``usual``: for almost all values the list is complete;
     without that nothing is proved of others.  ``whole``: it is proved that there is no other value, rational or not,
     but for algebraic numbers whose primitive polynomials over ZZ have coefficients beyond 10^9; otherwise that is so of
-    rational ones with numerator and denominator up to 10^9.
+    rational ones with numerator and denominator up to 10^9.  ``weights``: those of the variables where the field was
+    made quasi-homogeneous by a constant more, and integrals are such for any length of the unit vector; otherwise None.
     """
 
     name: str
@@ -141,6 +142,7 @@ class Along:
     whole: bool
     undecided: tuple[Fraction, ...] = ()
     usual: bool = True
+    weights: tuple[int, ...] | None = None
 
 
 @dataclass(frozen=True)

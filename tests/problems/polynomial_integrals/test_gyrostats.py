@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,7 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.analysis import Analysis
 from mbsym.analysis.polynomial import integrals_of, setting
-from mbsym.problems.polynomial_integrals import cases_of, grading, polynomial_integrals
+from mbsym.problems.polynomial_integrals import along_of, cases_of, grading, polynomial_integrals
 from mbsym.problems.polynomial_integrals.homogenised import homogenised
 
 GYROSTAT = Path(__file__).parents[3] / "systems" / "heavy-gyrostat.yaml"
@@ -106,3 +107,59 @@ def test_two_angles_are_refused():
     wrong = replace(field, numerators=(tops[0], tops[1], s * u, tops[3], tops[4]), relations=relations[:1])
     with pytest.raises(NoClosedForm, match="one unit vector or angle"):
         cases_of(polynomial_integrals(wrong, grading(wrong, kinds), 1), kinds, (), (), 60.0)
+
+
+def line(values, name, low, high, degree, file=GYROSTAT):
+    there = setting(Analysis(mbsym.load(file).system), values)
+    found = integrals_of(there, degree)
+    return there, along_of(found, there.kinds, there.known, Fraction(low), Fraction(high))
+
+
+def names_of(field):
+    return {name: field.generator(name) for name in (*field.parameters, *field.variables)}
+
+
+def test_yehias_value_on_a_line():
+    """B = 2, C = 1, the mass centre on the first axis, a rotor along the third: A = 2, and no other value."""
+    _, found = line({"B": 2, "C": 1, "x0": 1, "z0": 0, "m": 1, "g": 1, "h": 3}, "A", "1/2", 5, 4)
+    assert [one.value for one in found.values] == [2]
+    assert (found.whole, found.usual, found.undecided, found.irrational) == (True, True, (), ())
+    assert found.weights == (1, 1, 1, 2, 2, 2)
+    field = found.values[0].field
+    p, q, r, g1, g2, g3 = (names_of(field)[name] for name in field.variables)
+    book = (p**2 - q**2 - g1) ** 2 + (2 * p * q - g2) ** 2 + 6 * (r - 3) * (p**2 + q**2) - 12 * p * g3
+    ((weight, new),) = found.values[0].integrals
+    assert (weight, field.derivative(book), field.derivative(new)) == (4, 0, 0)
+
+
+def test_sretenskys_value_on_a_line():
+    """B = 4, C = 1: A = 4, where the area integral is zero; no integral for all its values."""
+    _, found = line({"B": 4, "C": 1, "x0": 1, "z0": 0, "m": 1, "g": 1, "h": 1}, "A", 2, 5, 3)
+    (one,) = found.values
+    (level,) = one.levels
+    assert (one.value, one.integrals, level.level.name) == (4, (), "angular momentum about axis 3")
+    assert [weight for weight, _ in level.integrals] == [3]
+
+
+def test_zhukovskys_value_on_a_line():
+    """The mass centre at the fixed point: the length of the angular momentum, with the rotor's (Zhukovsky 1885)."""
+    numbers = {"A": 1, "B": 2, "C": Fraction(5, 2), "z0": 0, "m": 1, "g": 1, "h": 1}
+    _, found = line(numbers, "x0", -1, 1, 2)
+    (one,) = found.values
+    field = one.field
+    p, q, r, *_ = (names_of(field)[name] for name in field.variables)
+    ((_, new),) = one.integrals
+    length = p**2 + 4 * q**2 + (5 * r / 2 + 1) ** 2
+    energy = p**2 + 2 * q**2 + 5 * r**2 / 2
+    assert (one.value, divmod(length - energy - 1, new)[1]) == (0, 0)
+
+
+def test_damping_takes_the_only_integral():
+    """A pendulum keeps its energy without damping only, at whatever other value; several angles are refused."""
+    numbers = {"m": 1, "l": 1, "J": 1, "g": 1}
+    _, found = line(numbers, "b", -1, 1, 2, GYROSTAT.with_name("simple-pendulum.yaml"))
+    assert [(one.value, len(one.integrals)) for one in found.values] == [(0, 1)]
+    assert found.whole
+    numbers = dict.fromkeys(("m1", "m2", "l1", "l2"), 1)
+    with pytest.raises(NoClosedForm, match="one unit vector or angle at most"):
+        line(numbers, "g", -1, 1, 2, GYROSTAT.with_name("double-pendulum.yaml"))
