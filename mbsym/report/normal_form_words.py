@@ -48,6 +48,12 @@ REASONS = {
     "characteristic polynomial are rational numbers: not decided.",
 }
 
+#: Arnold and Moser's theorem asks for a normal form of fourth order in the actions alone, however that comes about.
+ABSENT = (
+    "The terms that the resonance of third order would leave are exactly zero, so that the normal form of fourth order "
+    "holds the actions alone, and D4 is not zero: the motion is stable (Arnold-Moser)."
+)
+
 #: What each theorem asks, as far as it was shown.
 THEOREMS = {
     Theorem.DEFINITE: "The quadratic part of the Hamiltonian is definite: the motion is stable (Dirichlet).",
@@ -158,7 +164,8 @@ def _judged(found: Judged, whole: NormalForms, write: Medium) -> Iterator[Said]:
                 "In Sokolskii's normal form of equal frequencies delta A = [[value]].",
                 {"value": write.math(text, _tex(text))},
             )
-        yield THEOREMS[found.theorem], _gaps(found, write)
+        absent = found.theorem is Theorem.ARNOLD_MOSER and any(one.order <= 4 for one in found.resonances)
+        yield ABSENT if absent else THEOREMS[found.theorem], _gaps(found, write)
     if found.why in REASONS and found.outcome is Outcome.UNDECIDED:
         yield REASONS[found.why], {}
         if whole.first is not None and not whole.first.open:

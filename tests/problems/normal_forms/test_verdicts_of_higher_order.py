@@ -13,6 +13,7 @@ from mbsym.algebra.truncated import Space, Truncated
 from mbsym.analysis.stages import Unavailable
 from mbsym.problems.normal_forms import Focus, Outcome, Theorem, Why
 from mbsym.problems.normal_forms.twist import judged, vectors
+from mbsym.report.normal_form_words import Medium, sentences
 
 SYSTEMS = Path(__file__).parents[3] / "systems"
 
@@ -153,6 +154,40 @@ def test_the_sleeping_top_by_arnold_and_moser() -> None:
     one, other = found.at_values.frequencies
     assert one > 0
     assert other < 0
+
+
+TABLE = """
+mbsym: 1
+name: particle on a turning table
+parameters: {m: positive, a: real}
+prescribed: {psi: 3/2}
+bodies:
+  - {name: table, attached to: 0, rotation: {axes: [3], angles: [psi]}, mass: 0}
+  - {name: particle, attached to: table, connection point: [x, y, 0], coordinates: [x, y], mass: m}
+loads:
+  - potential: a*(x**2 + y**2)/2 + HIGHER
+motion: {x: 0, y: 0}
+values: {m: 1, a: 1/4}
+"""
+
+
+@pytest.mark.parametrize(
+    ("higher", "outcome", "theorem", "told"),
+    [
+        # z'' + 3 i z' - 2 z = 0 has z = A e^(-i t) + B e^(-2 i t): x^3 holds z^2 conj(z), and that A^2 conj(B).
+        ("x**3", Outcome.UNSTABLE, Theorem.THIRD, "resonant term of third order is not zero"),
+        # Re z^3 holds no such term, but balls do not tell its zero from other numbers.
+        ("x**3 - 3*x*y**2", Outcome.UNDECIDED, Theorem.NONE, "resonant term of third order is not told from zero"),
+        ("(x**2 + y**2)**2", Outcome.STABLE, Theorem.ARNOLD_MOSER, "leave are exactly zero"),
+    ],
+)
+def test_two_to_one_with_its_term_and_without(higher: str, outcome: Outcome, theorem: Theorem, told: str) -> None:
+    found = mbsym.loads(TABLE.replace("HIGHER", higher), (11,)).normal_forms
+    assert (found.at_values.outcome, found.at_values.theorem) == (outcome, theorem)
+    assert [one.order for one in found.at_values.resonances] == [3]
+    said = " ".join(text for text, _ in sentences(found, Medium(" ".join, str, lambda plain, _: plain, str)))
+    assert told in said
+    assert "No resonance" not in said
 
 
 @pytest.mark.parametrize(
