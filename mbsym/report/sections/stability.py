@@ -178,6 +178,8 @@ def _heading(theory: Theory) -> str:
     always = next((case.verdict for case in theory.cases if case.always), None)
     if always is not None and always.stable:
         return f"{_verdict(always)} in any case, asymptotically stable under these conditions"
+    if theory.method is Method.HURWITZ:  # a motion may be stable without them: where friction is zero, say
+        return "conditions on the roots that are not zero (Lienard-Chipart)"
     return "conditions"
 
 
