@@ -10,11 +10,11 @@ from mbsym.report.integrals_words import equations_text, level_title, title, wei
 
 if TYPE_CHECKING:
     from mbsym.analysis.polynomial import Setting
-    from mbsym.problems.polynomial_integrals import DarbouxPolynomials, OnLevel, PolynomialIntegrals, Relations
+    from mbsym.problems.polynomial_integrals import DarbouxPolynomials, PolynomialIntegrals, Relations, ZeroLevels
 
 #: Why it is not known that there are no other invariant relations.
 UNDECIDED = {
-    Obstacle.NOT_HOMOGENEOUS: "the equations are not quasi-homogeneous, nor are they with one constant more",
+    Obstacle.NOT_HOMOGENEOUS: "relations between variables, of several unit vectors or angles, are not looked at here",
     Obstacle.MIXED: "a K of that weight may hold products of variables, which is not looked at",
     Obstacle.NOT_AT_REST: "K is read off at rest where one variable alone is not zero, and there is no rest there",
     Obstacle.TOO_MANY: "there may be more K of one weight than are looked at",
@@ -41,22 +41,25 @@ def relation_lines(there: Setting, found: Relations) -> Iterator[str]:
         yield "Whether there are others is undecided: roots of parameters and families of forms were not followed."
 
 
-def level_lines(there: Setting, found: PolynomialIntegrals, levels: tuple[OnLevel, ...] | None) -> Iterator[str]:
+def level_lines(there: Setting, found: PolynomialIntegrals, levels: ZeroLevels | None) -> Iterator[str]:
     """What holds where an integral of the list is zero, and that nothing else does."""
     if levels is None:
-        yield "not looked for: the equations are not quasi-homogeneous"
+        yield "not looked for: several unit vectors or angles are related, which is not looked at here"
         return
+    if levels.weights not in (None, found.grading.weights):
+        yield f"weights are {weights_text(there.field.variables, levels.weights or ())} here"
+    length = "" if levels.weights is None else "; unit vectors of any length"
     almost = ", for almost all values of the parameters" if there.field.parameters else ""
-    for level in levels:
+    for level in levels.levels:
         for weight, f in level.integrals:
             yield f"{level_title(weight, level)}: {there.formula(f)}"
         where = f"where that of weight {level.level.weight} ({title(level.level)}) is zero"
         other = "no other" if level.integrals else "none beyond those that hold everywhere"
         if level.complete:
-            yield f"{where} there is {other} of weight up to {found.degree}{almost} (proved)."
+            yield f"{where} there is {other} of weight up to {found.degree}{almost} (proved{length})."
         else:
             yield f"{where} there may be others of weight up to {found.degree}: not found within the budget."
-    if not levels:
+    if not levels.levels:
         yield "There is no integral in the list whose zeros could be looked at."
 
 

@@ -8,13 +8,12 @@ from dataclasses import dataclass
 from mbsym.analysis.polynomial import Setting
 from mbsym.problems.polynomial_integrals import (
     DarbouxPolynomials,
-    OnLevel,
     PolynomialIntegrals,
     Relations,
+    ZeroLevels,
     darboux_of,
-    levels,
     linear_relations,
-    on_level,
+    zero_levels_of,
 )
 
 
@@ -22,13 +21,13 @@ from mbsym.problems.polynomial_integrals import (
 class InvariantRelations:
     """``linear`` forms with conditions on the parameters; ``darboux`` polynomials of any weight for almost all of them.
 
-    ``levels``: integrals that hold where one of those found is zero, one item for each that was looked at; None where
-    the equations are not quasi-homogeneous, and none was.
+    ``levels``: integrals that hold where one of those found is zero; None where several unit vectors or angles are
+    related, and none was looked at.
     """
 
     linear: Relations
     darboux: DarbouxPolynomials
-    levels: tuple[OnLevel, ...] | None
+    levels: ZeroLevels | None
 
 
 def invariant_relations(there: Setting, found: PolynomialIntegrals, positive: Sequence[str]) -> InvariantRelations:
@@ -37,9 +36,8 @@ def invariant_relations(there: Setting, found: PolynomialIntegrals, positive: Se
     Raises NoClosedForm where more monomials are coupled than the bounds allow.
     """
     grading = found.grading
-    apart = grading.homogeneous and (grading.free or not found.field.relations)
     return InvariantRelations(
         linear_relations(there.field, grading.weights, positive, grading.free),
         darboux_of(found, there.kinds, there.known),
-        tuple(on_level(found, one) for one in levels(found)) if apart else None,
+        zero_levels_of(found, there.kinds, there.known),
     )

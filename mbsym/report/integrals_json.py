@@ -18,6 +18,7 @@ from mbsym.problems.polynomial_integrals import (
     PolynomialIntegrals,
     Relations,
     Special,
+    ZeroLevels,
 )
 from mbsym.report.schemas import version
 
@@ -145,10 +146,10 @@ def _darboux(there: Setting, found: DarbouxPolynomials) -> dict[str, Any]:
     }
 
 
-def _levels(there: Setting, levels: Iterable[OnLevel] | None) -> list[dict[str, Any]] | None:
-    if levels is None:
+def _levels(there: Setting, found: ZeroLevels | None) -> list[dict[str, Any]] | None:
+    if found is None:
         return None
-    return [{**_level(there, one), "complete": one.complete} for one in levels]
+    return [{**_level(there, one), "complete": one.complete} for one in found.levels]
 
 
 def _level(there: Setting, level: OnLevel) -> dict[str, Any]:

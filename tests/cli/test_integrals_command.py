@@ -125,9 +125,14 @@ def test_invariant_relations_and_levels_are_told_with_what_is_proved():
     assert "There is none of weight up to 4 with K not zero" in text
     angles = " ".join(run("systems/spherical-pendulum.yaml", "--degree", "2", "--relations").stdout.split())
     assert "Whether there are others is undecided: a K of that weight may hold products" in angles
-    assert "not looked for: the equations are not quasi-homogeneous" in angles
+    assert "where that of weight 4" not in angles  # the energy is beyond the degree
+    several = " ".join(run("systems/double-pendulum.yaml", "--degree", "2", "--relations").stdout.split())
+    assert "not looked for: several unit vectors or angles are related" in several
+    assert "Whether there are others is undecided: relations between variables, of several unit vectors" in several
     rotor = " ".join(run("systems/heavy-gyrostat.yaml", "--degree", "2", "--relations").stdout.split())
     assert "weights are p, q, r" not in rotor  # the same as those of the integrals
+    assert "there is none beyond those that hold everywhere of weight up to 2, for almost all values of the" in rotor
+    assert "parameters (proved; unit vectors of any length)" in rotor
 
 
 def test_clebschs_condition_for_kirchhoffs_equations_is_found():

@@ -34,7 +34,7 @@ Example:
 from mbsym.problems.polynomial_integrals.darboux import cofactor_of, darboux_polynomials
 from mbsym.problems.polynomial_integrals.families import cases
 from mbsym.problems.polynomial_integrals.gradings import Grading, grading
-from mbsym.problems.polynomial_integrals.homogenised import along_of, cases_of, darboux_of
+from mbsym.problems.polynomial_integrals.homogenised import ZeroLevels, along_of, cases_of, darboux_of, zero_levels_of
 from mbsym.problems.polynomial_integrals.levels import levels, on_level
 from mbsym.problems.polynomial_integrals.relations import linear_relations
 from mbsym.problems.polynomial_integrals.result import (
@@ -78,6 +78,7 @@ __all__ = [
     "Relations",
     "Special",
     "Sure",
+    "ZeroLevels",
     "along",
     "along_of",
     "cases",
@@ -90,4 +91,5 @@ __all__ = [
     "linear_relations",
     "on_level",
     "polynomial_integrals",
+    "zero_levels_of",
 ]

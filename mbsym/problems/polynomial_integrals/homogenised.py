@@ -9,19 +9,22 @@ looked for: lists of cases are not said to be complete, and that there are no ot
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
 from typing import Any
 
 from flint import fmpq_mpoly_ctx
 
+from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.problems.polynomial_integrals.darboux import darboux_polynomials
 from mbsym.problems.polynomial_integrals.families import cases
 from mbsym.problems.polynomial_integrals.gradings import Grading, grading
+from mbsym.problems.polynomial_integrals.levels import levels, on_level
 from mbsym.problems.polynomial_integrals.lifting import primitive
+from mbsym.problems.polynomial_integrals.modular import PRIMES, ModularField, Terms, at_random, echelon, remainder
 from mbsym.problems.polynomial_integrals.result import (
     UNITY,
     Along,
@@ -33,7 +36,7 @@ from mbsym.problems.polynomial_integrals.result import (
     PolynomialIntegrals,
     Special,
 )
-from mbsym.problems.polynomial_integrals.search import polynomial_integrals
+from mbsym.problems.polynomial_integrals.search import polynomial_integrals, products
 from mbsym.problems.polynomial_integrals.values import along
 
 #: Weights that are tried for each kind of variables.
@@ -81,6 +84,62 @@ def along_of(
     found = along(larger, low, high)
     down = _Down(larger.field.variables[-1])
     return replace(found, values=tuple(map(down.special, found.values)), weights=larger.grading.weights[:-1])
+
+
+@dataclass(frozen=True)
+class ZeroLevels:
+    """What holds where an integral is zero, one item for each; ``weights`` as in ``Along``."""
+
+    levels: tuple[OnLevel, ...]
+    weights: tuple[int, ...] | None
+
+
+def zero_levels_of(
+    usual: PolynomialIntegrals, kinds: Sequence[Sequence[str]], known: Sequence[tuple[str, Any]]
+) -> ZeroLevels | None:
+    """``on_level`` for all ``levels`` of any field with at most one relation; None of others, which are not looked at.
+
+    Where the field is not quasi-homogeneous, integrals that are products are left out: one factor may be zero alone.
+
+    Raises NoClosedForm where more monomials are coupled than the bounds allow.
+    """
+    if usual.grading.homogeneous and (usual.grading.free or not usual.field.relations):
+        return ZeroLevels(tuple(on_level(usual, one) for one in levels(usual)), None)
+    larger = _larger(usual, kinds, known)
+    if larger is None:
+        return None
+    down = _Down(larger.field.variables[-1])
+    there = at_random(usual.field, PRIMES[0], "levels at one")
+    pairs = [(one.weight, there.terms(down.polynomial(one.polynomial))) for one in larger.generators]
+    pairs = [(weight, terms) for weight, terms in pairs if any(any(m) for m in terms)]  # that of the constant is 1
+    found = []
+    for one in filter(_irreducible, levels(larger)):
+        at = on_level(larger, one)
+        zero = there.terms(down.polynomial(one.polynomial))
+        fresh = [
+            (w, f)
+            for w, f in ((w, primitive(usual.field, down.polynomial(f))) for w, f in at.integrals)
+            if not _spanned(there, there.terms(f), zero, pairs, usual.degree)
+        ]
+        found.append(OnLevel(down.generator(one), tuple(fresh), at.counts))
+    return ZeroLevels(tuple(found), larger.grading.weights[:-1])
+
+
+def _irreducible(one: Generator) -> bool:
+    """Whether a polynomial is no product over QQ of others; numbers do not count."""
+    return sum(power for _, power in irreducible_factors(one.polynomial)[1]) == 1
+
+
+def _spanned(there: ModularField, f: Terms, zero: Terms, pairs: Sequence[tuple[int, Terms]], degree: int) -> bool:
+    """Whether f is a polynomial in integrals modulo ``zero``: of products up to twice the degree."""
+
+    def reduce(terms: Terms) -> Terms:
+        return remainder(terms, zero, there.prime)
+
+    rows = [reduce(one) for one in products(pairs, 2 * degree, False, there.prime, len(there.field.variables), reduce)]
+    columns = sorted({m for row in (*rows, f) for m in row} | set(reduce(f)), reverse=True)
+    before, _ = echelon(rows, columns, there.prime)
+    return len(echelon([*before, reduce(f)], columns, there.prime)[0]) == len(before)
 
 
 def darboux_of(

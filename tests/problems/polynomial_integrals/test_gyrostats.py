@@ -14,8 +14,9 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.analysis import Analysis
 from mbsym.analysis.polynomial import integrals_of, setting
-from mbsym.problems.polynomial_integrals import along_of, cases_of, grading, polynomial_integrals
-from mbsym.problems.polynomial_integrals.homogenised import homogenised
+from mbsym.problems.polynomial_integrals import along_of, cases_of, grading, polynomial_integrals, zero_levels_of
+from mbsym.problems.polynomial_integrals.homogenised import _spanned, homogenised
+from mbsym.problems.polynomial_integrals.modular import PRIMES, at_random
 
 GYROSTAT = Path(__file__).parents[3] / "systems" / "heavy-gyrostat.yaml"
 
@@ -163,3 +164,31 @@ def test_damping_takes_the_only_integral():
     numbers = dict.fromkeys(("m1", "m2", "l1", "l2"), 1)
     with pytest.raises(NoClosedForm, match="one unit vector or angle at most"):
         line(numbers, "g", -1, 1, 2, GYROSTAT.with_name("double-pendulum.yaml"))
+
+
+def test_sretenskys_integral_holds_on_the_level_of_the_area_integral():
+    """A = B = 4, C = 1; a neighbour has none, which is proved, and several angles are not looked at."""
+    for first, weights in ((4, [3]), (3, [])):
+        values = {"A": first, "B": first, "C": 1, "z0": 0}
+        there = setting(Analysis(mbsym.load(GYROSTAT).system), values)
+        found = zero_levels_of(integrals_of(there, 3), there.kinds, there.known)
+        assert [one.level.name for one in found.levels] == ["generalised energy", "angular momentum about axis 3"]
+        assert all(one.complete for one in found.levels)
+        assert [w for one in found.levels for w, _ in one.integrals] == weights
+    there = setting(Analysis(mbsym.load(GYROSTAT).system), {"A": 4, "B": 4, "C": 1, "z0": 0})
+    _, area = zero_levels_of(integrals_of(there, 3), there.kinds, there.known).levels
+    ((_, third),) = area.integrals
+    assert divmod(there.field.derivative(third), area.level.polynomial)[1] == 0
+    several = setting(Analysis(mbsym.load(GYROSTAT.with_name("double-pendulum.yaml")).system))
+    assert zero_levels_of(integrals_of(several, 1), several.kinds, several.known) is None
+
+
+def test_a_multiple_on_the_level_is_no_integral_of_its_own():
+    """x' = 0, y' = x: y is one where x = 0; x y + y and y^2 + 3 x are none besides."""
+    context = fmpq_mpoly_ctx.get(["x", "y"], Ordering.lex)
+    x, y = context.gens()
+    there = at_random(PolynomialField(context, (), ("x", "y"), (0 * x, x), context.constant(1)), PRIMES[0], "test")
+    terms = there.terms
+    assert _spanned(there, terms(x * y + y), terms(x), [(1, terms(y))], 2)
+    assert _spanned(there, terms(y**2 + 3 * x), terms(x), [(1, terms(y))], 2)
+    assert not _spanned(there, terms(y), terms(x), [(2, terms(y**2))], 2)
