@@ -70,7 +70,9 @@ def sentences(found: PolynomialIntegrals) -> Iterator[Said]:
     """What is known of the list as a whole."""
     values: dict[str, object] = {"degree": found.degree, "count": found.independent}
     if not found.generators:
-        yield _NONE[bool(found.field.parameters)] if found.complete else "None was found.", values
+        vectors = found.field.relations and not any(name.startswith("sin(") for name in found.field.variables)
+        none = _NONE_BUT_LENGTHS if vectors else _NONE
+        yield none[bool(found.field.parameters)] if found.complete else "None was found.", values
         return
     yield "As functions at least [[count]] of them are independent (proved: rank of the gradients).", values
     for one in found.generators:
@@ -97,6 +99,12 @@ def sentences(found: PolynomialIntegrals) -> Iterator[Said]:
 _NONE = {
     True: "There is none up to weighted degree [[degree]] (proved for almost all values of the parameters).",
     False: "There is none up to weighted degree [[degree]] (proved).",
+}
+#: The length of a unit vector is constant, too: it is 1, and problem 7 may list it.
+_NONE_BUT_LENGTHS = {
+    True: "But for lengths of unit vectors, which are 1, there is none up to weighted degree [[degree]] (proved for "
+    "almost all values of the parameters).",
+    False: "But for lengths of unit vectors, which are 1, there is none up to weighted degree [[degree]] (proved).",
 }
 _NO_OTHER = {
     True: "Up to weighted degree [[degree]] there is none beyond those of problem 7, for almost all values of the "

@@ -8,6 +8,8 @@ SENTENCES = {
     "Weight [[weight]], [[name]]:": "Peso [[weight]], [[name]]:",
     "Weight [[weight]], where that of weight [[own]] ([[name]]) is zero:": "Peso [[weight]], donde la de peso [[own]] ([[name]]) es cero:",
     "There is none up to weighted degree [[degree]] (proved for almost all values of the parameters).": "Hasta el grado ponderado [[degree]] no hay ninguna (demostrado para casi todos los valores de los parámetros).",
+    "But for lengths of unit vectors, which are 1, there is none up to weighted degree [[degree]] (proved for almost all values of the parameters).": "Salvo las longitudes de vectores unitarios, que son 1, hasta el grado ponderado [[degree]] no hay ninguna (demostrado para casi todos los valores de los parámetros).",
+    "But for lengths of unit vectors, which are 1, there is none up to weighted degree [[degree]] (proved).": "Salvo las longitudes de vectores unitarios, que son 1, hasta el grado ponderado [[degree]] no hay ninguna (demostrado).",
     "There is none up to weighted degree [[degree]] (proved).": "Hasta el grado ponderado [[degree]] no hay ninguna (demostrado).",
     "None was found.": "No se encontró ninguna.",
     "As functions at least [[count]] of them are independent (proved: rank of the gradients).": "Como funciones son independientes al menos [[count]] de ellas (demostrado: rango de los gradientes).",

@@ -8,6 +8,8 @@ SENTENCES = {
     "Weight [[weight]], [[name]]:": "Вес [[weight]], [[name]]:",
     "Weight [[weight]], where that of weight [[own]] ([[name]]) is zero:": "Вес [[weight]], на нулевом уровне интеграла веса [[own]] ([[name]]):",
     "There is none up to weighted degree [[degree]] (proved for almost all values of the parameters).": "До взвешенной степени [[degree]] таких нет (доказано для почти всех значений параметров).",
+    "But for lengths of unit vectors, which are 1, there is none up to weighted degree [[degree]] (proved for almost all values of the parameters).": "Кроме длин единичных векторов, равных 1, до взвешенной степени [[degree]] таких нет (доказано при почти всех значениях параметров).",
+    "But for lengths of unit vectors, which are 1, there is none up to weighted degree [[degree]] (proved).": "Кроме длин единичных векторов, равных 1, до взвешенной степени [[degree]] таких нет (доказано).",
     "There is none up to weighted degree [[degree]] (proved).": "До взвешенной степени [[degree]] таких нет (доказано).",
     "None was found.": "Ничего не найдено.",
     "As functions at least [[count]] of them are independent (proved: rank of the gradients).": "Как функции независимы по меньшей мере [[count]] из них (доказано: ранг градиентов).",

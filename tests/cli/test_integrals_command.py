@@ -169,3 +169,9 @@ def test_a_root_of_what_is_known_is_one_more():
     told = {one["value"]: [x["formula"] for x in one["integrals"]] for one in data["along"]["values"]}
     assert told == {"1": ["q"], "2": ["r"]}
     assert (data["along"]["undecided_at"], data["along"]["no_others"]) == ([], True)
+
+
+def test_the_norm_of_a_quaternion_is_not_denied():
+    """Problem 7 lists it: up to degree four there is none but that, Jacobi's being of degree four in e."""
+    text = " ".join(run("systems/gravity-gradient-quaternion.yaml", "--degree", "3").stdout.split())
+    assert "But for lengths of unit vectors, which are 1, there is none up to weighted degree 3" in text

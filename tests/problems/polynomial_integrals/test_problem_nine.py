@@ -136,6 +136,7 @@ def test_every_sentence_has_its_translations():
     for catalogue in (polynomial_integrals_ru.SENTENCES, polynomial_integrals_es.SENTENCES):
         assert {integrals_words.LISTED, integrals_words.LEVEL, integrals_words.OPENING} <= set(catalogue)
         assert {*integrals_words._DEPENDENT.values(), *integrals_words._NONE.values()} <= set(catalogue)
+        assert {*integrals_words._NONE_BUT_LENGTHS.values()} <= set(catalogue)
         for english, other in catalogue.items():
             assert english[:30] in source or english.startswith("Problem 9")
             assert set(re.findall(r"\[\[\w+\]\]", english)) == set(re.findall(r"\[\[\w+\]\]", other))
