@@ -14,7 +14,7 @@ from fractions import Fraction
 from itertools import product
 from typing import Any
 
-from flint import fmpq_mpoly_ctx
+from flint import fmpq, fmpq_mpoly_ctx
 
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import NoClosedForm
@@ -83,7 +83,24 @@ def along_of(
         raise NoClosedForm("special values are looked for where there is one unit vector or angle at most")
     found = along(larger, low, high)
     down = _Down(larger.field.variables[-1])
-    return replace(found, values=tuple(map(down.special, found.values)), weights=larger.grading.weights[:-1])
+    values = [_new_at_one(larger, one, down) for one in found.values]
+    kept = tuple(one for one in values if one.integrals or one.levels)
+    return replace(found, values=kept, weights=larger.grading.weights[:-1])
+
+
+def _new_at_one(larger: PolynomialIntegrals, one: Special, down: _Down) -> Special:
+    """What was found at a value, without what becomes a polynomial in the integrals in general where h is 1."""
+    value = one.field.context.constant(fmpq(one.value.numerator, one.value.denominator) if one.value is not None else 0)
+    images = [value, *one.field.context.gens()]
+    special = down.special(one)
+    there = at_random(special.field, PRIMES[0], "values at one")
+    general = [down.polynomial(f.polynomial.compose(*images, ctx=one.field.context)) for f in larger.generators]
+    pairs = [(f.weight, there.terms(p)) for f, p in zip(larger.generators, general, strict=True)]
+    pairs = [(weight, terms) for weight, terms in pairs if any(any(m) for m in terms)]
+    fresh = tuple(
+        (w, f) for w, f in special.integrals if not _spanned(there, there.terms(f), None, pairs, larger.degree)
+    )
+    return replace(special, integrals=fresh)
 
 
 @dataclass(frozen=True)
@@ -130,11 +147,13 @@ def _irreducible(one: Generator) -> bool:
     return sum(power for _, power in irreducible_factors(one.polynomial)[1]) == 1
 
 
-def _spanned(there: ModularField, f: Terms, zero: Terms, pairs: Sequence[tuple[int, Terms]], degree: int) -> bool:
-    """Whether f is a polynomial in integrals modulo ``zero``: of products up to twice the degree."""
+def _spanned(
+    there: ModularField, f: Terms, zero: Terms | None, pairs: Sequence[tuple[int, Terms]], degree: int
+) -> bool:
+    """Whether f is a polynomial in integrals (modulo ``zero``): of products up to twice the degree."""
 
     def reduce(terms: Terms) -> Terms:
-        return remainder(terms, zero, there.prime)
+        return terms if zero is None else remainder(terms, zero, there.prime)
 
     rows = [reduce(one) for one in products(pairs, 2 * degree, False, there.prime, len(there.field.variables), reduce)]
     columns = sorted({m for row in (*rows, f) for m in row} | set(reduce(f)), reverse=True)

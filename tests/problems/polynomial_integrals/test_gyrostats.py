@@ -192,3 +192,5 @@ def test_a_multiple_on_the_level_is_no_integral_of_its_own():
     assert _spanned(there, terms(x * y + y), terms(x), [(1, terms(y))], 2)
     assert _spanned(there, terms(y**2 + 3 * x), terms(x), [(1, terms(y))], 2)
     assert not _spanned(there, terms(y), terms(x), [(2, terms(y**2))], 2)
+    assert _spanned(there, terms(y**2 + y), None, [(1, terms(y))], 2)
+    assert not _spanned(there, terms(y + x), None, [(1, terms(y))], 2)
