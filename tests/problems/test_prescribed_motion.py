@@ -183,12 +183,12 @@ def oscillator(force: str, stiffness: int = 1, **more: object) -> Analysis:
 
 
 def farthest(force: Callable[[float, float], float], stiffness: int) -> float:
-    """The largest |x| in 0 < t < 4 of x'' + x' + stiffness x = force(t, x) from x = 0.01 at rest."""
+    """The largest |x| in 0 < t < 3 of x'' + x' + stiffness x = force(t, x) from x = 0.01 at rest."""
     blown = lambda t, y: abs(y[0]) - 1  # noqa: E731
     blown.terminal = True  # type: ignore[attr-defined]
     run = solve_ivp(
         lambda t, y: [y[1], -y[1] - stiffness * y[0] + force(t, y[0])],
-        (0, 4),
+        (0, 3),
         (0.01, 0),
         events=blown,
         rtol=1e-9,
