@@ -25,6 +25,7 @@ MOST_ORDER = 6
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--order", "-n", default="2", metavar="N", show_default=True, help="Up to this power.")
 @click.option("--of", "leading", metavar="NAME", help="The variable whose oscillation leads, where there are several.")
+@click.option("--frequency", default="1", metavar="K", help="Of several that it shares with others, the K-th.")
 @click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Put in a number; repeatable.")
 @click.option("--format", "formats", metavar="LIST", help="Draw figures: svg, pdf, png.")
 @click.option("--out", "-o", type=OutPath(path_type=Path, file_okay=False), help="Folder.  [default: reports/NAME]")
@@ -33,6 +34,7 @@ def command(
     file: Path,
     order: str,
     leading: str | None,
+    frequency: str,
     settings: tuple[str, ...],
     formats: str | None,
     out: Path | None,
@@ -56,6 +58,7 @@ def command(
     \b
     Examples:
       mbsym oscillations systems/spring-pendulum.yaml --of theta
+      mbsym oscillations systems/double-pendulum.yaml --of theta1 --frequency 2
       mbsym oscillations systems/gyrostat-fast.yaml --order 2
       mbsym oscillations systems/gyrostat-fast.yaml --set lx=0 --json
       mbsym oscillations systems/gyrostat-fast.yaml --format png --out figures
@@ -63,13 +66,15 @@ def command(
     system = read_description(file, unconstrained="oscillations", moving="oscillations")
     asked = Options()
     most = asked.whole("--order", order, 1, MOST_ORDER)
+    which = asked.whole("--frequency", frequency, 1, 99)
     values = {} if system is None else read_settings(settings, system, asked, symbols(system))
     if system is not None:
         check(system, leading, values, asked)
     kinds = () if formats is None else asked.words("--format", formats, FORMATS, "format")
     if out is not None and formats is None:
         asked.complain("--out", "wrong-use", "nothing is written without --format", "add --format png")
-    if asked.refused(None if system is None else file) or system is None or most is None or kinds is None:
+    stop = asked.refused(None if system is None else file)
+    if stop or system is None or most is None or kinds is None or which is None:
         sys.exit(BAD_INPUT)
     from mbsym.algebra.failures import Failure
     from mbsym.analysis import Analysis
@@ -78,7 +83,7 @@ def command(
 
     try:
         with status(as_json, f"{file.name}: oscillations"):
-            found = oscillating(Analysis(system), most, values, leading or "")
+            found = oscillating(Analysis(system), most, values, leading or "", which)
     except ZeroDivisionError as reason:
         complain(file, f"no periodic solution: {reason}")
         sys.exit(BAD_INPUT)

@@ -12,7 +12,7 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-from flint import fmpq
+from flint import acb, fmpq
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
@@ -126,9 +126,11 @@ def small_parameter(system: System) -> SmallParameter:
 
 
 def oscillating(
-    analysis: Analysis, order: int, values: Mapping[str, Fraction] | None = None, leading: str = ""
+    analysis: Analysis, order: int, values: Mapping[str, Fraction] | None = None, leading: str = "", which: int = 1
 ) -> Oscillating:
     """The periodic solution up to eps^order, checked.  ``values`` of parameters and of symbols of the result.
+
+    ``leading`` names the variable that leads, ``which`` says which frequency it has, where it shares several.
 
     Raises NoClosedForm where there is none, or it cannot be had; ZeroDivisionError where numbers make it singular.
     """
@@ -173,7 +175,7 @@ def oscillating(
         most,
         constants,
     )
-    found = oscillation(there, order, leading or small.leading)
+    found = oscillation(there, order, leading or small.leading, which)
     if not found.verified:
         raise NoClosedForm("withdrawn: put into the equations, the expansion leaves terms of its own order")
     used = {AMPLITUDE, *(f"#{name}" for name, _ in found.constants)}
@@ -203,12 +205,29 @@ def oscillating(
 
 def _sign(analysis: Analysis, tower: Tower, x: Element) -> str | None:
     """By the assumptions of the description; None where there is no telling, or symbols of the solution are in it."""
+    if _is_number(tower, x):
+        value = tower.enclosed(x, dict.fromkeys(tower.parameters, acb(1)))
+        proved = value.imag == 0 and value.real != 0
+        return ("positive" if value.real > 0 else "negative") if proved else None
     places = (p.degrees()[MOST_ROOTS:] for p in (x.top, x.bottom))
     names = {name for degrees in places for name, d in zip(tower.parameters, degrees, strict=True) if d > 0}
     if any(name.startswith("#") for name in names) or any(d > 0 for d in x.top.degrees()[:MOST_ROOTS]):
         return None
     product = in_letters(tower, analysis.ring, {}, tower.made(x.top * x.bottom, tower.context.constant(1)))
     return analysis.signs.sign(product)
+
+
+def _is_number(tower: Tower, x: Element) -> bool:
+    """Whether no parameter is in it, under its roots neither."""
+    pending, seen = [x.top, x.bottom], set[int]()
+    while pending:
+        for index, degree in enumerate(pending.pop().degrees()):
+            if degree > 0 and index >= MOST_ROOTS:
+                return False
+            if degree > 0 and index not in seen:
+                seen.add(index)
+                pending.append(tower.squares[MOST_ROOTS - 1 - index])
+    return True
 
 
 def _field(analysis: Analysis, small: SmallParameter, order: int) -> tuple[PolynomialField, bool]:

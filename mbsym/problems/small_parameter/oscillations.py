@@ -73,15 +73,15 @@ class Equations:
         return self.values.get(name, self.tower.parameter(name))
 
 
-def oscillation(there: Equations, order: int, leading: str = "") -> Oscillation:
-    """The periodic solution that is led by the variable ``leading``.
+def oscillation(there: Equations, order: int, leading: str = "", which: int = 1) -> Oscillation:
+    """The periodic solution that is led by the variable ``leading``, with the ``which``-th frequency of its block.
 
     Raises NoClosedForm where the equations are not quasi-linear or several frequencies are there, Resonance and
     NotPeriodic where there is no such solution.
     """
     tower = there.tower
     system = generating(tower, there.names, there.rows, lambda i: there.symbol(f"#{there.names[i]}"))
-    mode = _mode(there, system, leading)
+    mode = _mode(there, system, leading, which)
     place = there.names.index(leading) if leading else _leading(there, mode)
     constants = {i: there.symbol(f"#{there.names[i]}") for i in system.constant}
     kind, amplitude = Amplitude.FREE, there.symbol(AMPLITUDE)
@@ -119,7 +119,7 @@ def oscillation(there: Equations, order: int, leading: str = "") -> Oscillation:
     return replace(found, residuals=residual_orders(there.rows, there.names, found))
 
 
-def _mode(there: Equations, system: Generating, leading: str) -> Mode:
+def _mode(there: Equations, system: Generating, leading: str, which: int) -> Mode:
     if leading:
         if leading not in there.names:
             raise NoClosedForm(f"the equations do not depend on {leading}")
@@ -135,11 +135,13 @@ def _mode(there: Equations, system: Generating, leading: str) -> Mode:
             )
         what = f"{leading} does not oscillate" if leading else "nothing oscillates"
         raise NoClosedForm(f"{what} where the small parameter is zero")
-    if len(own) > 1:
-        if leading and len({one.block for one in own}) == 1:
-            return own[0]  # the first frequency of its block
+    if len({one.block for one in own}) > 1 or (len(own) > 1 and not leading):
         raise ModeIsOpen([tuple(there.names[i] for i in one.block) for one in own])
-    return own[0]
+    if which > len(own):
+        block = ", ".join(there.names[i] for i in own[0].block)
+        count = "one frequency" if len(own) == 1 else f"{len(own)} frequencies"
+        raise NoClosedForm(f"without the small parameter {block} have {count}: there is none with the number {which}")
+    return own[which - 1]
 
 
 def _leading(there: Equations, mode: Mode) -> int:

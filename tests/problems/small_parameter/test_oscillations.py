@@ -290,6 +290,28 @@ def test_the_spring_pendulum_names_one_to_two():
     assert shown == [(2, "k*(k*l0 - 3*m*g)")]
 
 
+@pytest.mark.parametrize(("which", "square", "ratio"), [(1, 2 - 2**0.5, 2**0.5), (2, 2 + 2**0.5, -(2**0.5))])
+def test_each_frequency_of_the_double_pendulum_leads(which, square, ratio):
+    """Equal masses and lengths: w^2 = (2 -+ sqrt 2) g/l, absolute angles in the ratio +-sqrt 2 (theta2 is relative)."""
+    analysis = mbsym.load(SHIPPED / "double-pendulum.yaml")
+    numbers = {name: Fraction(1) for name in ("m1", "m2", "l1", "l2")} | {"g": Fraction(9)}
+    found = oscillating(analysis, 2, numbers, "theta1", which)
+    tower = found.found.tower
+    values = dict.fromkeys(tower.parameters, 1)
+    assert float(tower.enclosed(found.found.frequency, values).real) ** 2 == pytest.approx(9 * square)
+    waves = {name: one[0].waves[1][0] for name, one in zip(found.found.names, found.found.series, strict=True)}
+    assert float(tower.enclosed(waves["theta2"], values).real) == pytest.approx(ratio - 1)
+    assert found.real
+    assert found.resonances == ()  # 18 sqrt 2 and the like: numbers that are not zero
+    assert min(measured_orders(analysis.system, found, numbers).orders) > 2.8
+
+
+def test_a_frequency_that_is_not_there_is_told():
+    numbers = {name: Fraction(1) for name in ("m1", "m2", "l1", "l2", "g")}
+    with pytest.raises(NoClosedForm, match="have 2 frequencies: there is none with the number 3"):
+        oscillating(mbsym.load(SHIPPED / "double-pendulum.yaml"), 1, numbers, "theta1", 3)
+
+
 def test_what_cannot_oscillate_is_refused(tmp_path):
     with pytest.raises(NoClosedForm, match="square of its frequency is < 0"):
         oscillating(point(tmp_path, ["potential: -w**2*x**2/2 + eps*x**4/4"]), 2)
