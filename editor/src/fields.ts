@@ -171,13 +171,23 @@ export class Form {
   /** Draws what is new and fills the rest: elements stay, and with them the focus and what is being typed. */
   show(sections: Section[]): void {
     this.shown = sections;
-    const focused = this.host.contains(document.activeElement) ? document.activeElement?.id : null;
+    const before = this.host.contains(document.activeElement) ? document.activeElement : null;
+    const place = before ? [...this.host.querySelectorAll(".field")].indexOf(before.closest(".field") ?? before) : -1;
     const groups = new Set<string>();
     const elements = sections.map((section) => this.section(section, groups));
     placed(this.host, elements);
     for (const [key, part] of [...this.groups]) if (!groups.has(key) && !this.isFolded(part.element)) this.groups.delete(key);
     for (const [key, drawn] of this.drawn) if (!this.host.contains(drawn.input)) this.drawn.delete(key);
-    if (focused && document.activeElement?.id !== focused) document.getElementById(focused)?.focus();
+    if (before && !this.host.contains(document.activeElement)) this.refocus(before, place);
+  }
+
+  /** What had the focus was moved, drawn anew, or is gone: then what stands in its place now has it. */
+  private refocus(before: Element, place: number): void {
+    const same = [...this.host.querySelectorAll<HTMLElement>("input, select, button")].find((one) => one.ariaLabel === before.ariaLabel);
+    const fields = [...this.host.querySelectorAll(".field")];
+    const near = fields[Math.min(place, fields.length - 1)]?.querySelector<HTMLElement>("input, select, button");
+    const found = before.isConnected ? (before as HTMLElement) : (same ?? near);
+    found?.focus();
   }
 
   private isFolded(element: HTMLElement): boolean {

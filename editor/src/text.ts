@@ -6,7 +6,7 @@ import { bracketMatching, foldGutter, foldKeymap, indentOnInput, indentUnit } fr
 import { lintGutter, lintKeymap, setDiagnostics, type Diagnostic } from "@codemirror/lint";
 import { highlightSelectionMatches, openSearchPanel, searchKeymap } from "@codemirror/search";
 import { Compartment, StateEffect, StateField, type Extension, type Text } from "@codemirror/state";
-import { Decoration, drawSelection, EditorView, highlightActiveLine, highlightActiveLineGutter, hoverTooltip, keymap, lineNumbers, type DecorationSet } from "@codemirror/view";
+import { Decoration, drawSelection, EditorView, highlightActiveLine, highlightActiveLineGutter, highlightSpecialChars, hoverTooltip, keymap, lineNumbers, type DecorationSet } from "@codemirror/view";
 
 import { complaintList } from "./complaints.js";
 import { coloured, language } from "./language.js";
@@ -51,7 +51,7 @@ function lastInk(doc: Text, to: number): number {
 
 const looks = EditorView.theme({
   "&": { height: "100%", color: "var(--front)", backgroundColor: "var(--back)", fontSize: "13px" },
-  "&.cm-focused": { outline: "none" },
+  "&.cm-focused": { outline: "2px solid var(--focus)", outlineOffset: "-2px" },
   ".cm-scroller": { fontFamily: "var(--mono)", lineHeight: "1.5" },
   ".cm-content": { caretColor: "var(--front)" },
   ".cm-cursor, .cm-dropCursor": { borderLeftColor: "var(--front)" },
@@ -85,6 +85,8 @@ export const extensions: Extension = [
   highlightActiveLine(),
   highlightActiveLineGutter(),
   drawSelection(),
+  // What would not be seen, or turns what is written around it, is shown as what it is.
+  highlightSpecialChars(),
   EditorView.lineWrapping,
   indentOnInput(),
   indentUnit.of("  "),

@@ -154,6 +154,7 @@ def test_the_satellite_is_built_by_clicks_and_keys(show: Show) -> None:
     system, and every claim of the paper holds."""
     window = show("")
     window.page.get_by_label("as the text changes").uncheck()  # nothing of what is half built is derived
+    window.undrawn()
     window.form_of("System")
     window.field("Name", "Satellite with a gravitational stabilizer")
     window.field("Description", system_of(SATELLITE).description)

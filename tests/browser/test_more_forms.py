@@ -68,6 +68,7 @@ def test_tables_limits_states_turns_and_the_small_parameter_are_fields(
     window.form_of("Body")
     window.field("shape 1: Rotation axis 1", "1")
     window.field("shape 1: Rotation angle 1", "pi/2")
+    window.form_of("System")
     wanted = yaml.load(TEXT, yaml.BaseLoader)
     wanted["tables"]["push"] = {
         "points": [["0", "0"], ["1", "3"], ["2", "1"], ["3", "0"]],
@@ -82,6 +83,13 @@ def test_tables_limits_states_turns_and_the_small_parameter_are_fields(
     text = window.text
     assert yaml.load(text, yaml.BaseLoader) == wanted
     assert "# measured" in text
+    # What is deleted or moved by a key leaves the focus where one was.
+    window.page.get_by_label("Move load 2 up").press("Enter")
+    window.settled()
+    assert window.page.evaluate("document.activeElement.closest('#form') !== null")
+    window.page.get_by_label("Delete load 2").press("Enter")
+    window.told("load 2 deleted")
+    assert window.page.evaluate("document.activeElement.closest('#form') !== null")
     while window.page.locator("#do-undo").is_enabled():
         window.page.locator("#do-undo").click()
         window.settled()
