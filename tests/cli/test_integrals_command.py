@@ -175,3 +175,14 @@ def test_the_norm_of_a_quaternion_is_not_denied():
     """Problem 7 lists it: up to degree four there is none but that, Jacobi's being of degree four in e."""
     text = " ".join(run("systems/gravity-gradient-quaternion.yaml", "--degree", "3").stdout.split())
     assert "But for lengths of unit vectors, which are 1, there is none up to weighted degree 3" in text
+
+
+def test_a_quaternion_may_be_varied():
+    """Two equal moments of inertia keep a speed, in a circular orbit too; the third pair is not met."""
+    numbers = [f"--set={one}" for one in ("m=1", "R=1", "B=2", "C=3", "omega0=1")]
+    done = run("systems/gravity-gradient-quaternion.yaml", *numbers, "--vary", "A=1:4", "--degree", "3", "--json")
+    data = json.loads(done.stdout)
+    jsonschema.validate(data, schema("integrals"))
+    told = {one["value"]: [x["formula"] for x in one["integrals"]] for one in data["along"]["values"]}
+    assert (told, data["along"]["no_others"]) == ({"2": ["r"], "3": ["q"]}, True)
+    assert data["along"]["weights"]["e0"] == 1

@@ -100,7 +100,14 @@ def _new_at_one(larger: PolynomialIntegrals, one: Special, down: _Down) -> Speci
     fresh = tuple(
         (w, f) for w, f in special.integrals if not _spanned(there, there.terms(f), None, pairs, larger.degree)
     )
-    return replace(special, integrals=fresh)
+    pairs += [(w, there.terms(f)) for w, f in fresh]
+    on = []
+    for own, level in zip(one.levels, special.levels, strict=True):
+        zero = there.terms(general[larger.generators.index(own.level)])
+        left = [(w, f) for w, f in level.integrals if not _spanned(there, there.terms(f), zero, pairs, larger.degree)]
+        if left:
+            on.append(replace(level, integrals=tuple(left)))
+    return replace(special, integrals=fresh, levels=tuple(on))
 
 
 @dataclass(frozen=True)
@@ -186,6 +193,10 @@ def darboux_of(
     )
 
 
+#: What the name of an integral gets whose constant is left out: where it is zero the integral has another value.
+WITHOUT = ", less a constant"
+
+
 def _larger(
     usual: PolynomialIntegrals, kinds: Sequence[Sequence[str]], known: Sequence[tuple[str, Any]]
 ) -> PolynomialIntegrals | None:
@@ -194,7 +205,9 @@ def _larger(
     if field.relations and not found.free:
         return None
     listed = [(UNITY, field.generator(field.variables[-1]))]
-    listed += [(title, _filled(field, f, found.weights)) for title, f in known]
+    for title, f in known:
+        constant = any(not any(m[len(field.parameters) :]) for m in f.monoms())
+        listed.append((title + WITHOUT if constant else title, _filled(field, f, found.weights)))
     return polynomial_integrals(field, found, usual.degree, listed)
 
 

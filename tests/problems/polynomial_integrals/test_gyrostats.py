@@ -194,3 +194,14 @@ def test_a_multiple_on_the_level_is_no_integral_of_its_own():
     assert not _spanned(there, terms(y), terms(x), [(2, terms(y**2))], 2)
     assert _spanned(there, terms(y**2 + y), None, [(1, terms(y))], 2)
     assert not _spanned(there, terms(y + x), None, [(1, terms(y))], 2)
+
+
+def test_what_follows_on_a_level_is_not_told_again():
+    """A spring pendulum without weight keeps r^2 theta_dot; on a level of the energy its square has other forms."""
+    numbers = {"m": 1, "k": 1, "l0": 1}
+    there, found = line(numbers, "g", -1, 1, 4, GYROSTAT.with_name("spring-pendulum.yaml"))
+    (one,) = found.values
+    assert (one.value, one.levels, found.whole) == (0, (), True)
+    assert [str(there.formula(f)) for _, f in one.integrals] == ["theta_dot*r**2"]
+    levels = zero_levels_of(integrals_of(there, 4), there.kinds, there.known)
+    assert [level.level.name for level in levels.levels] == ["generalised energy, less a constant"]
