@@ -349,7 +349,7 @@ class Graph {
 
   private fit(): void {
     const { clientWidth, clientHeight } = this.scroller;
-    this.zoomTo(Math.min(1, clientWidth / this.layout.width, (clientHeight - 40) / this.layout.height));
+    this.zoomTo(Math.min(1, clientWidth / this.layout.width, clientHeight / this.layout.height));
   }
 
   private wheel(event: WheelEvent): void {
