@@ -8,6 +8,10 @@ interface Offer {
   choices: { words: string; act: () => void }[];
 }
 
+const ANOTHER =
+  "Another `mbsym edit` answers here now, which does not know this page: open the address that it has printed, or, to go on with " +
+  "this text, copy it and paste it there. Nothing more is saved from here.";
+
 export function bannersOf(model: Model): HTMLElement {
   const host = make("div", { class: "banners" });
   const shown = new Map<string, HTMLElement>();
@@ -50,7 +54,7 @@ export function bannersOf(model: Model): HTMLElement {
   model.on("connection", (state) => {
     if (state === "there") return close("away");
     offer("away", {
-      words: "The server does not answer: is `mbsym edit` still running? The text stays here; it is tried again every two seconds.",
+      words: state === "another" ? ANOTHER : "The server does not answer: is `mbsym edit` still running? The text stays here; it is tried again every two seconds.",
       choices: [{ words: "Copy the text", act: () => void navigator.clipboard.writeText(model.text) }],
     });
   });

@@ -49,7 +49,14 @@ function hearing(): Hearing {
   return made;
 }
 
-export type Connection = "there" | "away";
+/** "another": a server answers at this address, but with another token; it knows nothing of this page. */
+export type Connection = "there" | "away" | "another";
+
+/** What a request that failed says of the server; null for nothing. */
+function standing(failure: unknown): Connection | null {
+  if (failure instanceof Refused) return failure.status === 404 ? "another" : "there";
+  return failure instanceof Away ? "away" : null;
+}
 
 export interface Events {
   /** The text is another one. */
@@ -92,6 +99,8 @@ export class Model extends Listeners<Events> {
   understoodText: string | null = null;
   selected: string | null = null;
   connection: Connection = "there";
+  /** It will be asked for the server soon. */
+  private waiting = false;
   /** The text as it stands in the file. */
   private stored: string;
   private changedAt: number | null = null;
@@ -262,29 +271,35 @@ export class Model extends Listeners<Events> {
       this.connected("there");
       return answer;
     } catch (failure) {
-      if (failure instanceof Away) this.connected("away");
-      // Not found: another server stands there now, which does not know this page.
-      else if (failure instanceof Refused && failure.status !== 404) this.connected("there");
+      this.connected(standing(failure));
       throw failure;
     }
   }
 
-  private connected(connection: Connection): void {
-    if (connection === this.connection) return;
+  private connected(connection: Connection | null): void {
+    if (connection === null || connection === this.connection) return;
     this.connection = connection;
     this.tell("connection", connection);
     if (connection === "there" && this.listeningTo?.readyState === EventSource.CLOSED) this.listen();
     if (connection === "there") {
       void this.look();
       if (this.unkept) void this.journal();
-    } else this.waitForServer();
+    } else if (!this.waiting) this.waitForServer();
   }
 
   /** A server that was stopped may come back at the same address, with the same token or not. */
   private waitForServer(): void {
+    this.waiting = true;
     window.setTimeout(() => {
+      this.waiting = false;
       if (this.connection === "there") return;
-      get("digest").then(() => this.connected("there"), () => this.waitForServer());
+      get("digest").then(
+        () => this.connected("there"),
+        (failure: unknown) => {
+          this.connected(standing(failure));
+          if (!this.waiting) this.waitForServer();
+        },
+      );
     }, 2000);
   }
 

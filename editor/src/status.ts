@@ -30,7 +30,7 @@ export function statusOf(model: Model): HTMLElement {
     said.textContent = words;
   });
   model.on("connection", (state) => {
-    connection.textContent = state === "there" ? "" : "server away";
+    connection.textContent = state === "there" ? "" : state === "away" ? "server away" : "another server";
   });
   tellSaved();
   tellFormat();

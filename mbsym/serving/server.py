@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import secrets
 import socket
 import threading
@@ -55,6 +56,9 @@ def bound(port: int) -> socket.socket:
     """A socket of the loopback address; a free port for 0.  Raises OSError where the port is taken."""
     found = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     try:
+        # Else a port is "in use" for a minute after its server ended; on Windows the option would let two in.
+        if os.name == "posix":
+            found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         found.bind((LOOPBACK, port))
     except BaseException:
         found.close()

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
 import pytest
 import windows
@@ -89,6 +90,33 @@ def test_after_a_kill_what_was_typed_is_offered_refused_and_taken(tmp_path: Path
         assert window.text == PENDULUM
         assert not journal_of(path).exists()
         window.alone = True
+
+
+def test_another_server_at_the_address_is_told_and_saves_nothing(tmp_path: Path, opened: Open) -> None:
+    """Begun again at the same port it has another token: the page says where to go on, and keeps its text."""
+    path = tmp_path / "pendulum.yaml"
+    path.write_text(PENDULUM, encoding="utf-8")
+    with serving(path) as address:
+        window = opened(address, path)
+        window.alone = True
+        window.settled()
+    banner = window.page.locator(".banner.away")
+    banner.get_by_text("does not answer").wait_for()
+    with serving(path, port=urlsplit(address).port or 0) as other:
+        assert other != address
+        banner.get_by_text("Another `mbsym edit` answers here now").wait_for()
+        assert window.page.locator("#connection").inner_text() == "another server"
+        window.page.locator(".cm-content").focus()
+        window.press("Control+Home")
+        window.typed("# kept ")
+        window.press("Control+s")
+        assert "# kept" in text_of(window)
+        assert path.read_text(encoding="utf-8") == PENDULUM
+        window.page.once("dialog", lambda one: one.accept())
+        window.page.goto("about:blank")
+        # Chromium tells every request that was not found.
+        assert all("404 (Not Found)" in one for one in window.troubles), window.troubles
+        window.troubles.clear()
 
 
 def test_without_the_server_the_text_stays_and_goes_on_with_it(served: tuple[str, Path], opened: Open) -> None:

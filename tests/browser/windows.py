@@ -24,9 +24,9 @@ PATIENCE = 20_000
 
 
 @contextmanager
-def serving(path: Path, ended_by: signal.Signals = signal.SIGTERM) -> Iterator[str]:
+def serving(path: Path, ended_by: signal.Signals = signal.SIGTERM, port: int = 0) -> Iterator[str]:
     """The address of a server for one file, in a process of its own."""
-    command = [sys.executable, "-m", "mbsym_cli", "edit", str(path), "--no-browser", "--port", "0"]
+    command = [sys.executable, "-m", "mbsym_cli", "edit", str(path), "--no-browser", "--port", str(port)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
         try:
             assert process.stdout is not None
