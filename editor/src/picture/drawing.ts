@@ -80,7 +80,7 @@ export class Drawing {
   private solids: { many: Many; body: Body; local: Matrix4; k: number }[] = [];
   private rods: Record<Line["kind"], { many: Many; lines: Line[]; thick: number }> | null = null;
   private marks: { hinges: Many; slides: Many; joints: Many; centres: Many } | null = null;
-  private pulls: { shafts: Many; heads: Many } | null = null;
+  private pulls: { shafts: Many; heads: Many; seconds: Many } | null = null;
   private frames: LineSegments | null = null;
   private trails: Path[] = [];
   private net: { lines: LineSegments; directions: [Vector3, Vector3]; mesh: number } | null = null;
@@ -144,7 +144,7 @@ export class Drawing {
     this.marks = {
       hinges: this.many(rod(10), joints.filter((x) => !x.hinge.slides).length, grey(), 0x5b6470),
       slides: this.many(rod(4), joints.filter((x) => x.hinge.slides).length, grey(), 0x9aa2ad),
-      joints: this.many(ball(8), picture.bodies.length, grey(), 0x5b6470),
+      joints: this.many(ball(8), picture.bodies.filter((body) => turnsOf(body) !== 1).length, grey(), 0x5b6470),
       centres: this.many(ball(8), picture.bodies.filter((body) => body.massive).length, grey()),
     };
     picture.bodies.filter((body) => body.massive).forEach((body, k) => {
@@ -152,12 +152,13 @@ export class Drawing {
     });
     this.pulls = {
       shafts: this.many(rod(), picture.arrows.length, grey()),
-      heads: this.many(head(), 2 * picture.arrows.length, grey()),
+      heads: this.many(head(), picture.arrows.length, grey()),
+      seconds: this.many(head(), picture.arrows.filter((arrow) => arrow.of === "torque").length, grey(), ARROWS.torque),
     };
     this.largest = {};
     picture.arrows.forEach((arrow, k) => {
       this.pulls!.shafts.colour(k, ARROWS[arrow.of]);
-      for (const side of [0, 1]) this.pulls!.heads.colour(2 * k + side, ARROWS[arrow.of]);
+      this.pulls!.heads.colour(k, ARROWS[arrow.of]);
       this.largest[arrow.of] = Math.max(this.largest[arrow.of] ?? 0, length(values, arrow.along));
     });
     this.whole.add(this.tripod(e), this.ground(picture));
@@ -190,12 +191,14 @@ export class Drawing {
     for (const { many, lines, thick } of Object.values(rods)) {
       lines.forEach((line, k) => many.set(k, this.between(values, line.start, line.end, thick)));
     }
-    let [hinges, slides, centres] = [0, 0, 0];
-    picture.bodies.forEach((body, k) => {
+    let [hinges, slides, joints, centres] = [0, 0, 0, 0];
+    for (const body of picture.bodies) {
       this.from.set(values[body.origin[0]]!, values[body.origin[1]]!, values[body.origin[2]]!);
-      const turns = body.joint.hinges.filter((hinge) => !hinge.slides && hinge.coordinates.length > 0).length;
-      const size = turns === 1 ? 0 : turns === 0 ? 0.007 : 0.022;
-      marks.joints.set(k, this.other.makeScale(size * e, size * e, size * e).setPosition(this.from));
+      const turns = turnsOf(body);
+      if (turns !== 1) {
+        const size = turns === 0 ? 0.007 : 0.022;
+        marks.joints.set(joints++, this.other.makeScale(size * e, size * e, size * e).setPosition(this.from));
+      }
       for (const hinge of body.joint.hinges) {
         this.to.set(values[hinge.along[0]]!, values[hinge.along[1]]!, values[hinge.along[2]]!).normalize();
         const [wide, long] = hinge.slides ? [0.017, 0.11] : [0.016, 0.075];
@@ -207,25 +210,27 @@ export class Drawing {
       }
       if (body.massive) {
         this.from.set(values[body.centre[0]]!, values[body.centre[1]]!, values[body.centre[2]]!);
-        marks.centres.set(centres, this.other.makeScale(0.02 * e, 0.02 * e, 0.02 * e).setPosition(this.from));
-        centres += 1;
+        marks.centres.set(centres++, this.other.makeScale(0.02 * e, 0.02 * e, 0.02 * e).setPosition(this.from));
       }
-    });
-    picture.arrows.forEach((arrow, k) => this.pull(values, arrow, k));
+    }
+    let torques = 0;
+    picture.arrows.forEach((arrow, k) => this.pull(values, arrow, k, arrow.of === "torque" ? torques++ : null));
     for (const many of [...this.solids.map((x) => x.many), ...Object.values(rods).map((x) => x.many)]) many.done();
-    for (const many of [...Object.values(marks), pulls.shafts, pulls.heads]) many.done();
+    for (const many of [...Object.values(marks), ...Object.values(pulls)]) many.done();
     this.moveFrames(values);
   }
 
-  private pull(values: Float64Array, arrow: Picture["arrows"][number], k: number): void {
-    const { shafts, heads } = this.pulls!;
+  /** A torque has two heads, as in books. */
+  private pull(values: Float64Array, arrow: Picture["arrows"][number], k: number, torque: number | null): void {
+    const { shafts, heads, seconds } = this.pulls!;
     const e = this.picture!.extent;
     const size = length(values, arrow.along);
     const largest = this.largest[arrow.of] || size;
     const long = LONGEST_ARROW * e * Math.min(2, size / largest);
     if (!this.shown.arrows || !(long > 0.004 * e)) {
-      for (const place of [2 * k, 2 * k + 1]) heads.set(place, HIDDEN);
+      heads.set(k, HIDDEN);
       shafts.set(k, HIDDEN);
+      if (torque !== null) seconds.set(torque, HIDDEN);
       return;
     }
     this.from.set(values[arrow.point[0]]!, values[arrow.point[1]]!, values[arrow.point[2]]!);
@@ -233,10 +238,10 @@ export class Drawing {
     const tip = Math.min(0.07 * e, 0.6 * long);
     shafts.set(k, this.along(this.from, this.to, 0.006 * e, long - tip, false));
     const end = this.from.clone().addScaledVector(this.to, long - tip);
-    heads.set(2 * k, this.along(end, this.to, 0.02 * e, tip, false));
-    // A torque has two heads, as in books.
+    heads.set(k, this.along(end, this.to, 0.02 * e, tip, false));
+    if (torque === null) return;
     end.addScaledVector(this.to, -0.6 * tip);
-    heads.set(2 * k + 1, arrow.of === "torque" ? this.along(end, this.to, 0.02 * e, tip, false) : HIDDEN);
+    seconds.set(torque, this.along(end, this.to, 0.02 * e, tip, false));
   }
 
   private between(values: Float64Array, start: Triple, end: Triple, thick: number): Matrix4 {
@@ -395,6 +400,11 @@ export class Drawing {
     this.solids = [];
     this.inks = [];
   }
+}
+
+/** The angles about which a joint turns; one that turns about a single axis is drawn as its hinge. */
+function turnsOf(body: Body): number {
+  return body.joint.hinges.filter((hinge) => !hinge.slides && hinge.coordinates.length > 0).length;
 }
 
 function length(values: Float64Array, along: Triple): number {

@@ -8,10 +8,13 @@ import { Drawing } from "./drawing.js";
 import { inks } from "./inks.js";
 import type { Picture } from "./types.js";
 
-/** Frames that take longer than this, in milliseconds, are drawn coarser; shorter than that, finer again. */
-const SLOW = 34;
+/** Where frames take longer than this, in milliseconds and on the average, they are drawn coarser; shorter than that,
+ * finer again. */
+const SLOW = 33;
 const QUICK = 14;
 const COARSEST = 0.5;
+/** So many frames make an average. */
+const JUDGED = 12;
 
 export class Stage {
   readonly element: HTMLElement;
@@ -29,7 +32,8 @@ export class Stage {
   private last = 0;
   private named: { body: number; text: string } | null = null;
   private moving = false;
-  private slow = 0;
+  private frames = 0;
+  private took = 0;
   private quick = 0;
 
   constructor(private readonly before: (seconds: number) => boolean) {
@@ -77,12 +81,16 @@ export class Stage {
   }
 
   private adapt(took: number): void {
-    this.slow = took > SLOW ? this.slow + 1 : 0;
-    this.quick = took < QUICK ? this.quick + 1 : 0;
-    if (this.slow >= 6 && this.fine > COARSEST) this.fine = Math.max(COARSEST, this.fine * 0.8);
-    else if (this.quick >= 120 && this.fine < 1) this.fine = Math.min(1, this.fine * 1.2);
+    this.frames += 1;
+    this.took += took;
+    if (this.frames < JUDGED) return;
+    const mean = this.took / this.frames;
+    this.frames = this.took = 0;
+    this.quick = mean < QUICK ? this.quick + 1 : 0;
+    if (mean > SLOW && this.fine > COARSEST) this.fine = Math.max(COARSEST, this.fine * 0.8);
+    else if (this.quick >= 10 && this.fine < 1) this.fine = Math.min(1, this.fine * 1.2);
     else return;
-    this.slow = this.quick = 0;
+    this.quick = 0;
     this.resize();
   }
 
