@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -42,28 +43,34 @@ def check(system: System, leading: str | None, values: Mapping[str, Fraction], a
             asked.complain("--set", "bad-assignment", f"{name} belongs to the small parameter: it stays a symbol")
 
 
-def drawn(
-    file: Path,
-    folder: Path,
-    system: System,
-    found: Oscillating,
-    values: Mapping[str, Fraction],
-    kinds: Sequence[str],
-    quiet: bool,
-) -> int:
+@dataclass(frozen=True)
+class Drawing:
+    """What figures are of, and where they go; ``language``: en, ru, es."""
+
+    file: Path
+    folder: Path
+    system: System
+    values: Mapping[str, Fraction]
+    kinds: Sequence[str]
+    language: str
+    quiet: bool
+
+
+def drawn(asked: Drawing, found: Oscillating) -> int:
     """Draws and writes; the exit code."""
     from mbsym.algebra.failures import Failure
     from mbsym.numerics.scenario import Incomplete
     from mbsym.report.expansion_measured import DIVIDED, NO_NUMBERS
+    from mbsym.report.language import Language
     from mbsym.report.oscillation_figure import oscillation_figures
     from mbsym.simulation.oscillation_paths import oscillation_paths
 
     reason = ""
     try:
-        with status(quiet, f"{file.name}: figures"):
-            paths = oscillation_paths(system, found, values)
-            files = oscillation_figures(system, paths, found.found.order, found.found.small, kinds)
-            deliver(folder, files, "oscillations")
+        with status(asked.quiet, f"{asked.file.name}: figures"):
+            paths = oscillation_paths(asked.system, found, asked.values)
+            files = oscillation_figures(asked.system, paths, found.found, asked.kinds, Language(asked.language))
+            deliver(asked.folder, files, "oscillations")
     except Incomplete:
         reason = NO_NUMBERS
     except ZeroDivisionError:
@@ -71,8 +78,8 @@ def drawn(
     except (Failure, ValueError, OverflowError, OSError) as error:
         reason = str(error)
     if reason:
-        complain(file, f"no figures: {reason}")
+        complain(asked.file, f"no figures: {reason}")
         return FAILED
-    if not quiet:
-        console().print(f"  files in {folder}: {', '.join(sorted(files))}", markup=False)
+    if not asked.quiet:
+        console().print(f"  files in {asked.folder}: {', '.join(sorted(files))}", markup=False)
     return OK

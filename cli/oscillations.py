@@ -11,7 +11,7 @@ import click
 from mbsym_cli.console import BAD_INPUT, FAILED, OK, OutPath, complain, read_description, status
 from mbsym_cli.files import folder_for
 from mbsym_cli.options import Options
-from mbsym_cli.oscillation_files import FORMATS, check, drawn, symbols
+from mbsym_cli.oscillation_files import FORMATS, Drawing, check, drawn, symbols
 from mbsym_cli.section_options import read_settings
 
 if TYPE_CHECKING:
@@ -28,6 +28,7 @@ MOST_ORDER = 6
 @click.option("--frequency", default="1", metavar="K", help="Of several that it shares with others, the K-th.")
 @click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Put in a number; repeatable.")
 @click.option("--format", "formats", metavar="LIST", help="Draw figures: svg, pdf, png.")
+@click.option("--language", metavar="NAME", help="Of figures: en, ru, es.")
 @click.option("--out", "-o", type=OutPath(path_type=Path, file_okay=False), help="Folder.  [default: reports/NAME]")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON instead of text.")
 def command(
@@ -37,6 +38,7 @@ def command(
     frequency: str,
     settings: tuple[str, ...],
     formats: str | None,
+    language: str | None,
     out: Path | None,
     as_json: bool,
 ) -> None:
@@ -46,7 +48,7 @@ def command(
     possible for some amplitudes only, or not at all, that is told.  FILE names the small parameter ('small parameter:
     eps', or powers of it in parameters and variables); without it, the deviations from the unperturbed motion are
     small, of order eps.  Coefficients hold the parameters, the amplitude and the values that stay constant without
-    eps; resonances that were divided by are listed (not those among damped variables that lead together).
+    eps; resonances that were divided by are listed, and what is left out.
 
     The series are put into the equations exactly.  Where FILE has numbers, their error is measured against runs at
     parts of eps.  Figures show the series and a simulation from the same state over three periods: oscillation (over
@@ -63,6 +65,8 @@ def command(
       mbsym oscillations systems/gyrostat-fast.yaml --set lx=0 --json
       mbsym oscillations systems/gyrostat-fast.yaml --format png --out figures
     """
+    from mbsym.report.language import LANGUAGES
+
     system = read_description(file, unconstrained="oscillations", moving="oscillations")
     asked = Options()
     most = asked.whole("--order", order, 1, MOST_ORDER)
@@ -71,8 +75,10 @@ def command(
     if system is not None:
         check(system, leading, values, asked)
     kinds = () if formats is None else asked.words("--format", formats, FORMATS, "format")
-    if out is not None and formats is None:
-        asked.complain("--out", "wrong-use", "nothing is written without --format", "add --format png")
+    for option, given in (("--out", out), ("--language", language)):
+        if given is not None and formats is None:
+            asked.complain(option, "wrong-use", "nothing is written without --format", "add --format png")
+    spoken = asked.word("--language", language or "en", LANGUAGES, "language")
     stop = asked.refused(None if system is None else file)
     if stop or system is None or most is None or kinds is None or which is None:
         sys.exit(BAD_INPUT)
@@ -98,7 +104,9 @@ def command(
         click.echo(oscillations_json(system, values, found, measured), nl=False)
     else:
         _show(file, system.name, found, measured)
-    sys.exit(drawn(file, folder_for(file, out), system, found, values, kinds, as_json) if kinds else OK)
+    if not kinds or spoken is None:
+        sys.exit(OK)
+    sys.exit(drawn(Drawing(file, folder_for(file, out), system, values, kinds, spoken, as_json), found))
 
 
 def _show(file: Path, name: str, told: Oscillating, measured: MeasuredOrders | str) -> None:

@@ -197,7 +197,11 @@ def oscillating(
         field,
         taylor,
         sign == "positive",
-        tuple(one for one in found.divisors if _sign(analysis, tower, one.value) not in ("positive", "negative")),
+        tuple(
+            one
+            for one in found.divisors
+            if all(_sign(analysis, tower, x) not in ("positive", "negative") for x in one.parts)
+        ),
         found.kind is Amplitude.FREE or size == "positive",
         () if system.speeds else system.velocities,
     )

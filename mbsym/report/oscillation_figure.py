@@ -11,7 +11,10 @@ from matplotlib.figure import Figure
 from mbsym.formulas.latex import LatexNames
 from mbsym.model.quantities import time_unit, unit_of
 from mbsym.model.system import System
+from mbsym.problems.small_parameter.oscillation_result import Oscillation
 from mbsym.report.drawing import BLUE, RED, pictures
+from mbsym.report.language import Language
+from mbsym.report.oscillation_words import FIGURE, MOTION_LINE, NO_ANGLES, SERIES_LINE
 from mbsym.report.unit_text import labelled
 from mbsym.simulation.oscillation_paths import Paths
 
@@ -20,12 +23,14 @@ STEMS = ("oscillation", "oscillation-planes", "oscillation-angles")
 
 
 def oscillation_figures(
-    system: System, found: Paths, order: int, small: str, formats: Sequence[str]
+    system: System, found: Paths, told: Oscillation, formats: Sequence[str], language: Language | None = None
 ) -> dict[str, bytes]:
     """``oscillation`` (over time), ``oscillation-planes`` (rates over variables) and ``oscillation-angles``."""
-    title = f"{system.name}: series to order {order} at {small} = {found.small:.4g}, and the motion"
-    if not found.angles:
-        title += f"\n(no angles: {found.no_angles})" if found.no_angles else ""
+    spoken = language or Language()
+    series, simulated = spoken.sentence(SERIES_LINE), spoken.sentence(MOTION_LINE)
+    title = spoken.sentence(FIGURE, system=system.name, order=told.order, small=told.small, value=f"{found.small:.4g}")
+    if not found.angles and found.no_angles:
+        title += "\n" + spoken.sentence(NO_ANGLES, why=spoken.say(found.no_angles))
     names = LatexNames(["t", *found.names, *found.angles])
 
     def label(name: str, rate: bool = False) -> str:
@@ -39,9 +44,9 @@ def oscillation_figures(
 
     def over_time(curves: Sequence[tuple[str, Any, Any]]) -> Figure:
         def draw(axes: Axes, one: tuple[str, Any, Any]) -> None:
-            name, series, motion = one
-            axes.plot(found.times, motion, color=BLUE, label="motion (simulation)")
-            axes.plot(found.times, series, color=RED, linestyle="--", label="series")
+            name, expanded, motion = one
+            axes.plot(found.times, motion, color=BLUE, label=simulated)
+            axes.plot(found.times, expanded, color=RED, linestyle="--", label=series)
             axes.set_ylabel(label(name) + unit(name))
             axes.set_xlabel(labelled("$t$", time_unit(system)))
 
@@ -50,8 +55,8 @@ def oscillation_figures(
     def planes() -> Figure:
         def draw(axes: Axes, name: str) -> None:
             for curve, colour, style, told in (
-                (found.motion[name], BLUE, "-", "motion (simulation)"),
-                (found.series[name], RED, "--", "series"),
+                (found.motion[name], BLUE, "-", simulated),
+                (found.series[name], RED, "--", series),
             ):
                 axes.plot(*curve, color=colour, linestyle=style, label=told, linewidth=1.0)
             axes.set_xlabel(label(name) + unit(name))

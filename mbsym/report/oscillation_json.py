@@ -67,11 +67,14 @@ def oscillation_data(told: Oscillating) -> dict[str, Any]:
                 "harmonic": one.harmonic,
                 "order": one.order,
                 "vanishes": str(numerator(told, one.value)),
+                **({} if one.damping is None else {"vanishes_too": str(numerator(told, one.damping))}),
             }
             for one in found.divisors
         ],
         "left_out": [{"variables": list(names), "square": str(told.formula(x))} for names, x in found.others],
         "forced": [list(names) for names in found.damped],
+        "with_root_zero": [list(names) for names in found.with_zero],
+        "roots_not_found": [list(names) for names in found.not_known],
         "taylor": told.taylor,
         "conditions": [str(x) for x in _positive(told)],
     }

@@ -9,7 +9,7 @@ from mbsym.algebra.tower import Element
 from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula
 from mbsym.problems.small_parameter.harmonics import Harmonics
-from mbsym.problems.small_parameter.oscillation_result import Amplitude
+from mbsym.problems.small_parameter.oscillation_result import Amplitude, Divisor
 from mbsym.report.expansion_words import Coefficient, Medium, scaled
 from mbsym.report.said import Said
 
@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 
 SOLUTION = "Periodic solution up to order [[order]] of [[small]], led by [[leading]]"
 RATE = "The rate of the phase"
+FIGURE = "[[system]]: series to order [[order]] at [[small]] = [[value]], and the motion"
+NO_ANGLES = "(no angles: [[why]])"
+SERIES_LINE, MOTION_LINE = "series", "motion (simulation)"
 DRIFTS = "Variables that no equation needs, but for their initial values"
 
 _SERIES = (
@@ -48,8 +51,18 @@ _RESONANCE = (
     "Resonance, and in general no such solution, where [[condition]] (harmonic [[harmonic]], order [[order]], of "
     "[[names]])."
 )
+_BOTH = (
+    "Resonance, and in general no such solution, where [[condition]] and [[other]] (harmonic [[harmonic]], order "
+    "[[order]], of [[names]])."
+)
 _OTHERS = "Free oscillations of [[names]], whose frequency has the square [[square]], are left out."
-_DAMPED = "Without [[small]], roots of [[names]] are not all imaginary: only what is forced of them is here."
+_DAMPED = (
+    "Without [[small]], roots of [[names]] are not all imaginary: free motions that belong to the others are left out."
+)
+_ZERO = "Without [[small]], [[names]] have the root zero: free displacements and drifts that belong to it are left out."
+_NOT_KNOWN = (
+    "Without [[small]], not all roots of [[names]] were found: free motions that belong to the others are left out."
+)
 _ASIDE = "[[names]], on which no equation depends, follow by quadrature: see mbsym oscillations."
 _MEASURED = (
     "Measured at the given numbers, over one period, against motions that begin in the same state: with [[small]] "
@@ -110,12 +123,14 @@ def sentences(told: Oscillating, write: Medium, drifts: bool = False) -> Iterato
         nonzero = write.condition(told.formula(found.frequency), "!=")
         yield (_REAL, values | {"condition": real}) if rooted else (_NONZERO, values | {"condition": nonzero})
     for one in told.resonances:
-        gaps = {"condition": write.condition(numerator(told, one.value), "="), "names": write.names(one.variables)}
-        yield _RESONANCE, {"harmonic": one.harmonic, "order": one.order, **gaps}
+        zeros = dict(zip(("condition", "other"), _zeros(told, one, write), strict=False))
+        gaps = {"harmonic": one.harmonic, "order": one.order, "names": write.names(one.variables)}
+        yield _RESONANCE if one.damping is None else _BOTH, {**zeros, **gaps}
     for group, other in found.others:
         yield _OTHERS, {"names": write.names(group), "square": write.formula(told.formula(other))}
-    for group in found.damped:
-        yield _DAMPED, values | {"names": write.names(group)}
+    for sentence, groups in ((_DAMPED, found.damped), (_ZERO, found.with_zero), (_NOT_KNOWN, found.not_known)):
+        for group in groups:
+            yield sentence, values | {"names": write.names(group)}
     if found.drifts and not drifts:
         yield _ASIDE, {"names": write.names([one.variable for one in found.drifts])}
 
@@ -129,6 +144,11 @@ def _wave(told: Oscillating, whole: bool) -> Formula:
     """The amplitude times the cosine of the phase; or its sine."""
     zero, one = told.found.tower.zero, told.found.tower.one
     return told.wave(Harmonics(told.found.tower, {1: (told.found.amplitude, zero) if whole else (zero, one)}))
+
+
+def _zeros(told: Oscillating, one: Divisor, write: Medium) -> Iterator[str]:
+    """What is zero at a resonance."""
+    return (write.condition(numerator(told, x), "=") for x in one.parts)
 
 
 def numerator(told: Oscillating, value: Element) -> Formula:

@@ -11,7 +11,10 @@ SENTENCES = {
     "Put into the equations at random rational parameters, it leaves nothing (verified).": "При подстановке в уравнения со случайными рациональными параметрами ничего не остаётся (проверено).",
     "Of the equations, terms up to degree [[degree]] in the deviations were taken; the others are of higher order.": "В уравнениях взяты члены до степени [[degree]] по отклонениям; остальные --- более высокого порядка.",
     "Free oscillations of [[names]], whose frequency has the square [[square]], are left out.": "Свободные колебания [[names]] с квадратом частоты [[square]] не рассматриваются.",
-    "Without [[small]], roots of [[names]] are not all imaginary: only what is forced of them is here.": "При [[small]] = 0 не все корни для [[names]] чисто мнимые: здесь только их вынужденное движение.",
+    "Without [[small]], roots of [[names]] are not all imaginary: free motions that belong to the others are left out.": "При [[small]] = 0 не все корни для [[names]] чисто мнимые: свободные движения, отвечающие остальным, не рассматриваются.",
+    "Without [[small]], [[names]] have the root zero: free displacements and drifts that belong to it are left out.": "При [[small]] = 0 у [[names]] есть нулевой корень: отвечающие ему свободные смещения и уходы не рассматриваются.",
+    "Without [[small]], not all roots of [[names]] were found: free motions that belong to the others are left out.": "При [[small]] = 0 найдены не все корни для [[names]]: свободные движения, отвечающие остальным, не рассматриваются.",
+    "Resonance, and in general no such solution, where [[condition]] and [[other]] (harmonic [[harmonic]], order [[order]], of [[names]]).": "Резонанс, при котором такого решения, вообще говоря, нет, --- там, где [[condition]] и [[other]] (гармоника [[harmonic]], порядок [[order]], переменные [[names]]).",
     "The errors of [[names]] fall more slowly than expected: [[small]] is too large there, or something is wrong.": "Погрешности [[names]] убывают медленнее ожидаемого: [[small]] там слишком велико или есть ошибка.",
     "Periodic solution up to order [[order]] of [[small]], led by [[leading]]: all variables as functions of [[phase]], and the rate of it. The coefficient of the power k of [[small]] has the index (k).": "Периодическое решение до порядка [[order]] по [[small]], ведущая переменная [[leading]]: все переменные как функции от [[phase]] и скорость этой фазы. Коэффициент при степени k параметра [[small]] обозначен верхним индексом (k).",
     "Secular terms are removed up to this order with any amplitude. Here it is [[amplitude]], the value of [[leading]] at the phase 0, where it has no term [[sine]].": "Вековые члены устранены до этого порядка при любой амплитуде. Здесь она равна [[amplitude]], это значение [[leading]] при фазе 0, где члена [[sine]] нет.",
@@ -26,4 +29,15 @@ SENTENCES = {
     "The error of the periodic solution was not measured: [[why]].": "Погрешность периодического решения не измерена: [[why]].",
     "No periodic solution was expanded in powers of [[small]]: [[why]].": "Периодическое решение по степеням [[small]] не разложено: [[why]].",
     "Periodic solutions in powers of [[small]] are looked for by mbsym oscillations.": "Периодические решения по степеням [[small]] ищет команда mbsym oscillations.",
+    "[[system]]: series to order [[order]] at [[small]] = [[value]], and the motion": "[[system]]: ряды до порядка [[order]] при [[small]] = [[value]] и движение",
+    "(no angles: [[why]])": "(без углов: [[why]])",
+    "series": "ряд",
+    "motion (simulation)": "движение (численно)",
+}
+
+#: Why no angles are drawn.
+WORDS = {
+    "quantities are prescribed": "есть заданные величины",
+    "a speed is no variable of the series": "одна из квазискоростей не входит в ряды",
+    "the angles become singular": "углы вырождаются",
 }

@@ -89,3 +89,61 @@ def test_frequencies_of_one_block_that_may_be_in_resonance_are_listed(tmp_path):
     assert "where 2*(c - 4*k) = 0 (harmonic 3, order 1, of x_dot, y_dot, x, y)" in told
     data = json.loads(run(str(path), "--of", "x", "--order", "1", "--json").stdout)
     assert {(one["harmonic"], one["vanishes"]) for one in data["resonances"]} == {(1, "2*c"), (3, "2*(c - 4*k)")}
+
+
+DAMPED = """mbsym: 1
+name: Two masses and a damper
+parameters: {k: {sign: positive}, c: {sign: %s}, d: {sign: real}, eps: {sign: positive}}
+small parameter: eps
+bodies:
+  - {name: mass, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}
+loads:
+  - potential: k**2*(x**2 + y**2)/2 + d*(x - y)**2/2 + eps*x**4/4
+  - generalized force: {x: -c*(x_dot - y_dot), y: c*(x_dot - y_dot)}
+"""
+
+
+def test_resonances_of_a_block_that_leads_and_has_damping_need_two_conditions(tmp_path):
+    """By hand, v = x - y: v'' + 2 c v' + (k^2 + 2 d) v = -eps x^3; at i n k that is k^2 (1 - n^2) + 2 d + 2 c i n k."""
+    path = tmp_path / "damped.yaml"
+    path.write_text(DAMPED % "real", encoding="utf-8")
+    done = run(str(path), "--of", "x", "--order", "1", "--json")
+    data = json.loads(done.stdout)
+    jsonschema.validate(data, schema("oscillations"))
+    shown = {(one["harmonic"], one["vanishes"], one["vanishes_too"]) for one in data["resonances"]}
+    assert shown == {(1, "2*d", "2*c"), (3, "2*(d - 4*k**2)", "2*c")}
+    assert data["forced"] == [["x_dot", "y_dot", "x", "y"]]
+    assert (data["with_root_zero"], data["roots_not_found"]) == ([], [])
+    told = " ".join(run(str(path), "--of", "x", "--order", "1").stdout.split())
+    assert "where 2*(d - 4*k**2) = 0 and 2*c = 0 (harmonic 3, order 1" in told
+    path.write_text(DAMPED % "positive", encoding="utf-8")
+    assert "Resonance" not in run(str(path), "--of", "x", "--order", "1").stdout  # c > 0
+
+
+CHAIN = """mbsym: 1
+name: Masses
+parameters: {k: {sign: positive}, eps: {sign: positive}}
+small parameter: eps
+bodies:
+  - {name: mass, attached to: 0, connection point: [x, y, z], mass: 1, coordinates: [x, y, z]}
+loads:
+  - potential: %s
+"""
+
+
+def test_roots_that_are_zero_and_roots_that_are_not_found_are_no_damping(tmp_path):
+    path = tmp_path / "chain.yaml"
+    path.write_text(CHAIN % "k**2*(x - y)**2/2 + eps*(x - y)**4/4 + z**2/2", encoding="utf-8")
+    data = json.loads(run(str(path), "--of", "x", "--order", "1", "--json").stdout)
+    jsonschema.validate(data, schema("oscillations"))
+    assert (data["with_root_zero"], data["forced"]) == ([["x_dot", "y_dot", "x", "y"]], [])
+    told = " ".join(run(str(path), "--of", "x", "--order", "1").stdout.split())
+    assert "x_dot, y_dot, x, y have the root zero: free displacements and drifts that belong to it are left out" in told
+    # a cubic without rational roots: all three frequencies are real, none is found
+    text = "x**2/2 + x*y + 3*y**2/2 + y*z + 3*z**2 + eps*x**4/4 + k*eps*x**3"
+    path.write_text(CHAIN % text, encoding="utf-8")
+    done = run(str(path), "--of", "x", "--order", "1")
+    assert done.exit_code == 1
+    told = " ".join(done.stderr.split())
+    assert "the frequencies of x_dot, y_dot, z_dot, x, y, z were not found as square roots" in told
+    assert "no periodic solution" not in told

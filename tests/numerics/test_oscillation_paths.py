@@ -14,6 +14,8 @@ import mbsym
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.analysis import Analysis
 from mbsym.analysis.oscillating import oscillating
+from mbsym.report.language import Language
+from mbsym.report.oscillation_figure import oscillation_figures
 from mbsym.simulation.oscillation_paths import oscillation_paths
 from mbsym_cli.main import main
 
@@ -84,6 +86,15 @@ def test_without_an_amplitude_nothing_is_drawn():
         oscillation_paths(system, oscillating(Analysis(system, (12,)), 1))
 
 
+def test_titles_and_legends_follow_the_language():
+    system = mbsym.loads(DUFFING + NUMBERS).system
+    told = oscillating(Analysis(system, (12,)), 1)
+    paths = oscillation_paths(system, told, periods=0.5)
+    drawn = oscillation_figures(system, paths, told.found, ["svg"], Language("es"))["oscillation-planes.svg"].decode()
+    assert "movimiento (simulaci" in drawn
+    assert "motion" not in drawn
+
+
 @pytest.mark.slow
 def test_the_command_draws(tmp_path):
     file = tmp_path / "duffing.yaml"
@@ -91,6 +102,12 @@ def test_the_command_draws(tmp_path):
     words = ["oscillations", str(file), "--order", "1", "--format", "svg", "--out", str(tmp_path / "out")]
     assert CliRunner().invoke(main, words).exit_code == 0
     assert {x.name for x in (tmp_path / "out").glob("*.svg")} == {"oscillation.svg", "oscillation-planes.svg"}
+    words[-1] = str(tmp_path / "ru")
+    assert CliRunner().invoke(main, [*words, "--language", "ru"]).exit_code == 0
+    english, russian = ((tmp_path / one / "oscillation.svg").read_bytes() for one in ("out", "ru"))
+    assert english != russian
+    done = CliRunner().invoke(main, [*words, "--language", "xx"])
+    assert (done.exit_code, "language" in done.stderr) == (2, True)
     file.write_text(DUFFING, encoding="utf-8")
     done = CliRunner().invoke(main, words)
     assert done.exit_code == 1

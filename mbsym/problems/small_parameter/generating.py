@@ -10,7 +10,7 @@ mode.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from mbsym.algebra.failures import NoClosedForm
@@ -37,7 +37,8 @@ class Mode:
 class Generating:
     """``constant`` and ``moving`` variables by number; A over ``moving``, b; ``blocks``, each after what drives it.
 
-    ``aside`` are variables that no equation needs; they are found by quadrature, in this order.
+    ``aside`` are variables that no equation needs; they are found by quadrature, in this order.  Blocks that have other
+    roots than those of ``modes``: surely some that are not imaginary (``damped``), zero, or some that are not known.
     """
 
     tower: Tower
@@ -50,7 +51,9 @@ class Generating:
     shift: Mapping[int, Element]
     blocks: tuple[tuple[int, ...], ...]
     modes: tuple[Mode, ...]
-    damped: tuple[tuple[int, ...], ...]
+    damped: tuple[tuple[int, ...], ...] = ()
+    with_zero: tuple[tuple[int, ...], ...] = ()
+    not_known: tuple[tuple[int, ...], ...] = ()
 
     def block_matrix(self, block: Sequence[int]) -> list[list[Element]]:
         zero = self.tower.zero
@@ -88,14 +91,14 @@ def generating(tower: Tower, names: Sequence[str], rows: Rows, start: Callable[[
                 shift[i] = shift[i] + c if i in shift else c
     matrix = {key: c for key, c in matrix.items() if not c.is_zero()}
     blocks = _blocks(moving, matrix)
-    found = Generating(tower, tuple(names), rows, constant, moving, aside, matrix, shift, blocks, (), ())
-    modes, damped = [], []
-    for block in blocks:
-        one, other = _modes(found, block)
-        modes += one
-        damped += [block] if other else []
-    return Generating(
-        tower, tuple(names), rows, constant, moving, aside, matrix, shift, blocks, tuple(modes), tuple(damped)
+    found = Generating(tower, tuple(names), rows, constant, moving, aside, matrix, shift, blocks, ())
+    roots = [(block, _roots_of(found, block)) for block in blocks]
+    return replace(
+        found,
+        modes=tuple(x for _, one in roots for x in one.modes),
+        damped=tuple(block for block, one in roots if one.damped),
+        with_zero=tuple(block for block, one in roots if one.zero),
+        not_known=tuple(block for block, one in roots if one.not_known),
     )
 
 
@@ -128,18 +131,36 @@ def _blocks(moving: Sequence[int], matrix: Mapping[tuple[int, int], Element]) ->
     return tuple(sorted(parts, key=lambda part: (len(reach[part[0]]), part)))
 
 
-def _modes(found: Generating, block: tuple[int, ...]) -> tuple[list[Mode], bool]:
-    """The modes of a block; and whether it has other roots."""
+@dataclass(frozen=True)
+class _Roots:
+    """The modes of a block; and whether it has roots that are surely not imaginary, zero, or not known."""
+
+    modes: tuple[Mode, ...]
+    damped: bool
+    zero: bool
+    not_known: bool
+
+
+def _roots_of(found: Generating, block: tuple[int, ...]) -> _Roots:
     tower = found.tower
     if len(block) > MOST_BLOCK:
         raise NoClosedForm(f"more than {MOST_BLOCK} variables oscillate together without the small parameter")
-    coefficients = faddeev(found.block_matrix(block), tower.zero, tower.one)[1]  # low to high
-    squares: list[Element] = []
-    for factor in [coefficients] if _even(coefficients) else _factors(tower, coefficients):
-        if _even(factor):
-            squares += _roots(tower, [c / factor[-1] for c in factor[::2]])  # of mu = lambda^2
-    modes = [Mode(block, -x) for x in squares if not _negative(tower, -x)]
-    return modes, 2 * len(modes) < len(block)
+    whole = faddeev(found.block_matrix(block), tower.zero, tower.one)[1]  # low to high
+    coefficients = without_zeros(whole)
+    factors = [coefficients] if _even(coefficients) else _factors(tower, coefficients)
+    even = [factor for factor in factors if _even(factor)]
+    # A real polynomial, not zero at 0, with imaginary roots only is even.
+    squares = [x for factor in even for x in _roots(tower, [c / factor[-1] for c in factor[::2]])]  # of lambda^2
+    modes = tuple(Mode(block, -x) for x in squares if not _negative(tower, -x))
+    damped = len(even) < len(factors) or len(modes) < len(squares)
+    lost = 2 * len(squares) < sum(len(factor) - 1 for factor in even)
+    return _Roots(modes, damped, len(coefficients) < len(whole), lost)
+
+
+def without_zeros(polynomial: Sequence[Element]) -> list[Element]:
+    """Divided by as many lambda as there are; coefficients from low to high."""
+    first = next(i for i, c in enumerate(polynomial) if not c.is_zero())
+    return list(polynomial[first:])
 
 
 def _even(polynomial: Sequence[Element]) -> bool:

@@ -21,7 +21,7 @@ from typing import Any
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.tower import MOST_ROOTS, Element
 from mbsym.problems.normal_forms.expansion import faddeev
-from mbsym.problems.small_parameter.generating import Generating, Mode
+from mbsym.problems.small_parameter.generating import Generating, Mode, without_zeros
 from mbsym.problems.small_parameter.harmonics import Harmonics
 from mbsym.problems.small_parameter.linear_waves import solved
 from mbsym.problems.small_parameter.oscillation_result import Divisor, Drift
@@ -191,30 +191,36 @@ class Orders:
         return answer[:size], answer[size:] or [zero] * size
 
     def _divided(self, block: tuple[int, ...], k: int, order: int, answer: Sequence[Element]) -> None:
-        """Notes chi(i k omega) of a block with an even characteristic polynomial chi.
+        """Notes chi(i k omega), chi the characteristic polynomial of a block; chi(0) without roots zero.
 
-        Of the block that oscillates by itself, chi without lambda^2 + omega^2: the product of omega_j^2 - (k omega)^2
-        over its other frequencies; none where no denominator of the ``answer`` shares a factor with it (normal
-        oscillations that the force does not couple).
+        Of the block that oscillates by itself, chi without lambda^2 + omega^2; nothing where no denominator of the
+        ``answer`` shares a factor with it (normal oscillations that the force does not couple).
         """
         tower, names = self.tower, tuple(self.system.names[i] for i in block)
-        coefficients = faddeev(self.system.block_matrix(block), tower.zero, tower.one)[1]
-        if any(not c.is_zero() for c in coefficients[-2::-2]) or len(block) % 2:
-            return
-        even = coefficients[::2]  # of lambda^2, from low to high
+        polynomial = faddeev(self.system.block_matrix(block), tower.zero, tower.one)[1]
         if block == self.mode.block:
-            even = _without(even, self.mode.square)
+            polynomial = _without(polynomial, self.mode.square)
         square = -(self.mode.square * (k * k))
-        value = tower.zero
-        for c in reversed(even):
-            value = value * square + c
-        known = any(one.variables == names and one.harmonic == k for one in self.divisors)
-        if known or tower.rational(value / self.mode.square) is not None:
-            return  # of multiples of the frequency itself it is said already that they are not zero
-        if block == self.mode.block and _cancelled(value, answer):
+        parts = [without_zeros(polynomial)[0]]
+        if k:  # chi(i k omega) = parts[0] + i k omega parts[1]
+            parts = [_at(tower, polynomial[first::2], square) for first in range(2)]
+        parts = [x for x in parts if not x.is_zero()]
+        if any(one.variables == names and one.harmonic == k for one in self.divisors):
             return
-        if tower.rational(value) is None:
-            self.divisors.append(Divisor(names, k, order, value))
+        if not parts or any(self._is_multiple(x, len(block)) for x in parts):
+            return  # of multiples of the frequency itself it is said already that they are not zero
+        whole = parts[0] if len(parts) == 1 else parts[0] * parts[0] - square * parts[1] * parts[1]
+        if block == self.mode.block and _cancelled(whole, answer):
+            return
+        self.divisors.append(Divisor(names, k, order, *parts))
+
+    def _is_multiple(self, x: Element, most: int) -> bool:
+        """Whether it is a number, or one times a power of omega^2."""
+        for _ in range(most // 2 + 1):
+            if self.tower.rational(x) is not None:
+                return True
+            x = x / self.mode.square
+        return False
 
     def _led(self, forcing: Sequence[Harmonics], order: int) -> list[Harmonics]:
         """The block that oscillates by itself: its frequency is corrected, its amplitude may be determined."""
@@ -291,11 +297,18 @@ Pair = tuple[Element, Element]
 
 
 def _without(polynomial: Sequence[Element], square: Element) -> list[Element]:
-    """The quotient by mu + square, of which it is a multiple; coefficients from low to high."""
-    found = [polynomial[-1]]
-    for c in reversed(polynomial[1:-1]):
-        found.append(c - square * found[-1])
+    """The quotient by lambda^2 + square, of which it is a multiple; coefficients from low to high."""
+    found: list[Element] = []
+    for k, c in enumerate(reversed(polynomial[2:])):
+        found.append(c - square * found[k - 2] if k > 1 else c)
     return found[::-1]
+
+
+def _at(tower: Any, polynomial: Sequence[Element], x: Element) -> Element:
+    total: Element = tower.zero
+    for c in reversed(polynomial):
+        total = total * x + c
+    return total
 
 
 def _cancelled(value: Element, answer: Sequence[Element]) -> bool:

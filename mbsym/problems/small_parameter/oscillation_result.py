@@ -18,12 +18,20 @@ class Amplitude(Enum):
 
 @dataclass(frozen=True)
 class Divisor:
-    """What was divided by at ``harmonic`` in the equations of ``variables``: resonance where it vanishes."""
+    """What was divided by at ``harmonic`` in the equations of ``variables``: resonance where it vanishes.
+
+    With damping that is ``value`` + i k omega ``damping``: resonance where both vanish.
+    """
 
     variables: tuple[str, ...]
     harmonic: int
     order: int
     value: Element
+    damping: Element | None = None
+
+    @property
+    def parts(self) -> tuple[Element, ...]:
+        return (self.value,) if self.damping is None else (self.value, self.damping)
 
 
 @dataclass(frozen=True)
@@ -43,6 +51,8 @@ class Oscillation:
     amplitude is free it is the variable's value at T = 0 in all orders, where it is ``DETERMINED`` its first
     approximation; ``constants``: variables that keep their value at eps = 0, with it; it is theirs at T = 0 in all
     orders.  ``names`` are the variables in the order of ``series``; ``powers``: x stands for x eps^power.
+    ``others``: variables and the square of a frequency that is left out; ``damped``, ``with_zero``, ``not_known``:
+    variables with roots that are surely not imaginary, zero, or not found.
     ``residuals``: the order of eps that is left in each equation when all this is put into it (None: nothing).
     """
 
@@ -63,6 +73,8 @@ class Oscillation:
     divisors: tuple[Divisor, ...]
     others: tuple[tuple[tuple[str, ...], Element], ...]
     damped: tuple[tuple[str, ...], ...]
+    with_zero: tuple[tuple[str, ...], ...] = ()
+    not_known: tuple[tuple[str, ...], ...] = ()
     residuals: tuple[int | None, ...] = ()
 
     @property

@@ -114,7 +114,9 @@ def oscillation(there: Equations, order: int, leading: str = "", which: int = 1)
         tuple(orders.quadratures(order)),
         tuple(one for one in orders.divisors if one.order <= order),
         tuple((tuple(there.names[i] for i in one.block), one.square) for one in system.modes if one is not mode),
-        tuple(tuple(there.names[i] for i in block) for block in system.damped),
+        damped=_named(there, system.damped),
+        with_zero=_named(there, system.with_zero),
+        not_known=_named(there, system.not_known),
     )
     return replace(found, residuals=residual_orders(there.rows, there.names, found))
 
@@ -127,6 +129,13 @@ def _mode(there: Equations, system: Generating, leading: str, which: int) -> Mod
     else:
         own = list(system.modes)
     if not own:
+        open_blocks = [block for block in system.not_known if not leading or there.names.index(leading) in block]
+        if open_blocks:
+            names = ", ".join(there.names[i] for block in open_blocks for i in block)
+            raise NoClosedForm(
+                f"without {there.small} the frequencies of {names} were not found as square roots",
+                remedy="with numbers for parameters, where they factor: --set NAME=VALUE",
+            )
         damped = [there.names[i] for block in system.damped for i in block]
         if damped:
             raise NotPeriodic(
@@ -142,6 +151,10 @@ def _mode(there: Equations, system: Generating, leading: str, which: int) -> Mod
         count = "one frequency" if len(own) == 1 else f"{len(own)} frequencies"
         raise NoClosedForm(f"without the small parameter {block} have {count}: there is none with the number {which}")
     return own[which - 1]
+
+
+def _named(there: Equations, blocks: Sequence[tuple[int, ...]]) -> tuple[tuple[str, ...], ...]:
+    return tuple(tuple(there.names[i] for i in block) for block in blocks)
 
 
 def _leading(there: Equations, mode: Mode) -> int:
