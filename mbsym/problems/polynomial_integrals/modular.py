@@ -29,6 +29,8 @@ PRIMES = (2**61 - 1, 2**61 - 31)
 MOST_COUPLED = 1500
 #: Monomials altogether.
 MOST_MONOMIALS = 20_000
+#: Terms of the derivatives of all monomials: what they take grows with them, in seconds and in memory.
+MOST_TERMS = 6_000_000
 #: What helps where there are too many.
 SMALLER = "ask for a smaller --degree, or put in numbers with --set"
 
@@ -93,9 +95,7 @@ class ModularField:
 
     def reduced(self, terms: Terms) -> Terms:
         """Modulo the relations."""
-        for leading, tail in self.rules:
-            terms = _reduced(terms, leading, tail, self.prime)
-        return terms
+        return _reduced(terms, self.rules, self.prime)
 
 
 def at_random(
@@ -111,20 +111,33 @@ def at_random(
     raise NoClosedForm("the equations divide by what vanishes at these values")
 
 
-def _reduced(terms: Terms, leading: Exponents, tail: Terms, prime: int) -> Terms:
-    done: dict[Exponents, int] = {}
-    todo = terms
+def _reduced(terms: Terms, rules: Sequence[tuple[Exponents, Terms]], prime: int) -> Terms:
+    """Without multiples of the leading monomials of ``rules``."""
+    known = [([(k, power) for k, power in enumerate(leading) if power], leading, tail) for leading, tail in rules]
+
+    def rule(monomial: Exponents) -> tuple[Exponents, Terms] | None:
+        for places, leading, tail in known:
+            for k, power in places:
+                if monomial[k] < power:
+                    break
+            else:
+                return leading, tail
+        return None
+
+    todo = {monomial: c for monomial, c in terms.items() if rule(monomial)}
+    if not todo:
+        return terms
+    done = {monomial: c for monomial, c in terms.items() if monomial not in todo}
     while todo:
-        further: dict[Exponents, int] = {}
-        for monomial, c in todo.items():
-            rest = tuple(map(int.__sub__, monomial, leading))
-            if min(rest) < 0:
-                done[monomial] = (done.get(monomial, 0) + c) % prime
-                continue
-            for m, d in tail.items():
+        monomial, c = todo.popitem()
+        found = rule(monomial)
+        if found is None:
+            done[monomial] = (done.get(monomial, 0) + c) % prime
+        elif c:
+            rest = tuple(map(int.__sub__, monomial, found[0]))
+            for m, d in found[1].items():
                 key = tuple(map(int.__add__, rest, m))
-                further[key] = (further.get(key, 0) + c * d) % prime
-        todo = {m: c for m, c in further.items() if c}
+                todo[key] = (todo.get(key, 0) + c * d) % prime
     return {m: c for m, c in done.items() if c}
 
 
@@ -142,7 +155,7 @@ def remainder(f: Terms, level: Terms, prime: int) -> Terms:
     """f modulo a homogeneous polynomial: without multiples of its leading monomial."""
     leading = max(level)
     inverse = pow(-level[leading], -1, prime)
-    return _reduced(f, leading, {m: c * inverse % prime for m, c in level.items() if m != leading}, prime)
+    return _reduced(f, [(leading, {m: c * inverse % prime for m, c in level.items() if m != leading})], prime)
 
 
 @lru_cache(maxsize=64)
@@ -173,11 +186,18 @@ def count(weights: Sequence[int], weight: int) -> int:
 def kernel(there: ModularField, columns: Sequence[Exponents], modulo: bool) -> list[Terms]:
     """A basis of the f on these monomials with  df/dt = 0  (``modulo`` the relations), over the prime field.
 
-    Raises NoClosedForm where more monomials are coupled than ``MOST_COUPLED``.
+    Raises NoClosedForm where more monomials are coupled than ``MOST_COUPLED``, or derivatives have more terms than
+    ``MOST_TERMS``.
     """
-    images = [there.derivative(one) for one in columns]
-    if modulo:
-        images = [there.reduced(one) for one in images]
+    images = []
+    terms = 0
+    for one in columns:
+        image = there.derivative(one)
+        images.append(there.reduced(image) if modulo else image)
+        terms += len(images[-1])
+        if terms > MOST_TERMS:
+            told = f"the derivatives of {len(columns)} monomials have more than {MOST_TERMS} terms"
+            raise NoClosedForm(told, limit=Limit.TERMS, remedy=SMALLER)
     return [{columns[k]: c for k, c in vector.items()} for vector in kernel_of(images, there.prime)]
 
 
@@ -187,7 +207,9 @@ def kernel_of(images: Sequence[Terms], prime: int) -> list[dict[int, int]]:
     Raises NoClosedForm where more of them are coupled than ``MOST_COUPLED``.
     """
     found: list[dict[int, int]] = []
-    for part in coupled(images):
+    left = possible(images)
+    for part in coupled([images[k] for k in left]):
+        part = [left[k] for k in part]
         if len(part) > MOST_COUPLED:
             told = f"{len(part)} monomials are coupled with each other, more than {MOST_COUPLED}"
             raise NoClosedForm(told, limit=Limit.DEGREE, remedy=SMALLER)
@@ -195,6 +217,33 @@ def kernel_of(images: Sequence[Terms], prime: int) -> list[dict[int, int]]:
         for vector in null_space(matrix):
             found.append({part[k]: c for k, c in enumerate(vector) if c})
     return found
+
+
+def possible(images: Sequence[Terms]) -> list[int]:
+    """Indices of the columns whose coefficient need not be zero: a row with a single entry says that its column's is,
+    and without that column other rows may have a single one.  The kernel stays what it is; most of a matrix goes."""
+    entries: defaultdict[Exponents, int] = defaultdict(int)
+    places: defaultdict[Exponents, int] = defaultdict(int)  # the sum of the columns that are left: of one, its index
+    for k, image in enumerate(images):
+        for row, value in image.items():
+            if value:
+                entries[row] += 1
+                places[row] += k
+    single = [row for row, number in entries.items() if number == 1]
+    left = dict.fromkeys(range(len(images)))
+    while single:
+        row = single.pop()
+        if entries[row] != 1:
+            continue
+        k = places[row]
+        del left[k]
+        for other, value in images[k].items():
+            if value:
+                entries[other] -= 1
+                places[other] -= k
+                if entries[other] == 1:
+                    single.append(other)
+    return list(left)
 
 
 def coupled(images: Sequence[Terms]) -> list[list[int]]:
