@@ -15,9 +15,7 @@ from mbsym.problems.polynomial_integrals.modular import ModularField, kernel, ke
 PRIME = 10007
 
 #: Few entries in many rows, as derivatives of monomials have; columns that repeat give kernels.
-sparse = st.lists(
-    st.dictionaries(st.tuples(st.integers(0, 9)), st.integers(0, 5), max_size=3), min_size=1, max_size=12
-)
+sparse = st.lists(st.dictionaries(st.tuples(st.integers(0, 9)), st.integers(0, 5), max_size=3), min_size=1, max_size=12)
 
 
 def _span(vectors, count):
