@@ -12,6 +12,7 @@ import click
 
 from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OK, complain, read_description, status
 from mbsym_cli.lacking import missing
+from mbsym_cli.nonlinear_at import at_values, check_settings
 from mbsym_cli.options import Options
 from mbsym_cli.section_options import distinct, read_axis, read_settings
 
@@ -23,22 +24,25 @@ if TYPE_CHECKING:
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Replace a value; repeatable.")
 @click.option("--vary", "-v", "axis", metavar="NAME=LOW:HIGH", help="The parameter, and its open interval.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON instead of a table.")
+@click.option("--json", "as_json", is_flag=True, help="With --vary, print JSON instead of a table.")
 def command(file: Path, settings: tuple[str, ...], axis: str | None, as_json: bool) -> None:
     """List the values of a parameter at which terms of higher order of FILE decide otherwise than beside them.
+
+    Without --vary: what they decide at the values, and in parameters where there are formulas.
 
     Between two of them one verdict holds.  Each is the root of a polynomial: a resonance of order 3 or 4 of two
     frequencies, a zero of Arnold's determinant D4, a border of the first approximation; with applied forces a border at
     which a pair of roots becomes imaginary (soft or hard, by Lyapunov's coefficient) or a root zero.  The theorems are
     those of problem 11 ('mbsym explain 11'), which 'mbsym run --problems 11' tells at the values of the description.
 
-    Needs a rational number for every other parameter, from the description (values:) or from --set.
+    Along a parameter every other one needs a rational number, from the description (values:) or from --set.
 
     Exit codes: 0 listed, 1 they cannot be listed (the reason is given), 2 something is missing or wrong,
     130 interrupted.
 
     \b
     Examples:
+      mbsym nonlinear systems/three-bodies.yaml --set mu=1/50
       mbsym nonlinear systems/three-bodies.yaml --vary mu=0:1/2
       mbsym nonlinear systems/ziegler-damped.yaml --vary P=0:10 --set b2=1/5 --json
     """
@@ -46,13 +50,17 @@ def command(file: Path, settings: tuple[str, ...], axis: str | None, as_json: bo
     asked = Options()
     axis_read, numbers = None, {}
     if system is not None:
-        axis_read = read_axis(axis, "--vary", system, asked)
+        if axis is not None or as_json:
+            axis_read = read_axis(axis, "--vary", system, asked)
         numbers = read_settings(settings, system, asked)
+        check_settings(system, numbers, asked)
         distinct([] if axis_read is None else [axis_read], numbers, asked)
         if axis_read is not None and not asked.complaints:
             numbers = _numbers(file, system, numbers, axis_read.name, asked)
-    if asked.refused(None if system is None else file) or system is None or axis_read is None:
+    if asked.refused(None if system is None else file) or system is None:
         sys.exit(BAD_INPUT)
+    if axis_read is None:
+        sys.exit(at_values(file, system, numbers))
     from mbsym.algebra.failures import Failure
     from mbsym.analysis import Analysis
     from mbsym.analysis.exceptional import exceptional

@@ -141,6 +141,36 @@ def test_the_command(tmp_path: Path) -> None:
     assert "mu = 0.010913667677200662890: stable (Arnold-Moser, order 6)" in done.output
     done = runner.invoke(main, ["nonlinear", str(SYSTEMS / "three-bodies.yaml"), "--vary", "mu=1/100:1/50", "--json"])
     assert [one["verdict"] for one in json.loads(done.output)["values"]] == ["stable", "unstable"]
-    done = runner.invoke(main, ["nonlinear", str(SYSTEMS / "three-bodies.yaml"), "--set", "b=1", "--set", "a=x"])
+    wrong = ["--set", "b=1", "--set", "a=x", "--json"]
+    done = runner.invoke(main, ["nonlinear", str(SYSTEMS / "three-bodies.yaml"), *wrong])
     assert done.exit_code == 2
     assert [code in done.output for code in ("missing-option", "unknown-name", "bad-number")] == [True] * 3
+
+
+def test_without_a_parameter_to_vary_the_values_decide(tmp_path: Path) -> None:
+    """27 mu (1 - mu) is 0.27 at mu = 1/100 and 1.28 > 1 at 1/20, where Routh's condition fails."""
+    runner, file = CliRunner(), SYSTEMS / "three-bodies.yaml"
+    assert "the motion is stable (Arnold-Moser)" in runner.invoke(main, ["nonlinear", str(file)]).output
+    done = runner.invoke(main, ["nonlinear", str(file), "--set", "mu=1/20"])
+    assert (done.exit_code, "the motion is unstable" in done.output) == (0, True)
+    for wrong, code in (("mu=-1", "sign-contradiction"), ("nu=1", "unknown-name")):
+        done = runner.invoke(main, ["nonlinear", str(file), "--set", wrong])
+        assert (done.exit_code, code in done.output) == (2, True)
+
+
+def test_without_numbers_formulas_are_told_or_the_command_that_gives_them(tmp_path: Path) -> None:
+    runner = CliRunner()
+    text = (SYSTEMS / "three-bodies.yaml").read_text(encoding="utf-8")
+    file = tmp_path / "three.yaml"
+    file.write_text("".join(x for x in text.splitlines(True) if not x.startswith("values:")), encoding="utf-8")
+    done = runner.invoke(main, ["nonlinear", str(file)])
+    assert done.exit_code == 0
+    assert "D4 = " in done.output
+    assert "At numbers nothing is said: mu, a, n, m have none" in done.output
+    command = next(x for x in done.output.splitlines() if "--set mu=NUMBER" in x)
+    words = command.replace("NUMBER", "1", 1).replace("mu=1 ", "mu=1/100 ").replace("NUMBER", "1").split()[1:]
+    assert "the motion is stable (Arnold-Moser)" in runner.invoke(main, words).output
+    text = (SYSTEMS / "gravity-gradient.yaml").read_text(encoding="utf-8")
+    file.write_text("".join(x for x in text.splitlines(True) if not x.startswith("values:")), encoding="utf-8")
+    done = runner.invoke(main, ["nonlinear", str(file)])
+    assert (done.exit_code, "missing-value" in done.output, "--set R=1" in done.output) == (2, True, True)
