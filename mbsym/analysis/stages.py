@@ -44,9 +44,12 @@ class NoResult:
             short = "out of memory" if failure.limit is Limit.MEMORY else "internal error"
             error = cause if isinstance(cause, Exception) else failure
             return NoResult(failure.reason, failure.remedy, short, failure.code, failure.limit, failure.severity, error)
-        return NoResult(
-            failure.reason, failure.remedy, code=failure.code, limit=failure.limit, severity=failure.severity
-        )
+        short = _IN_SHORT.get(failure.code, "no result") if failure.limit is None else "no closed form"
+        return NoResult(failure.reason, failure.remedy, short, failure.code, failure.limit, failure.severity)
+
+
+#: In a word or two why there is no answer, where no bound was met: by the kind of failure.
+_IN_SHORT = {"constraints": "constraints"}
 
 
 class Unavailable(Failure):
