@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 from flint import fmpq, fmpq_mpoly_ctx
 
 Polynomial = Any  # a flint.fmpq_mpoly: python-flint carries no types
+#: Exponents of the variables; numerator and denominator of the number; indices of parameters with their powers.
+Term = tuple[tuple[int, ...], int, int, tuple[tuple[int, int], ...]]
 
 
 @dataclass(frozen=True)
@@ -40,6 +43,24 @@ class PolynomialField:
 
     def generator(self, name: str) -> Polynomial:
         return self.context.gen((*self.parameters, *self.variables).index(name))
+
+    def apart(self, p: Polynomial) -> tuple[Term, ...]:
+        """The terms of a polynomial, as whoever puts numbers in again and again wants them."""
+        count = len(self.parameters)
+        return tuple(
+            (
+                tuple(map(int, monomial[count:])),
+                int(c.p),
+                int(c.q),
+                tuple((k, int(power)) for k, power in enumerate(monomial[:count]) if power),
+            )
+            for monomial, c in p.to_dict().items()
+        )
+
+    @cached_property
+    def slopes_apart(self) -> tuple[tuple[Term, ...], ...]:
+        """The terms of the numerators."""
+        return tuple(self.apart(p) for p in self.numerators)
 
     def derivative(self, f: Polynomial) -> Polynomial:
         """denominator * df/dt = sum_i numerators[i] df/dx_i."""

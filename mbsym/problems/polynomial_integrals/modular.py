@@ -17,7 +17,7 @@ from typing import Any
 from flint import nmod_mat
 
 from mbsym.algebra.failures import Limit, NoClosedForm
-from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.algebra.polynomial_field import PolynomialField, Term
 
 Exponents = tuple[int, ...]
 #: A polynomial in the variables with coefficients modulo a prime.
@@ -46,20 +46,21 @@ class ModularField:
     @cached_property
     def slopes(self) -> tuple[tuple[tuple[Exponents, int], ...], ...]:
         """x'_i, times the denominator of the field."""
-        return tuple(tuple(self.terms(p).items()) for p in self.field.numerators)
+        return tuple(tuple(self._at(apart).items()) for apart in self.field.slopes_apart)
 
     def terms(self, p: Any) -> Terms:
         """A polynomial of the field's context at these parameters."""
-        count, prime = len(self.field.parameters), self.prime
+        return self._at(self.field.apart(p))
+
+    def _at(self, apart: Sequence[Term]) -> Terms:
+        prime = self.prime
         numbers = [self.values[name] for name in self.field.parameters]
-        found: defaultdict[Exponents, int] = defaultdict(int)
-        for monomial, c in p.to_dict().items():
-            value = int(c.p) * pow(int(c.q), -1, prime)
-            for number, power in zip(numbers, monomial[:count], strict=True):
-                if power:
-                    value = value * pow(number, int(power), prime) % prime
-            key = tuple(int(x) for x in monomial[count:])
-            found[key] = (found[key] + value) % prime
+        found: dict[Exponents, int] = {}
+        for key, numerator, denominator, powers in apart:
+            value = numerator if denominator == 1 else numerator * pow(denominator, -1, prime)
+            for k, power in powers:
+                value = value * (numbers[k] if power == 1 else pow(numbers[k], power, prime)) % prime
+            found[key] = (found.get(key, 0) + value) % prime
         return {key: value for key, value in found.items() if value}
 
     def derivative(self, monomial: Exponents) -> Terms:
