@@ -6,6 +6,7 @@ import json
 
 import jsonschema
 import pytest
+import sympy
 from click.testing import CliRunner
 
 import mbsym
@@ -147,6 +148,42 @@ def test_clebschs_condition_for_kirchhoffs_equations_is_found():
     text = run("systems/kirchhoff.yaml", *words, "--vary", "k3=1/2:5").stdout
     assert "k3 = 3\n" in text
     assert "At all other values of k3" in text
+
+
+HENON_HEILES = "systems/henon-heiles.yaml"
+
+
+def _same(told: str, printed: str) -> bool:
+    """But for a factor."""
+    names = sympy.symbols("A B a b x y x_dot y_dot")
+    one, other = (
+        sympy.Poly(sympy.sympify(text), *names).clear_denoms(convert=True)[1].primitive()[1] for text in (told, printed)
+    )
+    return one in (other, -other)
+
+
+def test_the_integrable_cases_of_henon_and_heiles_are_found():
+    """Chang, Tabor & Weiss (1982): A = B with b = -a, and b = -6 a, with the integrals of the literature."""
+    data = json.loads(run(HENON_HEILES, "--cases", "--json").stdout)
+    found = {frozenset(one["vanishing"]): one["integrals"] for one in data["cases"]["cases"]}
+    assert {key for key in found if "a" not in key} == {frozenset({"B - A", "a + b"}), frozenset({"6*a + b"})}
+    (third,) = found[frozenset({"B - A", "a + b"})]
+    assert _same(third["formula"], "x_dot*y_dot + A*x*y + a*(x**3/3 + x*y**2)")
+    (fourth,) = found[frozenset({"6*a + b"})]
+    printed = "4*a*x_dot*(x*y_dot - y*x_dot) + (4*A - B)*(x_dot**2 + A*x**2) + a**2*(x**4 + 4*x**2*y**2) + 4*A*a*x**2*y"
+    assert _same(fourth["formula"], printed)
+
+
+def test_the_third_case_of_henon_and_heiles_is_found_along_a_line():
+    """B = 16 A, b = -16 a: an integral of fourth degree in the velocities; no other b but -6 a has one."""
+    line = ("-s", "m=1", "-s", "A=1", "-s", "B=16", "-s", "a=1", "--degree", "6", "--vary", "b=-20:0", "--json")
+    data = json.loads(run(HENON_HEILES, *line).stdout)
+    found = {one["value"]: one["integrals"] for one in data["along"]["values"]}
+    assert set(found) == {"-6", "-16"}
+    (sixth,) = found["-16"]
+    printed = "3*x_dot**4 + 6*(1 + 2*y)*x**2*x_dot**2 - 4*x**3*x_dot*y_dot - 4*x**4*(y + y**2) + 3*x**4 - 2*x**6/3"
+    assert _same(sixth["formula"], printed)
+    assert data["along"]["no_others"] is True
 
 
 def test_systems_in_angles_have_rates_sines_and_cosines():

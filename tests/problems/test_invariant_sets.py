@@ -305,3 +305,10 @@ def test_an_integral_without_its_denominator_is_named_a_multiple():
     ]
     assert str(found.integrals[1][1]) == "A*p*gamma1*(A + B) + B*(q*gamma2*(A + B) + A*r*gamma3)"
     assert Language("ru").say(names[1]).endswith("с точностью до постоянного множителя (знаменатель опущен)")
+
+
+def test_a_saddle_is_not_called_degenerate():
+    """Henon's and Heiles's: V_xx = A + 2 a y = 0 there, but V_xx V_yy - V_xy^2 = -4 a^2 x^2 is not zero."""
+    (family,) = mbsym.load("systems/henon-heiles.yaml").invariant_sets.families
+    (saddles,) = [one for one in family.sets if dict(one.solved).keys() >= {"y"} and len(one.relations) == 1]
+    assert saddles.variation.outcome is Definiteness.NEVER

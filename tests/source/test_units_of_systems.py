@@ -83,6 +83,12 @@ UNITS = {
     "gyrostat": {**BODY, **FIXED, "R": "m", "M": "kg", "psi": "rad"},
     "gyrostat-fast": {**BODY, **FIXED, "R": "m", "M": "kg", "psi": "rad"},
     "gyrostat-poisson": {**FIXED, **SMALL, "R": "m", "M": "kg", "A0": MOMENTS, "C": MOMENTS, "psi": "rad"},
+    "henon-heiles": {
+        "m": "kg",
+        **dict.fromkeys(("A", "B"), "1/s^2"),
+        **dict.fromkeys(("a", "b"), "1/(m*s^2)"),
+        "x": "m",
+    },
     "heavy-top": {"A": MOMENTS, "C": MOMENTS, "m": "kg", "l": "m", "g": "m/s^2", "Omega": "rad/s"},
     "satellite-with-gyroscope": {
         **ORBIT,

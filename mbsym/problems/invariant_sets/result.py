@@ -29,8 +29,8 @@ class Definiteness(Enum):
 
     STABLE = "stable"  # definite, proved
     CONDITIONAL = "conditional"  # definite where the conditions hold
-    NEVER = "never"  # neither sign is possible
-    DEGENERATE = "degenerate"  # a minor vanishes identically
+    NEVER = "never"  # neither sign is possible: it is not definite
+    DEGENERATE = "degenerate"  # its determinant vanishes identically
     LEFT_OUT = "left out"  # beyond the budget
 
 

@@ -130,8 +130,8 @@ def _definite(place: Place, form: Rows, scale: Polynomial) -> SecondVariation:
         return SecondVariation(Definiteness.LEFT_OUT, size)
     if any(len(x) > MOST_TERMS for x in minors):
         return SecondVariation(Definiteness.LEFT_OUT, size)
-    if any(x == 0 for x in minors):
-        return SecondVariation(Definiteness.DEGENERATE, size)
+    if any(x == 0 for x in minors):  # no definite form has such a minor, be the form degenerate or not
+        return SecondVariation(Definiteness.DEGENERATE if minors[-1] == 0 else Definiteness.NEVER, size)
     wanted = [place.shortened(x * scale ** ((k + 1) % 2)) for k, x in enumerate(minors)]
     positive = _sufficient(place, wanted)
     negative = _sufficient(place, [x * (-1) ** (k + 1) for k, x in enumerate(wanted)])
