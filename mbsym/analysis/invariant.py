@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from contextlib import suppress
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from mbsym.algebra.failures import Failure, NoClosedForm
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from mbsym.algebra.polynomial_field import PolynomialField
     from mbsym.analysis.pipeline import Analysis
     from mbsym.analysis.polynomial import Setting
+    from mbsym.model.system import System
     from mbsym.problems.invariant_sets import InvariantSets
     from mbsym.problems.vector_field import Transfer
 
@@ -38,14 +40,16 @@ def invariant_sets_of(analysis: Analysis) -> InvariantSets:
     if analysis.speed_form is None and count > MOST_ANGLES:
         raise NoClosedForm(
             f"{count} coordinates: without speeds of their own, families of integrals of at most {MOST_ANGLES} are "
-            "looked at; with speeds and unit vectors (mbsym explain description) equations are shorter"
+            "looked at",
+            remedy=_remedy(analysis.system),
         )
     there = polynomial.setting(analysis)
     field = there.whole
     if analysis.speed_form is None and len(field.variables) > MOST_IN_ANGLES:
         raise NoClosedForm(
             f"{len(field.variables)} rates, sines, cosines and positions: families of at most {MOST_IN_ANGLES} are "
-            "looked at; with speeds and unit vectors (mbsym explain description) equations are shorter"
+            "looked at",
+            remedy=_remedy(analysis.system),
         )
     found = [(name, _without_constants(field, p)) for name, p in _known(analysis, there)]
     chosen = _independent(field, [(name, p) for name, p in found if field.reduced(field.derivative(p)) == 0])
@@ -54,32 +58,27 @@ def invariant_sets_of(analysis: Analysis) -> InvariantSets:
     signs = {one.name: one.sign for one in analysis.system.parameters}
     floating = len(field.relations) if analysis.speed_form is None else 0
     place = arena(field, chosen, signs, _assumptions(analysis, there.transfer), floating)
-    from mbsym.formulas.latex import write_as
-
-    spelled = _in_angles(analysis, field) if floating else {}
-    spelled |= {one.name: one.latex for one in analysis.system.symbols}
-    if spelled:
-        write_as(place.ring, spelled)
-    return invariant_sets(place)
-
-
-def _in_angles(analysis: Analysis, field: PolynomialField) -> dict[str, str]:
-    r"""(\sin\theta) and \dot{\theta} for what names ``arena`` gives to the variables of Lagrange's equations."""
-    from mbsym.formulas.latex import LatexNames
+    from mbsym.analysis.angle_names import write_in
     from mbsym.problems.invariant_sets.arena import identifiers
 
-    letters = LatexNames(list(analysis.system.coordinates))
-    letter = {name: str(letters[name]) for name in analysis.system.coordinates}
-    letter |= {one.name: one.latex for one in analysis.system.symbols if one.name in letter}
-    found = {}
-    for name, plain in zip(field.variables, identifiers(field.variables, field.parameters), strict=True):
-        stem = name.removesuffix("_dot")
-        if name[:4] in ("sin(", "cos("):
-            angle, _, share = name[4:-1].partition("/")
-            found[plain] = rf"(\{name[:3]} {letter.get(angle, angle)}{'/' + share if share else ''})"
-        elif stem != name and stem in letter:
-            found[plain] = rf"\dot{{{letter[stem]}}}"
-    return found
+    plain = identifiers(field.variables, field.parameters)
+    written = write_in(place.ring, analysis, dict(zip(plain, field.variables, strict=True)) if floating else {})
+    return replace(invariant_sets(place), written=written)
+
+
+def _remedy(system: System) -> str:
+    """What shortens the equations: speeds, and a quaternion for a body with three angles of its own."""
+    for body in system.bodies:
+        if len(body.own_angles) == 3 and not body.speeds:
+            taken = {*system.parameter_names, *system.coordinates, *(one.name for one in system.prescribed)}
+            free = {*taken} & {"p", "q", "r", "e0", "e1", "e2", "e3"}
+            other = f" (other names for {', '.join(sorted(free))}, which are taken)" if free else ""
+            return (
+                f"told by a quaternion the equations of '{body.name}' are shorter: write "
+                f"'speeds: {{p: omega1, q: omega2, r: omega3}}' and 'orientation: {{e: quaternion}}'{other} into it, "
+                "as systems/gravity-gradient-quaternion.yaml does"
+            )
+    return "with speeds and unit vectors (mbsym explain description) equations are shorter"
 
 
 def _known(analysis: Analysis, there: Setting) -> list[tuple[str, Any]]:

@@ -155,10 +155,11 @@ def write_as(ring: Ring, given: Mapping[str, str]) -> None:
 
 
 def _given(text: str) -> Symbol:
-    """``d_{C1}`` as a stem and its index."""
-    stem, _, index = text.partition("_")
-    index = index.strip()
-    return Symbol(stem.strip(), index[1:-1] if index.startswith("{") else index)
+    """``d_{C1}`` as a stem and its index; ``(\\sin \\theta_{1})``, whose index is not of the whole, as a stem."""
+    match = re.fullmatch(r"(.*[^_\s])\s*_\s*(\{[^{}]*\}|[^\s{}()])\s*", text)
+    if match is None or match[1].count("{") != match[1].count("}"):
+        return Symbol(text.strip())
+    return Symbol(match[1].strip(), match[2].strip("{}"))
 
 
 def latex_names(ring: Ring) -> LatexNames:

@@ -9,7 +9,7 @@ by a program, is what is meant.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from typing import Any
@@ -155,11 +155,12 @@ def _index(indices: Iterable[str]) -> str:
 class MathNames:
     """One renaming for a system: no two names look alike; one that would is written out as it was declared."""
 
-    def __init__(self, names: Iterable[str]) -> None:
+    def __init__(self, names: Iterable[str], given: Mapping[str, Symbol] | None = None) -> None:
         taken: set[str] = set()
         self._symbols: dict[str, Symbol] = {}
-        for name in dict.fromkeys(names):
-            symbol = mathml_symbol(name)
+        given = given or {}
+        for name in dict.fromkeys([*given, *names]):
+            symbol = given[name] if name in given else mathml_symbol(name)
             if str(symbol) in taken:
                 symbol = Symbol(f'<mi class="verbatim">{escape(name)}</mi>')
             taken.add(str(symbol))
@@ -171,6 +172,12 @@ class MathNames:
 
 
 _NAMES: WeakKeyDictionary[Ring, MathNames] = WeakKeyDictionary()
+
+
+def write_as(ring: Ring, given: Mapping[str, Symbol]) -> None:
+    """From now on names of the ring are written in MathML as ``given``, in every formula."""
+    kinds = ("coordinate", "prescribed", "parameter")
+    _NAMES[ring] = MathNames(["t", *(g.name for g in ring.generators if g.kind in kinds)], given)
 
 
 def mathml_names(ring: Ring) -> MathNames:

@@ -53,7 +53,7 @@ from mbsym.report.lengths import COUNTED, PAPER, PAPER_PROGRAM, program_not_prin
 from mbsym.report.normal_form_words import Medium as HigherMedium
 from mbsym.report.normal_form_words import sentences as higher_sentences
 from mbsym.report.programs import programs_of
-from mbsym.report.sections.invariant_sets import even
+from mbsym.report.sections.invariant_sets import plain
 from mbsym.report.sections.small_parameters import told as of_small_parameters
 from mbsym.report.sections.stabilisation import decimal, polynomial
 from mbsym.report.sections.stability import root_text
@@ -231,13 +231,15 @@ def _of_stabilisation(found: Stabilisation, names: MathNames) -> Iterator[Markup
 
 def _of_invariant_sets(found: InvariantSets, names: MathNames) -> Iterator[list[Markup]]:
     """Paragraphs of problem 10, names and formulas in MathML."""
+    if found.written:  # names as in the formulas
+        names = mathml_names(found.integrals[0][1].ring)
     write = InvariantMedium(
         names=lambda listed: shown.math(*_separated([str(names[name]) for name in listed])),
         condition=lambda x, relation: shown.math(shown.inline(x), mo(_SIGNS.get(relation, relation)), "<mn>0</mn>"),
         value=lambda name, x: shown.math(str(names[name]), mo("="), shown.inline(x)),
         rate=lambda name, x: shown.math(f"<mover>{names[name]}<mo>˙</mo></mover>", mo("="), shown.inline(x)),
         formula=lambda x: shown.math(shown.inline(x)),
-        even=lambda factor: escape(even(factor)),
+        even=lambda factor: escape(plain(found).even(factor)),
         word=lambda word: str(escape(word)),
     )
 

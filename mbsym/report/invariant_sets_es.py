@@ -6,7 +6,7 @@ SENTENCES = {
     "Pieces that are not invariant by themselves, left aside: [[n]].": "Partes que no son invariantes por sí mismas, dejadas aparte: [[n]].",
     "What is said of stability is about these variables: [[names]].": "Lo dicho de la estabilidad se refiere a estas variables: [[names]].",
     "Multipliers of the geometry are Lagrange's: along a motion only the others are constant.": "Los multiplicadores de la geometría son los de Lagrange: a lo largo de un movimiento solo los demás son constantes.",
-    "Branches on which the coordinates are singular, left aside: [[n]].": "Ramas en las que las coordenadas son singulares, dejadas aparte: [[n]].",
+    "Branches on which the coordinates are singular, left aside: [[n]]; some may have no real points.": "Ramas en las que las coordenadas son singulares, dejadas aparte: [[n]]; algunas pueden no tener puntos reales.",
     "Problem 10. Steady motions and invariant manifolds": "Problema 10. Movimientos estacionarios y variedades invariantes",
     "Families K of first integrals with constant multipliers; a motion that begins where grad K = 0 stays there.": "Familias K de integrales primeras con multiplicadores constantes; un movimiento que comienza donde grad K = 0 permanece allí.",
     "V[[k]], [[name]]: [[formula]].": "V[[k]], [[name]]: [[formula]].",

@@ -6,7 +6,7 @@ SENTENCES = {
     "Pieces that are not invariant by themselves, left aside: [[n]].": "Части, сами по себе не инвариантные, оставлены в стороне: [[n]].",
     "What is said of stability is about these variables: [[names]].": "Сказанное об устойчивости относится к этим переменным: [[names]].",
     "Multipliers of the geometry are Lagrange's: along a motion only the others are constant.": "Множители геометрических связей — множители Лагранжа: вдоль движения постоянны только остальные.",
-    "Branches on which the coordinates are singular, left aside: [[n]].": "Ветви, на которых координаты вырождаются, оставлены в стороне: [[n]].",
+    "Branches on which the coordinates are singular, left aside: [[n]]; some may have no real points.": "Ветви, на которых координаты вырождаются, оставлены в стороне: [[n]]; на некоторых может не быть вещественных точек.",
     "Problem 10. Steady motions and invariant manifolds": "Задача 10. Стационарные движения и инвариантные многообразия",
     "Families K of first integrals with constant multipliers; a motion that begins where grad K = 0 stays there.": "Семейства K первых интегралов с постоянными множителями; движение, начавшееся там, где grad K = 0, там и остаётся.",
     "V[[k]], [[name]]: [[formula]].": "V[[k]], [[name]]: [[formula]].",

@@ -68,7 +68,10 @@ def of_family(family: Family, write: Medium) -> Iterator[Said]:
             {"n": family.unfinished},
         )
     if family.singular:
-        yield "Branches on which the coordinates are singular, left aside: [[n]].", {"n": family.singular}
+        yield (
+            "Branches on which the coordinates are singular, left aside: [[n]]; some may have no real points.",
+            {"n": family.singular},
+        )
     if family.parts:
         yield "Pieces that are not invariant by themselves, left aside: [[n]].", {"n": family.parts}
 

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import json
 from fractions import Fraction
+from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
 import mbsym
 from mbsym.analysis.stages import Unavailable
 from mbsym.problems.invariant_sets import Definiteness, Gap, Kind, Proof, StationarySet
 from mbsym.problems.invariant_sets.arena import identifiers
+from mbsym_cli.main import main
 
 
 def value(formula, **numbers):
@@ -117,3 +121,45 @@ def test_names_that_every_language_may_write():
     assert identifiers(("x_dot", "sin(theta)", "cos(theta/2)"), ("sin_theta",)) == [
         "x_dot", "sin_theta_", "cos_theta_2"
     ]  # fmt: skip
+
+
+def test_branches_without_points_are_not_counted(top):
+    """det M ~ m1 + m2 sin(theta2)^2 > 0: none is singular.  Of the top's, A sin(b)^2 + C cos(b)^2 = 0 has none."""
+    path = Path("systems/double-pendulum.yaml")
+    found = mbsym.load(path).invariant_sets
+    assert [(x.unfinished, x.singular, x.parts) for x in found.families] == [(0, 0, 0)]
+    assert found.complete
+    assert top.families[0].unfinished == 0
+    # where m2 < -m1 is allowed it vanishes somewhere
+    text = path.read_text(encoding="utf-8").replace("m2: {sign: positive", "m2: {sign: real")
+    other = mbsym.loads(text).invariant_sets
+    assert other.families[0].singular == 1
+
+
+def test_sines_are_written_as_such_but_for_names_in_json(tmp_path):
+    words = "run systems/double-pendulum.yaml --problems 10 --format html,latex,json --out"
+    done = CliRunner().invoke(main, [*words.split(), str(tmp_path)])
+    assert done.exit_code == 0
+    assert "sin(theta1)**2 + cos(theta1)**2 - 1 = 0" in done.output
+    assert "_theta" not in done.output
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "<msub><mi>sin</mi>" not in page
+    assert "<msub><mi>cos</mi>" not in page
+    section = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))["invariant_sets"]
+    assert section["stand_for"]["sin_theta1"] == "sin(theta1)"
+    tex = (tmp_path / "fragments" / "invariant_sets.tex").read_text(encoding="utf-8")
+    assert r"(\sin \theta_{1})^{2}" in tex
+
+
+def test_what_makes_the_equations_shorter_is_named():
+    """And what is named works: systems/gravity-gradient-quaternion.yaml has it."""
+    text = Path("systems/gravity-gradient.yaml").read_text(encoding="utf-8")
+    with pytest.raises(Unavailable) as told:
+        mbsym.loads(text).invariant_sets  # noqa: B018
+    added = [part for part in str(told.value).split("'") if part.startswith(("speeds:", "orientation:"))]
+    assert len(added) == 2
+    line = "    inertia: [A, B, C]\n"
+    assert text.count(line) == 1
+    system = mbsym.loads(text.replace(line, line + "".join(f"    {one}\n" for one in added))).system
+    assert system.bodies[1].orientation
+    assert len(system.speeds) == 3

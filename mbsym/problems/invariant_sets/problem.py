@@ -13,6 +13,7 @@ from mbsym.formulas.formula import Formula
 from mbsym.problems.invariant_sets import second_variation
 from mbsym.problems.invariant_sets.arena import Arena
 from mbsym.problems.invariant_sets.branches import Place
+from mbsym.problems.invariant_sets.emptiness import why_empty
 from mbsym.problems.invariant_sets.result import (
     Definiteness,
     Family,
@@ -61,7 +62,9 @@ def _family(arena: Arena, whole: Polynomial) -> tuple[Family, tuple[Polynomial, 
     equations = in_angles(arena, whole) if arena.floating else [whole.derivative(g) for g in arena.variables]
     limits = IN_ANGLES if arena.floating else SplitLimits()
     found = split(equations, (*arena.variables, *arena.constant), arena.signs.never_zero, limits=limits)
+    generic = list(found.generic)
     places = [place for branch in found.branches if (place := _on_relations(arena, branch)) is not None]
+    places = [place for place in places if not _is_empty(place, generic)]
     places = [with_lagrangian(place, whole) for place in places] if arena.floating else places
     kept = _largest([_by_variables(place) if _is_steady(place) else place for place in _largest(places)])
     singular = sum(1 for place in kept if place.vanishes(arena.denominator) is True)
@@ -77,7 +80,15 @@ def _family(arena: Arena, whole: Polynomial) -> tuple[Family, tuple[Polynomial, 
     unfinished = found.unfinished + max(0, len(kept) - MOST_SETS) + looked.count(None)
     sets.sort(key=lambda one: (one.dimension, one.union))
     names = tuple(arena.name(g) for g in arena.multipliers)
-    return Family(arena.names, names, tuple(sets), unfinished, singular, len(parts)), found.generic
+    return Family(arena.names, names, tuple(sets), unfinished, singular, len(parts)), tuple(generic)
+
+
+def _is_empty(place: Place, generic: list[Polynomial]) -> bool:
+    """Whether it has no points where nothing in ``generic`` vanishes, to which is added what that needs."""
+    provided = why_empty(place)
+    if provided is not None:
+        generic += [p for p in provided if p not in generic]
+    return provided is not None
 
 
 def _conserved(arena: Arena) -> bool:

@@ -132,6 +132,8 @@ class InvariantSets(Shown):
     #: Of Lagrange's equations in angles: multipliers of the relations need not be constant along a motion.
     in_angles: bool = False
     variables: tuple[str, ...] = ()
+    #: Variables that stand for something else: sin_theta for sin(theta).
+    written: tuple[tuple[str, str], ...] = ()
 
     @property
     def complete(self) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -28,6 +29,7 @@ def data(found: InvariantSets, system: System, write: Write) -> dict[str, Any]:
     return {
         "integrals": [{"name": name, "formula": write(x)} for name, x in found.integrals],
         "relations": [write(x) for x in found.relations],
+        "stand_for": dict(found.written),
         "families": [
             {
                 "integrals": list(family.integrals),
@@ -90,38 +92,49 @@ def _relations(relations: Sequence[Relation], write: Write) -> list[dict[str, An
 
 def lines(found: InvariantSets, analysis: Analysis) -> Iterator[str]:
     """The lines in the terminal."""
-    yield from map(filled, opening(found, PLAIN))
+    write = plain(found)
+    yield from map(filled, opening(found, write))
     for family in found.families:
         if not (family.sets or family.unfinished or family.singular or family.parts):
             continue
         yield f"K = {family_title(family, found)}"
-        yield from (f"  {filled(said)}" for said in of_family(family, PLAIN))
+        yield from (f"  {filled(said)}" for said in of_family(family, write))
         for k, one in enumerate(family.sets, start=1):
-            first, *rest = map(filled, of_set(one, k, PLAIN))
+            first, *rest = map(filled, of_set(one, k, write))
             yield f"  {first}"
             yield from (f"    {text}" for text in rest)
-    yield from map(filled, closing(found, PLAIN))
+    yield from map(filled, closing(found, write))
 
 
-def _short(x: Formula) -> str:
-    text = str(x)
-    return text if len(text) <= LONGEST else f"({x.terms} terms; see the reports)"
+def plain(found: InvariantSets) -> Medium:
+    """Text, with sin(theta) for what is called sin_theta in JSON."""
+    images = dict(found.written)
+    pattern = re.compile(r"\b(?:" + "|".join(map(re.escape, images)) + r")\b") if images else None
+
+    def told(text: str) -> str:
+        return text if pattern is None else pattern.sub(lambda match: images[match[0]], text)
+
+    def short(x: Formula) -> str:
+        text = str(x)
+        return told(text) if len(text) <= LONGEST else f"({x.terms} terms; see the reports)"
+
+    def rate(name: str) -> str:
+        return f"d/dt {images[name]}" if name in images else f"{name}'"
+
+    return Medium(
+        names=lambda names: told(", ".join(names)),
+        condition=lambda x, relation: f"{short(x)} {relation} 0",
+        value=lambda name, x: f"{told(name)} = {short(x)}",
+        rate=lambda name, x: f"{rate(name)} = {short(x)}",
+        formula=short,
+        even=lambda factor: told(_even(factor)),
+        word=str,
+    )
 
 
-def even(factor: Sequence[Formula]) -> str:
+def _even(factor: Sequence[Formula]) -> str:
     """``A*lambda**4 + (B)*lambda**2 + (C)`` of a polynomial in lambda**2, lowest coefficient first."""
     if any(len(str(x)) > LONGEST for x in factor):
         return f"a polynomial of degree {2 * len(factor) - 2} (see the reports)"
     powers = [f"*lambda**{2 * k}" if k else "" for k in range(len(factor))]
     return " + ".join(f"({x}){power}" for x, power in reversed(list(zip(factor, powers, strict=True))) if not x.is_zero)
-
-
-PLAIN = Medium(
-    names=", ".join,
-    condition=lambda x, relation: f"{_short(x)} {relation} 0",
-    value=lambda name, x: f"{name} = {_short(x)}",
-    rate=lambda name, x: f"{name}' = {_short(x)}",
-    formula=_short,
-    even=even,
-    word=str,
-)
