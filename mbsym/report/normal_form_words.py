@@ -112,6 +112,8 @@ def sentences(found: NormalForms, write: Medium) -> Iterator[Said]:
         yield from _focus(found.in_symbols, write)
     elif found.no_symbols:
         yield "There is no formula in parameters: [[why]].", {"why": write.word(found.no_symbols)}
+    elif found.at_values is None:
+        yield "There is no formula in parameters here; with numbers for all of them it may be decided.", {}
 
 
 def _judged(found: Judged, whole: NormalForms, write: Medium) -> Iterator[Said]:
@@ -248,6 +250,13 @@ def _in_symbols(found: InSymbols, write: Medium) -> Iterator[Said]:
 
 
 def _focus(found: Focus, write: Medium) -> Iterator[Said]:
+    if found.coefficient.is_zero:
+        yield (
+            "A pair of roots +-i w is one for all parameters, w^2 = [[square]]; on the centre manifold the terms of "
+            "third order of r', r the amplitude of [[name]], are zero for all parameters: those of higher order decide.",
+            {"square": write.formula(found.square), "name": write.names((found.amplitude_of,))},
+        )
+        return
     yield (
         "A pair of roots +-i w is one for all parameters, w^2 = [[square]]; on the centre manifold r' = a r^3 + ... "
         "for the amplitude r of [[name]], a = [[a]].  Where w^2 > 0 and all other roots are to the left the motion is "

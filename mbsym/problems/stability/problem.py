@@ -18,11 +18,13 @@ from mbsym.algebra.generators import occurring
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.ring import ParameterRing, Polynomial, Ring
 from mbsym.algebra.signs import Signs
+from mbsym.expressions.tree import names
 from mbsym.formulas.formula import Formula, Matrix
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import dependent, relations
 from mbsym.mechanics.symmetry import Spin, free_spin
+from mbsym.mechanics.variables import expressions
 from mbsym.model.system import rational
 from mbsym.problems.dissipation import Balance
 from mbsym.problems.equilibrium import Equilibrium
@@ -450,7 +452,7 @@ def _even(ring: Ring, signs: Signs, factor: Polynomial, powers: Sequence[tuple[P
 def parameter_values(scene: Scene, equilibrium: Equilibrium) -> dict[str, Any] | None:
     """Values of all parameters: given ones, then relations, then what the conditions of problem 4 leave open.
 
-    Rational numbers exactly, irrational ones as enclosures.  None unless all are known.
+    Rational numbers exactly, irrational ones as enclosures.  None unless all are known that any formula holds.
     """
     with ctx.workprec(PRECISION):
         return _parameter_values(scene, equilibrium)
@@ -469,7 +471,8 @@ def _parameter_values(scene: Scene, equilibrium: Equilibrium) -> dict[str, Any] 
             given[name] = _value_of(scene, polynomial, given)
         except Failure:
             return None
-    known = all(p.name in given for p in scene.system.parameters)
+    used = {name for x in expressions(scene.system) for name in names(x)}
+    known = all(p.name in given for p in scene.system.parameters if p.name in used)
     finite = all(isinstance(x, Fraction) or x.is_finite() for x in given.values())
     return given if known and finite else None
 

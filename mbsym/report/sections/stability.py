@@ -6,7 +6,9 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from mbsym.expressions.counting import counted
+from mbsym.expressions.tree import names
 from mbsym.formulas.names import free_name
+from mbsym.mechanics.variables import expressions
 from mbsym.model.system import System
 from mbsym.problems.stability import Stability
 from mbsym.problems.stability.problem import SubsystemStability
@@ -137,8 +139,19 @@ def lines(found: Stability, analysis: Analysis) -> Iterator[str]:
     if found.numerical is not None:
         why = found.numerical.explanation if found.numerical.word is Word.UNDECIDED else ""
         yield f"at the given values: {_verdict(found.numerical)}" + (f": {_clause(why)}" if why else "")
+    elif lacking := _without_numbers(analysis):
+        yield f"at the given values: nothing, {', '.join(lacking)} {'has' if len(lacking) == 1 else 'have'} none"
     for spectrum in found.spectra:
         yield f"eigenvalues there ({', '.join(spectrum.coordinates)}): {_roots(spectrum)}"
+
+
+def _without_numbers(analysis: Analysis) -> list[str]:
+    """The parameters that have no value, where others have one."""
+    system = analysis.system
+    known = {one.name for one in system.relations} | {name for name, _ in analysis.equilibrium.solved}
+    lacking = [one.name for one in system.parameters if one.value is None and one.name not in known]
+    used = {name for x in expressions(system) for name in names(x)} if lacking else set()
+    return [name for name in lacking if name in used] if any(x.value is not None for x in system.parameters) else []
 
 
 def _roots(spectrum: Spectrum) -> str:

@@ -19,6 +19,7 @@ from mbsym.report.normal_form_words import REASONS, THEOREMS, sentences
 from mbsym.report.results_json import render
 from mbsym.report.schemas import schema
 from mbsym.report.sections.normal_forms import PLAIN
+from mbsym.report.sections.stability import lines
 
 SYSTEMS = Path(__file__).parents[3] / "systems"
 SOFT = """
@@ -39,6 +40,7 @@ def systems() -> dict[str, mbsym.Analysis]:
     found = {name: mbsym.load(SYSTEMS / f"{name}.yaml", (6, 11)) for name in ("three-bodies", "heavy-top", "ziegler")}
     for force in ("-x_dot**3", "x_dot**5", "x*x_dot**2 + x_dot**3"):
         found[force] = mbsym.loads(SOFT.replace("FORCE", force), (6, 11))
+    found["no numbers"] = mbsym.loads(SOFT.replace("FORCE", "-w*x_dot").replace("values: {w: 2}\n", ""), (6, 11))
     return found
 
 
@@ -84,3 +86,21 @@ def test_every_sentence_has_another_language(language: str) -> None:
         gaps = [sorted(piece.split("]]")[0] for piece in text.split("[[")[1:]) for text in (english, other)]
         assert gaps[0] == gaps[1], english
         assert other.count("$") % 2 == 0, other
+
+
+def test_something_is_told_where_nothing_is_decided() -> None:
+    """x'' + w^2 x = x'^5: no sign of a coefficient that is zero is asked for; and without numbers it says so."""
+    of = {name: " ".join(text for text, _ in sentences(x.normal_forms, PLAIN)) for name, x in systems().items()}
+    assert "third order of r', r the amplitude of [[name]], are zero for all parameters" in of["x_dot**5"]
+    assert "for a < 0" not in of["x_dot**5"]
+    assert "for a < 0" in of["-x_dot**3"]
+    assert of["no numbers"] == "There is no formula in parameters here; with numbers for all of them it may be decided."
+
+
+def test_numbers_are_needed_of_what_formulas_hold_only() -> None:
+    """A name that stands nowhere needs no number for a verdict; of one that stands in a load its lack is told."""
+    unused = mbsym.loads(SOFT.replace("FORCE", "-x_dot").replace("{w:", "{idle: {sign: real}, w:", 1), (6,))
+    assert "at the given values: asymptotically stable" in " ".join(lines(unused.stability, unused))
+    lacking = mbsym.loads(SOFT.replace("FORCE", "-c*x_dot").replace("{w:", "{c: {sign: real}, w:", 1), (6,))
+    assert "at the given values: nothing, c has none" in lines(lacking.stability, lacking)
+    assert lacking.stability.numerical is None
