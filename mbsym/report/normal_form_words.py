@@ -253,7 +253,8 @@ def _focus(found: Focus, write: Medium) -> Iterator[Said]:
     if found.coefficient.is_zero:
         yield (
             "A pair of roots +-i w is one for all parameters, w^2 = [[square]]; on the centre manifold the terms of "
-            "third order of r', r the amplitude of [[name]], are zero for all parameters: those of higher order decide.",
+            "third order of r', r the amplitude of [[name]], are zero for all parameters: those of higher order "
+            "decide.",
             {"square": write.formula(found.square), "name": write.names((found.amplitude_of,))},
         )
         return
