@@ -9,14 +9,18 @@ times smaller at least; two runs that come down to the same settings are never c
 two thousandth of the whole, so that short events are not stepped over twice.  Where the run is as fine as any method,
 a short one is compared with an extrapolation in 160 bits at places that lie unevenly.
 
+The better run may be given so many seconds: one that shows on the way that it would take longer is given up.
+
 Where the two part, both may be wrong from there on: the estimate is a lower bound then, and says so.
 """
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from enum import Enum
+from math import inf
 
 import numpy as np
 
@@ -48,6 +52,9 @@ LONG = 20_000
 #: Places at which a run is held against an extrapolation, its tolerance, and the seconds that it may take.
 PLACES, PRECISELY, SECONDS = 150, 1e-22, 2.0
 
+#: A run with a deadline is not given up before this part of its time; then, if it would take so many times as long.
+EARLY, FAR_TOO_LONG = 0.2, 1.5
+
 #: A relative tolerance below this many roundings is not taken by the methods themselves.
 LEAST_ROUNDINGS, LEAST_OF_SCIPY = 4.0, 2.3e-14  # in units of eps; rtol
 
@@ -59,6 +66,10 @@ class Lacking(Enum):
     NOT_WHOLE = "the run ended early"
     FINEST = "no better run can be had: this one is as fine as the arithmetic, and no finer arithmetic is there"
     TOO_LONG = "a better run takes too long"
+    CUT = (
+        "a better run was given up as too long for an estimate that nobody asked for; asked for (--estimate, or "
+        "estimate=True), it gets the time that it needs"
+    )
     BREAKS_DOWN = "a better run breaks down on the way; this one may have stepped over a singularity"
     INTERRUPTED = "interrupted"
     CONTRADICTED = "the energy, which is conserved, drifts by far more than the difference from a better run"
@@ -116,24 +127,30 @@ def estimated(
     method: Method,
     scalar: str,
     completed: Callable[[Method], Method] = lambda method: method,
+    seconds: float = inf,
 ) -> ErrorEstimate | NoEstimate:
     """The error of a run of ``method``, whose setting and times ``found`` holds, by a better one.
 
-    ``completed`` makes of another method one that integrates the same coordinates and shows whole states.
+    ``completed`` makes of another method one that integrates the same coordinates and shows whole states.  All better
+    runs together may take about so many ``seconds``, what is compiled for them not counted.
     """
     if not found.whole:
         return NoEstimate(Lacking.NOT_WHOLE)
-    why = Lacking.FINEST
+    why, left = Lacking.FINEST, seconds
     try:
         for better, kind, setting in _candidates(dynamics, found, method, scalar, completed):
+            clock = _Clock(left, float(found.times[-1]), better.traits.name == "dop853")
             try:
-                comparison = _compared(dynamics, found, (method, scalar), (better, kind, setting))
+                comparison = _compared(dynamics, found, (method, scalar), (better, kind, setting), clock)
             except Unusable:
+                continue
+            except _OutOfTime:
+                why, left = Lacking.CUT, left - clock.spent
                 continue
             except Ended as ended:
                 if ended.breakdown.kind != STEP_LIMIT:
                     return NoEstimate(Lacking.BREAKS_DOWN)
-                why = Lacking.TOO_LONG
+                why, left = Lacking.TOO_LONG if why is Lacking.FINEST else why, left - clock.spent
                 continue
             return ErrorEstimate(Against(better.traits.name, kind, setting), comparison, _rounding(scalar))
         if why is Lacking.FINEST:
@@ -143,20 +160,52 @@ def estimated(
     return NoEstimate(why)
 
 
+class _OutOfTime(Exception):
+    """A better run takes longer than it may."""
+
+
+class _Clock:
+    """``reached`` raises _OutOfTime when the ``seconds`` are over; of a run with ``even`` steps, which stability rules
+    where a run is stiff, when they will be long before the ``end``."""
+
+    def __init__(self, seconds: float, end: float, even: bool) -> None:
+        self.seconds, self.end, self.even, self.begun = seconds, end, even, time.perf_counter()
+
+    @property
+    def spent(self) -> float:
+        return time.perf_counter() - self.begun
+
+    def start(self) -> None:
+        self.begun = time.perf_counter()
+
+    def reached(self, t: float) -> None:
+        spent = self.spent
+        slow = spent * self.end > FAR_TOO_LONG * self.seconds * t
+        hopeless = self.even and slow and spent > EARLY * self.seconds
+        if t < self.end and (spent > self.seconds or hopeless):
+            raise _OutOfTime
+
+
 def _compared(
-    dynamics: Dynamics, found: Trajectory, own: tuple[Method, str], better: tuple[Method, str, Setting]
+    dynamics: Dynamics,
+    found: Trajectory,
+    own: tuple[Method, str],
+    better: tuple[Method, str, Setting],
+    clock: _Clock,
 ) -> Comparison:
     """The run once more, step by step beside the better one."""
     method, scalar = own
     other, kind, setting = better
     with np.errstate(all="ignore"):
+        runs = method.start(dynamics, found.setting, scalar), other.start(dynamics, setting, kind)
+        clock.start()
         return compared(
-            method.start(dynamics, found.setting, scalar),
-            other.start(dynamics, setting, kind),
+            *runs,
             float(found.times[-1]),
             (*dynamics.system.coordinates, *dynamics.system.velocities),
             lambda times, states: sizes_of_scene(dynamics, times, states),
             (found.times, found.states),
+            watch=clock.reached,
         )
 
 

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import islice, pairwise
+from itertools import pairwise
 from typing import Any, Protocol
 
 import numpy as np
@@ -153,7 +153,7 @@ def compared(
     rows = _Rows.of(shown)
     followed = True
     places = _places(first, second, end, rows, most)
-    while block := list(islice(places, AT_ONCE)):
+    for block in _blocks(places):
         times, one, other = (
             np.concatenate(parts, axis=-1) for parts in zip(*(place[:3] for place in block), strict=True)
         )
@@ -234,6 +234,18 @@ def _places(first: Solution, second: Solution, end: float, rows: _Rows, most: in
 
 
 _Place = tuple[Any, Any, Any, bool]
+
+
+def _blocks(places: Iterator[_Place]) -> Iterator[list[_Place]]:
+    """Overlaps together, as long as they are followed one by one; what comes then is much by itself."""
+    block: list[_Place] = []
+    for place in places:
+        block.append(place)
+        if len(block) == AT_ONCE or not place[3]:
+            yield block
+            block = []
+    if block:
+        yield block
 
 
 def _step(solution: Solution, second: bool) -> Piecewise:

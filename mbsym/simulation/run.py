@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 from mbsym.analysis import Analysis, Unavailable
@@ -48,6 +49,9 @@ if TYPE_CHECKING:
 
 #: The error of a run shorter than this many seconds is estimated without being asked for.
 SOON_DONE = 2.0
+
+#: That estimate may take so many seconds, or so many times as long as the run.
+LEAST_SECONDS, AT_MOST = 5.0, 4.0
 
 #: What ``simulate`` is doing, for whoever watches.
 COMPILING, INTEGRATING, ESTIMATING, CERTIFYING = "compiling", "integrating", "estimating", "certifying"
@@ -108,7 +112,8 @@ def simulate(
         both = energies(dynamics, dense, held)
         kept = kept_integrals(dynamics, found, integrals, held, dense)
         if found.whole and (request.estimate or (request.estimate is None and found.seconds < SOON_DONE)):
-            error = estimated(dynamics, found, chosen.method, request.arithmetic, chosen.completed)
+            seconds = inf if request.estimate else max(LEAST_SECONDS, AT_MOST * found.seconds)
+            error = estimated(dynamics, found, chosen.method, request.arithmetic, chosen.completed, seconds)
     if both[0].standing is Standing.PROVED and contradicted(error, both[0].change):
         error = NoEstimate(Lacking.CONTRADICTED)
     certificate = None

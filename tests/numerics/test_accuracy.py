@@ -307,3 +307,14 @@ initial: {x: 1}
     error = float(np.max(np.abs(found.at(found.times)[0] - np.cos(found.times))))
     assert error > 1e-5
     assert found.error.largest == pytest.approx(error, rel=0.2)
+
+
+def test_an_estimate_that_nobody_asked_for_is_cut_and_told_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Asked for it gets its time: the budget, here none at all, is of others only."""
+    monkeypatch.setattr("mbsym.simulation.run.LEAST_SECONDS", 0.0)
+    monkeypatch.setattr("mbsym.simulation.run.AT_MOST", 0.0)
+    system = mbsym.loads(STIFF.replace("c: 1e6", "c: 1e3"))
+    run = mbsym.simulate(system, 1)
+    assert run.error == NoEstimate(Lacking.CUT)
+    assert "--estimate" in " ".join(error_lines(run.error))
+    assert isinstance(mbsym.simulate(system, 1, estimate=True).error, ErrorEstimate)
