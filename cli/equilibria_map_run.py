@@ -39,18 +39,25 @@ class Request:
     quiet: bool
 
 
+#: What --of equilibria does not know, and what does the same.
+INSTEAD = {
+    "--locate": "leave it out; 'mbsym equilibria FILE --set NAME=VALUE' lists and judges them at one point",
+    "--by boxes": "leave it out: its regions are exact wherever they can be had",
+}
+
+
 def fitting(
     file: Path,
     system: System,
     texts: Sequence[str | None],
     axes: Sequence[Axis],
     settings: Mapping[str, Fraction],
-    located: bool,
+    refused: Sequence[str],
     asked: Options,
 ) -> dict[str, Fraction]:
     """The numbers of the parameters besides the axes; every complaint joins those of ``asked``.
 
-    ``texts``: what --x, --y and --z said; ``located``: whether points or boxes were asked for.
+    ``texts``: what --x, --y and --z said; ``refused``: options of maps of one motion that were given.
     """
     from mbsym.mechanics.rest import given_values, missing_values
     from mbsym_cli.equilibria_branches import complain_of_sign, complain_unless_parameter
@@ -59,10 +66,11 @@ def fitting(
         hint = "give the second parameter as --y, or use mbsym equilibria --vary"
         asked.complain("--y", "missing-option", "numbers of equilibria are mapped over a plane", hint)
     if texts[2] is not None:
-        asked.complain("--z", "not-of-equilibria", "there are no slices of numbers of equilibria", "leave it out")
-    if located:
-        told = "--locate and --by boxes are for maps of one motion"
-        asked.complain("--of equilibria", "not-of-equilibria", told, "leave them out")
+        hint = "leave it out, and map at some of its values, each with an --out: --set NAME=VALUE"
+        asked.complain("--z", "not-of-equilibria", "there are no slices of numbers of equilibria", hint)
+    for option in refused:
+        told = "maps of the stability of one motion have it, numbers of equilibria have not"
+        asked.complain(option, "not-of-equilibria", told, INSTEAD[option])
     for option, axis in zip(("--x", "--y"), axes, strict=False):
         complain_unless_parameter(option, axis.name, system, asked)
         complain_of_sign(option, axis, system, asked)

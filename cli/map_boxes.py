@@ -25,8 +25,8 @@ def run_boxes(request: Request, because: str = "") -> int:
     from mbsym.algebra.failures import Failure
     from mbsym.analysis import Analysis
     from mbsym.maps.boxes import box_map
+    from mbsym.maps.given import Unfit
     from mbsym.maps.result import Of
-    from mbsym.maps.section import Unfit
 
     started = time.perf_counter()
     try:

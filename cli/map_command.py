@@ -42,7 +42,8 @@ def map_command(
         return BAD_INPUT
     if texts[2] is not None and texts[1] is None:
         asked.complain("--z", "missing-option", "slices of a line are no pictures", "give the second parameter as --y")
-    if how == "boxes" and (texts[1] is None or texts[2] is not None):
+    of_one = what != "equilibria"
+    if how == "boxes" and of_one and (texts[1] is None or texts[2] is not None):
         asked.complain("--by", "missing-option", "boxes are of planes", "give two parameters, as --x and --y")
     further = [(name, text) for name, text in (("--y", texts[1]), ("--z", texts[2])) if text is not None]
     axes = [read_axis(text, name, system, asked) for name, text in (("--x", texts[0]), *further)]
@@ -50,10 +51,13 @@ def map_command(
     values = read_settings(settings, system, asked)
     distinct(found, values, asked)
     whole = len(found) == len(axes)
-    points = None if locate is None or not whole else read_located(locate, [axis.name for axis in found], asked)
+    points = (
+        None if locate is None or not (whole and of_one) else read_located(locate, [axis.name for axis in found], asked)
+    )
     numbers = {}
     if what == "equilibria":
-        numbers = fitting(file, system, texts, found, values, locate is not None or how == "boxes", asked)
+        refused = [name for name, given in (("--locate", locate is not None), ("--by boxes", how == "boxes")) if given]
+        numbers = fitting(file, system, texts, found, values, refused, asked)
     code = prevented(file, folder, True, asked)
     if code:
         return code

@@ -75,11 +75,11 @@ def run(request: Request) -> int:
     """The exit code."""
     from mbsym.algebra.failures import Failure, TooLargeError
     from mbsym.analysis import Analysis
+    from mbsym.maps.given import Unfit
     from mbsym.maps.irrational import irrational
     from mbsym.maps.line_map import line_map
     from mbsym.maps.mapping import plane_map
     from mbsym.maps.result import Of
-    from mbsym.maps.section import Unfit
 
     if len(request.axes) == 3:
         from mbsym_cli.map_slices import run_slices

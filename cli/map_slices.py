@@ -27,8 +27,8 @@ def run_slices(request: Request) -> int:
     """The exit code."""
     from mbsym.algebra.failures import Failure
     from mbsym.analysis import Analysis
+    from mbsym.maps.given import Unfit
     from mbsym.maps.result import Of
-    from mbsym.maps.section import Unfit
     from mbsym.maps.slices import stack
 
     started = time.perf_counter()

@@ -17,7 +17,8 @@ from mbsym.source import render_option
 from mbsym_cli.options import MAX_LENGTH, Options
 
 if TYPE_CHECKING:
-    from mbsym.maps.section import Axis, Complaint
+    from mbsym.maps.given import Complaint
+    from mbsym.maps.section import Axis
     from mbsym.model.system import System
 
 
@@ -113,7 +114,7 @@ def read_rational(text: str, option: str, options: Options) -> Fraction | None:
 
 def complain_unfit(wrong: Sequence[Complaint], axis_option: str, options: Options) -> None:
     """Why a section cannot be made: everything at once, each with what to do."""
-    from mbsym.maps.section import Fault
+    from mbsym.maps.given import Fault
 
     lacking = list(dict.fromkeys(one.name for one in wrong if one.fault is Fault.MISSING))
     if lacking:

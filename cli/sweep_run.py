@@ -141,7 +141,7 @@ def _formula(text: str, names: set[str], complaints: Options) -> Expression | No
 
 def _measure(file: Path, system: System, asked: Asked, complaints: Options, quiet: bool) -> Measure | int:
     """The measure, or the exit code where there is none."""
-    from mbsym.maps.section import Unfit
+    from mbsym.maps.given import Unfit
     from mbsym.numerics.scenario import Incomplete
     from mbsym.sweeps.request import measure_of
     from mbsym_cli.lacking import missing
@@ -160,7 +160,7 @@ def _measure(file: Path, system: System, asked: Asked, complaints: Options, quie
 
 
 def _made(measure_of: Callable[[System, Asked], Measure], system: System, asked: Asked) -> Any:
-    from mbsym.maps.section import Unfit
+    from mbsym.maps.given import Unfit
 
     try:
         return measure_of(system, asked)

@@ -24,10 +24,11 @@ from mbsym.analysis import Analysis
 from mbsym.maps.admissible import Admissibility, admissibility
 from mbsym.maps.boundaries import Boundaries, boundaries
 from mbsym.maps.check import Check, check_boxes
+from mbsym.maps.given import Complaint, Fault, Unfit
 from mbsym.maps.irrational import IrrationalSection, irrational, told
 from mbsym.maps.mapping import Judge, Watch, asked, box_of, unwatched
 from mbsym.maps.result import Of, Shape, Shown, Standing, Stratum
-from mbsym.maps.section import Axis, Complaint, Fault, Section, Unfit, section
+from mbsym.maps.section import Axis, Section, section
 from mbsym.maps.subdivision import ByBoundaries, ByEnclosures, End, Subdivision, Tile, about_centre, subdivide
 from mbsym.maps.verdicts import Judged
 from mbsym.problems.stability.word import Word

@@ -17,7 +17,8 @@ from mbsym.algebra.failures import Failure, NoValue
 from mbsym.algebra.plane import Box
 from mbsym.algebra.plane.numbers import Rational, between, sign
 from mbsym.analysis import Analysis
-from mbsym.maps.section import Axis, Complaint, Fault, Unfit, unmade
+from mbsym.maps.given import Complaint, Fault, Unfit
+from mbsym.maps.section import Axis, unmade
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import relations
 from mbsym.problems.stability.enclosed import enclosed_verdict_with_cyclic

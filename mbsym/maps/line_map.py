@@ -20,10 +20,11 @@ from mbsym.maps.admissible import Admissibility, admissibility
 from mbsym.maps.boundaries import boundaries
 from mbsym.maps.check import check
 from mbsym.maps.constant_points import beside
+from mbsym.maps.given import Complaint, Fault, Unfit
 from mbsym.maps.mapping import Watch, asked, ends, unwatched
 from mbsym.maps.on_curves import ExactVerdicts
 from mbsym.maps.result import LineMap, Of, Shape, Standing, Stratum
-from mbsym.maps.section import Axis, Complaint, Fault, Section, Unfit, section
+from mbsym.maps.section import Axis, Section, section
 from mbsym.maps.soft_borders import Onset, SoftBorders, SoftOrHard, lost
 
 

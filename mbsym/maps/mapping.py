@@ -19,9 +19,10 @@ from mbsym.maps.admissible import Admissibility, admissibility
 from mbsym.maps.boundaries import Boundaries, Condition, Origin, boundaries
 from mbsym.maps.check import Check, check
 from mbsym.maps.constant_points import beside
+from mbsym.maps.given import Complaint, Fault, Unfit
 from mbsym.maps.on_curves import ExactVerdicts
 from mbsym.maps.result import Of, PlaneMap, Shape, Standing, Stratum
-from mbsym.maps.section import Axis, Complaint, Fault, Section, Unfit, section
+from mbsym.maps.section import Axis, Section, section
 from mbsym.maps.soft_borders import Onset, SoftBorders, SoftOrHard, lost
 from mbsym.maps.verdicts import Judged, matrix_at, verdict_at
 from mbsym.problems.stability.exact import inertia

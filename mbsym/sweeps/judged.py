@@ -19,10 +19,11 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.plane import Point
 from mbsym.analysis import Analysis
 from mbsym.maps.admissible import admissibility
+from mbsym.maps.given import Complaint, Fault, Unfit
 from mbsym.maps.line_map import LineJudge
 from mbsym.maps.mapping import Judge
 from mbsym.maps.result import Shape, Standing, Stratum
-from mbsym.maps.section import Complaint, Fault, Section, Unfit
+from mbsym.maps.section import Section
 from mbsym.maps.verdicts import matrix_at, verdict_at
 from mbsym.numerics.kernels import llvm
 from mbsym.problems.stability.exact import inertia

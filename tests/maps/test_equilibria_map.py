@@ -169,6 +169,17 @@ def test_what_does_not_fit_is_complained_about(words: list[str], code: str, tmp_
     assert not (tmp_path / "out").exists()
 
 
+def test_options_of_maps_of_one_motion_are_refused_by_name(tmp_path: Path) -> None:
+    words = ["--x", "h=0:1", "--y", "A=2:3", "--z", "B=1:2", "--locate", tmp_path / "none.csv", "--by", "boxes"]
+    done = invoke(SHIPPED / "orbital-gyrostat.yaml", *words, "--out", tmp_path / "out")
+    assert done.exit_code == 2
+    lines = done.output.splitlines()
+    guilty = [line.partition(":")[0] for line in lines if "error[not-of-equilibria]" in line]
+    assert guilty == ["--z", "--locate", "--by boxes"]
+    assert sum("error[" in line for line in lines) == 3
+    assert sum("hint: leave it out" in line for line in lines) == 3
+
+
 def test_what_is_no_polynomial_is_refused(tmp_path: Path) -> None:
     done = invoke(ball(tmp_path, "p + q - exp(x)"), "--x", "p=0:1", "--y", "q=0:1", "--out", tmp_path / "out")
     assert done.exit_code == 1
