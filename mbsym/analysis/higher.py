@@ -38,7 +38,12 @@ def normal_forms_of(analysis: Analysis) -> NormalForms:
     first = None if judged is None or judged.numerical is None else judged.numerical.word
     if nothing is not Why.NONE:
         result = replace(result, at_values=Judged(Outcome.UNDECIDED, Theorem.NONE, nothing))
-    return replace(result, first=first)
+    return replace(result, first=first, everywhere=None if judged is None else decided(judged.verdict.word))
+
+
+def decided(word: Word) -> Word | None:
+    """A verdict that needs nothing more; None for others."""
+    return None if word.open or word is Word.DEPENDS else word
 
 
 def ignorable(analysis: Analysis) -> tuple[bool, frozenset[str]]:

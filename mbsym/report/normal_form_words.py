@@ -11,6 +11,7 @@ from flint import arb
 
 from mbsym.formulas.formula import Formula
 from mbsym.problems.normal_forms import Focus, InSymbols, Judged, NormalForms, Outcome, Theorem, Why
+from mbsym.problems.stability.word import Word
 from mbsym.report.said import Said
 
 #: Digits of enclosed numbers.
@@ -107,7 +108,7 @@ def sentences(found: NormalForms, write: Medium) -> Iterator[Said]:
     if found.at_values is not None:
         yield from _judged(found.at_values, found, write)
     if isinstance(found.in_symbols, InSymbols):
-        yield from _in_symbols(found.in_symbols, write)
+        yield from _in_symbols(found.in_symbols, found.everywhere, write)
     elif isinstance(found.in_symbols, Focus):
         yield from _focus(found.in_symbols, write)
     elif found.no_symbols:
@@ -219,7 +220,7 @@ def _centre(found: Judged, write: Medium) -> Iterator[Said]:
     )
 
 
-def _in_symbols(found: InSymbols, write: Medium) -> Iterator[Said]:
+def _in_symbols(found: InSymbols, everywhere: Word | None, write: Medium) -> Iterator[Said]:
     yield (
         "In parameters, for the frequencies w1 and w2: the sum of their squares is [[trace]], the product of these "
         "[[product]], the discriminant [[discriminant]].",
@@ -242,6 +243,9 @@ def _in_symbols(found: InSymbols, write: Medium) -> Iterator[Said]:
                     "formula": write.formula(formula),
                 },
             )
+    if everywhere is not None:
+        yield "For all parameters problem 6 has decided already: [[word]].", {"word": write.word(everywhere.value)}
+        return
     yield (
         "Where sum, product and discriminant are positive the motion is stable (Arnold-Moser) but for parameters at "
         "which D4 or one of these resonances vanishes; what holds there is told at numbers.",

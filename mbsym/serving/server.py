@@ -53,13 +53,14 @@ class Server(uvicorn.Server):
 
 
 def bound(port: int) -> socket.socket:
-    """A socket of the loopback address; a free port for 0.  Raises OSError where the port is taken."""
+    """A socket that listens at the loopback address; a free port for 0.  Raises OSError where the port is taken."""
     found = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     try:
         # Else a port is "in use" for a minute after its server ended; on Windows the option would let two in.
         if os.name == "posix":
             found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         found.bind((LOOPBACK, port))
+        found.listen(128)  # only this takes the port from others that ask for the same option
     except BaseException:
         found.close()
         raise
@@ -92,7 +93,6 @@ def serve(path: Path, services: Services, port: int, ready: Callable[[str], None
     """Serves a file until Ctrl-C; ``ready`` gets the address.  Raises OSError where the port is taken."""
     with bound(port) as line:
         server, address = _server(path, services, line)
-        line.listen(128)
         ready(address)
         server.run(sockets=[line])
 

@@ -168,6 +168,8 @@ class NormalForms(Shown):
     no_symbols: str = ""
     #: What problem 6 says at the same values.
     first: Word | None = None
+    #: What it says for all parameters, where that is one verdict that leaves nothing open.
+    everywhere: Word | None = None
 
     @property
     def terms(self) -> int:

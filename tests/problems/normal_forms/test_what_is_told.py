@@ -37,7 +37,10 @@ values: {w: 2}
 
 
 def systems() -> dict[str, mbsym.Analysis]:
-    found = {name: mbsym.load(SYSTEMS / f"{name}.yaml", (6, 11)) for name in ("three-bodies", "heavy-top", "ziegler")}
+    found = {
+        name: mbsym.load(SYSTEMS / f"{name}.yaml", (6, 11))
+        for name in ("three-bodies", "heavy-top", "ziegler", "spring-pendulum")
+    }
     for force in ("-x_dot**3", "x_dot**5", "x*x_dot**2 + x_dot**3"):
         found[force] = mbsym.loads(SOFT.replace("FORCE", force), (6, 11))
     found["no numbers"] = mbsym.loads(SOFT.replace("FORCE", "-w*x_dot").replace("values: {w: 2}\n", ""), (6, 11))
@@ -94,6 +97,9 @@ def test_something_is_told_where_nothing_is_decided() -> None:
     assert "third order of r', r the amplitude of [[name]], are zero for all parameters" in of["x_dot**5"]
     assert "for a < 0" not in of["x_dot**5"]
     assert "for a < 0" in of["-x_dot**3"]
+    assert "Where sum, product" in of["three-bodies"]
+    assert "Where sum, product" not in of["spring-pendulum"]  # a minimum of the potential energy, for all parameters
+    assert "For all parameters problem 6 has decided already: [[word]]." in of["spring-pendulum"]
     assert of["no numbers"] == "There is no formula in parameters here; with numbers for all of them it may be decided."
 
 
