@@ -158,8 +158,11 @@ _NOTHING = {
 def _first(found: FirstApproximation, write: Medium) -> Iterator[Said]:
     if found.factors:
         factors = ", ".join(write.even(factor) for factor in found.factors)
-        text = "First approximation: [[zeros]] zero roots; the others are roots of [[factors]]."
-        yield text, {"zeros": found.zeros, "factors": factors}
+        if found.zeros:
+            text = "First approximation: zero roots: [[zeros]]; the others are roots of [[factors]]."
+            yield text, {"zeros": found.zeros, "factors": factors}
+        else:
+            yield "First approximation: roots of [[factors]].", {"factors": factors}
     if found.unstable:
         yield "Unstable (proved by the first approximation).", {}
         return

@@ -5,6 +5,7 @@ from __future__ import annotations
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.latex import LatexNames
 from mbsym.problems.invariant_sets import InvariantSets
+from mbsym.report.even_powers import in_even_powers
 from mbsym.report.invariant_words import Medium, closing, of_family, of_set, opening
 from mbsym.report.language import Language
 from mbsym.report.latex_formulas import formula
@@ -29,13 +30,7 @@ def of_invariant_sets(found: InvariantSets, names: LatexNames, tongue: Language)
         rate=lambda name, x: f"$\\dot{{{name_of(name)}}} = {formula(x)}$",
         formula=lambda x: f"${formula(x)}$",
         even=lambda factor: (
-            "$"
-            + " + ".join(
-                f"({formula(x)}){chr(92) + f'lambda^{{{2 * k}}}' if k else ''}"
-                for k, x in reversed(list(enumerate(factor)))
-                if not x.is_zero
-            )
-            + "$"
+            "$" + in_even_powers([formula(x) for x in factor], lambda k: f"\\lambda^{{{k}}}", "\\,") + "$"
         ),
         word=lambda word: escaped(tongue.say(word)),
     )

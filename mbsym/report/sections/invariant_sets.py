@@ -16,6 +16,7 @@ from mbsym.problems.invariant_sets import (
     SecondVariation,
     StationarySet,
 )
+from mbsym.report.even_powers import in_even_powers
 from mbsym.report.invariant_words import Medium, closing, family_title, of_family, of_set, opening
 from mbsym.report.plain import LONGEST, Write
 from mbsym.report.said import filled
@@ -133,8 +134,7 @@ def plain(found: InvariantSets) -> Medium:
 
 
 def _even(factor: Sequence[Formula]) -> str:
-    """``A*lambda**4 + (B)*lambda**2 + (C)`` of a polynomial in lambda**2, lowest coefficient first."""
+    """``A*lambda**4 + (B + C)*lambda**2 + D`` of a polynomial in lambda**2, lowest coefficient first."""
     if any(len(str(x)) > LONGEST for x in factor):
         return f"a polynomial of degree {2 * len(factor) - 2} (see the reports)"
-    powers = [f"*lambda**{2 * k}" if k else "" for k in range(len(factor))]
-    return " + ".join(f"({x}){power}" for x, power in reversed(list(zip(factor, powers, strict=True))) if not x.is_zero)
+    return in_even_powers([str(x) for x in factor], lambda k: f"lambda**{k}", "*")
