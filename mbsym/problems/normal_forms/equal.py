@@ -14,7 +14,8 @@
   on H_2 = 0.  No zero of P: stable; a simple one: unstable; else not decided at this order (Sokolskii; Cabral & Meyer).
 
 What decides is enclosed; the normal forms are checked by substitution, delta A besides by the amplitude equation on the
-plane of the roots (``centre.on_double_pair``), which uses no Hamiltonian.
+plane of the roots (``centre.on_double_pair``), which uses no Hamiltonian, and P by averages along the linear flow
+(``averages``), which use no eigenvectors.
 
 Sources: A. G. Sokolskii, J. Appl. Math. Mech. 38 (1974) 741; A. M. Kovalev & A. N. Chudnenko, Dokl. AN UkrSSR A (1977)
 1011; D. S. Schmidt, in Hamiltonian Dynamical Systems, IMA 63 (1995) 331; H. E. Cabral & K. R. Meyer, Nonlinearity 12
@@ -29,6 +30,7 @@ from typing import Any
 from flint import acb, arb
 
 from mbsym.algebra.truncated import Space, Truncated
+from mbsym.problems.normal_forms.averages import at_point, averaged
 from mbsym.problems.normal_forms.birkhoff import Linear, NormalForm, matrix_of, normal_form
 from mbsym.problems.normal_forms.centre import on_double_pair
 from mbsym.problems.normal_forms.checks import defects
@@ -121,10 +123,30 @@ def _of_two_eigenvectors(hamiltonian: Truncated, w: arb) -> Judged:
     form = normal_form(hamiltonian, linear, lambda x: 1 / x, kept, Space(4, 4, acb(0), acb(1)))
     _verify(hamiltonian, form)
     known: dict[str, Any] = {"frequencies": (w, -w)}
-    outcome = _by_zeros(_on_the_cone(form, weights))
+    series = _on_the_cone(form, weights)
+    _verify_on_the_cone(hamiltonian, form, weights, series)
+    outcome = _by_zeros(series)
     if outcome is Outcome.UNDECIDED:
         return Judged(outcome, Theorem.NONE, Why.CONE_OPEN, **known)
     return Judged(outcome, Theorem.EQUAL_TWO, **known)
+
+
+def _verify_on_the_cone(
+    hamiltonian: Truncated, form: NormalForm, weights: Sequence[arb], series: Sequence[acb]
+) -> None:
+    """P(f) against the averages along the linear flow, at as many points of H_2 = 0 as it has coefficients."""
+    mean = averaged(hamiltonian, abs(form.linear.roots[0].imag))
+    for k in range(len(series)):
+        f = OFFSET + k
+        xi = [acb(0, f).exp() / weights[0].sqrt(), 1 / acb(weights[1]).sqrt()]
+        eta = [acb(0, -1) * d * x.conjugate() for d, x in zip(weights, xi, strict=True)]
+        rows = zip(*form.linear.columns, strict=True)
+        point = [sum((a * b for a, b in zip(row, (*xi, *eta), strict=True)), acb(0)) for row in rows]
+        real = all(x.imag.contains(0) for x in point)
+        on_cone = at_point(hamiltonian.part(2), point).contains(0)
+        value, other = _at(series, f), at_point(mean, point).real
+        if not (real and on_cone and value.is_finite() and other.is_finite() and value.overlaps(other)):
+            raise NotVerified("the normal form on the cone and the averages along the linear flow differ")
 
 
 def _eigenvectors(hamiltonian: Truncated, w: arb) -> tuple[list[acb], list[acb]] | None:

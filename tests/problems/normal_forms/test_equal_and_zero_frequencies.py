@@ -124,6 +124,28 @@ def test_two_eigenvectors(further: str, outcome: Outcome, mixed: bool) -> None:
     assert found.why is (Why.CONE_OPEN if outcome is Outcome.UNDECIDED else Why.NONE)
 
 
+@pytest.mark.parametrize("planted", ["weights", "a term of P", "a resonance is forgotten", "averages"])
+def test_a_planted_mistake_with_two_eigenvectors_is_caught(monkeypatch: pytest.MonkeyPatch, planted: str) -> None:
+    """k i + 1.99 i j is unstable on the cone, k i + 2.01 i j stable: a mistake of one in a hundred decides wrongly."""
+    cone, formed, mean = equal._on_the_cone, equal.normal_form, equal.averaged
+
+    def one_term(*a: object) -> list[acb]:
+        found = cone(*a)
+        return [*found[:2], found[2] * acb("1.01"), *found[3:]]
+
+    wrong: dict[str, tuple[str, Callable[..., object]]] = {
+        "weights": ("_on_the_cone", lambda form, d: cone(form, [d[0], d[1] * 2])),
+        "a term of P": ("_on_the_cone", one_term),
+        "a resonance is forgotten": ("normal_form", lambda h, l, i, kept, s: formed(h, l, i, kept[::3], s)),
+        "averages": ("averaged", lambda *a: mean(*a).scaled(acb("1.01"))),
+    }
+    with ctx.workprec(200):
+        whole = by_hand("i - j + k*i + c(i*j, 1.99) + px*px*px", mixed=True)
+        monkeypatch.setattr(equal, *wrong[planted])
+        with pytest.raises(NotVerified):
+            equal_frequencies(whole, two_eigenvectors=True)
+
+
 def test_definite_energy_needs_no_normal_form() -> None:
     with ctx.workprec(200):
         assert equal_frequencies(by_hand("i + j + k*i"), two_eigenvectors=True).theorem is Theorem.DEFINITE
