@@ -48,7 +48,8 @@ def command(
     equalities and a polynomial condition besides, also of gyrostats; families of parameters that the --budget leaves
     out are counted.  --relations lists polynomials f that divide their derivative, so that a motion which begins on
     f = 0 stays there: linear forms, each with the parameters at which there is such a form, and those up to the degree
-    for almost all parameters; and integrals that hold only where another one is zero.
+    for almost all parameters; and integrals that hold only where another one is zero.  --vary and --relations together
+    find the values at which there are more polynomials f.
 
     Exit codes: 0 found, or proved that there are none; 1 undecided, or the equations are not polynomial; 2 something is
     wrong.
@@ -61,6 +62,7 @@ def command(
       mbsym integrals systems/euler-poisson.yaml --set y0=0 --cases --budget 30
       mbsym integrals systems/euler-poisson.yaml --set y0=0 --relations
       mbsym integrals systems/goryachev-chaplygin.yaml --relations
+      mbsym integrals euler-poisson.yaml -d 1 -s A=6 -s C=3 -s x0=1 -s y0=0 -s z0=1 -s m=1 -s g=1 -v B=1:5 --relations
     """
     system = read_description(file, unconstrained="integrals", moving="integrals")
     asked = Options()
@@ -69,7 +71,7 @@ def command(
         sys.exit(BAD_INPUT)
     from mbsym.algebra.failures import Failure, Limit
     from mbsym.analysis import Analysis
-    from mbsym.analysis.invariant_relations import invariant_relations
+    from mbsym.analysis.invariant_relations import invariant_relations, special_relations
     from mbsym.analysis.polynomial import integrals_of, setting
     from mbsym.problems.polynomial_integrals import along_of, cases_of
 
@@ -85,6 +87,7 @@ def command(
             positive = [one.name for one in system.parameters if one.sign == "positive"]
             special = cases_of(found, there.kinds, there.known, positive, request.seconds) if cases else None
             invariant = invariant_relations(there, found, positive) if relations else None
+            at = special_relations(there, found, axis.low, axis.high) if relations and axis is not None else None
     except ZeroDivisionError as reason:
         complain(file, f"no integrals: {reason}")
         sys.exit(BAD_INPUT)
@@ -94,9 +97,9 @@ def command(
     if as_json:
         from mbsym.report.integrals_json import integrals_json
 
-        click.echo(integrals_json(system, request.values, there, found, line, special, invariant), nl=False)
+        click.echo(integrals_json(system, request.values, there, found, line, special, invariant, at), nl=False)
     else:
         from mbsym_cli.integrals_shown import Further, show
 
-        show(file, system.name, there, found, Further(line, special, invariant))
+        show(file, system.name, there, found, Further(line, special, invariant, at))
     sys.exit(OK if found.complete else FAILED)

@@ -10,7 +10,13 @@ from mbsym.report.integrals_words import equations_text, level_title, title, wei
 
 if TYPE_CHECKING:
     from mbsym.analysis.polynomial import Setting
-    from mbsym.problems.polynomial_integrals import DarbouxPolynomials, PolynomialIntegrals, Relations, ZeroLevels
+    from mbsym.problems.polynomial_integrals import (
+        DarbouxAlong,
+        DarbouxPolynomials,
+        PolynomialIntegrals,
+        Relations,
+        ZeroLevels,
+    )
 
 #: Why it is not known that there are no other invariant relations.
 UNDECIDED = {
@@ -19,6 +25,8 @@ UNDECIDED = {
     Obstacle.NOT_AT_REST: "K is read off at rest where one variable alone is not zero, and there is no rest there",
     Obstacle.TOO_MANY: "there may be more K of one weight than are looked at",
 }
+#: Where nothing is looked for along a line.
+UNLOOKED = (Obstacle.NOT_HOMOGENEOUS, Obstacle.MIXED, Obstacle.NOT_AT_REST)
 
 
 def relation_lines(there: Setting, found: Relations) -> Iterator[str]:
@@ -88,4 +96,41 @@ def darboux_lines(there: Setting, usual: PolynomialIntegrals, found: DarbouxPoly
         yield (
             f"{none} {found.degree} with K not zero and coefficients that are rational (in the parameters)"
             f"{but}{almost} (proved; unit vectors of any length)."
+        )
+
+
+def darboux_values(there: Setting, usual: PolynomialIntegrals, found: DarbouxAlong) -> Iterator[str]:
+    """Each value of the parameter with its f and K, and what is known of other values."""
+    name, interval = found.name, f"of {found.name} from {found.low} to {found.high}"
+    for one in found.values:
+        yield f"{name} = {one.value}"
+        for f in one.polynomials:
+            yield f"  weight {f.weight}: {there.formula(f.polynomial)} = 0"
+            yield f"    K = {there.quotient_over(one.field, f.cofactor)}"
+            if not f.defined:
+                yield "    no relation of motions: the equations are not defined where it is zero"
+    if found.general.obstacle in UNLOOKED:
+        yield f"not looked for: {UNDECIDED[found.general.obstacle]}"
+        return
+    if not found.values:
+        yield f"at no rational value {interval} was a further one found"
+    for value in found.undecided:
+        yield f"whether there are others at {name} = {value} is undecided"
+    for p in found.irrational:
+        yield f"undecided at the zeros of {str(p).replace('x', name)}"
+    for p in found.square:
+        yield f"undecided where {there.formula(p)} is the square of a rational number: there may be others at each"
+    if found.left:
+        yield f"{found.left} possible K were not looked at within the budget: of these nothing is known."
+    if not found.followed:
+        yield "Not all K that become rational at single values were followed: of these nothing is known."
+    if not found.general.complete:
+        yield f"What there is for almost all {name} is not known to be all: of other values nothing is proved."
+    elif found.complete:
+        length = "; unit vectors of any length" if there.vectors else ""
+        others = "At all other values" if found.values else "At all values"
+        yield (
+            f"{others} {interval} with numerator and denominator up to 10^9 there is none of weight up to "
+            f"{usual.degree} with rational coefficients beyond those for almost all {name} (proved{length}); "
+            "irrational values are undecided."
         )

@@ -13,12 +13,12 @@ from mbsym.report.integrals_words import HEADING, sentences, title, weights
 from mbsym.report.said import filled
 from mbsym_cli.console import console, printable
 from mbsym_cli.integrals_cases import along_lines, cases_lines
-from mbsym_cli.integrals_relations import darboux_lines, level_lines, relation_lines
+from mbsym_cli.integrals_relations import darboux_lines, darboux_values, level_lines, relation_lines
 
 if TYPE_CHECKING:
     from mbsym.analysis.invariant_relations import InvariantRelations
     from mbsym.analysis.polynomial import Setting
-    from mbsym.problems.polynomial_integrals import Along, Cases, PolynomialIntegrals
+    from mbsym.problems.polynomial_integrals import Along, Cases, DarbouxAlong, PolynomialIntegrals
 
 
 @dataclass(frozen=True)
@@ -28,6 +28,7 @@ class Further:
     line: Along | None
     cases: Cases | None
     relations: InvariantRelations | None
+    at: DarbouxAlong | None = None
 
 
 def show(file: Path, name: str, there: Setting, found: PolynomialIntegrals, further: Further) -> None:
@@ -58,3 +59,5 @@ def _sections(there: Setting, found: PolynomialIntegrals, further: Further) -> I
         yield "Integrals where another one is zero", level_lines(there, found, relations.levels)
         yield "Linear invariant relations", relation_lines(there, relations.linear)
         yield "Invariant relations f = 0 with f' = K f", darboux_lines(there, found, relations.darboux)
+    if further.at is not None:
+        yield f"Values of {further.at.name} with further f' = K f", darboux_values(there, found, further.at)

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 
 from mbsym.analysis.polynomial import Setting
 from mbsym.problems.polynomial_integrals import (
+    DarbouxAlong,
     DarbouxPolynomials,
     PolynomialIntegrals,
     Relations,
     ZeroLevels,
+    darboux_along_of,
     darboux_of,
     linear_relations,
     zero_levels_of,
@@ -41,3 +44,11 @@ def invariant_relations(there: Setting, found: PolynomialIntegrals, positive: Se
         darboux_of(found, there.kinds, there.known),
         zero_levels_of(found, there.kinds, there.known),
     )
+
+
+def special_relations(there: Setting, found: PolynomialIntegrals, low: Fraction, high: Fraction) -> DarbouxAlong:
+    """At which values of the only parameter there are more Darboux polynomials, up to the degree of ``found``.
+
+    Raises NoClosedForm where more monomials are coupled than the bounds allow.
+    """
+    return darboux_along_of(found, there.kinds, there.known, low, high)

@@ -57,6 +57,10 @@ class Setting:
             terms[tuple(exponents)] = c
         return Formula(self.transfer.ring, self.transfer.back(self.whole.context.from_dict(terms)))
 
+    def quotient_over(self, field: PolynomialField, top: Any) -> Formula:
+        """``top`` over the denominator of a field with numbers in place of further parameters."""
+        return self.quotient(top, field.denominator)
+
     def quotient(self, top: Any, bottom: Any) -> Formula:
         """The same of a quotient of two over ``field``, in lowest terms."""
         common = top.gcd(bottom)

@@ -13,6 +13,7 @@ from mbsym.model.system import System
 from mbsym.problems.polynomial_integrals import (
     Along,
     Cases,
+    DarbouxAlong,
     DarbouxPolynomials,
     OnLevel,
     PolynomialIntegrals,
@@ -34,6 +35,7 @@ def integrals_json(
     line: Along | None = None,
     special: Cases | None = None,
     invariant: InvariantRelations | None = None,
+    at: DarbouxAlong | None = None,
 ) -> str:
     """One JSON object, keys in a fixed order, the same text for the same input."""
     data: dict[str, Any] = {
@@ -46,6 +48,7 @@ def integrals_json(
         "cases": None if special is None else _cases(there, special),
         "relations": None if invariant is None else _relations(there, invariant.linear),
         "darboux": None if invariant is None else _darboux(there, invariant.darboux),
+        "darboux_along": None if at is None else _darboux_along(there, at),
         "zero_levels": None if invariant is None else _levels(there, invariant.levels),
     }
     return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
@@ -143,6 +146,36 @@ def _darboux(there: Setting, found: DarbouxPolynomials) -> dict[str, Any]:
             for one in found.counts
             if not one.complete
         ],
+    }
+
+
+def _darboux_along(there: Setting, found: DarbouxAlong) -> dict[str, Any]:
+    return {
+        "parameter": found.name,
+        "low": str(found.low),
+        "high": str(found.high),
+        "values": [
+            {
+                "value": str(one.value),
+                "polynomials": [
+                    {
+                        "weight": f.weight,
+                        "formula": str(there.formula(f.polynomial)),
+                        "cofactor": str(there.quotient_over(one.field, f.cofactor)),
+                        "defined": f.defined,
+                    }
+                    for f in one.polynomials
+                ],
+                "complete": one.complete,
+            }
+            for one in found.values
+        ],
+        "undecided_at": [str(one) for one in found.undecided],
+        "undecided_at_zeros_of": [[str(c) for c in p.coeffs()] for p in found.irrational],
+        "undecided_where_square": [str(there.formula(p)) for p in found.square],
+        "cofactors_left": found.left,
+        "all_followed": found.followed,
+        "no_other_rational": found.complete,
     }
 
 

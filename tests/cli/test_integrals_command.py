@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from fractions import Fraction
 
 import jsonschema
 import pytest
@@ -10,7 +11,10 @@ import sympy
 from click.testing import CliRunner
 
 import mbsym
+from mbsym.analysis.invariant_relations import special_relations
+from mbsym.analysis.polynomial import integrals_of, setting
 from mbsym.report.schemas import schema
+from mbsym_cli.integrals_relations import darboux_values
 from mbsym_cli.main import main
 
 CLEBSCH, TOP = "systems/clebsch-poisson.yaml", "systems/euler-poisson.yaml"
@@ -224,3 +228,22 @@ def test_a_quaternion_may_be_varied():
     told = {one["value"]: [x["formula"] for x in one["integrals"]] for one in data["along"]["values"]}
     assert (told, data["along"]["no_others"]) == ({"2": ["r"], "3": ["q"]}, True)
     assert data["along"]["weights"]["e0"] == 1
+
+
+def test_values_with_further_invariant_relations_are_told():
+    """6 (B - 3) = 3 (6 - B): Hess and Appelrot's top at B = 4, and at no other value."""
+    words = (TOP, *(f"-s{one}" for one in ("A=6", "C=3", "x0=1", "y0=0", "z0=1", "m=1", "g=1")), "-d1", "--relations")
+    data = json.loads(run(*words, "--vary", "B=1:5", "--json").stdout)
+    jsonschema.validate(data, schema("integrals"))
+    told = data["darboux_along"]
+    assert [(one["value"], [f["formula"] for f in one["polynomials"]]) for one in told["values"]] == [
+        ("4", ["2*p + r"])
+    ]
+    assert told["no_other_rational"] is True
+    text = " ".join(run(*words, "--vary", "B=1:5").stdout.split())
+    assert "B = 4 weight 1: 2*p + r = 0 K = q/3 At all other values of B from 1 to 5 with numerator" in text
+    pendulum = mbsym.load("systems/spherical-pendulum.yaml")
+    there = setting(pendulum, {one.name: Fraction(1) for one in pendulum.system.parameters[1:]})
+    found = integrals_of(there, 1)
+    told = list(darboux_values(there, found, special_relations(there, found, Fraction(1), Fraction(2))))
+    assert told == ["not looked for: a K of that weight may hold products of variables, which is not looked at"]

@@ -15,7 +15,8 @@ functions by the rank of their gradients at a random state.
 
 Particular integrals have derivatives that vanish where another one does: df/dt = K V.  Darboux polynomials divide their
 own, df/dt = K f, and a motion that begins on f = 0 stays there: ``mbsym integrals --relations`` finds them, as Hess and
-Appelrot's A x0 p + C z0 r, or proves that there are none.  ``mbsym integrals`` asks more:
+Appelrot's A x0 p + C z0 r, or proves that there are none; with ``--vary``, at which values of a parameter there are
+more of them.  ``mbsym integrals`` asks more:
 at which values of a parameter, or under which conditions on parameters, there are others (of gyrostats, too, whose
 equations a further constant variable makes quasi-homogeneous).  ``mbsym symmetries`` finds those of symmetries whose
 fields are of degree one in the positions, polynomial or not; ``mbsym simulate --invariants`` watches what is found.
@@ -32,9 +33,17 @@ Example:
 """
 
 from mbsym.problems.polynomial_integrals.darboux import cofactor_of, darboux_polynomials
+from mbsym.problems.polynomial_integrals.darboux_lines import darboux_along
 from mbsym.problems.polynomial_integrals.families import cases
 from mbsym.problems.polynomial_integrals.gradings import Grading, grading
-from mbsym.problems.polynomial_integrals.homogenised import ZeroLevels, along_of, cases_of, darboux_of, zero_levels_of
+from mbsym.problems.polynomial_integrals.homogenised import (
+    ZeroLevels,
+    along_of,
+    cases_of,
+    darboux_along_of,
+    darboux_of,
+    zero_levels_of,
+)
 from mbsym.problems.polynomial_integrals.levels import levels, on_level
 from mbsym.problems.polynomial_integrals.relations import linear_relations
 from mbsym.problems.polynomial_integrals.result import (
@@ -43,9 +52,11 @@ from mbsym.problems.polynomial_integrals.result import (
     Case,
     Cases,
     Count,
+    DarbouxAlong,
     DarbouxCount,
     DarbouxPolynomial,
     DarbouxPolynomials,
+    DarbouxSpecial,
     Generator,
     Obstacle,
     OnLevel,
@@ -65,9 +76,11 @@ __all__ = [
     "Case",
     "Cases",
     "Count",
+    "DarbouxAlong",
     "DarbouxCount",
     "DarbouxPolynomial",
     "DarbouxPolynomials",
+    "DarbouxSpecial",
     "Generator",
     "Grading",
     "Obstacle",
@@ -84,6 +97,8 @@ __all__ = [
     "cases",
     "cases_of",
     "cofactor_of",
+    "darboux_along",
+    "darboux_along_of",
     "darboux_of",
     "darboux_polynomials",
     "grading",

@@ -30,6 +30,7 @@ from flint import fmpq_mpoly_ctx
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.problems.polynomial_integrals.gradings import Grading
 from mbsym.problems.polynomial_integrals.lifting import lifted, monomial
 from mbsym.problems.polynomial_integrals.modular import (
     PRIMES,
@@ -56,8 +57,17 @@ from mbsym.problems.polynomial_integrals.search import products, sparsest
 MOST_COFACTORS = 400
 
 
-def darboux_polynomials(found: PolynomialIntegrals, prime: int = PRIMES[0]) -> DarbouxPolynomials:
+def powers_of_cofactor(grading: Grading) -> list[Exponents]:
+    """The monomials of K in a quasi-homogeneous field."""
+    return list(monomials(grading.weights, grading.rise)) if grading.rise is not None and grading.rise >= 0 else []
+
+
+def darboux_polynomials(
+    found: PolynomialIntegrals, prime: int = PRIMES[0], known: Sequence[tuple[int, Any]] = ()
+) -> DarbouxPolynomials:
     """All that are no products of others and of the integrals ``found``, up to their degree; each proved by division.
+
+    ``known``: weights and polynomials of some, which are not listed again, nor their products.
 
     Raises NoClosedForm where more monomials are coupled than the bounds allow.
     """
@@ -65,13 +75,15 @@ def darboux_polynomials(found: PolynomialIntegrals, prime: int = PRIMES[0]) -> D
     rise, weights = grading.rise, grading.weights
     if rise is None or (field.relations and not grading.free):
         return DarbouxPolynomials(found.degree, weights, (), (), Obstacle.NOT_HOMOGENEOUS)
-    powers = list(monomials(weights, rise)) if rise >= 0 else []
+    powers = powers_of_cofactor(grading)
     if any(sum(1 for a in one if a) > 1 for one in powers):
         return DarbouxPolynomials(found.degree, weights, (), (), Obstacle.MIXED)
     means = [rest_means(field, one) for one in powers]
     if any(one is None for one in means):
         return DarbouxPolynomials(found.degree, weights, (), (), Obstacle.NOT_AT_REST)
-    search = _Search(found, at_random(field, prime, f"darboux {found.degree}"))
+    there = at_random(field, prime, f"darboux {found.degree}")
+    before = [(weight, f, cofactor_of(field, f)) for weight, f in known]
+    search = DarbouxSearch(found, there, [DarbouxPolynomial(f, w, k) for w, f, k in before if k is not None and k != 0])
     counts: list[DarbouxCount] = []
     for weight in range(1, found.degree + 1):
         most = weight // min(weights)
@@ -89,11 +101,49 @@ def darboux_polynomials(found: PolynomialIntegrals, prime: int = PRIMES[0]) -> D
     return DarbouxPolynomials(found.degree, weights, tuple(search.found), tuple(counts), None)
 
 
+@dataclass(frozen=True)
+class RestFactor:
+    """An irreducible factor of det(x - dP/dx) at a point of rest, the highest coefficient 1: that of x^0 first."""
+
+    coefficients: tuple[Any, ...]
+
+    @property
+    def degree(self) -> int:
+        return len(self.coefficients) - 1
+
+    @property
+    def mean(self) -> Any:
+        """Of its roots."""
+        return -self.coefficients[-2] / self.degree
+
+    @property
+    def moves(self) -> bool:
+        """Whether parameters occur in it."""
+        return not all(c.is_constant() for c in self.coefficients)
+
+    def discriminant(self) -> Any:
+        """Delta of a quadratic one, whose roots are  mean +- sqrt(Delta)/2."""
+        c, b, _ = self.coefficients
+        return b**2 - 4 * c
+
+
 def rest_means(field: PolynomialField, power: Exponents) -> list[Any] | None:
     """The means of conjugate eigenvalues of dP/dx at e_i (0 where ``power`` is empty), each once, without zero.
 
     None where the field is not at rest there.
     """
+    factors = rest_factors(field, power)
+    if factors is None:
+        return None
+    found: list[Any] = []
+    for factor in factors:
+        if factor.mean != 0 and factor.mean not in found:
+            found.append(factor.mean)
+    return found
+
+
+def rest_factors(field: PolynomialField, power: Exponents) -> list[RestFactor] | None:
+    """The irreducible factors of the characteristic polynomial of dP/dx there; None where the field is not at rest."""
     context, count = field.context, len(field.parameters)
     images = [*context.gens()[:count], *(context.constant(1 if a else 0) for a in power)]
 
@@ -113,10 +163,8 @@ def rest_means(field: PolynomialField, power: Exponents) -> list[Any] | None:
     for factor, _ in irreducible_factors(characteristic)[1]:
         degree = int(factor.degrees()[0])
         leading = _coefficient(wide, factor, degree)  # a number: the characteristic polynomial is monic
-        mean = -_coefficient(wide, factor, degree - 1) / leading.leading_coefficient() / degree
-        back = mean.compose(context.constant(0), *context.gens(), ctx=context)
-        if back != 0 and back not in found:
-            found.append(back)
+        scaled = [_coefficient(wide, factor, k) / leading.leading_coefficient() for k in range(degree + 1)]
+        found.append(RestFactor(tuple(c.compose(context.constant(0), *context.gens(), ctx=context) for c in scaled)))
     return found
 
 
@@ -161,17 +209,20 @@ class _Factor:
     terms: Terms
 
 
-class _Search:
-    """Weight by weight, cofactor by cofactor, modulo one prime."""
+class DarbouxSearch:
+    """Weight by weight, cofactor by cofactor, modulo one prime; ``known`` are not found again."""
 
-    def __init__(self, usual: PolynomialIntegrals, there: ModularField) -> None:
+    def __init__(
+        self, usual: PolynomialIntegrals, there: ModularField, known: Sequence[DarbouxPolynomial] = ()
+    ) -> None:
         self.usual, self.there, self.field = usual, there, usual.field
         self.integrals = [(one.weight, there.terms(one.polynomial)) for one in usual.generators]
-        self.factors: list[_Factor] = []
+        self.factors = [_Factor(one, there.terms(one.polynomial)) for one in known]
+        self.before = len(known)
 
     @property
     def found(self) -> list[DarbouxPolynomial]:
-        return [factor.one for factor in self.factors]
+        return [factor.one for factor in self.factors[self.before :]]
 
     def of(self, weight: int, cofactor: Any) -> DarbouxCount:
         """What there is for one cofactor, found and counted."""
@@ -181,7 +232,7 @@ class _Search:
         most = [{columns[k]: c for k, c in vector.items()} for vector in kernel_of(images, prime)]
         rows: list[Terms] = []
         if most:
-            rows, _ = echelon(list(self._products(weight, cofactor)), columns, prime)
+            rows, _ = echelon(list(self.products(weight, cofactor)), columns, prime)
         if len(most) > len(rows):
             for support, leading in sparsest(rows, most, columns, prime):
                 f = None
@@ -194,8 +245,8 @@ class _Search:
                     rows, _ = echelon([*rows, own.terms], columns, prime)
         return DarbouxCount(weight, cofactor, len(most), len(rows))
 
-    def _products(self, weight: int, cofactor: Any) -> Iterator[Terms]:
-        """Of those that are known and of integrals: of that weight, with that sum of cofactors."""
+    def products(self, weight: int, cofactor: Any) -> Iterator[Terms]:
+        """Products of those that are known and of integrals: of that weight, with that sum of cofactors."""
         prime, count = self.there.prime, len(self.field.variables)
         one: Terms = {(0,) * count: 1}
         for left, terms in self._multiples(0, weight, cofactor, one):

@@ -20,6 +20,7 @@ from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.problems.polynomial_integrals.darboux import darboux_polynomials
+from mbsym.problems.polynomial_integrals.darboux_lines import darboux_along
 from mbsym.problems.polynomial_integrals.families import cases
 from mbsym.problems.polynomial_integrals.gradings import Grading, grading
 from mbsym.problems.polynomial_integrals.levels import levels, on_level
@@ -30,6 +31,8 @@ from mbsym.problems.polynomial_integrals.result import (
     Along,
     Case,
     Cases,
+    DarbouxAlong,
+    DarbouxPolynomial,
     DarbouxPolynomials,
     Generator,
     OnLevel,
@@ -181,15 +184,35 @@ def darboux_of(
     if larger is None:
         return darboux_polynomials(usual)
     found = darboux_polynomials(larger)
+    return _Down(larger.field.variables[-1]).darboux(found)
+
+
+def darboux_along_of(
+    usual: PolynomialIntegrals,
+    kinds: Sequence[Sequence[str]],
+    known: Sequence[tuple[str, Any]],
+    low: Fraction,
+    high: Fraction,
+) -> DarbouxAlong:
+    """``darboux_along`` of any field with at most one relation; of others that nothing was looked for.
+
+    Raises what ``darboux_along`` raises.
+    """
+    if usual.grading.homogeneous and (usual.grading.free or not usual.field.relations):
+        return darboux_along(usual, low, high)
+    larger = _larger(usual, kinds, known)
+    if larger is None:
+        return darboux_along(usual, low, high)
+    found = darboux_along(larger, low, high)
     down = _Down(larger.field.variables[-1])
     return replace(
         found,
-        weights=found.weights[:-1],
-        polynomials=tuple(
-            replace(one, polynomial=down.polynomial(one.polynomial), cofactor=down.polynomial(one.cofactor))
-            for one in found.polynomials
+        general=down.darboux(found.general),
+        values=tuple(
+            replace(one, field=down.field(one.field), polynomials=tuple(map(down.factor, one.polynomials)))
+            for one in found.values
         ),
-        counts=tuple(replace(one, cofactor=down.polynomial(one.cofactor)) for one in found.counts),
+        square=tuple(map(down.polynomial, found.square)),
     )
 
 
@@ -286,9 +309,8 @@ class _Down:
     def case(self, one: Case) -> Case:
         return Case(tuple(map(self.polynomial, one.conditions)), self.special(one.special))
 
-    def special(self, one: Special) -> Special:
-        field = one.field
-        smaller = replace(
+    def field(self, field: PolynomialField) -> PolynomialField:
+        return replace(
             field,
             context=self._context(field.context),
             variables=field.variables[:-1],
@@ -296,6 +318,20 @@ class _Down:
             denominator=self.polynomial(field.denominator),
             relations=tuple(map(self.polynomial, field.relations)),
         )
+
+    def darboux(self, found: DarbouxPolynomials) -> DarbouxPolynomials:
+        return replace(
+            found,
+            weights=found.weights[:-1],
+            polynomials=tuple(map(self.factor, found.polynomials)),
+            counts=tuple(replace(one, cofactor=self.polynomial(one.cofactor)) for one in found.counts),
+        )
+
+    def factor(self, one: DarbouxPolynomial) -> DarbouxPolynomial:
+        return replace(one, polynomial=self.polynomial(one.polynomial), cofactor=self.polynomial(one.cofactor))
+
+    def special(self, one: Special) -> Special:
+        smaller = self.field(one.field)
         write: Callable[[Any], Any] = lambda f: primitive(smaller, self.polynomial(f))  # noqa: E731
         levels = tuple(
             OnLevel(self.generator(level.level), tuple((w, write(f)) for w, f in level.integrals), level.counts)

@@ -253,3 +253,43 @@ class DarbouxPolynomials:
     @property
     def complete(self) -> bool:
         return self.obstacle is None and all(one.complete for one in self.counts)
+
+
+@dataclass(frozen=True)
+class DarbouxSpecial:
+    """What there is at a ``value`` of the parameter and not for almost all, each proved by division over ``field``.
+
+    ``complete``: there are no others of the weights that were looked at.
+    """
+
+    value: Fraction
+    field: PolynomialField
+    polynomials: tuple[DarbouxPolynomial, ...]
+    complete: bool
+
+
+@dataclass(frozen=True)
+class DarbouxAlong:
+    """The special values of a parameter in an interval; ``general``: what there is for almost all.
+
+    ``undecided``: values at which not all of it may have been found; ``irrational``: polynomials over QQ at whose zeros
+    a rank may drop, too; ``square``: polynomials in the parameter: where one is the square of a rational number there
+    may be others, and is at infinitely many values; ``left``: K that were not looked at within the budget;
+    ``followed``: separate roots of all eigenvalues that move with the parameter were.  ``complete``: at all other
+    rational values with numerator and denominator up to 10^9 there is none with rational coefficients.
+    """
+
+    name: str
+    low: Fraction
+    high: Fraction
+    general: DarbouxPolynomials
+    values: tuple[DarbouxSpecial, ...] = ()
+    undecided: tuple[Fraction, ...] = ()
+    irrational: tuple[Any, ...] = ()
+    square: tuple[Any, ...] = ()
+    left: int = 0
+    followed: bool = True
+
+    @property
+    def complete(self) -> bool:
+        return self.general.complete and not self.left and self.followed and not self.square and not self.undecided

@@ -68,7 +68,7 @@ def along(usual: PolynomialIntegrals, low: Fraction, high: Fraction) -> Along:
                 found.append(special)
             if special is None or not special.complete:
                 undecided.append(value)
-    irrational = tuple(p for p in zeros.irrational if _meets(p, low, high))
+    irrational = tuple(p for p in zeros.irrational if meets(p, low, high))
     listed = tuple(found)
     return Along(name, low, high, listed, irrational, zeros.whole, tuple(undecided), complete)
 
@@ -112,7 +112,7 @@ class _Zeros:
                 self.values[value] = None
                 zeros.append((value, power))
         for factor in others(g):
-            lifted = _lifted(factor)
+            lifted = lifted_factor(factor)
             self.whole = False
             if lifted is not None:
                 self._irrational(lifted)
@@ -166,7 +166,7 @@ def special_of(
     return Special(value, field, new, tuple(on), complete) if new or on else None
 
 
-def _lifted(factor: Any) -> fmpq_poly | None:
+def lifted_factor(factor: Any) -> fmpq_poly | None:
     """The polynomial over QQ with small coefficients that it is the image of, leading coefficient 1."""
     prime = factor.modulus()
     top = int(factor[factor.degree()])
@@ -177,7 +177,7 @@ def _lifted(factor: Any) -> fmpq_poly | None:
     return fmpq_poly([fmpq(x.numerator, x.denominator) for x in numbers if x is not None])
 
 
-def _meets(p: fmpq_poly, low: Fraction, high: Fraction) -> bool:
+def meets(p: fmpq_poly, low: Fraction, high: Fraction) -> bool:
     """Whether a polynomial may have a zero in the interval: signs at the ends and at the enclosed real zeros."""
     found: Any = p.complex_roots()  # pairs of a zero and its multiplicity
     for root, _ in found:
