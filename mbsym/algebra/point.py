@@ -33,7 +33,6 @@ class Rationals(Algebra[fmpq]):
         self.basic = {name: sine_and_cosine(t) for name, t in half_tangents.items()}
 
     def number(self, value: Fraction | int) -> fmpq:
-        value = Fraction(value)
         return fmpq(value.numerator, value.denominator)
 
     def sin_cos(self, angle: LinearForm) -> tuple[fmpq, fmpq]:
@@ -97,7 +96,6 @@ class Balls(Algebra[arb]):
         self.values = angles
 
     def number(self, value: Fraction | int) -> arb:
-        value = Fraction(value)
         return arb(fmpq(value.numerator, value.denominator))
 
     def vanishes(self, x: arb) -> bool:

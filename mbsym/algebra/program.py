@@ -21,6 +21,9 @@ from mbsym.expressions.table import Tabulated
 #: Constants are read as floating-point numbers in the end, which have no greater powers of 2.
 MOST_BITS = 1_000
 
+#: Of so many sets of outputs a program remembers what they need.
+MOST_REMEMBERED = 16
+
 #: What rounding takes away, exactly: 0 over every exact algebra (``mbsym.algebra.compensated``).
 SUM_ROUNDING, PRODUCT_ROUNDING = "rounding of sum", "rounding of product"
 ROUNDINGS = (SUM_ROUNDING, PRODUCT_ROUNDING)
@@ -73,6 +76,8 @@ class Program(Algebra[Node]):
         self._whole: dict[int, Node] = {}  # whole numbers, which occur most often
         self._values: list[Fraction | None] = []  # of constants, by number
         self._opposites: list[Node | None] = []  # a where the node is -a, by number
+        self._live: dict[tuple[int, ...], list[int]] = {}  # what outputs need, by their numbers
+        self._angles: dict[int, LinearForm | None] = {}  # linear forms, by number
         self.zero = self.number(0)
         self.one = self.number(1)
 
@@ -278,14 +283,20 @@ class Program(Algebra[Node]):
 
     def live(self, outputs: Iterable[Node]) -> list[int]:
         """The numbers of the instructions that the outputs need, in order."""
-        needed: set[int] = set()
-        pending = [node.number for node in outputs]
-        while pending:
-            number = pending.pop()
-            if number not in needed:
-                needed.add(number)
-                pending.extend(self.instructions[number].operands)
-        return sorted(needed)
+        asked = tuple(node.number for node in outputs)
+        known = self._live.get(asked)
+        if known is None:  # instructions never change: what is known of them stays true
+            needed: set[int] = set()
+            pending = list(asked)
+            while pending:
+                number = pending.pop()
+                if number not in needed:
+                    needed.add(number)
+                    pending.extend(self.instructions[number].operands)
+            if len(self._live) >= MOST_REMEMBERED:
+                del self._live[next(iter(self._live))]
+            known = self._live[asked] = sorted(needed)
+        return known.copy()
 
     def operations(self, outputs: Iterable[Node], given: Collection[str] = ()) -> int:
         """How many arithmetic operations the outputs cost; what depends only on the inputs ``given`` is free.
@@ -319,56 +330,60 @@ class Program(Algebra[Node]):
         stands in its place from there on.  Raises NoValue for an input without a value, and what the algebra raises.
         """
         values: dict[int, Any] = {}
+        turned: dict[int, Any] = {}  # sine and cosine, by their argument
         for number in self.live(outputs):
-            value = self._apply(self.instructions[number], number, values, inputs, algebra)
+            operation, operands, payload = self.instructions[number]
+            if len(operands) == 2:
+                value = self._joined(operation, values[operands[0]], values[operands[1]], algebra)
+            elif operation in ("sin", "cos"):
+                if (argument := operands[0]) not in turned:
+                    angle = self._angle(argument)
+                    turned[argument] = algebra.sin_cos_of(values[argument]) if angle is None else algebra.sin_cos(angle)
+                value = turned[argument][operation == "cos"]
+            elif operands:
+                value = self._changed(operation, values[operands[0]], algebra)
+            elif operation == "constant":
+                assert isinstance(payload, Fraction)
+                value = algebra.number(payload)
+            else:
+                try:
+                    value = inputs[str(payload)]
+                except KeyError:
+                    raise NoValue(str(payload)) from None
             values[number] = value if standing is None else standing(number, value)
         return [values[node.number] for node in outputs]
 
-    def _apply(
-        self,
-        instruction: Instruction,
-        number: int,
-        values: dict[int, Any],
-        inputs: Mapping[str, Any],
-        algebra: Algebra,
-    ) -> Any:
-        match instruction.operation:
-            case "constant":
-                assert isinstance(instruction.payload, Fraction)
-                return algebra.number(instruction.payload)
-            case "input":
-                name = str(instruction.payload)
-                try:
-                    return inputs[name]
-                except KeyError:
-                    raise NoValue(name) from None
-            case "sin" | "cos" as which:
-                angle = self._angle(instruction.operands[0])
-                argument = values[instruction.operands[0]]
-                pair = algebra.sin_cos(angle) if angle is not None else algebra.sin_cos_of(argument)
-                return pair[0 if which == "sin" else 1]
-        arguments = [values[operand] for operand in instruction.operands]
-        if instruction.operation in ROUNDINGS:
-            return algebra.zero
-        match instruction.operation, arguments:
-            case "add", [a, b]:
-                return a + b
-            case "subtract", [a, b]:
-                return a - b
-            case "multiply", [a, b]:
+    @staticmethod
+    def _joined(operation: str, a: Any, b: Any, algebra: Algebra) -> Any:
+        match operation:
+            case "multiply":
                 return a * b
-            case "negative", [a]:
-                return -a
-            case "divide", [a, b]:
+            case "add":
+                return a + b
+            case "subtract":
+                return a - b
+            case "divide":
                 return algebra.times(a, algebra.reciprocal(b))
-            case "sqrt", [a]:
+        if operation in ROUNDINGS:
+            return algebra.zero
+        raise ValueError(f"no such operation: {operation}")
+
+    @staticmethod
+    def _changed(operation: str, a: Any, algebra: Algebra) -> Any:
+        match operation:
+            case "negative":
+                return -a
+            case "sqrt":
                 return algebra.square_root(a)
-            case name, [a]:
-                return algebra.function(name, a)
-        raise ValueError(f"no such operation: {instruction.operation}")
+        return algebra.function(operation, a)
 
     def _angle(self, number: int) -> LinearForm | None:
         """The linear form in inputs that an instruction computes, or None."""
+        if number not in self._angles:
+            self._angles[number] = self._linear(number)
+        return self._angles[number]
+
+    def _linear(self, number: int) -> LinearForm | None:
         instruction = self.instructions[number]
         match instruction.operation:
             case "input" if instruction.payload == "pi":

@@ -229,11 +229,15 @@ class Manifold:
         def place(x: Sequence[Any]) -> dict[str, Any]:
             return {**values, **dict(zip(unknown, x, strict=True))}
 
-        image = krawczyk.step(
-            lambda x: [at(place(x))[0][i] for i in rows],
-            lambda x: [[at(place(x))[1][i][k] for k in columns] for i in rows],
-            box,
-        )
+        def residuals(x: Sequence[Any]) -> list[Any]:
+            residual, _ = at(place(x))
+            return [residual[i] for i in rows]
+
+        def jacobian(x: Sequence[Any]) -> list[list[Any]]:
+            _, slopes = at(place(x))
+            return [[slopes[i][k] for k in columns] for i in rows]
+
+        image = krawczyk.step(residuals, jacobian, box)
         if image is None or not all(outer.contains_interior(inner) for outer, inner in zip(box, image, strict=True)):
             raise ZeroDivisionError("no root was proved")
         found = place(image)
