@@ -312,3 +312,29 @@ def test_a_saddle_is_not_called_degenerate():
     (family,) = mbsym.load("systems/henon-heiles.yaml").invariant_sets.families
     (saddles,) = [one for one in family.sets if dict(one.solved).keys() >= {"y"} and len(one.relations) == 1]
     assert saddles.variation.outcome is Definiteness.NEVER
+
+
+SHELL = """
+mbsym: 1
+name: charged particle above a shell of rests
+parameters: {m: positive, k: real, w: real, c: real}
+bodies:
+- {name: a, attached to: 0, connection point: [x, 0, 0], coordinates: [x], mass: 0}
+- {name: b, attached to: a, connection point: [0, y, 0], coordinates: [y], mass: 0}
+- {name: p, attached to: b, connection point: [0, 0, z], coordinates: [z], mass: m}
+loads:
+- potential: k*(x**2 + y**2 + z**2)/2 + c*(x**2 + y**2 + z**2)**2
+- generalized force: {x: m*w*y_dot, y: -m*w*x_dot}
+motion: {}
+"""
+
+
+def test_what_vanishes_on_a_set_alone_is_zero_there():
+    """Rests fill the sphere 4 c r^2 + k = 0: two roots are zero, V'' = 8 c r r^T has two null directions."""
+    (family,) = [one for one in mbsym.loads(SHELL).invariant_sets.families if len(one.integrals) > 1]
+    (rests,) = [one for one in family.sets if one.kind is Kind.STEADY and one.dimension == 2]
+    assert rests.variation.outcome is Definiteness.DEGENERATE
+    assert rests.first.zeros == 2
+    assert [len(factor) for factor in rests.first.factors] == [3]
+    assert all(not one.unless for one in rests.first.necessary)
+    assert rests.real

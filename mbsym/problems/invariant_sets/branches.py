@@ -147,6 +147,10 @@ class Place:
             return None
         return True if top == 0 else None
 
+    def or_zero(self, p: Polynomial) -> Polynomial:
+        """Zero for what vanishes on the branch, though no equation with a number in front takes it out."""
+        return p * 0 if self.vanishes(p) is True else p
+
     @cached_property
     def point(self) -> dict[int, int] | None:
         """A point of the branch over the field of ``PRIME`` elements, by generator; None where none was found."""

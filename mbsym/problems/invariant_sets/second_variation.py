@@ -125,7 +125,7 @@ def _definite(place: Place, form: Rows, scale: Polynomial) -> SecondVariation:
     """Both signs of the form divided by ``scale``.  What tangents were divided by is a squared factor of each minor."""
     arena, size = place.arena, len(form)
     try:
-        minors = [place.shortened(x) for x in leading_minors(form, BUDGET)]
+        minors = [place.or_zero(place.shortened(x)) for x in leading_minors(form, BUDGET)]
     except Failure:
         return SecondVariation(Definiteness.LEFT_OUT, size)
     if any(len(x) > MOST_TERMS for x in minors):
@@ -180,7 +180,7 @@ def first_approximation(place: Place) -> FirstApproximation | None:
     coefficients = _characteristic(place, a)
     if coefficients is None:
         return None
-    whole = [place.shortened(c * b**k) for k, c in enumerate(coefficients)]
+    whole = [place.or_zero(place.shortened(c * b**k)) for k, c in enumerate(coefficients)]
     zeros = next(k for k, c in enumerate(whole) if c != 0)
     rest = whole[zeros:]
     if any(len(c) > MOST_TERMS for c in rest):
@@ -200,12 +200,14 @@ def first_approximation(place: Place) -> FirstApproximation | None:
         wanted = [place.shortened(c * lead) for c in even[:-1]]
         if len(even) > 2:
             wanted += [place.shortened(x) for x in subdiscriminants(even)[1:]]
-        for p in wanted:
+        for p in map(place.or_zero, wanted):
             sign = arena.signs.sign(p)
             unstable |= sign == "negative"
             if p == 0 or sign in ("positive", "nonnegative", "zero", "negative"):
                 continue
             condition = arena.signs.condition(p)
+            if any(place.vanishes(f) for f in condition.nonzero):
+                continue  # p is zero on the branch
             if condition.kind == "inequality":
                 unless = tuple(arena.formula(f) for f in condition.nonzero if not place.never_zero(f))
                 necessary.append(Relation(arena.formula(condition.polynomial), ">=", unless))

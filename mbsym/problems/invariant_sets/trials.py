@@ -19,6 +19,8 @@ from mbsym.problems.invariant_sets.result import (
 
 #: Points that are tried, values of free multipliers at each of them, bits of balls.
 POINTS, CHOICES, BITS = 60, 60, 128
+#: Of coordinates and multipliers, beside parameters: a set of small ones is found by the second.
+SIZES = (fmpq(1, 2), fmpq(1, 16))
 _VALUES = [fmpq(p, q) for p in range(1, 9) for q in (1, 2, 3)]
 
 Point = dict[int, arb]
@@ -27,7 +29,7 @@ Point = dict[int, arb]
 def is_real(place: Place) -> bool:
     """Whether a real point of the set was found at parameters that the description allows."""
     with ctx.workprec(BITS):
-        return next(_points(place, POINTS), None) is not None
+        return any(next(_points(place, POINTS, size), None) is not None for size in SIZES)
 
 
 def gap_between(place: Place, variation: SecondVariation | None, first: FirstApproximation | None) -> Gap:
@@ -89,7 +91,7 @@ def _choices(place: Place, point: Point) -> Iterator[Point]:
             yield changed
 
 
-def _points(place: Place, count: int) -> Iterator[Point]:
+def _points(place: Place, count: int, size: fmpq = SIZES[0]) -> Iterator[Point]:
     """Real points of the set at parameters that the description allows: rational but for roots, in balls."""
     arena = place.arena
     chance = random.Random(11)
@@ -99,7 +101,7 @@ def _points(place: Place, count: int) -> Iterator[Point]:
             g: arb(chance.choice(_VALUES)) * _direction(arena.signs.words[g], chance) for g in arena.parameters
         }
         for g in unknown:
-            point[g] = arb(chance.choice(_VALUES) * chance.choice((1, -1)) * fmpq(1, 2))
+            point[g] = arb(chance.choice(_VALUES) * chance.choice((1, -1)) * size)
         if not _allowed(place, point):
             continue
         pending = list(place.rules)
