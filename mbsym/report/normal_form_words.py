@@ -23,6 +23,8 @@ REASONS = {
     Why.TWO_ZERO_ROOTS: "Two or more roots are zero, the others are to the left: terms of higher order on a centre "
     "manifold of that dimension decide, which are not formed.",
     Why.EQUAL_FREQUENCIES: "Frequencies are equal or are not told apart, and what would decide then is not proved.",
+    Why.EQUAL_MORE: "Frequencies are equal or are not told apart, the energy is not shown to be definite, and there "
+    "are more than two degrees of freedom: Sokolskii's theorems are of two.",
     Why.CONE_OPEN: "Frequencies are equal, with two eigenvectors for each root, and on the cone where H2 = 0 the "
     "normal form of fourth order is not proved to be without zeros, nor to have a simple one: terms "
     "of higher order may decide.",
@@ -62,6 +64,8 @@ THEOREMS = {
     Theorem.ARNOLD_MOSER_6: "No resonance up to order 6 holds and D6 is not zero: the motion is stable, whether D4 is "
     "zero or not (Arnold-Moser, order 6).",
     Theorem.THIRD: "The resonant term of third order is not zero: the motion is unstable (Markeev).",
+    Theorem.THIRD_OF_MORE: "One resonance of third order alone holds, the signs of the energies in it let all its "
+    "amplitudes grow together, and its term is not zero: the motion is unstable (Markeev; Khazina).",
     Theorem.EQUAL: "The frequencies are equal exactly, with one eigenvector for each root: by the sign of a "
     "coefficient of the normal form of fourth order the motion is [[word]] (Sokolskii).",
     Theorem.EQUAL_TWO: "The frequencies are equal exactly, with two eigenvectors for each root: by the zeros of "

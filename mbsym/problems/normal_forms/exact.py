@@ -53,7 +53,7 @@ class Resonant:
 
     def __init__(self, tower: Tower | None, coefficients: Sequence[Element] | None) -> None:
         self.tower, self.coefficients = tower, coefficients
-        self._squares = None if coefficients is None else _rational_squares(tower, coefficients)
+        self._squares = None if coefficients is None else rational_squares(tower, coefficients)
 
     @property
     def zero(self) -> bool:
@@ -96,7 +96,7 @@ class Resonant:
         return not any(totals.values())
 
 
-def _rational_squares(tower: Tower | None, coefficients: Sequence[Element]) -> list[fmpq] | None:
+def rational_squares(tower: Tower | None, coefficients: Sequence[Element]) -> list[fmpq] | None:
     """w^2 for all roots, if all of them are rational numbers."""
     assert tower is not None
     numbers = [x for one in coefficients if (x := tower.rational(one)) is not None]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import cache
 from typing import Any
 
@@ -32,6 +32,7 @@ from mbsym.problems.normal_forms.exact import (
     two_eigenvectors,
 )
 from mbsym.problems.normal_forms.expansion import Expansion, Numbers, expansion
+from mbsym.problems.normal_forms.resonant_term import is_zero_exactly
 from mbsym.problems.normal_forms.result import InSymbols, Judged, NormalForms, Outcome, Theorem, Why
 from mbsym.problems.normal_forms.twist import judged
 from mbsym.problems.normal_forms.zero_root import BALLS, Scalars, zero_root
@@ -103,7 +104,11 @@ def at_numbers(to: Callable[[int], Expansion], values: Mapping[str, Any], resona
         return _with_zero_root(to(ORDER), values)
     if resonant.equal:
         return equal_frequencies(lowered(4), _two_eigenvectors(to(4), values))
-    return judged(lowered, resonant, ORDER)
+
+    def vanishes(vector: tuple[int, ...], omega: Sequence[arb]) -> bool:
+        return is_zero_exactly(to(4), values, vector, omega)
+
+    return judged(lowered, resonant, ORDER, vanishes)
 
 
 def _two_eigenvectors(found: Expansion, values: Mapping[str, Any]) -> bool:

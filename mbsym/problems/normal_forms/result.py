@@ -35,6 +35,8 @@ class Theorem(StrEnum):
     ARNOLD_MOSER = "Arnold-Moser"
     ARNOLD_MOSER_6 = "Arnold-Moser, order 6"
     THIRD = "Markeev, resonance of third order"
+    #: Of more than two degrees of freedom.
+    THIRD_OF_MORE = "Markeev and Khazina, resonance of third order"
     FOURTH = "Markeev, resonance of fourth order"
     EQUAL = "Sokolskii, equal frequencies"
     #: Of equal frequencies with two eigenvectors for each root.
@@ -56,6 +58,8 @@ class Why(StrEnum):
     ZERO_ROOT = "zero-root"
     TWO_ZERO_ROOTS = "two-zero-roots"
     EQUAL_FREQUENCIES = "equal-frequencies"
+    #: The same in more than two degrees of freedom.
+    EQUAL_MORE = "equal-more"
     #: Of equal frequencies with two eigenvectors: the form of order 4 on the cone has a multiple zero, or no simple one
     #: is proved.
     CONE_OPEN = "cone-open"

@@ -13,12 +13,14 @@ Frequencies are enclosed; whatever is said to be different from zero is so by it
 
   unstable if |H_4(k)| < 2 sqrt(27 h h'), stable if it is greater (Markeev);
 * w_1 = w_2: ``equal``; w_1 = 0: ``zero_root``;
+* more degrees of freedom, one resonance of third order, k.Omega = 0 with all k_j >= 0: unstable if its term is not zero
+  (Markeev, Khazina);
 * more degrees of freedom, no resonance up to order 4: if H_4 does not vanish in the cone Omega.I = 0, I >= 0: formally
   stable (Bruno); if det d^2 H_4/dI^2 or the determinant bordered by Omega is not zero: stable for most initial states.
 
 Sources: V. I. Arnold, Russ. Math. Surveys 18 (1963) 85; J. Moser, Lectures on Hamiltonian Systems (1968);
-A. P. Markeev, J. Appl. Math. Mech. 32 (1968) 766; A. D. Bruno, Math. Notes 1 (1967) 216; K. R. Meyer
-& D. S. Schmidt, J. Diff. Eq. 62 (1986) 222 (order 6).
+A. P. Markeev, J. Appl. Math. Mech. 32 (1968) 766; G. G. Khazina, J. Appl. Math. Mech. 38 (1974); A. D. Bruno, Math.
+Notes 1 (1967) 216; K. R. Meyer & D. S. Schmidt, J. Diff. Eq. 62 (1986) 222 (order 6).
 """
 
 from __future__ import annotations
@@ -38,6 +40,8 @@ from mbsym.problems.normal_forms.result import Judged, Outcome, Resonance, Theor
 
 #: Whether k_1 w_1 + k_2 w_2 + ... = 0 for the absolute frequencies: exactly, or None where that is not known.
 Decides = Callable[[tuple[int, ...], Sequence[arb]], bool | None]
+#: Whether the resonant term of a vector k is zero exactly, the frequencies Omega given with their signs.
+Vanishes = Callable[[tuple[int, ...], Sequence[arb]], bool]
 
 
 class NotVerified(Failure):
@@ -66,7 +70,8 @@ def frequencies(hamiltonian: Truncated) -> list[arb] | Judged:
     try:
         found = squares(hamiltonian)
     except ValueError:
-        return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.EQUAL_FREQUENCIES)
+        more = hamiltonian.space.variables > 4
+        return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.EQUAL_MORE if more else Why.EQUAL_FREQUENCIES)
     if any(not z.imag.contains(0) for z in found):
         return Judged(Outcome.UNSTABLE, Theorem.FIRST)
     # each enclosure holds one root: one that is met by the real axis is its own conjugate
@@ -112,8 +117,13 @@ def signed(hamiltonian: Truncated, found: Sequence[arb]) -> list[arb]:
     return result
 
 
-def judged(lowered: Callable[[int], Truncated], resonant: Decides, order: int = 6) -> Judged:
-    """What is decided; ``lowered`` gives H to an order.  Raises NotVerified where a normal form fails its check."""
+def judged(
+    lowered: Callable[[int], Truncated], resonant: Decides, order: int = 6, vanishes: Vanishes = lambda *_: False
+) -> Judged:
+    """What is decided; ``lowered`` gives H to an order.  Raises NotVerified where a normal form fails its check.
+
+    ``vanishes``: whether the term of a resonance of third order is zero exactly; False where that is not known.
+    """
     quadratic = lowered(2)
     sure = definite(quadratic)
     if sure is not None:
@@ -135,11 +145,15 @@ def judged(lowered: Callable[[int], Truncated], resonant: Decides, order: int = 
             exact.append(Resonance(vector))
     exact = [one for one in exact if one.order < least_open]
     known["resonances"] = tuple(exact)
+    if len(omega) > 2 and exact and least_open > 3:
+        grows = _together(lowered, omega, exact, known)
+        if grows is not None:
+            return grows
     if least_open <= 4:
         return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.RESONANCE_OPEN, **known)
     if len(omega) > 2:
         return _many(lowered, omega, exact, known)
-    return _two(lowered, omega, exact, least_open, order, known)
+    return _two(lowered, omega, exact, least_open, order, known, vanishes)
 
 
 def vectors(n: int, order: int) -> list[tuple[int, ...]]:
@@ -192,6 +206,7 @@ def _two(
     least_open: int,
     order: int,
     known: dict[str, Any],
+    vanishes: Vanishes,
 ) -> Judged:
     by_order = {one.order: one for one in exact}
     form = _formed(lowered, omega, exact, 4)
@@ -199,7 +214,7 @@ def _two(
         size = _amplitude(form, by_order[3].vector, omega)
         if size > 0:
             return Judged(Outcome.UNSTABLE, Theorem.THIRD, **known)
-        if not _absent(form, by_order[3].vector, omega):
+        if not (_absent(form, by_order[3].vector, omega) or vanishes(by_order[3].vector, omega)):
             return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.RESONANT_TERM_OPEN, **known)
     known["quadratic"] = tuple(sorted(_quadratic(form).items()))
     if 4 in by_order:
@@ -231,7 +246,7 @@ def _two(
 
 
 def _keys(vector: Sequence[int], omega: Sequence[arb]) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """The exponents of the two resonant products, xi_1^a xi_2^b and eta_1^a eta_2^b for Omega of different signs."""
+    """The exponents of the two resonant products, of the xi and of the eta alone, for k.Omega = 0 with k >= 0."""
     sizes = tuple(map(abs, vector))
     nothing = (0,) * len(sizes)
     return (*sizes, *nothing), (*nothing, *sizes)
@@ -261,6 +276,28 @@ def _at(quadratic: dict[tuple[int, int], arb], point: Sequence[arb]) -> arb:
 
 
 # --- more degrees of freedom ---
+
+
+def _together(
+    lowered: Callable[[int], Truncated], omega: Sequence[arb], exact: Sequence[Resonance], known: dict[str, Any]
+) -> Judged | None:
+    """Unstable where one resonance of third order alone holds, k.Omega = 0 with k >= 0, and its term is not zero.
+
+    To third order H = Omega.I + c r cos psi, r = prod I_j^(k_j/2), psi = k.phi.  Then V = r sin psi has
+    V' = c sum k_j^2 r^2/(2 I_j) + O(5), and J, the I_m beside and the differences I_i/k_i - I_j/k_j, have J' = O(4).
+    Where W = V - N sum |J|^(3/2) > 0, for a large N, all I_j are of one size and the I_m smaller, so that W' > 0
+    (Chetaev).  None where that is not the case.
+    """
+    third = [one for one in exact if one.order == 3]
+    if len(third) != 1:
+        return None
+    signs = {k * w > 0 for k, w in zip(third[0].vector, omega, strict=True) if k}
+    if len(signs) != 1:
+        return None
+    form = _formed(lowered, omega, third, 3)
+    if _amplitude(form, third[0].vector, omega) > 0:
+        return Judged(Outcome.UNSTABLE, Theorem.THIRD_OF_MORE, **known)
+    return None
 
 
 def _many(

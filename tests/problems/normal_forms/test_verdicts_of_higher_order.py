@@ -6,12 +6,14 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from flint import acb, arb, ctx
+from flint import acb, arb, ctx, fmpq, fmpq_poly
 
 import mbsym
+from mbsym.algebra.tower import Tower
 from mbsym.algebra.truncated import Space, Truncated
 from mbsym.analysis.stages import Unavailable
-from mbsym.problems.normal_forms import Focus, Outcome, Theorem, Why
+from mbsym.problems.normal_forms import Focus, Judged, Outcome, Theorem, Why
+from mbsym.problems.normal_forms.exact import Resonant
 from mbsym.problems.normal_forms.twist import judged, vectors
 from mbsym.report.normal_form_words import Medium, sentences
 
@@ -176,8 +178,9 @@ values: {m: 1, a: 1/4}
     [
         # z'' + 3 i z' - 2 z = 0 has z = A e^(-i t) + B e^(-2 i t): x^3 holds z^2 conj(z), and that A^2 conj(B).
         ("x**3", Outcome.UNSTABLE, Theorem.THIRD, "resonant term of third order is not zero"),
-        # Re z^3 holds no such term, but balls do not tell its zero from other numbers.
-        ("x**3 - 3*x*y**2", Outcome.UNDECIDED, Theorem.NONE, "resonant term of third order is not told from zero"),
+        # Re z^3 holds no such term; that it cancels is seen exactly.
+        ("x**3 - 3*x*y**2", Outcome.STABLE, Theorem.ARNOLD_MOSER, "leave are exactly zero"),
+        ("x**3 - (3 + 1/10**40)*x*y**2", Outcome.UNSTABLE, Theorem.THIRD, "resonant term of third order is not zero"),
         ("(x**2 + y**2)**2", Outcome.STABLE, Theorem.ARNOLD_MOSER, "leave are exactly zero"),
     ],
 )
@@ -188,6 +191,72 @@ def test_two_to_one_with_its_term_and_without(higher: str, outcome: Outcome, the
     said = " ".join(text for text, _ in sentences(found, Medium(" ".join, str, lambda plain, _: plain, str)))
     assert told in said
     assert "No resonance" not in said
+
+
+@pytest.mark.parametrize(
+    ("further", "outcome", "theorem"),
+    [
+        ("0", Outcome.STABLE, Theorem.ARNOLD_MOSER),
+        ("x**3/10**30", Outcome.UNSTABLE, Theorem.THIRD),
+        ("-x**3/10**30", Outcome.UNSTABLE, Theorem.THIRD),
+    ],
+)
+def test_two_to_one_with_irrational_frequencies(further: str, outcome: Outcome, theorem: Theorem) -> None:
+    """U = -x^2/5 - 4 y^2/5 + a x^3 + x y^2 on a table that turns at 1: squares 8/5 and 2/5, energies + and -.
+
+    By hand: (W^2 - k1) x = -2 i W y, so that y = i e x with e = (W^2 - k1)/(2 W), k1 = -2/5; the term of z1 z2^2 in U
+    is 3 a - e2^2 - 2 e1 e2 for W1 = -2 W2, and e2^2 = 2/5, e1 e2 = -1/2: it is zero where a = -1/5.
+    """
+    potential = f"(x**2 + y**2)/2 - x**2/5 - 4*y**2/5 - x**3/5 + x*y**2 + {further}"
+    text = TABLE.replace("psi: 3/2", "psi: 1").replace("a*(x**2 + y**2)/2 + HIGHER", potential)
+    found = mbsym.loads(text, (11,)).normal_forms.at_values
+    assert (found.outcome, found.theorem) == (outcome, theorem)
+
+
+def three(*squares: int, cubic: str) -> Judged:
+    """H = sum W_k (x_k^2 + p_k^2)/2 + cubic terms, W_k a number with the square and sign of each of ``squares``."""
+    space = Space(6, 4, acb(0), acb(1))
+    variables = [space.variable(k) for k in range(6)]
+    with ctx.workprec(200):
+        whole = space.nothing
+        for square, x, p in zip(squares, variables[:3], variables[3:], strict=True):
+            whole = whole + (x * x + p * p).scaled(acb(abs(square)).sqrt() * (1 if square > 0 else -1) / 2)
+        names = {f"{letter}{k + 1}": variables[k + shift] for letter, shift in (("x", 0), ("p", 3)) for k in range(3)}
+        whole = whole + eval(cubic, names)
+        tower, polynomial = Tower(), fmpq_poly([1])
+        for square in squares:
+            polynomial *= fmpq_poly([abs(square), 1])
+        return judged(lambda _: whole, Resonant(tower, [tower.element(fmpq(c)) for c in polynomial.coeffs()]))
+
+
+@pytest.mark.parametrize(
+    ("squares", "cubic", "outcome", "theorem"),
+    [
+        # 5 - 2 - 3 = 0 with energies that let all three grow: dI1 = dI2 = dI3
+        ((25, -4, -9), "x1*x2*x3", Outcome.UNSTABLE, Theorem.THIRD_OF_MORE),
+        ((-25, 4, 9), "x1*x2*x3", Outcome.UNSTABLE, Theorem.THIRD_OF_MORE),
+        # what one gains the others lose: Omega.I alone bounds nothing, and nothing is said
+        ((25, -4, 9), "x1*x2*x3", Outcome.UNDECIDED, Theorem.NONE),
+        ((25, -4, -9), "x1*x1*x3", Outcome.UNDECIDED, Theorem.NONE),  # no resonant term
+        # 2 : 1 beside a third frequency
+        ((4, -1, 7), "x1*x2*x2 + x3*x3*x3", Outcome.UNSTABLE, Theorem.THIRD_OF_MORE),
+        ((4, 1, -7), "x1*x2*x2", Outcome.UNDECIDED, Theorem.NONE),
+        # two resonances of third order: 3 = 1 + 2 and 2 = 1 + 1
+        ((9, -1, -4), "x1*x2*x3", Outcome.UNDECIDED, Theorem.NONE),
+        ((4, 1, 7), "x1*x2*x2", Outcome.STABLE, Theorem.DEFINITE),
+    ],
+)
+def test_one_resonance_of_third_order_of_three_frequencies(
+    squares: tuple[int, ...], cubic: str, outcome: Outcome, theorem: Theorem
+) -> None:
+    found = three(*squares, cubic=cubic)
+    assert (found.outcome, found.theorem) == (outcome, theorem)
+    assert found.why is (Why.RESONANCE if outcome is Outcome.UNDECIDED else Why.NONE)
+
+
+def test_equal_frequencies_of_three_are_refused_by_name() -> None:
+    found = three(4, -4, 7, cubic="x1*x2*x2")
+    assert (found.outcome, found.why) == (Outcome.UNDECIDED, Why.EQUAL_MORE)
 
 
 @pytest.mark.parametrize(
