@@ -76,6 +76,8 @@ class Resonant:
             return None
         if len(frequencies) == 2:
             return True if resonance(self.tower, self.coefficients, vector).is_zero() else None
+        if len(frequencies) == 3 and all(abs(k) == 1 for k in vector):
+            return True if sum_of_others(self.coefficients).is_zero() else None
         return self._by_square_roots(vector, frequencies)
 
     def _by_square_roots(self, vector: tuple[int, ...], frequencies: Sequence[arb]) -> bool | None:
@@ -115,6 +117,12 @@ def resonance(tower: Tower, coefficients: Sequence[Element], vector: Sequence[in
     """
     a, b = (int(k) ** 2 for k in vector)
     return coefficients[0] * ((a + b) ** 2) - coefficients[1] * coefficients[1] * (a * b)
+
+
+def sum_of_others(coefficients: Sequence[Element]) -> Element:
+    """(w1 + w2 + w3)(-w1 + w2 + w3)(w1 - w2 + w3)(w1 + w2 - w3) = 4 e_2 - e_1^2 with e_1, e_2 of the squares."""
+    _, e2, e1 = coefficients[:3]
+    return e2 * 4 - e1 * e1
 
 
 def even_part(matrix: Sequence[Sequence[Any]], zero: Any, one: Any) -> list[Any]:

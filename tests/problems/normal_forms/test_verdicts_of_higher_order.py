@@ -214,19 +214,25 @@ def test_two_to_one_with_irrational_frequencies(further: str, outcome: Outcome, 
 
 
 def three(*squares: int, cubic: str) -> Judged:
-    """H = sum W_k (x_k^2 + p_k^2)/2 + cubic terms, W_k a number with the square and sign of each of ``squares``."""
+    """Frequencies with the squares and the signs of ``squares``."""
+    polynomial = fmpq_poly([1])
+    for square in squares:
+        polynomial *= fmpq_poly([abs(square), 1])
+    with ctx.workprec(200):
+        return of_three([acb(abs(x)).sqrt() * (1 if x > 0 else -1) for x in squares], polynomial, cubic)
+
+
+def of_three(omega: list[acb], polynomial: fmpq_poly, cubic: str) -> Judged:
+    """H = sum W_k (x_k^2 + p_k^2)/2 + cubic terms; ``polynomial`` has the roots -W_k^2."""
     space = Space(6, 4, acb(0), acb(1))
     variables = [space.variable(k) for k in range(6)]
-    with ctx.workprec(200):
-        whole = space.nothing
-        for square, x, p in zip(squares, variables[:3], variables[3:], strict=True):
-            whole = whole + (x * x + p * p).scaled(acb(abs(square)).sqrt() * (1 if square > 0 else -1) / 2)
-        names = {f"{letter}{k + 1}": variables[k + shift] for letter, shift in (("x", 0), ("p", 3)) for k in range(3)}
-        whole = whole + eval(cubic, names)
-        tower, polynomial = Tower(), fmpq_poly([1])
-        for square in squares:
-            polynomial *= fmpq_poly([abs(square), 1])
-        return judged(lambda _: whole, Resonant(tower, [tower.element(fmpq(c)) for c in polynomial.coeffs()]))
+    whole = space.nothing
+    for w, x, p in zip(omega, variables[:3], variables[3:], strict=True):
+        whole = whole + (x * x + p * p).scaled(w / 2)
+    names = {f"{letter}{k + 1}": variables[k + shift] for letter, shift in (("x", 0), ("p", 3)) for k in range(3)}
+    whole = whole + eval(cubic, names)
+    tower = Tower()
+    return judged(lambda _: whole, Resonant(tower, [tower.element(fmpq(c)) for c in polynomial.coeffs()]))
 
 
 @pytest.mark.parametrize(
@@ -252,6 +258,25 @@ def test_one_resonance_of_third_order_of_three_frequencies(
     found = three(*squares, cubic=cubic)
     assert (found.outcome, found.theorem) == (outcome, theorem)
     assert found.why is (Why.RESONANCE if outcome is Outcome.UNDECIDED else Why.NONE)
+
+
+@pytest.mark.parametrize(
+    ("last", "outcome", "theorem", "why"),
+    [
+        (-1, Outcome.UNSTABLE, Theorem.THIRD_OF_MORE, Why.NONE),
+        (-2, Outcome.UNDECIDED, Theorem.NONE, Why.RESONANCE_OPEN),
+    ],
+)
+def test_a_sum_of_irrational_frequencies(last: int, outcome: Outcome, theorem: Theorem, why: Why) -> None:
+    """2 cos(pi/9), 2 cos(2 pi/9), 2 cos(4 pi/9) are the sizes of the roots of t^3 - 3 t + 1, whose sum is zero.
+
+    By t^2 (t^2 - 3)^2 = 1 their squares are the roots of z^3 - 6 z^2 + 9 z - 1.  With a wrong coefficient it is not
+    affirmed that the first is the sum of the others, and enclosures alone do not say it.
+    """
+    with ctx.workprec(200):
+        one, two, four = (acb(2 * (arb(k) / 9).cos_pi()) for k in (1, 2, 4))
+        found = of_three([one, -two, -four], fmpq_poly([1, 9 + (last + 1), 6, 1]), "x1*x2*x3")
+    assert (found.outcome, found.theorem, found.why) == (outcome, theorem, why)
 
 
 def test_equal_frequencies_of_three_are_refused_by_name() -> None:
