@@ -56,14 +56,15 @@ def invariant_sets_of(analysis: Analysis) -> InvariantSets:
     if not chosen:
         raise NoClosedForm("no integrals are known but those of geometry")
     signs = {one.name: one.sign for one in analysis.system.parameters}
-    floating = len(field.relations) if analysis.speed_form is None else 0
+    lagrangian = analysis.speed_form is None
+    floating = len(field.relations) if lagrangian else 0
     place = arena(field, chosen, signs, _assumptions(analysis, there.transfer), floating)
     from mbsym.analysis.angle_names import write_in
     from mbsym.problems.invariant_sets.arena import identifiers
 
     plain = identifiers(field.variables, field.parameters)
-    written = write_in(place.ring, analysis, dict(zip(plain, field.variables, strict=True)) if floating else {})
-    return replace(invariant_sets(place), written=written)
+    written = write_in(place.ring, analysis, dict(zip(plain, field.variables, strict=True)) if lagrangian else {})
+    return replace(invariant_sets(place), written=written, in_angles=lagrangian)
 
 
 def _remedy(system: System) -> str:

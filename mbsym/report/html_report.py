@@ -231,7 +231,7 @@ def _of_stabilisation(found: Stabilisation, names: MathNames) -> Iterator[Markup
 
 def _of_invariant_sets(found: InvariantSets, names: MathNames) -> Iterator[list[Markup]]:
     """Paragraphs of problem 10, names and formulas in MathML."""
-    if found.written:  # names as in the formulas
+    if found.in_angles:  # names as in the formulas
         names = mathml_names(found.integrals[0][1].ring)
     write = InvariantMedium(
         names=lambda listed: shown.math(*_separated([str(names[name]) for name in listed])),

@@ -129,7 +129,7 @@ class InvariantSets(Shown):
     relations: tuple[Formula, ...]
     families: tuple[Family, ...]
     generic: tuple[Formula, ...]
-    #: Of Lagrange's equations in angles: multipliers of the relations need not be constant along a motion.
+    #: Of Lagrange's equations, in rates and angles: multipliers of relations need not be constant along a motion.
     in_angles: bool = False
     variables: tuple[str, ...] = ()
     #: Variables that stand for something else: sin_theta for sin(theta).
