@@ -14,6 +14,7 @@ from mbsym.report.said import filled
 from mbsym_cli.console import console, printable
 from mbsym_cli.integrals_cases import along_lines, cases_lines
 from mbsym_cli.integrals_relations import darboux_lines, darboux_values, level_lines, relation_lines
+from mbsym_cli.integrals_values import other_lines
 
 if TYPE_CHECKING:
     from mbsym.analysis.invariant_relations import InvariantRelations
@@ -57,6 +58,7 @@ def _sections(there: Setting, found: PolynomialIntegrals, further: Further) -> I
     relations = further.relations
     if relations is not None:
         yield "Integrals where another one is zero", level_lines(there, found, relations.levels)
+        yield "Integrals where another one has a value that is not zero", other_lines(there, relations.others)
         yield "Linear invariant relations", relation_lines(there, relations.linear)
         yield "Invariant relations f = 0 with f' = K f", darboux_lines(there, found, relations.darboux)
     if further.at is not None:

@@ -10,12 +10,14 @@ from mbsym.analysis.polynomial import Setting
 from mbsym.problems.polynomial_integrals import (
     DarbouxAlong,
     DarbouxPolynomials,
+    OtherLevels,
     PolynomialIntegrals,
     Relations,
     ZeroLevels,
     darboux_along_of,
     darboux_of,
     linear_relations,
+    other_levels_of,
     zero_levels_of,
 )
 
@@ -24,17 +26,18 @@ from mbsym.problems.polynomial_integrals import (
 class InvariantRelations:
     """``linear`` forms with conditions on the parameters; ``darboux`` polynomials of any weight for almost all of them.
 
-    ``levels``: integrals that hold where one of those found is zero; None where several unit vectors or angles are
-    related, and none was looked at.
+    ``levels``: integrals that hold where one of those found is zero, ``others``: where it has another value; None where
+    several unit vectors or angles are related, and none was looked at.
     """
 
     linear: Relations
     darboux: DarbouxPolynomials
     levels: ZeroLevels | None
+    others: OtherLevels | None
 
 
 def invariant_relations(there: Setting, found: PolynomialIntegrals, positive: Sequence[str]) -> InvariantRelations:
-    """All three, up to the degree of ``found``; ``positive``: parameters that are.
+    """All four, up to the degree of ``found``; ``positive``: parameters that are.
 
     Raises NoClosedForm where more monomials are coupled than the bounds allow.
     """
@@ -43,6 +46,7 @@ def invariant_relations(there: Setting, found: PolynomialIntegrals, positive: Se
         linear_relations(there.field, grading.weights, positive, grading.free),
         darboux_of(found, there.kinds, there.known),
         zero_levels_of(found, there.kinds, there.known),
+        other_levels_of(found, there.kinds, there.known),
     )
 
 

@@ -16,6 +16,7 @@ from mbsym.problems.polynomial_integrals import (
     DarbouxAlong,
     DarbouxPolynomials,
     OnLevel,
+    OtherLevels,
     PolynomialIntegrals,
     Relations,
     Special,
@@ -50,6 +51,7 @@ def integrals_json(
         "darboux": None if invariant is None else _darboux(there, invariant.darboux),
         "darboux_along": None if at is None else _darboux_along(there, at),
         "zero_levels": None if invariant is None else _levels(there, invariant.levels),
+        "other_levels": None if invariant is None else _others(there, invariant.others),
     }
     return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
 
@@ -183,6 +185,32 @@ def _levels(there: Setting, found: ZeroLevels | None) -> list[dict[str, Any]] | 
     if found is None:
         return None
     return [{**_level(there, one), "complete": one.complete} for one in found.levels]
+
+
+def _others(there: Setting, found: OtherLevels | None) -> list[dict[str, Any]] | None:
+    if found is None:
+        return None
+    return [
+        {
+            "integral": one.level.name,
+            "power": one.power,
+            "values": [
+                {
+                    "value": str(at.value),
+                    "integrals": [{"weight": w, "formula": str(there.formula(f))} for w, f in at.integrals],
+                    "complete": at.complete,
+                }
+                for at in one.values
+            ],
+            "undecided_at": [str(value) for value in one.undecided],
+            "undecided_at_zeros_of": [[str(c) for c in p.coeffs()] for p in one.irrational],
+            "looked": one.looked,
+            "complete": one.looked and one.complete and not one.drops and not one.undecided,
+            "at_any_value": one.looked and one.complete and one.whole,
+            "known": "proved" if not (one.by_rank and there.field.parameters) else "verified",
+        }
+        for one in found.levels
+    ]
 
 
 def _level(there: Setting, level: OnLevel) -> dict[str, Any]:

@@ -247,3 +247,25 @@ def test_values_with_further_invariant_relations_are_told():
     found = integrals_of(there, 1)
     told = list(darboux_values(there, found, special_relations(there, found, Fraction(1), Fraction(2))))
     assert told == ["not looked for: a K of that weight may hold products of variables, which is not looked at"]
+
+
+def test_values_of_integrals_are_told_with_what_holds_there(tmp_path):
+    """A force (y' - 2) z'^2 along x and y' constant: where y' is 2, x' is constant."""
+    path = tmp_path / "planted.yaml"
+    path.write_text(
+        "mbsym: 1\nname: planted\nparameters: {c: {sign: positive}}\n"
+        "bodies:\n  - {name: carriage, attached to: 0, connection point: [x, y, z], mass: 1, coordinates: [x, y, z]}\n"
+        "loads:\n  - generalized force: {x: (y_dot - c)*z_dot**2, y: 0, z: x_dot*y_dot + z_dot}\n",
+        encoding="utf-8",
+    )
+    data = json.loads(run(str(path), "-d2", "-sc=2", "--relations", "--json").stdout)
+    jsonschema.validate(data, schema("integrals"))
+    (told,) = data["other_levels"]
+    assert [(one["value"], [f["formula"] for f in one["integrals"]]) for one in told["values"]] == [("2", ["x_dot"])]
+    assert (told["complete"], told["at_any_value"], told["known"]) == (True, False, "proved")
+    text = " ".join(run(str(path), "-d2", "-sc=2", "--relations").stdout.split())
+    assert "where that of weight 1 (momentum of y) is 2, one of weight 1: x_dot where" in text
+    symbols = " ".join(run(str(path), "-d2", "--relations").stdout.split())
+    assert "has single values, other than zero, there may be others: put in numbers with --set" in symbols
+    top = " ".join(run("systems/goryachev-chaplygin.yaml", "--relations").stdout.split())
+    assert "where that of weight 3 (angular momentum about axis 3) has any value but zero there is none beyond" in top

@@ -13,7 +13,9 @@ Weights are looked for under which the equations are quasi-homogeneous (Euler's 
 vector 2; without forces that are linear in it 1): then each weight stands for itself.  Integrals are told apart as
 functions by the rank of their gradients at a random state.
 
-Particular integrals have derivatives that vanish where another one does: df/dt = K V.  Darboux polynomials divide their
+Particular integrals have derivatives that vanish where another one does: df/dt = K V, or where it has another value:
+df/dt = K (V - c), with c found.  Where the equations are quasi-homogeneous and nothing else has a value of its own
+there are none of these for c not zero, which scaling proves.  Darboux polynomials divide their
 own, df/dt = K f, and a motion that begins on f = 0 stays there: ``mbsym integrals --relations`` finds them, as Hess and
 Appelrot's A x0 p + C z0 r, or proves that there are none; with ``--vary``, at which values of a parameter there are
 more of them.  ``mbsym integrals`` asks more:
@@ -42,6 +44,7 @@ from mbsym.problems.polynomial_integrals.homogenised import (
     cases_of,
     darboux_along_of,
     darboux_of,
+    other_levels_of,
     zero_levels_of,
 )
 from mbsym.problems.polynomial_integrals.levels import levels, on_level
@@ -60,11 +63,14 @@ from mbsym.problems.polynomial_integrals.result import (
     Generator,
     Obstacle,
     OnLevel,
+    OtherLevel,
+    OtherLevels,
     PolynomialIntegrals,
     Polynomials,
     Relation,
     Relations,
     Special,
+    SpecialLevel,
     Sure,
 )
 from mbsym.problems.polynomial_integrals.search import polynomial_integrals
@@ -85,11 +91,14 @@ __all__ = [
     "Grading",
     "Obstacle",
     "OnLevel",
+    "OtherLevel",
+    "OtherLevels",
     "PolynomialIntegrals",
     "Polynomials",
     "Relation",
     "Relations",
     "Special",
+    "SpecialLevel",
     "Sure",
     "ZeroLevels",
     "along",
@@ -105,6 +114,7 @@ __all__ = [
     "levels",
     "linear_relations",
     "on_level",
+    "other_levels_of",
     "polynomial_integrals",
     "zero_levels_of",
 ]

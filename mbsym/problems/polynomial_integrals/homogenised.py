@@ -26,6 +26,7 @@ from mbsym.problems.polynomial_integrals.gradings import Grading, grading
 from mbsym.problems.polynomial_integrals.levels import levels, on_level
 from mbsym.problems.polynomial_integrals.lifting import primitive
 from mbsym.problems.polynomial_integrals.modular import PRIMES, ModularField, Terms, at_random, echelon, remainder
+from mbsym.problems.polynomial_integrals.other_levels import other_levels
 from mbsym.problems.polynomial_integrals.result import (
     UNITY,
     Along,
@@ -36,6 +37,8 @@ from mbsym.problems.polynomial_integrals.result import (
     DarbouxPolynomials,
     Generator,
     OnLevel,
+    OtherLevel,
+    OtherLevels,
     PolynomialIntegrals,
     Special,
 )
@@ -150,6 +153,27 @@ def zero_levels_of(
         ]
         found.append(OnLevel(down.generator(one), tuple(fresh), at.counts))
     return ZeroLevels(tuple(found), larger.grading.weights[:-1])
+
+
+def other_levels_of(
+    usual: PolynomialIntegrals, kinds: Sequence[Sequence[str]], known: Sequence[tuple[str, Any]]
+) -> OtherLevels | None:
+    """``other_levels`` of any field with at most one relation; None of others, which are not looked at.
+
+    Raises NoClosedForm where more monomials are coupled than the bounds allow.
+    """
+    if usual.grading.homogeneous and (usual.grading.free or not usual.field.relations):
+        lengths = [one for one in usual.generators if one.name.startswith("length of ")]
+        if usual.field.relations and not lengths:  # its weight is beyond the degree: with any length there is nothing
+            return other_levels(usual, None)
+        return other_levels(usual, lengths[0] if lengths else None)
+    larger = _larger(usual, kinds, known)
+    if larger is None:
+        return None
+    (unity,) = [one for one in larger.generators if one.name == UNITY]
+    found = other_levels(larger, unity)
+    down = _Down(larger.field.variables[-1])
+    return replace(found, levels=tuple(map(down.other, found.levels)), weights=larger.grading.weights[:-1])
 
 
 def _irreducible(one: Generator) -> bool:
@@ -326,6 +350,10 @@ class _Down:
             polynomials=tuple(map(self.factor, found.polynomials)),
             counts=tuple(replace(one, cofactor=self.polynomial(one.cofactor)) for one in found.counts),
         )
+
+    def other(self, one: OtherLevel) -> OtherLevel:
+        values = tuple(replace(x, integrals=tuple((w, self.polynomial(f)) for w, f in x.integrals)) for x in one.values)
+        return replace(one, level=self.generator(one.level), values=values)
 
     def factor(self, one: DarbouxPolynomial) -> DarbouxPolynomial:
         return replace(one, polynomial=self.polynomial(one.polynomial), cofactor=self.polynomial(one.cofactor))

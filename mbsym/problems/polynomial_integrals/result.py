@@ -293,3 +293,51 @@ class DarbouxAlong:
     @property
     def complete(self) -> bool:
         return self.general.complete and not self.left and self.followed and not self.square and not self.undecided
+
+
+@dataclass(frozen=True)
+class SpecialLevel:
+    """``integrals``: (weight, F) with F constant where the level's ``V^a`` is ``value``, proved by division.
+
+    ``complete``: there are no others.
+    """
+
+    value: Fraction
+    integrals: tuple[tuple[int, Any], ...]
+    complete: bool
+
+
+@dataclass(frozen=True)
+class OtherLevel:
+    """Where the integral ``level``, V, has a value other than zero; values are told of its power ``a``.
+
+    ``undecided``: values at which a rank drops, and what there is was not found; ``irrational``: polynomials over QQ at
+    whose zeros one may.  ``whole``: it drops nowhere, at no real value.  ``complete``: for almost all values there is
+    nothing but the integrals that hold everywhere, so that at no value that is not named there is (rational ones with
+    numerator and denominator up to 10^9, all where ``whole``).  ``drops``: parameters are symbols, and for almost all
+    of them the rank drops somewhere.  ``looked``: whether that was within the bounds.
+    """
+
+    level: Generator
+    power: int
+    values: tuple[SpecialLevel, ...] = ()
+    undecided: tuple[Fraction, ...] = ()
+    irrational: tuple[Any, ...] = ()
+    whole: bool = True
+    complete: bool = False
+    drops: bool = False
+    by_rank: bool = False
+    looked: bool = True
+
+
+@dataclass(frozen=True)
+class OtherLevels:
+    """Up to a weighted ``degree``, one item for each integral; ``weights`` as in ``Along``.
+
+    ``fixed``: another quantity has a value, too: the length of the unit vector, or the constant that is 1.
+    """
+
+    degree: int
+    fixed: bool
+    levels: tuple[OtherLevel, ...]
+    weights: tuple[int, ...] | None = None

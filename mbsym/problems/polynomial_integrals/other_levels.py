@@ -1,0 +1,211 @@
+"""Particular integrals on levels other than zero:  df/dt = K (V - c), c not zero, with c unknown.
+
+In a quasi-homogeneous field let V be an integral of weight v.  Of an f that is constant on V = c the terms fall into
+classes of weights modulo v, which D and the ideal of V - c keep.  In each class  F = sum (V/c)^m_j f_j  with equal
+weights equals f on the level, and D F, homogeneous and a multiple of V - c, is zero:  there are none but the integrals
+that hold everywhere.  So it is where no other quantity is fixed.
+
+Where one is, U = 1 of weight u (the square of a unit vector, or the constant that made the field quasi-homogeneous),
+the same with both gives  D F = K W,  W = V^a - k U^b,  a v = b u the least common multiple, k = c^a: the level's union
+over all sizes.  F has the weight N for which N less the weight of each term is a sum of multiples of u and v.  Columns
+are  D x^m  and  -x^m W,  linear in k; where the rank drops, or that of the products of integrals modulo W, is found as
+along a line of parameters (``drops``), each rational k looked at exactly and each F proved by division.  A dimension of
+a kernel is the same over any larger field: F with irrational coefficients are none besides.
+
+Levels are taken whole: where V - c is a product, integrals on one factor's zeros alone are not looked for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from math import gcd
+from random import Random
+from typing import Any
+
+from flint import fmpq, fmpq_mpoly_ctx, nmod_poly
+
+from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.problems.polynomial_integrals.drops import Line, dropped, others, rational, roots
+from mbsym.problems.polynomial_integrals.levels import (
+    Level,
+    cofactors,
+    images_on,
+    kernel_on,
+    levels,
+    on_level,
+    standard,
+)
+from mbsym.problems.polynomial_integrals.modular import PRIMES, ModularField, Terms, count, echelon, remainder
+from mbsym.problems.polynomial_integrals.result import (
+    Generator,
+    OtherLevel,
+    OtherLevels,
+    PolynomialIntegrals,
+    SpecialLevel,
+)
+from mbsym.problems.polynomial_integrals.search import polynomial_integrals, products
+from mbsym.problems.polynomial_integrals.values import LARGEST, lifted_factor
+
+#: Monomials of one weight that are looked at.
+MOST_COLUMNS = 250
+
+
+def other_levels(found: PolynomialIntegrals, fixed: Generator | None) -> OtherLevels:
+    """What holds where an integral of the list has a value that is not zero, and ``fixed`` is 1.
+
+    Of a quasi-homogeneous field; ``fixed`` is one of ``found.generators``, None where there is no such quantity.
+    """
+    listed = [one for one in levels(found) if one is not fixed]
+    return OtherLevels(found.degree, fixed is not None, tuple(_level(found, fixed, one) for one in listed))
+
+
+def _level(found: PolynomialIntegrals, fixed: Generator | None, one: Generator) -> OtherLevel:
+    if fixed is None:
+        return OtherLevel(one, 1, complete=found.complete)
+    step = gcd(one.weight, fixed.weight)
+    power, other = fixed.weight // step, one.weight // step
+    weights = _weights(found.degree, one.weight, fixed.weight)
+    rise = found.grading.rise or 0
+    top = one.weight * power
+    most = max(weights)
+    if most + rise < top:  # K is zero: F is an integral everywhere, and those are all known where the list is complete
+        return OtherLevel(one, power, complete=_general(found, most).complete)
+    if count(found.grading.weights, most) > MOST_COLUMNS:
+        return OtherLevel(one, power, looked=False)
+    try:
+        usual = _general(found, most)
+        return _Search(usual, fixed, one, power, other, weights).result()
+    except NoClosedForm:
+        return OtherLevel(one, power, looked=False)
+
+
+def _weights(degree: int, first: int, second: int) -> list[int]:
+    """For each class modulo the common divisor: the weight to which all terms up to a degree can be raised."""
+    step = gcd(first, second)
+    reached = {0}
+    bound = degree + first * second + first + second
+    for n in range(1, bound + 1):
+        if n - first in reached or n - second in reached:
+            reached.add(n)
+    found = []
+    for start in range(min(step, degree + 1)):
+        own = range(start, degree + 1, step)
+        found.append(next(n for n in range(own[-1], bound + 1) if all(n - w in reached for w in own)))
+    return sorted({n for n in found if n})
+
+
+def _general(found: PolynomialIntegrals, degree: int) -> PolynomialIntegrals:
+    """The integrals up to a larger degree; those known keep their names."""
+    if degree <= found.degree:
+        return found
+    known = [(one.name, one.polynomial) for one in found.generators]
+    larger = polynomial_integrals(found.field, found.grading, degree, known)
+    return replace(larger, generators=(*found.generators, *(x for x in larger.generators if x.weight > found.degree)))
+
+
+class _Search:
+    def __init__(
+        self,
+        usual: PolynomialIntegrals,
+        fixed: Generator,
+        one: Generator,
+        power: int,
+        other: int,
+        weights: Sequence[int],
+    ) -> None:
+        self.usual, self.one, self.power, self.weights = usual, one, power, weights
+        self.top, self.bottom = one.polynomial**power, fixed.polynomial**other
+        self.weight = one.weight * power
+        field = usual.field
+        name = "level"
+        while name in field.context.names():
+            name += "_"
+        context = fmpq_mpoly_ctx.get([name, *field.context.names()], field.context.ordering())
+
+        def up(p: Any) -> Any:
+            return context.from_dict({(0, *m): c for m, c in p.to_dict().items()})
+
+        self.name = name
+        self.field = PolynomialField(
+            context, (name, *field.parameters), field.variables, tuple(map(up, field.numerators)), up(field.denominator)
+        )
+        self.level = up(self.top) - context.gen(0) * up(self.bottom)
+        self.known = [(x.weight, up(x.polynomial)) for x in usual.generators]
+
+    def result(self) -> OtherLevel:
+        source = Random("levels")
+        numbers = {name: source.randrange(1, PRIMES[0]) for name in self.usual.field.parameters}
+        line = Line(
+            self.field,
+            PRIMES[0],
+            numbers | {self.name: 0},
+            dict.fromkeys(numbers, 0) | {self.name: 1},
+        )
+        total = nmod_poly([1], PRIMES[0])
+        for weight in self.weights:
+            total = total * dropped(line, lambda there, w=weight: self._columns(there, w), 1)  # type: ignore[misc]
+            steps = weight // self.weight + 1
+            total = total * dropped(line, lambda there, w=weight, s=steps: self._products(there, w, s), steps)  # type: ignore[misc]
+        if total == 0:
+            return OtherLevel(self.one, self.power, looked=False)
+        zeros = [root for root, _ in roots(total) if root]
+        whole = not zeros and not others(total)
+        usual = self._usual_is_complete(line, source)
+        if self.usual.field.parameters:
+            return OtherLevel(self.one, self.power, whole=whole, complete=usual, drops=not whole, by_rank=True)
+        return self._at_numbers(zeros, others(total), whole, usual)
+
+    def _at_numbers(self, zeros: Sequence[int], factors: Sequence[Any], whole: bool, usual: bool) -> OtherLevel:
+        values, undecided = [], []
+        for value in sorted(x for x in (rational(root, PRIMES[0]) for root in zeros) if x is not None):
+            if max(abs(value.numerator), value.denominator) > LARGEST:
+                continue
+            there = self.at(value)
+            if there is None:
+                undecided.append(value)
+            elif there.integrals:
+                values.append(there)
+        irrational = tuple(p for p in map(lifted_factor, factors) if p is not None)
+        return OtherLevel(self.one, self.power, tuple(values), tuple(undecided), irrational, whole, usual, by_rank=True)
+
+    def at(self, value: Fraction) -> SpecialLevel | None:
+        """What there is on one level beyond the integrals that hold everywhere; None where that takes too much."""
+        polynomial = self.top - fmpq(value.numerator, value.denominator) * self.bottom
+        zero = replace(self.one, polynomial=polynomial, weight=self.weight)
+        try:
+            found = on_level(self.usual, zero)
+        except NoClosedForm:
+            return None
+        return SpecialLevel(value, found.integrals, found.complete)
+
+    def _zero(self, there: ModularField) -> Level:
+        return Level(self.level, self.weight, there.terms(self.level))
+
+    def _columns(self, there: ModularField, weight: int) -> list[Terms]:
+        zero = self._zero(there)
+        columns = standard(self.usual.grading.weights, weight, zero)
+        return images_on(there, columns, cofactors(self.usual, weight, zero), zero.terms)
+
+    def _products(self, there: ModularField, weight: int, steps: int) -> list[Terms]:
+        """Products of integrals modulo W, times a power of its leading coefficient."""
+        zero = self._zero(there)
+        pairs = [(own, there.terms(f)) for own, f in self.known]
+        spanned = products(pairs, weight, True, there.prime, len(self.field.variables), lambda terms: terms)
+        scale = pow(zero.terms[zero.leading], steps, there.prime)
+        rests = [remainder(one, zero.terms, there.prime) for one in spanned]
+        return [{m: c * scale % there.prime for m, c in one.items()} for one in rests]
+
+    def _usual_is_complete(self, line: Line, source: Random) -> bool:
+        """Whether for almost all k there is nothing beyond products."""
+        there = line.at(source.randrange(1, PRIMES[0]))
+        zero = self._zero(there)
+        for weight in self.weights:
+            columns = standard(self.usual.grading.weights, weight, zero)
+            most = kernel_on(there, columns, cofactors(self.usual, weight, zero), zero)
+            rows, _ = echelon(self._products(there, weight, 1), columns, there.prime)
+            if len(most) > len(rows):
+                return False
+        return True
