@@ -119,8 +119,9 @@ def _verdict(averaged: System) -> Iterator[str]:
 
     about = Analysis(averaged, (6,))
     stage = about.stage(6)
-    if stage.value is None:
-        yield f"stability of the averaged motion: no result: {stage.failure}"
+    if stage.failure is not None:
+        hint = f" ({stage.failure.hint})" if stage.failure.hint else ""
+        yield f"stability of the averaged motion: no result: {stage.failure.reason}{hint}"
         return
     yield "stability of the averaged motion, not of the motion itself (problem 6):"
     yield from (f"  {line}" for line in lines(stage.value, about))

@@ -152,6 +152,17 @@ def test_the_command(tmp_path):
     assert {"--phase", "--small", "--time"} <= {line.split(":")[0] for line in refused.output.splitlines()}
 
 
+def test_the_command_without_a_motion(tmp_path):
+    path = tmp_path / "shaken.yaml"
+    text = PENDULUM.format(pivot="[0, a*cos(phi), 0]", damper="damper: {coordinate: theta, coefficient: c}", theta="0")
+    path.write_text(text.replace("motion: {theta: 0}\n", ""))
+    done = CliRunner().invoke(main, ["average", str(path), "--time", "0.1"])
+    assert done.exit_code == 0, done.output
+    told = "stability of the averaged motion: no result: the description gives no unperturbed motion (add for example"
+    assert told in " ".join(done.output.split())
+    assert "NoResult" not in done.output
+
+
 def test_a_second_phase_of_the_same_rate_is_refused():
     """Two phases that go together: what psi does would be held as constant in the averages over phi."""
     text = PENDULUM.format(
