@@ -63,7 +63,7 @@ def _family(arena: Arena, whole: Polynomial) -> tuple[Family, tuple[Polynomial, 
     limits = IN_ANGLES if arena.floating else SplitLimits()
     found = split(equations, (*arena.variables, *arena.constant), arena.signs.never_zero, limits=limits)
     generic = list(found.generic)
-    places = [place for branch in found.branches if (place := _on_relations(arena, branch)) is not None]
+    places = [place for branch in found.branches if (place := _on_relations(arena, branch, generic)) is not None]
     places = [place for place in places if not _is_empty(place, generic)]
     places = [with_lagrangian(place, whole) for place in places] if arena.floating else places
     kept = _largest([_by_variables(place) if _is_steady(place) else place for place in _largest(places)])
@@ -93,7 +93,7 @@ def _is_empty(place: Place, generic: list[Polynomial]) -> bool:
 
 def _conserved(arena: Arena) -> bool:
     """Whether d/dt of every integral vanishes where the relations between the variables hold."""
-    place = _on_relations(arena, Branch(()))
+    place = _on_relations(arena, Branch(()), [])
     return place is not None and all(place.vanishes(arena.derivative(p)) is True for p in arena.integrals)
 
 
@@ -129,8 +129,11 @@ def with_lagrangian(place: Place, whole: Polynomial) -> Place:
     return replace(place, branch=replace(branch, solved=(*branch.solved, *added)))
 
 
-def _on_relations(arena: Arena, branch: Branch) -> Place | None:
-    """With the relations between the variables among what remains; None where they contradict the branch."""
+def _on_relations(arena: Arena, branch: Branch, generic: list[Polynomial]) -> Place | None:
+    """With the relations between the variables among what remains; None where they contradict the branch.
+
+    What is taken to be nonzero in parameters alone is added to ``generic``.
+    """
     place = Place(arena, branch)
     for relation in arena.relations:
         top = place.shortened(place.branch.numerator(relation))
@@ -138,6 +141,8 @@ def _on_relations(arena: Arena, branch: Branch) -> Place | None:
             continue
         factors = [f for f, _ in irreducible_factors(top)[1]]
         open_factors = [f for f in factors if f not in branch.nonzero and not _is_parameter(arena, f)]
+        assumed = [f for f in factors if _is_parameter(arena, f) and not arena.signs.never_zero(f)]
+        generic += [f for f in assumed if f not in generic]
         if not open_factors:
             return None
         product = arena.ring.one
