@@ -17,28 +17,36 @@ Levels are taken whole: where V - c is a product, integrals on one factor's zero
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from math import gcd
 from random import Random
 from typing import Any
 
-from flint import fmpq, fmpq_mpoly_ctx, nmod_poly
+from flint import fmpq, fmpq_mpoly_ctx, nmod_mat, nmod_poly
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
-from mbsym.problems.polynomial_integrals.drops import Line, dropped, others, rational, roots
+from mbsym.problems.polynomial_integrals.drops import Line, dropped, interpolated, others, rational, roots
 from mbsym.problems.polynomial_integrals.levels import (
     Level,
     cofactors,
-    images_on,
     kernel_on,
     levels,
     on_level,
     standard,
 )
-from mbsym.problems.polynomial_integrals.modular import PRIMES, ModularField, Terms, count, echelon, remainder
+from mbsym.problems.polynomial_integrals.modular import (
+    PRIMES,
+    Exponents,
+    ModularField,
+    Terms,
+    count,
+    echelon,
+    remainder,
+    times,
+)
 from mbsym.problems.polynomial_integrals.result import (
     Generator,
     OtherLevel,
@@ -125,15 +133,17 @@ class _Search:
             name += "_"
         context = fmpq_mpoly_ctx.get([name, *field.context.names()], field.context.ordering())
 
-        def up(p: Any) -> Any:
-            return context.from_dict({(0, *m): c for m, c in p.to_dict().items()})
-
+        self.context = context
+        up = self._up
         self.name = name
         self.field = PolynomialField(
             context, (name, *field.parameters), field.variables, tuple(map(up, field.numerators)), up(field.denominator)
         )
         self.level = up(self.top) - context.gen(0) * up(self.bottom)
         self.known = [(x.weight, up(x.polynomial)) for x in usual.generators]
+
+    def _up(self, p: Any) -> Any:
+        return self.context.from_dict({(0, *m): c for m, c in p.to_dict().items()})
 
     def result(self) -> OtherLevel:
         source = Random("levels")
@@ -146,7 +156,7 @@ class _Search:
         )
         total = nmod_poly([1], PRIMES[0])
         for weight in self.weights:
-            total = total * dropped(line, lambda there, w=weight: self._columns(there, w), 1)  # type: ignore[misc]
+            total = total * self._drops(line.at(source.randrange(1, PRIMES[0])), weight, source)
             steps = weight // self.weight + 1
             total = total * dropped(line, lambda there, w=weight, s=steps: self._products(there, w, s), steps)  # type: ignore[misc]
         if total == 0:
@@ -184,10 +194,43 @@ class _Search:
     def _zero(self, there: ModularField) -> Level:
         return Level(self.level, self.weight, there.terms(self.level))
 
-    def _columns(self, there: ModularField, weight: int) -> list[Terms]:
+    def _drops(self, there: ModularField, weight: int, source: Random) -> nmod_poly:
+        """A polynomial in k that vanishes where the K with  K W  in the image of D become more.
+
+        With N the linear relations of that image the K are the kernel of  N (x^b V^a) - k N (x^b U^b).
+        """
+        prime = there.prime
         zero = self._zero(there)
         columns = standard(self.usual.grading.weights, weight, zero)
-        return images_on(there, columns, cofactors(self.usual, weight, zero), zero.terms)
+        multiples = cofactors(self.usual, weight, zero)
+        parts = [there.derivative(m) for m in columns]
+        upper, lower = (there.terms(p) for p in (self._up(self.top), self._up(self.bottom)))
+        tops = [times({b: 1}, upper, prime) for b in multiples]
+        bottoms = [times({b: 1}, lower, prime) for b in multiples]
+        rows = {key: k for k, key in enumerate(dict.fromkeys(m for p in (*parts, *tops, *bottoms) for m in p))}
+        if not multiples:
+            return nmod_poly([1], prime)
+        basis, size = (
+            _matrix(parts, rows, prime).transpose().nullspace() if parts else (_identity(rows, prime), len(rows))
+        )
+        if not size:
+            return nmod_poly([1], prime)
+        relations = nmod_mat([[int(basis[r, k]) for r in range(len(rows))] for k in range(size)], prime)
+        first, second = relations * _matrix(tops, rows, prime), relations * _matrix(bottoms, rows, prime)
+
+        def at(t: int, a: nmod_mat, b: nmod_mat) -> nmod_mat:
+            return a - nmod_mat([[int(x) * t % prime for x in row] for row in b.table()], prime)
+
+        rank = at(source.randrange(prime), first, second).rank()
+        found = nmod_poly([0], prime)
+        for _ in range(2):
+            left = _random(rank, size, prime, source)
+            right = _random(len(multiples), rank, prime, source)
+            a, b = left * first * right, left * second * right
+            shift = source.randrange(prime - rank - 2)
+            values = [int(at(shift + 1 + k, a, b).det()) if rank else 1 for k in range(rank + 1)]
+            found = found.gcd(interpolated(values, shift, prime))
+        return found
 
     def _products(self, there: ModularField, weight: int, steps: int) -> list[Terms]:
         """Products of integrals modulo W, times a power of its leading coefficient."""
@@ -209,3 +252,19 @@ class _Search:
             if len(most) > len(rows):
                 return False
         return True
+
+
+def _matrix(columns: Sequence[Terms], rows: Mapping[Exponents, int], prime: int) -> nmod_mat:
+    entries = [0] * (len(rows) * len(columns))
+    for k, column in enumerate(columns):
+        for key, value in column.items():
+            entries[rows[key] * len(columns) + k] = value
+    return nmod_mat(len(rows), len(columns), entries, prime)
+
+
+def _identity(rows: Mapping[Exponents, int], prime: int) -> nmod_mat:
+    return nmod_mat([[int(i == j) for j in range(len(rows))] for i in range(len(rows))], prime)
+
+
+def _random(rows: int, columns: int, prime: int, source: Random) -> nmod_mat:
+    return nmod_mat(rows, columns, [source.randrange(prime) for _ in range(rows * columns)], prime)
