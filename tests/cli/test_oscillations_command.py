@@ -147,3 +147,11 @@ def test_roots_that_are_zero_and_roots_that_are_not_found_are_no_damping(tmp_pat
     told = " ".join(done.stderr.split())
     assert "the frequencies of x_dot, y_dot, z_dot, x, y, z were not found as square roots" in told
     assert "no periodic solution" not in told
+
+
+def test_frequencies_that_variables_share_are_told_once_with_the_option() -> None:
+    """Both modes of the double pendulum move both angles: no variable's name tells them apart."""
+    done = CliRunner().invoke(main, ["oscillations", "systems/double-pendulum.yaml"])
+    text = " ".join(done.output.split())
+    assert "of: theta1, theta2, theta1_dot, theta2_dot (2 of them); say which of the frequencies" in text
+    assert "--frequency K" in text

@@ -6,6 +6,7 @@ then the corrections of the amplitude follow from the orders m + 1, m + 2, ..., 
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from dataclasses import field as dataclass_field
@@ -44,11 +45,13 @@ class ModeIsOpen(NoClosedForm):
 
     def __init__(self, blocks: Sequence[tuple[str, ...]]) -> None:
         self.blocks = tuple(blocks)
-        told = "; ".join(", ".join(one) for one in blocks)
-        super().__init__(
-            f"without the small parameter several frequencies are there, of: {told}",
-            remedy="name a variable whose oscillation leads: --of NAME, or 'leading: NAME' under the small parameter",
-        )
+        counts = Counter(self.blocks)
+        told = "; ".join(", ".join(one) + (f" ({n} of them)" if n > 1 else "") for one, n in counts.items())
+        remedy = "name a variable whose oscillation leads: --of NAME, or 'leading: NAME' under the small parameter"
+        if max(counts.values(), default=0) > 1:
+            which = "which of the frequencies that variables share: --frequency K"
+            remedy = f"say {which}" if len(counts) == 1 else f"{remedy}; and {which}"
+        super().__init__(f"without the small parameter several frequencies are there, of: {told}", remedy=remedy)
 
 
 @dataclass(frozen=True)
