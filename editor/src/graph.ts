@@ -33,7 +33,9 @@ class Graph {
     this.structure = new Structure(model, (name) => this.await(name));
     this.sheet = make("div", { class: "sheet" }, this.edges, this.tree);
     this.scroller = make("div", { class: "graph-scroller" }, this.sheet);
-    host.append(this.tools(), this.scroller, this.sizes(), this.hint);
+    // In the row of the tools: above the graph they would cover a body.
+    const top = make("div", { class: "graph-tools" }, this.tools(), this.sizes());
+    host.append(top, this.scroller, this.hint);
     this.tree.addEventListener("keydown", (event) => this.key(event));
     this.scroller.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
     model.on("view", () => this.draw());

@@ -119,6 +119,7 @@ export class Structure {
     const [view, last] = [this.model.understood, path[1]];
     const tie = [...(view?.loads ?? []), ...(view?.constraints ?? [])].find((one) => one.path.join() === path.join());
     if (tie || typeof last !== "number") return tie?.name || String(last ?? "all of it");
+    if (path[0] === "bodies" && path.length > 2) return `${path[2]} of ${view?.bodies[last]?.name ?? String(last + 1)}`;
     const item = nodeAt(this.model, path);
     const kind = valueOf(this.model, nodeAt(this.model, [...path, "claim"]));
     return item?.kind === "scalar" ? valueOf(this.model, item) : kind ? `${last + 1} (${kind})` : String(last + 1);

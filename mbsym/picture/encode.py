@@ -50,6 +50,7 @@ def as_json(found: Picture) -> dict[str, Any]:
         },
         "middle": numbers(found.middle),
         "extent": number(found.extent),
+        "atZero": list(found.notes.at_zero),
         "sentences": list(sentences(found)),
     }
 

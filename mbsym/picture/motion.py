@@ -86,11 +86,8 @@ def motion_of(run: Simulation) -> Motion:
 
 def _constrained(run: Simulation) -> list[str]:
     """``Drift: ...`` of the constraints."""
-    found = []
-    for title, text in constraint_lines(run):
-        whole = f"{title}: {text}." if title else f"{text}."
-        found.append(whole[:1].upper() + whole[1:])
-    return found
+    lines = constraint_lines(run)  # without a title they begin with a name, which keeps its spelling: c is not C
+    return [f"{title[:1].upper()}{title[1:]}: {text}." if title else f"{text}." for title, text in lines]
 
 
 def _frames(count: int, stride: int) -> str:

@@ -40,6 +40,9 @@ STATIC = {
 #: Seconds after which a job that nobody listens to is ended.
 ABANDONED = 20.0
 
+#: Seconds between two looks whether the page that asked for a picture still wants it.
+LEAVING = 0.05
+
 Deliver = Callable[[Path, Mapping[str, str | bytes], str, list[str]], list[Path]]
 
 
@@ -257,7 +260,7 @@ class Editor:
         async with self._slow:
             if await request.is_disconnected():
                 return {}
-            told = await self._result({**self._task("picture", body), "set": mapping(body, "set")})
+            told = await self._while_there({**self._task("picture", body), "set": mapping(body, "set")}, request)
         if told["kind"] == "picture":
             return told["value"]
         return {"complaints": [_whole_complaint(told.get("words", ""))]}
@@ -269,6 +272,15 @@ class Editor:
 
     async def _result(self, task: dict[str, Any]) -> dict[str, Any]:
         return await asyncio.to_thread(self.jobs.result, task)
+
+    async def _while_there(self, task: dict[str, Any], request: Request) -> dict[str, Any]:
+        """The result of a job that ends with its request: nobody waits behind an answer that nobody wants."""
+        names: list[str] = []
+        work = asyncio.create_task(asyncio.to_thread(self.jobs.result, task, begun=names.append))
+        while not (await asyncio.wait([work], timeout=LEAVING))[0]:
+            if names and await request.is_disconnected():
+                self.jobs.cancel(names[0])
+        return await work
 
     def _job(self, kind: str) -> Work:
         async def begin(body: Mapping[str, Any], _: Request) -> Any:

@@ -193,8 +193,17 @@ class Jobs:
         for job in left:
             job.end(words)
 
-    def result(self, task: Mapping[str, Any], page: str = "", seconds: float = 60.0) -> Event:
-        """What a job of one message tells: that, or its failure.  Waits; not for an event loop."""
+    def result(
+        self,
+        task: Mapping[str, Any],
+        page: str = "",
+        seconds: float = 60.0,
+        begun: Callable[[str], None] | None = None,
+    ) -> Event:
+        """What a job of one message tells: that, or its failure.  Waits; not for an event loop.
+
+        ``begun`` is told the name of the job, by which it can be cancelled.
+        """
         found: list[Event] = []
         over = threading.Event()
 
@@ -205,6 +214,8 @@ class Jobs:
                 over.set()
 
         name = self.begin(task, page, heard)
+        if begun is not None:
+            begun(name)
         if not over.wait(seconds):
             self.cancel(name)
             return {"kind": "failed", "words": f"stopped after {seconds:g} s"}

@@ -16,6 +16,9 @@ from typing import Any
 #: Exit codes: the memory that a job may have was not enough.
 OUT_OF_MEMORY = 75
 
+#: Tasks that fill a page by and by.
+PATIENT = ("derive", "export", "map")
+
 _WARMING = """\
 mbsym: 1
 name: pendulum
@@ -48,6 +51,7 @@ def attend(connection: Connection, memory: int, cold: bool = False) -> None:
             warm()
         connection.send({"kind": "ready"})
         task: dict[str, Any] = connection.recv()
+        _step_back(task)
         _hang_on(connection.fileno())
         _bound(memory)
         from mbsym.serving.tasks import perform
@@ -71,6 +75,13 @@ def attend(connection: Connection, memory: int, cold: bool = False) -> None:
             sys.stderr.flush()
         # What is left is to take down what was built up, for nobody.
         os._exit(code)
+
+
+def _step_back(task: dict[str, Any]) -> None:
+    """What takes long lets what somebody waits for go first: the picture, the motion."""
+    if task.get("kind") in PATIENT and hasattr(os, "nice"):
+        with suppress(OSError):
+            os.nice(10)
 
 
 def _bound(memory: int) -> None:

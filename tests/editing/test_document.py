@@ -441,3 +441,20 @@ def test_a_renaming_that_forgets_a_place_is_refused(monkeypatch: pytest.MonkeyPa
         with monkeypatch.context() as planted:
             planted.setitem(words._LISTS, section, lambda _node, _path: iter(()))
             assert refused(PENDULUM, {"op": "rename", "kind": "parameter", "name": "m", "to": "mass1"}) == "not-so"
+
+
+def test_a_copy_has_no_more_speeds_than_coordinates() -> None:
+    """The disc turns with what it hangs on, too: three speeds of a copy with two angles would follow from the first
+    three.  The copy of all of it has five coordinates, and keeps them."""
+    text = (SYSTEMS / "rolling-disc-speeds.yaml").read_text(encoding="utf-8")
+    for body, speeds, left in (
+        ("leaning", 3, [["bodies", 2, "speeds"]]),
+        ("disc", 3, [["bodies", 2, "speeds"]]),
+        ("yawed", 6, []),
+    ):
+        answer = changes(text, "x.yaml", [{"op": "duplicate branch", "body": body}])
+        assert answer["left"] == left, body
+        system, complaints = read(done(text, {"op": "duplicate branch", "body": body}), "x.yaml")
+        assert not complaints.errors, body
+        assert system is not None, body
+        assert len(system.speeds) == speeds

@@ -166,6 +166,23 @@ initial: {x: 1}
     assert any("one of 3 samples" in x for x in found.sentences)
 
 
+def test_names_keep_their_spelling_at_the_beginning_of_a_sentence() -> None:
+    """A point at the distance 1, begun off it: c is moved, and C is a parameter."""
+    text = """mbsym: 1
+name: bob
+parameters: {C: positive}
+bodies:
+  - {name: a, attached to: 0, connection point: [b, c, 0], mass: C, coordinates: [b, c]}
+constraints:
+  - distance: {between: [{body: 0, point: [0, 0, 0]}, {body: a, point: [0, 0, 0]}], length: 1}
+values: {C: 1}
+initial: {b: 0, c: 2}
+"""
+    said = motion(mbsym.loads(text).system, Request(0.1)).sentences
+    assert "c = 1 instead of 2." in said
+    assert any(x.startswith("Start: what was given") for x in said)
+
+
 def test_motions_make_no_numbers_up() -> None:
     text = (SYSTEMS / "double-pendulum.yaml").read_text(encoding="utf-8").replace("l2: 1, g: 9.81", "g: 9.81")
     with pytest.raises(Incomplete, match="l2"):

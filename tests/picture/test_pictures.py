@@ -152,6 +152,7 @@ def test_stand_ins_are_told_and_only_where_something_is_missing() -> None:
     found = picture(of(PENDULUM.format(more="values: {m: 2, g: 10}\n")))
     assert found.notes.stand_ins == (("l", 1.0), ("F", 1.0))
     assert found.notes.at_zero == ("a", "s")
+    assert as_json(found)["atZero"] == ["a", "s"]
     said = as_json(found)["sentences"]
     assert "Stand-ins for values that are not given, only to draw: l = 1, F = 1." in said
     assert "No initial value is given for a, s: drawn at 0." in said

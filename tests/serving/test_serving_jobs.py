@@ -16,6 +16,7 @@ from test_self_check import plant
 from test_withdrawn import ACCELERATION, LIFT
 
 from mbsym.report.targets import FORMATS
+from mbsym.serving import worker
 from mbsym.serving.jobs import Jobs
 from mbsym.serving.tasks import perform
 
@@ -207,3 +208,12 @@ def test_a_verdict_is_never_shown_whose_check_fails(monkeypatch: pytest.MonkeyPa
     assert not any(word in x["html"] for x in told for word in ('class="good"', 'id="verdict', "Kelvin"))
     (checks,) = [x for x in sections if x["problem"] == "checks"]
     assert 'class="bad"' in checks["html"]
+
+
+def test_what_fills_a_page_by_and_by_lets_the_picture_go_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    stepped: list[int] = []
+    monkeypatch.setattr(os, "nice", stepped.append, raising=False)
+    for kind in ("picture", "simulate", "hover", "derive", "export", "map"):
+        worker._step_back({"kind": kind})
+    assert len(stepped) == 3
+    assert min(stepped) > 0

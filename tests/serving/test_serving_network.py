@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import socket
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -110,6 +111,39 @@ def test_a_picture_of_what_cannot_be_drawn_is_a_complaint(address: str) -> None:
     assert posted(address, "picture", text=PENDULUM, format="yaml").json()["bodies"][0]["name"] == "bob"
     (complaint,) = posted(address, "picture", text="mbsym: 1\nname: a\n", format="yaml").json()["complaints"]
     assert complaint["message"]
+
+
+def test_a_picture_that_nobody_wants_any_more_keeps_none_waiting(address: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A page that asks for another picture leaves the first request: its job ends then, not when it is done."""
+    seen: list[str] = []
+    ready = threading.Event()
+    begin = Jobs.begin
+
+    def slow(self: Jobs, task: Any, page: str = "", tell: Any = None) -> str:
+        if task["kind"] != "picture" or seen:
+            return begin(self, task, page, tell)
+
+        def told(event: dict[str, Any]) -> None:
+            if event["kind"] == "cancelled":  # what else it tells comes too late for this test
+                seen.append(event["kind"])
+                tell(event)
+
+        name = begin(self, task, page, told)
+        ready.set()
+        return name
+
+    monkeypatch.setattr(Jobs, "begin", slow)
+    place = urlsplit(address)
+    body = json.dumps({"text": PENDULUM, "format": "yaml"})
+    head = (
+        f"POST {place.path}api/picture HTTP/1.1\r\nHost: {place.netloc}\r\nOrigin: http://{place.netloc}\r\n"
+        f"Content-Type: application/json\r\nContent-Length: {len(body)}\r\n\r\n"
+    )
+    with socket.create_connection((place.hostname, place.port), timeout=10) as line:
+        line.sendall((head + body).encode())
+        assert ready.wait(20)
+    assert posted(address, "picture", text=PENDULUM, format="yaml").json()["bodies"][0]["name"] == "bob"
+    assert seen == ["cancelled"]
 
 
 @pytest.mark.parametrize("name", ["starlette", "uvicorn"])

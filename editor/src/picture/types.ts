@@ -77,6 +77,8 @@ export interface Picture {
   view: { up: Triple; azimuth: number; elevation: number; plane: boolean };
   middle: Triple;
   extent: number;
+  /** Coordinates without an initial value. */
+  atZero: string[];
   sentences: string[];
 }
 

@@ -10,7 +10,7 @@ import { begun, close, Poses, type State } from "./program.js";
 import { Stage } from "./stage.js";
 import { Traces } from "./traces.js";
 import type { Shown } from "./drawing.js";
-import type { Equilibria, Modes, Motion, Picture } from "./types.js";
+import type { Coordinate, Equilibria, Modes, Motion, Picture } from "./types.js";
 import "./viewer.css";
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4];
@@ -107,7 +107,9 @@ export class Viewer {
   showMotion(motion: Motion): void {
     this.track = new Track(motion);
     this.traces.show(this.track);
-    this.fill("motion", this.traces.element, ...motion.sentences.map((text) => make("p", { class: "viewer-soft" }, text)));
+    const { atZero = [] } = this.picture ?? {};
+    const first = atZero.length ? [`Begun where the sliders stood; no initial value is given for ${atZero.join(", ")}.`] : [];
+    this.fill("motion", this.traces.element, ...[...first, ...motion.sentences].map((text) => make("p", { class: "viewer-soft" }, text)));
     const { track, poses } = this;
     if (poses && track.times.length > 1) {
       const count = Math.min(PATH, track.times.length);
@@ -150,11 +152,15 @@ export class Viewer {
     this.stage.call(at < 0 ? null : at, name ?? "");
   }
 
-  /** Coordinates that sliders have put elsewhere than the description: what a motion may begin with. */
+  /** Coordinates that sliders have put elsewhere than the description, and those of which it says nothing: what a motion
+   * begins with. */
   moved(): Record<string, string> {
-    if (!this.touched || this.playing !== null || !this.picture) return {};
-    const at = this.picture.coordinates.filter((one) => Math.abs((this.state[one.name] ?? 0) - one.value) > 1e-12);
-    return Object.fromEntries(at.map((one) => [one.name, (this.state[one.name] ?? 0).toFixed(9)]));
+    if (!this.picture) return {};
+    const state = this.touched && this.playing === null ? this.state : {};
+    const value = (one: Coordinate): number => state[one.name] ?? one.value;
+    const { coordinates, atZero } = this.picture;
+    const at = coordinates.filter((one) => atZero.includes(one.name) || Math.abs(value(one) - one.value) > 1e-12);
+    return Object.fromEntries(at.map((one) => [one.name, value(one).toFixed(9)]));
   }
 
   private fill(section: "motion" | "modes" | "equilibria", ...inside: Node[]): void {

@@ -8,7 +8,7 @@ from functools import partial
 
 from mbsym.editing.document.branches import bodies_of, branch_of, index_of, own_names, vectors
 from mbsym.editing.document.meaning import Json, Meant, word_of
-from mbsym.editing.document.primitives import Add, Rekey, Replace, applied_to
+from mbsym.editing.document.primitives import Add, Rekey, Remove, Replace, applied_to
 from mbsym.editing.document.words import Place, pattern, places, spins_renamed, words_of
 from mbsym.editing.document.written import Data, Path, Written, child, data_of, node_at
 from mbsym.source.keys import ALIASES
@@ -34,6 +34,9 @@ class _Copying:
     others: set[str] = field(default_factory=set)
     #: What the branch hangs on.
     parent: str = "0"
+    #: Speeds that the copy does without, and the bodies that have them.
+    lost: set[str] = field(default_factory=set)
+    slowed: set[int] = field(default_factory=set)
     #: What may name something, by section and item.
     places: dict[Path, list[Place]] = field(default_factory=dict)
 
@@ -88,6 +91,8 @@ def duplicate(found: Written, operation: Json) -> Meant:
     assert isinstance(tree, Mapping)
     copying = _names(found, tree, branch, bodies_of(found)[first][1])
     copies = {index: copying.copy(("bodies", index)) for index in branch}
+    for index in copying.slowed:
+        copies[index] = applied_to(copies[index], Remove(("speeds",)))
     root = copies[branch[0]]
     if isinstance(root, dict) and child(node_at(tree, ("bodies", branch[0])) or tree, "attached to") is None:
         copies[branch[0]] = applied_to(
@@ -101,6 +106,7 @@ def duplicate(found: Written, operation: Json) -> Meant:
     _with_items(copying, done_with, "constraints", _constraint)
     _with_entries(copying, done_with)
     _left_over(copying, done_with)
+    done_with.left += [("bodies", index, "speeds") for index in sorted(copying.slowed)]
     return done_with
 
 
@@ -111,6 +117,7 @@ def _names(found: Written, tree: Mapping, branch: list[int], parent: str) -> _Co
     bodies, taken = bodies_of(found), {one for one, _ in bodies_of(found)}
     words, copying = words_of(found), _Copying(found, parent=parent)
     every = [(own_names(found, tree, index), vectors(found, [index])) for index in range(len(bodies))]
+    copying.lost, copying.slowed = _dependent_speeds(found, branch, [every[index][0] for index in branch])
     for names, turning in every:
         words |= {*names, *(one for vector in turning for one in _components(vector))}
     for index, (name, _) in enumerate(bodies):
@@ -121,6 +128,8 @@ def _names(found: Written, tree: Mapping, branch: list[int], parent: str) -> _Co
         copying.bodies[name] = free(name, taken.__contains__, " ")
         taken.add(copying.bodies[name])
         for own in names:
+            if own in copying.lost:
+                continue
             inner = own in turning  # a vector, with its components
             called = free(own, partial(_is_taken, words, inner), "")
             new = {own: called}
@@ -129,6 +138,25 @@ def _names(found: Written, tree: Mapping, branch: list[int], parent: str) -> _Co
             copying.symbols |= new
             words |= set(new.values())
     return copying
+
+
+def _dependent_speeds(found: Written, branch: list[int], names: list[list[str]]) -> tuple[set[str], set[int]]:
+    """The speeds of a branch, and the bodies that have them, where there are more of them than coordinates: what the
+    branch hangs on moves with them, so that those of a copy would follow from those of the first.  Else none.
+
+    A branch with unit vectors keeps its speeds: they are what its vectors turn by.
+    """
+    speeds, having = set[str](), set[int]()
+    for index in branch:
+        body = node_at(found.tree, ("bodies", index))
+        if body is None or child(body, "orientation") is not None:
+            return set(), set()
+        node = child(body, "speeds")
+        if isinstance(node, Mapping) and node.entries:
+            speeds |= {entry.key.text for entry in node.entries}
+            having.add(index)
+    coordinates = sum(name not in speeds for own in names for name in own)
+    return (speeds, having) if len(speeds) > coordinates else (set(), set())
 
 
 def _is_taken(words: set[str], inner: bool, name: str) -> bool:
