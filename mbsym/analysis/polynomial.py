@@ -17,6 +17,7 @@ from mbsym.analysis.symmetric import symmetries_of
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.motion import relations
 from mbsym.mechanics.oracle import Oracle, State
+from mbsym.mechanics.speeds import SpeedForm
 from mbsym.mechanics.states import Oracles
 from mbsym.problems import perturbation
 from mbsym.problems.angle_field import in_angles
@@ -78,6 +79,7 @@ def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None) ->
     form = analysis.speed_form
     equations: Any = analysis.equations
     listed = analysis.integrals
+    listed = listed if form is None else tuple(_without_aside(form, equations.aside, one) for one in listed)
     also = [one.formula.polynomial for one in listed]
     images = relations(analysis.parameters_scene)
     if form is None:
@@ -98,6 +100,18 @@ def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None) ->
     found = [one for one in grouped_by if one]
     kinds = (whole.variables,) if form is None else tuple(x for x in (speeds, *dict.fromkeys(found), *alone) if x)
     return Setting(whole, field, transfer, kinds, tuple(found), tuple(known))
+
+
+def _without_aside(form: SpeedForm, aside: Sequence[str], one: Integral) -> Integral:
+    """The integral with 1 for the squares of unit vectors on which the equations do not depend."""
+    ring, p = form.ring, one.formula.polynomial
+    for vector in (vector for body in form.oriented for vector in body.orientation):
+        if set(vector.components) <= set(aside):
+            norm = -ring.one
+            for name in vector.components:
+                norm = norm + ring.generator("coordinate", name) ** 2
+            p = divmod(p, norm)[1]
+    return replace(one, formula=Formula(ring, ring.reduce(p)))
 
 
 def with_known(there: Setting, listed: Sequence[Integral]) -> Setting:

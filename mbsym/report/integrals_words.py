@@ -75,6 +75,8 @@ def sentences(found: PolynomialIntegrals) -> Iterator[Said]:
         yield none[bool(found.field.parameters)] if found.complete else "None was found.", values
         return
     yield "As functions at least [[count]] of them are independent (proved: rank of the gradients).", values
+    if any(one.name.startswith("product of ") for one in found.generators):
+        yield _TRIVIAL, values
     for one in found.generators:
         if not one.independent:
             yield _DEPENDENT[one.sure], {"name": title(one), "weight": one.weight}
@@ -106,6 +108,8 @@ _NONE_BUT_LENGTHS = {
     "almost all values of the parameters).",
     False: "But for lengths of unit vectors, which are 1, there is none up to weighted degree [[degree]] (proved).",
 }
+#: Those of vectors of one body are integrals of the kinematic equations alone.
+_TRIVIAL = "Lengths of unit vectors and products of two of them are the same in every motion: 1 and 0."
 _NO_OTHER = {
     True: "Up to weighted degree [[degree]] there is none beyond those of problem 7, for almost all values of the "
     "parameters.",

@@ -15,6 +15,7 @@ SENTENCES = {
     "As functions at least [[count]] of them are independent (proved: rank of the gradients).": "Как функции независимы по меньшей мере [[count]] из них (доказано: ранг градиентов).",
     "Every polynomial integral of weighted degree up to [[degree]] is a polynomial in these, for almost all values of the parameters (proved).": "Всякий полиномиальный интеграл взвешенной степени не выше [[degree]] есть многочлен от них при почти всех значениях параметров (доказано).",
     "Every polynomial integral of weighted degree up to [[degree]] is a polynomial in these (proved).": "Всякий полиномиальный интеграл взвешенной степени не выше [[degree]] есть многочлен от них (доказано).",
+    "Lengths of unit vectors and products of two of them are the same in every motion: 1 and 0.": "Длины единичных векторов и произведения двух из них одни и те же во всяком движении: 1 и 0.",
     "Of weight [[weight]] there are at most [[more]] more; they were not found within the budget.": "Веса [[weight]] есть ещё не более [[more]]; в пределах бюджета они не найдены.",
     "Up to weighted degree [[degree]] there is none beyond those of problem 7, for almost all values of the parameters.": "До взвешенной степени [[degree]] сверх интегралов задачи 7 их нет при почти всех значениях параметров.",
     "Up to weighted degree [[degree]] there is none beyond those of problem 7.": "До взвешенной степени [[degree]] сверх интегралов задачи 7 их нет.",

@@ -17,6 +17,7 @@ from itertools import product
 from typing import Any
 
 from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.problems.polynomial_integrals.frames import are_frames
 
 #: Weights that are tried for each kind of variables, and how many kinds are told apart.
 MOST_WEIGHT, MOST_KINDS = 3, 6
@@ -26,12 +27,14 @@ MOST_WEIGHT, MOST_KINDS = 3, 6
 class Grading:
     """``weights`` of the variables; ``rise``: by how much d/dt raises them, None where the field has terms of several.
 
-    ``free``: relations are left out, because their homogeneous parts are integrals.
+    ``free``: relations are left out, because their homogeneous parts are integrals; ``frames``: so are those of two
+    perpendicular unit vectors, and what holds for unit vectors alone is counted besides (``frames``).
     """
 
     weights: tuple[int, ...]
     rise: int | None
     free: bool
+    frames: bool = False
 
     @property
     def homogeneous(self) -> bool:
@@ -64,7 +67,8 @@ def _spread(field: PolynomialField, kinds: Sequence[Sequence[str]], choice: Sequ
 
 def _judged(field: PolynomialField, weights: tuple[int, ...]) -> Grading:
     by = rise(field, weights)
-    return Grading(weights, by, by is not None and _may_be_left_out(field, weights))
+    free = by is not None and _may_be_left_out(field, weights)
+    return Grading(weights, by, free, by is not None and not free and are_frames(field, weights))
 
 
 def rise(field: PolynomialField, weights: Sequence[int]) -> int | None:

@@ -11,16 +11,21 @@ import random
 
 from flint import nmod_mat
 
+from mbsym.problems.polynomial_integrals import frames
+from mbsym.problems.polynomial_integrals.gradings import Grading
 from mbsym.problems.polynomial_integrals.modular import ModularField, Terms
 from mbsym.problems.polynomial_integrals.result import Sure
 
 
 class Independence:
-    """Of integrals that are put one after the other.  ``free``: the relations are integrals like others."""
+    """Of integrals that are put one after the other."""
 
-    def __init__(self, there: ModularField, free: bool) -> None:
+    def __init__(self, there: ModularField, grading: Grading) -> None:
         self.there = there
+        free = grading.free or grading.frames  # relations are integrals like others
         self.state = None if there.field.relations and not free else self._anywhere()
+        if grading.frames:
+            self.state = frames.state(there)
         if self.state is None:
             self.state = self._on_the_relations()
         self.rows: list[list[int]] = []

@@ -90,7 +90,8 @@ class ModularField:
             found.append((leading, {m: c * inverse % self.prime for m, c in terms.items() if m != leading}))
         if any(a and b for (one, _), (other, _) in combinations(found, 2) for a, b in zip(one, other, strict=True)):
             raise NoClosedForm(
-                "unit vectors that are perpendicular to each other have relations that are not told apart"
+                "unit vectors that are perpendicular to each other have relations that are not told apart, but for two "
+                "of them in quasi-homogeneous equations"
             )
         return tuple(found)
 

@@ -10,6 +10,7 @@ from typing import Any
 
 from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.problems.polynomial_integrals.frames import beyond
 from mbsym.problems.polynomial_integrals.gradings import Grading, homogeneous_parts
 from mbsym.problems.polynomial_integrals.independence import Independence
 from mbsym.problems.polynomial_integrals.lifting import lifted, primitive
@@ -64,7 +65,7 @@ class Search:
         self, field: PolynomialField, grading: Grading, degree: int, known: Sequence[tuple[str, Any]], prime: int
     ) -> None:
         self.field, self.grading, self.degree = field, grading, degree
-        self.modulo = bool(field.relations) and not grading.free
+        self.modulo = bool(field.relations) and not grading.free and not grading.frames
         self.there: ModularField = at_random(field, prime, f"integrals {degree}")
         self.waiting = self._named(known)
         self.generators: list[Known] = []
@@ -74,8 +75,8 @@ class Search:
         refuse_too_many(self.field, self.grading, self.degree)
         for weight in range(1, self.degree + 1):
             self._of_weight(weight)
-        judged = Independence(self.there, self.grading.free)
-        of_known = Independence(self.there, self.grading.free)
+        judged = Independence(self.there, self.grading)
+        of_known = Independence(self.there, self.grading)
         for known in self.waiting:
             of_known.of(known.terms)
         listed = []
@@ -104,7 +105,11 @@ class Search:
             for f, terms in self._new(rows, most, columns):
                 self.generators.append(Known(f, weight, "", terms))
                 rows, _ = echelon([*rows, terms], order, self.there.prime)
-        self.counts.append(Count(weight, len(columns), len(most), len(rows)))
+        bound = len(most)
+        if self.grading.frames:
+            rise = self.grading.rise or 0
+            bound = max(bound, len(rows) + beyond(self.there, self.grading.weights, rise, weight, rows))
+        self.counts.append(Count(weight, len(columns), bound, len(rows)))
 
     def _columns(self, weight: int) -> Iterator[Exponents]:
         weights = range(weight + 1) if not self.grading.homogeneous or self.modulo else (weight,)
@@ -137,6 +142,8 @@ class Search:
         listed = [(name, f, apart) for name, f in known]
         if self.grading.free:  # norms are integrals by themselves; their constant is no part of them
             listed = [(f"length of {_stem(field, r)}", r, False) for r in field.relations] + listed
+        if self.grading.frames:
+            listed = [(_constant_by_itself(field, r), r, False) for r in field.relations] + listed
         for name, f, in_parts in listed:
             f = field.reduced(f) if self.modulo else f
             parts = homogeneous_parts(field, f, self.grading) if in_parts else _whole(field, f, self.grading)
@@ -172,6 +179,14 @@ def products(
             told = f"the integrals have more than {MOST_PRODUCTS} products of weight {weight}"
             raise NoClosedForm(told, limit=Limit.DEGREE, remedy=SMALLER)
     return [terms for at, terms in reached if at == weight or not exactly]
+
+
+def _constant_by_itself(field: PolynomialField, relation: Any) -> str:
+    """``length of b``, ``product of b and c``."""
+    degrees = relation.degrees()
+    names = [name.rstrip("0123456789") for name, k in zip(field.variables, field.places, strict=True) if degrees[k]]
+    first, *rest = dict.fromkeys(names)
+    return f"product of {first} and {rest[0]}" if rest else f"length of {first}"
 
 
 def _stem(field: PolynomialField, relation: Any) -> str:
