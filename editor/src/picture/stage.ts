@@ -54,9 +54,9 @@ export class Stage {
     this.canvas.addEventListener("webglcontextrestored", () => this.wanted());
   }
 
-  /** Something has changed: one frame is drawn, however many ask for it. */
+  /** Something has changed: one frame is drawn, however many ask for it. Where nothing can be drawn, time goes on. */
   wanted(): void {
-    if (this.asked || !this.renderer) return;
+    if (this.asked) return;
     this.asked = true;
     requestAnimationFrame((stamp) => this.frame(stamp));
   }
@@ -66,12 +66,18 @@ export class Stage {
     const began = performance.now();
     const since = this.last ? Math.min(0.25, (stamp - this.last) / 1000) : 0;
     const going = this.before(this.moving ? since : 0);
+    if (!this.renderer) {
+      this.moving = going;
+      this.last = going ? stamp : 0;
+      if (going) this.wanted();
+      return;
+    }
     if (going && this.moving && since > 0) this.adapt(1000 * since);
     else if (!going && this.fine < 1) {
       this.fine = 1; // what stands still is drawn as finely as can be
       this.resize();
     }
-    this.renderer!.render(this.drawing.scene, this.eye.camera);
+    this.renderer.render(this.drawing.scene, this.eye.camera);
     this.label();
     this.spent.push(performance.now() - began);
     if (this.spent.length > 240) this.spent.shift();

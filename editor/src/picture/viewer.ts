@@ -74,7 +74,7 @@ export class Viewer {
     const press = (words: string, label: string, does: () => void) => make("button", { type: "button", "aria-label": label, title: label, click: does }, words);
     const corner = make("div", { class: "viewer-corner" },
       press("+", "Closer", () => eye.closer(1.2)), press("−", "Further", () => eye.closer(1 / 1.2)), press("⌂", "First view", () => eye.reset()));
-    this.stage.element.append(corner);
+    if (!this.stage.broken) this.stage.element.append(corner);
     const main = make("div", { class: "viewer-main" }, this.stage.element, this.bar, this.said);
     host.replaceChildren(make("div", { class: "viewer" }, main, make("div", { class: "viewer-side" }, ...Object.values(this.sections))));
     if (!this.stage.broken) {
