@@ -233,6 +233,28 @@ def test_every_system_is_drawn_where_the_library_says(still: Window) -> None:
 
 
 @pytest.mark.slow
+def test_without_three_dimensions_a_motion_is_told_all_the_same(browser: Any, tmp_path: Path) -> None:
+    """A browser without WebGL: time goes on, energy and positions are told, and no button is for a picture."""
+    out = tmp_path / "page.html"
+    text, _ = viewed(mbsym.load(SYSTEMS / "simple-pendulum.yaml").system, {}, 0.2)
+    out.write_text(text, encoding="utf-8")
+    page = browser.new_page()
+    page.add_init_script(
+        "HTMLCanvasElement.prototype.getContext = (own => function (kind, ...more) {"
+        " return kind.startsWith('webgl') ? null : own.call(this, kind, ...more); })"
+        "(HTMLCanvasElement.prototype.getContext);"
+    )
+    page.goto(out.as_uri())
+    page.get_by_text("positions are told below in words").wait_for()
+    page.locator(".viewer-reading").filter(has_text="energy").wait_for()
+    page.get_by_role("button", name="Pause").click()
+    page.get_by_text("In words", exact=True).click()
+    page.locator(".viewer-words tbody tr").wait_for()
+    assert page.get_by_role("button", name="Closer").count() == 0
+    page.close()
+
+
+@pytest.mark.slow
 def test_the_page_by_keys(show: Callable[[Path], Window], tmp_path: Path) -> None:
     """Sliders, time, modes and equilibria without a pointer; nothing moves by itself where that is not wanted."""
     out = tmp_path / "page.html"
