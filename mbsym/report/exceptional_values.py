@@ -62,15 +62,15 @@ def _numbers(judged: Judged) -> Iterator[str]:
     if judged.coefficient is not None and judged.amplitude_of:
         borders = {Outcome.ASYMPTOTIC: "a soft border: ", Outcome.UNSTABLE: "a hard border: "}
         yield (
-            f"{borders.get(judged.outcome, '')}+-i w with w = {decimal(judged.frequencies[0])}, r' = a r^3 with "
-            f"a = {decimal(judged.coefficient)} for the amplitude r of {judged.amplitude_of}"
+            f"{borders.get(judged.outcome, '')}a pair of imaginary roots of frequency {decimal(judged.frequencies[0])}"
+            f", the amplitude of {judged.amplitude_of} grows at the rate {decimal(judged.coefficient)} times its cube"
         )
     if judged.theorem is Theorem.EQUAL and judged.coefficient is not None:
         yield f"delta A = {decimal(judged.coefficient)} in Sokolskii's normal form"
     if judged.degree is not None:
         yield (
-            f"the energy along the direction of the zero root is a x^{judged.degree} + ... with "
-            f"a = {decimal(judged.coefficient)} for the deviation x of {judged.along}"
+            f"the energy along the direction of the zero root begins with {decimal(judged.coefficient)} times the "
+            f"power {judged.degree} of the deviation of {judged.along}"
         )
     if judged.sides is not None:
         left, right = map(decimal, judged.sides)

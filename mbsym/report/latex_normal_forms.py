@@ -25,14 +25,7 @@ def of_normal_forms(found: NormalForms, names: LatexNames, tongue: Language) -> 
 
 #: How mathematics in the English sentences, which the terminal shows as they are, is written in LaTeX.
 _MATHEMATICS = {
-    "r' = a r^3 + ...": r"$\dot r = a r^3 + \ldots$",
-    "r' = a r^3": r"$\dot r = a r^3$",
-    "+-i w": r"$\pm\mathrm{i} w$",
-    "Where w^2 > 0": "Where $w^2 > 0$",
-    "w^2 =": "$w^2$ =",
     "Omega.I = 0": r"$\Omega \cdot I = 0$",
-    "for a < 0": "for $a < 0$",
-    "for a > 0": "for $a > 0$",
     **{f"{letter}{order}": f"${letter}_{order}$" for letter in "DH" for order in (4, 6)},
     **{f"w{k}": f"$\\omega_{k}$" for k in (1, 2)},
 }

@@ -34,6 +34,8 @@ REASONS = {
     "freedom: Sokolskii's theorem is of two.",
     Why.ZERO_OPEN: "A root is zero, and the energy along its direction vanishes up to order 6, or is not told from "
     "that: terms of higher order may decide.",
+    Why.SINGULAR_MASS: "The mass matrix is singular on the motion, or is not told from a singular one (coordinates are "
+    "singular there, or what moves has no mass): there are no momenta, and no normal form.",
     Why.POLE: "At the given values the description divides by zero: there is nothing to be judged.",
     Why.NO_MOTION: "At the given values the motion does not exist, or that is not shown.",
     Why.RESONANCE_OPEN: "A resonance up to order 4 is neither proved nor excluded.",
@@ -71,13 +73,11 @@ THEOREMS = {
     Theorem.EQUAL_TWO: "The frequencies are equal exactly, with two eigenvectors for each root: by the zeros of "
     "the normal form of fourth order on the cone where H2 = 0 the motion is [[word]] "
     "(Sokolskii; Cabral and Meyer).",
-    Theorem.DEFINITE_HIGHER: "A root is zero.  With the other variables eliminated the energy is a x^M + ... for the "
-    "deviation x of [[name]], M = [[degree]] and a = [[a]]: a strict minimum or maximum, the "
-    "motion is stable (Dirichlet).",
-    Theorem.ZERO: "A root is zero.  With the other variables eliminated the energy is a x^M + ... for the "
-    "deviation x of [[name]], M = [[degree]] and a = [[a]]: by the parity of M and the sign of "
-    "a against that of the quadratic part the motion is [[word]] (Sokolskii, resonance of "
-    "first order).",
+    Theorem.DEFINITE_HIGHER: "A root is zero.  With the other variables eliminated the energy begins with [[a]] times "
+    "the power [[degree]] of the deviation of [[name]]: a strict minimum or maximum, the motion is stable (Dirichlet).",
+    Theorem.ZERO: "A root is zero.  With the other variables eliminated the energy begins with [[a]] times the power "
+    "[[degree]] of the deviation of [[name]]: by the parity of that power and the sign of its coefficient against that "
+    "of the quadratic part the motion is [[word]] (Sokolskii, resonance of first order).",
     Theorem.BRUNO: "No resonance up to order 4 holds, and H4 has no zero in the cone of actions Omega.I = 0: the "
     "motion is formally stable (Bruno); stability in Lyapunov's sense is not proved.",
     Theorem.ARNOLD: "No resonance up to order 4 holds, and H4 is not degenerate: invariant tori surround the motion, "
@@ -211,11 +211,11 @@ def _centre(found: Judged, write: Medium) -> Iterator[Said]:
     w = decimal(found.frequencies[0])
     soft = found.outcome is Outcome.ASYMPTOTIC
     yield (
-        "One pair of roots +-i w with w = [[w]], the others to the left; on the centre manifold r' = a r^3 with "
-        "a = [[a]] for the amplitude r of [[name]]: asymptotically stable, a soft border."
+        "One pair of roots is imaginary, of frequency [[w]], the others are to the left; on the centre manifold the "
+        "amplitude of [[name]] grows at the rate [[a]] times its cube: asymptotically stable, a soft border."
         if soft
-        else "One pair of roots +-i w with w = [[w]], the others to the left; on the centre manifold r' = a r^3 with "
-        "a = [[a]] for the amplitude r of [[name]]: unstable, a hard border.",
+        else "One pair of roots is imaginary, of frequency [[w]], the others are to the left; on the centre manifold "
+        "the amplitude of [[name]] grows at the rate [[a]] times its cube: unstable, a hard border.",
         {
             "w": write.math(w, _tex(w)),
             "a": write.math(a, _tex(a)),
@@ -260,16 +260,17 @@ def _in_symbols(found: InSymbols, everywhere: Word | None, write: Medium) -> Ite
 def _focus(found: Focus, write: Medium) -> Iterator[Said]:
     if found.coefficient.is_zero:
         yield (
-            "A pair of roots +-i w is one for all parameters, w^2 = [[square]]; on the centre manifold the terms of "
-            "third order of r', r the amplitude of [[name]], are zero for all parameters: those of higher order "
-            "decide.",
+            "Two roots have the sum zero for all parameters, the square of their frequency is [[square]]; on the "
+            "centre manifold the growth of the amplitude of [[name]] is without a term of third order for all "
+            "parameters: those of higher order decide.",
             {"square": write.formula(found.square), "name": write.names((found.amplitude_of,))},
         )
         return
     yield (
-        "A pair of roots +-i w is one for all parameters, w^2 = [[square]]; on the centre manifold r' = a r^3 + ... "
-        "for the amplitude r of [[name]], a = [[a]].  Where w^2 > 0 and all other roots are to the left the motion is "
-        "asymptotically stable for a < 0 and unstable for a > 0.",
+        "Two roots have the sum zero for all parameters, the square of their frequency is [[square]]; on the centre "
+        "manifold the amplitude of [[name]] grows, but for terms of higher order, at the rate [[a]] times its cube.  "
+        "Where that square is positive and all other roots are to the left the motion is asymptotically stable if this "
+        "rate is negative and unstable if it is positive.",
         {
             "square": write.formula(found.square),
             "a": write.formula(found.coefficient),

@@ -29,7 +29,7 @@ from mbsym.problems.normal_forms.centre import matrix_of
 from mbsym.problems.normal_forms.dissipative import judged_field, state_field
 from mbsym.problems.normal_forms.equal import equal_frequencies
 from mbsym.problems.normal_forms.exact import even_part, over_tower, two_eigenvectors
-from mbsym.problems.normal_forms.expansion import Expansion, expansion, faddeev
+from mbsym.problems.normal_forms.expansion import Expansion, SingularMass, expansion, faddeev
 from mbsym.problems.normal_forms.pairs import judged_on_border
 from mbsym.problems.normal_forms.problem import ORDER, PRECISION, at_numbers, at_zero_root, enclosed, twist
 from mbsym.problems.normal_forms.result import Judged
@@ -154,9 +154,20 @@ def _of_two_frequencies(
     found: Expansion, name: str, values: Mapping[str, Fraction]
 ) -> tuple[Tower, dict[str, Element]]:
     """What may vanish: trace, product and discriminant of the squares of the frequencies, resonances, D4."""
-    if len(found.coordinates) - len(found.cyclic) != 2:
-        raise NotAlong("exceptional values are listed for Hamiltonian systems of two frequencies")
-    _, tower, named = twist(found, values)
+    count = len(found.coordinates) - len(found.cyclic)
+    if count != 2:
+        besides = " without its cyclic coordinates" if found.cyclic else ""
+        raise NotAlong(
+            "of systems without applied forces exceptional values are listed where there are two frequencies; this one "
+            f"has {count}{besides}"
+        )
+    try:
+        _, tower, named = twist(found, values)
+    except SingularMass:
+        raise
+    except ZeroDivisionError:
+        reason = f"for all values of {name} a frequency is zero, two are equal, or one is two or three times another"
+        raise NotAlong(reason) from None
     if name not in tower.parameters:
         raise NotAlong(f"the expansion does not depend on {name}")
     for key, x in named.items():

@@ -15,7 +15,9 @@ from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from mbsym.algebra.failures import Failure
+from flint import acb
+
+from mbsym.algebra.failures import Failure, SingularPoint
 from mbsym.algebra.jet import Jet, Terms
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.truncated import Space, Truncated
@@ -32,6 +34,15 @@ class NotExpanded(Failure):
     """There is no autonomous expansion about the motion."""
 
     code = "not-expanded"
+
+
+class SingularMass(SingularPoint):
+    """The mass matrix is singular on the motion, or is not told from a singular one: there are no momenta."""
+
+    code = "singular-mass"
+
+    def __init__(self) -> None:
+        super().__init__("the mass matrix is singular on the motion", remedy="choose other coordinates")
 
 
 @dataclass(frozen=True)
@@ -99,13 +110,13 @@ class Numbers:
     def hamiltonian(self) -> Truncated:
         """H(x, p) without the cyclic coordinates, whose momenta keep their unperturbed values; from degree 2 on.
 
-        Variables are the other x in order, then their p.  Raises SingularPoint (or ZeroDivisionError) where det M = 0.
+        Variables are the other x in order, then their p.  Raises SingularMass where det M = 0.
         """
         n, space = self.n, self.space
         lagrangian = self._lowered(self.found.lagrangian, 2)
         slopes = [lagrangian.derivative(n + i) for i in range(n)]
         mass = [[slopes[i][_unit(2 * n, n + j)] for j in range(n)] for i in range(n)]
-        back = inverted(mass, self.inverse, self.zero, self.one)
+        back = self._inverted(mass)
         rest = [slope - space.of({(n + j,): mass[i][j] for j in range(n)}) for i, slope in enumerate(slopes)]
         x = [space.variable(i) for i in range(n)]
         p = [space.nothing if i in self.found.cyclic else space.variable(n + i) for i in range(n)]
@@ -116,6 +127,15 @@ class Numbers:
         whole = _sum(space, (p[i] * v[i] for i in range(n))) - lagrangian.composed([*x, *v])
         return self._without_cyclic(whole)
 
+    def _inverted(self, mass: Sequence[Sequence[Any]]) -> list[list[Any]]:
+        try:
+            found = inverted(mass, self.inverse, self.zero, self.one)
+        except ZeroDivisionError:
+            raise SingularMass from None
+        if any(isinstance(x, acb) and not x.is_finite() for row in found for x in row):
+            raise SingularMass
+        return found
+
     def _without_cyclic(self, whole: Truncated) -> Truncated:
         left = [i for i in range(self.n) if i not in self.found.cyclic]
         places = [*left, *(self.n + i for i in left)]
@@ -124,7 +144,10 @@ class Numbers:
         return Truncated(space, terms)
 
     def field(self) -> list[Truncated]:
-        """v' as series in x and v (all coordinates), to one order less than that of the Lagrangian."""
+        """v' as series in x and v (all coordinates), to one order less than that of the Lagrangian.
+
+        Raises SingularMass where det M = 0.
+        """
         n, space = self.n, Space(2 * self.n, self.found.order - 1, self.zero, self.one)
         lagrangian = self._lowered(self.found.lagrangian, 2)
         cut = lambda one: Truncated(space, one.coefficients)  # noqa: E731
@@ -136,7 +159,7 @@ class Numbers:
             for j in range(n):
                 total = total - cut(slopes[i].derivative(j)) * space.variable(n + j)
             right.append(total)
-        back = inverted([[m[(0,) * (2 * n)] for m in row] for row in mass], self.inverse, self.zero, self.one)
+        back = self._inverted([[m[(0,) * (2 * n)] for m in row] for row in mass])
         moving = [[m - space.constant(m[(0,) * (2 * n)]) for m in row] for row in mass]
         a = [space.nothing] * n
         for _ in range(self.found.order):

@@ -31,7 +31,7 @@ from mbsym.problems.normal_forms.exact import (
     resonance,
     two_eigenvectors,
 )
-from mbsym.problems.normal_forms.expansion import Expansion, Numbers, expansion
+from mbsym.problems.normal_forms.expansion import Expansion, Numbers, SingularMass, expansion
 from mbsym.problems.normal_forms.resonant_term import is_zero_exactly
 from mbsym.problems.normal_forms.result import InSymbols, Judged, NormalForms, Outcome, Theorem, Why
 from mbsym.problems.normal_forms.twist import judged
@@ -87,12 +87,21 @@ def _judged_field(found: Expansion, values: Mapping[str, Any]) -> Judged:
     """With applied forces, at numbers: undecided where coefficients are no exact numbers (sines, exponentials)."""
     try:
         return judged_field(found, values)
+    except SingularMass:
+        return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.SINGULAR_MASS)
     except NoClosedForm:
         return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.IRRATIONAL)
 
 
 def at_numbers(to: Callable[[int], Expansion], values: Mapping[str, Any], resonant: Any) -> Judged:
     """A conservative system at numbers; ``resonant`` decides k.w = 0 where the values are not rational."""
+    try:
+        return _conservative(to, values, resonant)
+    except SingularMass:
+        return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.SINGULAR_MASS)
+
+
+def _conservative(to: Callable[[int], Expansion], values: Mapping[str, Any], resonant: Any) -> Judged:
 
     def lowered(order: int) -> Truncated:
         return enclosed(to(order), values).hamiltonian()

@@ -86,6 +86,8 @@ class Why(StrEnum):
     MIXED_ROOTS = "mixed-roots"
     #: Roots on the imaginary axis are proved at rational numbers only.
     IRRATIONAL = "irrational"
+    #: Coordinates are singular there, or what moves has no mass: there are no momenta.
+    SINGULAR_MASS = "singular-mass"
     #: At the given values the description divides by zero; or the motion is not shown to exist.
     POLE = "pole"
     NO_MOTION = "no-motion"

@@ -302,4 +302,4 @@ values: {s: 1}
     found = exceptional(mbsym.loads(softened), "s", (Fraction(1), Fraction(2)), {})
     (border,) = [one for one in found.specials if "product" in one.vanishing]
     assert border.judged.theorem is Theorem.DEFINITE_HIGHER
-    assert any("a x^4" in line for line in lines(found))
+    assert any("times the power 4 of the deviation" in line for line in lines(found))
