@@ -6,7 +6,8 @@ J is the Jacobian of the equations on the unperturbed motion, as a program in t.
 is read from the program: t must be in sines and cosines only, of arguments a t + b with rational a.  On each of N steps
 the Taylor series of Phi is summed in balls, with Lagrange's remainder: the coefficient of order K + 1 at every time of
 the step, from the Jacobian's coefficients over the whole step and from  |Phi - 1| <= exp(|J| h) - 1.  M is their
-product, a ball that contains the true matrix; so do its eigenvalues (acb_mat.eig, Rump's and van der Hoeven's methods).
+product, a ball that contains the true matrix; so do its eigenvalues (acb_mat.eig, Rump's and van der Hoeven's methods,
+block by block where entries are zero exactly; |mu| <= |M| where they are not isolated).
 
 What follows (Lyapunov 1892; Yakubovich & Starzhinskii, Linear Differential Equations with Periodic Coefficients, 1975):
 a multiplier outside the unit circle: unstable, and so is the motion of the whole equations; all inside: asymptotically
@@ -23,10 +24,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
+from itertools import combinations
 from math import ceil, gcd, lcm
 from typing import Any
 
 from flint import acb, acb_mat, arb, arb_mat, arb_series, ctx, fmpq
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components
 
 from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.program import Node
@@ -104,16 +108,16 @@ def judged(dynamics: Dynamics, order: int = ORDER, bits: int = BITS) -> Judged:
         lagrangian = not without_potential(dynamics.system) or (dynamics.size == 1 and _traceless(code))
         multipliers, simple = _multipliers(monodromy, lagrangian)
     names = (*dynamics.system.coordinates, *dynamics.system.velocities)
-    word = _word(multipliers)
+    word = _word(multipliers, simple)
     return Judged(word, period, frequency, names, monodromy, multipliers, simple, lagrangian, rests, steps)
 
 
-def _word(multipliers: Sequence[Multiplier]) -> Word:
+def _word(multipliers: Sequence[Multiplier], simple: bool) -> Word:
     if any(one.least > 1 for one in multipliers):
         return Word.UNSTABLE
     if all(one.greatest < 1 for one in multipliers):
         return Word.ASYMPTOTICALLY_STABLE
-    if all(one.on_circle for one in multipliers):
+    if simple and all(one.on_circle for one in multipliers):
         return Word.STABLE_FIRST_APPROXIMATION
     return Word.UNDECIDED
 
@@ -372,22 +376,46 @@ def _coefficients(jets: Sequence[arb_mat], first: arb_mat, count: int) -> list[a
 
 
 def _multipliers(monodromy: arb_mat, lagrangian: bool) -> tuple[tuple[Multiplier, ...], bool]:
-    try:
-        balls = acb_mat(monodromy).eig()
-        simple = True
-    except (ValueError, ArithmeticError):
-        balls, simple = acb_mat(monodromy).eig(multiple=True), False
+    balls = [ball for block in _diagonal_blocks(monodromy) for ball in _eigenvalues(block)]
+    simple = not any(one.overlaps(other) for one, other in combinations(balls, 2))
     found = []
     for place, ball in enumerate(balls):
         size = abs(ball)
-        on_circle = lagrangian and simple and _alone(balls, place)
+        on_circle = size == 1 or (lagrangian and _alone(balls, place))
         found.append(Multiplier(ball, float(size.lower()), float(size.upper()), on_circle))
     return tuple(sorted(found, key=lambda one: -one.greatest)), simple
 
 
+def _diagonal_blocks(matrix: arb_mat) -> list[acb_mat]:
+    """Diagonal blocks of a block triangular form by the entries that are zero exactly.
+
+    A cyclic coordinate and its rate, z' = v and v' = 0, have a Jordan block of the multiplier 1 for ever, which no
+    precision takes apart; as blocks of one row they are exact.
+    """
+    rows = matrix.tolist()
+    pattern = csr_array([[int(not entry.is_zero()) for entry in row] for row in rows])
+    count, of = connected_components(pattern, connection="strong")
+    members = [[i for i in range(len(rows)) if of[i] == k] for k in range(count)]
+    return [acb_mat([[acb(rows[i][j]) for j in one] for i in one]) for one in members]
+
+
+def _eigenvalues(block: acb_mat) -> list[acb]:
+    """Balls that contain the eigenvalues of a block, as often as these are multiple: from small ones to no more than
+    |mu| <= the greatest sum of absolute values in a row, where neither single ones nor clusters are isolated."""
+    for multiple in (False, True):
+        try:
+            return list(block.eig(multiple=multiple))
+        except (ValueError, ArithmeticError):
+            continue
+    radius = max((sum((abs(entry) for entry in row), arb(0)).upper() for row in block.tolist()), key=float)
+    around = arb(0, radius)
+    return [acb(around, around)] * block.nrows()
+
+
 def _alone(balls: Sequence[acb], place: int) -> bool:
-    """Whether the mirror image 1/conj(mu) of a simple multiplier can be no other than itself."""
-    if balls[place].contains(0):
+    """Whether a multiplier is a simple one, and its mirror image 1/conj(mu) can be no other than itself."""
+    one = balls[place]
+    if one.contains(0):
         return False
-    mirrored = 1 / balls[place].conjugate()
-    return not any(mirrored.overlaps(other) for k, other in enumerate(balls) if k != place)
+    mirrored = 1 / one.conjugate()
+    return not any(one.overlaps(other) or mirrored.overlaps(other) for k, other in enumerate(balls) if k != place)

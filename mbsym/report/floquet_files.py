@@ -24,7 +24,10 @@ _SAID = {
         "the first approximation is stable: the equations follow from a Lagrangian, and the multipliers are simple and "
         "on the unit circle; of the motion itself that proves nothing (a critical case)"
     ),
-    Word.UNDECIDED: "undecided: some multiplier may be inside the unit circle, on it or outside",
+    Word.UNDECIDED: (
+        "undecided: no multiplier is proved to be outside the unit circle, and neither are all proved to be inside nor "
+        "all to be simple ones on it"
+    ),
 }
 
 

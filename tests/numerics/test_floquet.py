@@ -109,6 +109,29 @@ def test_nothing_is_said_without_ground() -> None:
             verdict(FORCED.replace("FORCE", force))
 
 
+def test_a_cyclic_coordinate_has_the_multiplier_one_twice() -> None:
+    """phi' = p, p' = 0: a Jordan block of 1, exact; Lagrange's top beside it has four simple ones on the circle."""
+    found = judged(dynamics(SHIPPED / "heavy-top.yaml"))
+    ones = [one for one in found.multipliers if one.ball.contains(1)]
+    assert [one.ball == 1 for one in ones] == [True, True]
+    assert len(found.multipliers) == 6
+    assert all(one.on_circle for one in found.multipliers)
+    assert not found.simple
+    assert found.word is Word.UNDECIDED  # z = v t
+
+
+def test_multipliers_that_are_not_isolated_are_bounded() -> None:
+    """A full matrix with a Jordan block of 2: no ball is small, and all contain it."""
+    into = arb_mat(3, 3, [1, 1, 0, 1, 2, 1, 3, 0, 1])
+    with ctx.workprec(floquet.BITS):
+        matrix = into * arb_mat(3, 3, [2, 1, 0, 0, 2, 0, 0, 0, 0.5]) * into.inv()
+        found, simple = floquet._multipliers(matrix, True)
+    assert not simple
+    for exact in (2, 2, 0.5):
+        assert any(one.ball.contains(exact) for one in found)
+    assert all(one.greatest >= 2 and one.least < 1 and not one.on_circle for one in found)
+
+
 def test_periods_are_read_from_the_program() -> None:
     code, rests = jacobian_on_motion(dynamics(FORCED.replace("FORCE", "-(a + q*cos(3*t/2) + q*exp(sin(t + 1)))*x")))
     assert rests
