@@ -5,7 +5,8 @@ an integral for these is one of unit vectors. The converse is looked at by itsel
 homogeneous by |b|^2 (``gradings``) an integral of unit vectors is an F whose derivative lies in the ideal J = (|c|^2
 - |b|^2, (b, c)): J is homogeneous and prime to |b|^2, so that it holds every homogeneous element of the unit vectors'
 ideal. In each weight the F are counted modulo J by ranks modulo a prime, and compared with the products of what is
-known: where there are no more, that there are none is proved of unit vectors, too.
+known: where there are no more, that there are none is proved of unit vectors, too. (A rank modulo a prime is at most
+that over the rationals, and that of J is the same: two polynomials without a common factor, modulo every odd prime.)
 """
 
 from __future__ import annotations
