@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from warm import COMMAND
 
 #: Forked processes, signals and locks as POSIX has them.
 needs_posix = pytest.mark.skipif(os.name != "posix", reason="signals and limits of POSIX")
@@ -17,7 +18,7 @@ needs_posix = pytest.mark.skipif(os.name != "posix", reason="signals and limits 
 #: With these a small system takes half a second.
 QUICK = ("--format", "json", "--problems", "1-3")
 
-START = [sys.executable, "-c", "from mbsym_cli.main import main; main(prog_name='mbsym')"]
+START = [sys.executable, "-c", COMMAND]
 
 
 def pendulum(name: str = "Pendulum", length: str = "l") -> str:

@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from batches import QUICK, batch, cached, files_of, folder_of, outcomes, pendulum, summary
+from batches import QUICK, START, batch, cached, files_of, folder_of, outcomes, pendulum, summary
 
 from mbsym.batch import digests
 from mbsym.batch.coordinator import Place
@@ -168,9 +168,8 @@ def test_a_delivery_that_was_killed_is_completed(place: Path) -> None:
 
 
 def test_what_another_command_wrote_over_is_made_again(place: Path) -> None:
-    start = [sys.executable, "-c", "from mbsym_cli.main import main; main(prog_name='mbsym')"]
     arguments = ["run", "in/a.yaml", "--out", "out/a", "--format", "json", "--problems", "1", "--quiet"]
-    subprocess.run([*start, *arguments], cwd=place, check=True)
+    subprocess.run([*START, *arguments], cwd=place, check=True)
     before = (place / "out" / "a" / "results.json").read_bytes()
     batch("in", "-o", "out", *QUICK, cwd=place)
     assert cached(place / "out") == {"a": False}

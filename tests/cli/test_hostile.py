@@ -7,12 +7,10 @@ its time.  The limits are far above what is needed; they only turn a hang into a
 from __future__ import annotations
 
 import json
-import resource
-import subprocess
-import sys
 from fractions import Fraction
 
 import pytest
+import warm
 from flint import fmpz
 
 import mbsym
@@ -47,16 +45,9 @@ print(json.dumps(told))
 """
 
 
-def _limits() -> None:
-    resource.setrlimit(resource.RLIMIT_AS, (BYTES, BYTES))
-
-
 def derived(description: str, terms: int = 60_000) -> dict[str, str | None]:
     """The reasons for missing results, by problem number."""
-    command = [sys.executable, "-c", SCRIPT, str(terms)]
-    done = subprocess.run(
-        command, input=description, capture_output=True, text=True, timeout=SECONDS, preexec_fn=_limits, check=False
-    )
+    done = warm.run([terms], code=SCRIPT, given=description, timeout=SECONDS, memory=BYTES)
     assert done.returncode == 0, done.stderr[-2000:]
     told: dict[str, str | None] = json.loads(done.stdout)
     return told

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from warm import COMMAND
 
 import mbsym
 
@@ -32,9 +33,8 @@ def workplace(tmp_path: Path) -> Path:
 
 
 def shell(line: str, folder: Path) -> subprocess.CompletedProcess[str]:
-    words = shlex.split(line, comments=True)
-    start = [sys.executable, "-c", "from mbsym_cli.main import main; main(prog_name='mbsym')"]
-    return subprocess.run([*start, *words[1:]], cwd=folder, capture_output=True, text=True, timeout=300, check=False)
+    words = [sys.executable, "-c", COMMAND, *shlex.split(line, comments=True)[1:]]
+    return subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=300, check=False)
 
 
 #: What commands over the whole folder see, but for one: that one derives all problems of every system.

@@ -16,6 +16,7 @@ from pathlib import Path
 
 import pytest
 from pages import DOCS, Block, blocks, differs, pages
+from warm import COMMAND
 
 CONTINUED = " (continued)"
 #: Lines that a test cannot run, and why.
@@ -33,15 +34,12 @@ NOT_RUN = {
 NEEDED = {"pdflatex": "pdflatex", "gcc": "gcc", "octave-cli": "octave-cli", "python with_casadi.py": "casadi"}
 
 
-_MAIN = "from mbsym_cli.main import main; main(prog_name='mbsym')"
-
-
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     """A reader's folder, and mbsym on the path."""
     commands = tmp_path / "bin"
     commands.mkdir()
-    (commands / "mbsym").write_text(f'#!/bin/sh\nexec "{sys.executable}" -c "{_MAIN}" "$@"\n')
+    (commands / "mbsym").write_text(f'#!/bin/sh\nexec "{sys.executable}" -c "{COMMAND}" "$@"\n')
     (commands / "python").write_text(f'#!/bin/sh\nexec "{sys.executable}" "$@"\n')
     for command in commands.iterdir():
         command.chmod(0o755)
