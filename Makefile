@@ -36,7 +36,7 @@ types: $(READY)
 	$(BIN)/mypy
 
 test: $(READY)
-	$(BIN)/python -m pytest --numprocesses auto
+	$(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
 demo: $(READY)
 	$(BIN)/mbsym run systems/satellite.yaml
@@ -111,7 +111,7 @@ page:
 
 # Four of them are among the tests already where the data are there.
 robots: robot-data
-	MBSYM_ALL_ROBOTS=1 $(BIN)/python -m pytest --numprocesses auto tests/robots
+	MBSYM_ALL_ROBOTS=1 $(BIN)/python -m pytest --numprocesses auto --dist worksteal tests/robots
 
 robot-data: $(READY)
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[robots]'

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from fractions import Fraction
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -56,6 +57,13 @@ def compiled_latex(text: str, folder: Path) -> str:
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, errors="replace", timeout=120)
     assert done.returncode == 0, done.stdout[-2000:]
     return done.stdout
+
+
+@cache
+def derived(path: Path) -> Analysis:
+    """The analysis of a description as it stands: once for all tests of this process that read it and change nothing,
+    neither in it nor in what derives it."""
+    return mbsym.load(path)
 
 
 def parsed(text: str) -> Expression:

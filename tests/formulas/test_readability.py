@@ -7,7 +7,7 @@ import re
 from fractions import Fraction
 
 import pytest
-from conftest import SHIPPED
+from conftest import SHIPPED, derived
 from flint import arb, ctx, fmpq
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -67,7 +67,7 @@ def test_nothing_is_misread(seed, terms, choice):
 
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_the_formulas_of_systems_are_not_misread(name):
-    analysis, source = mbsym.load(SHIPPED / f"{name}.yaml"), random.Random(5)
+    analysis, source = derived(SHIPPED / f"{name}.yaml"), random.Random(5)
     found = [formula for number in (1, 2, 3) for formula in formulas(analysis.stage(number).value)]
     short = [formula for formula in found if formula.terms <= 60]
     assert len(short) > 20
@@ -179,7 +179,7 @@ def test_what_differs_by_its_sign_is_one_bracket(text, brackets):
 
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_no_sum_of_a_system_has_a_bracket_and_its_negative(name):
-    analysis = mbsym.load(SHIPPED / f"{name}.yaml")
+    analysis = derived(SHIPPED / f"{name}.yaml")
     for number in (1, 2, 3):
         for formula in formulas(analysis.stage(number).value):
             if formula.terms <= 60:
@@ -253,7 +253,7 @@ def torn(latex: str) -> list[str]:
 
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_no_line_ends_inside_the_bracket_of_a_coefficient(name):
-    analysis, broken = mbsym.load(SHIPPED / f"{name}.yaml"), 0
+    analysis, broken = derived(SHIPPED / f"{name}.yaml"), 0
     for number in (1, 2, 3):
         for formula in formulas(analysis.stage(number).value):
             if formula.terms <= 400:

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
-from conftest import SHIPPED, WITH_BODIES
+from conftest import SHIPPED, WITH_BODIES, derived
 from hypothesis import assume, given, settings
 from random_systems import Description, analysed, orbiting, systems
 
@@ -64,8 +65,8 @@ def different(analysis: Analysis, found: ToldSystem) -> list[str]:
 
 
 @SYSTEMS
-def test_what_is_told_is_what_was_derived(path: object) -> None:
-    analysis = mbsym.load(path)  # type: ignore[arg-type]
+def test_what_is_told_is_what_was_derived(path: Path) -> None:
+    analysis = derived(path)
     if analysis.system.constraints or analysis.system.speeds:
         with pytest.raises(Unavailable, match="not taken into account"):
             _ = analysis.told

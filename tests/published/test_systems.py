@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from conftest import SHIPPED
+from conftest import SHIPPED, derived
 
 import mbsym
 from mbsym.analysis import Analysis
@@ -57,7 +57,7 @@ TIME_DEPENDENT = {"shaken-pendulum.yaml"}
 
 @pytest.fixture(scope="module", params=FILES, ids=lambda path: path.name)
 def shipped(request: pytest.FixtureRequest) -> tuple[Path, Analysis]:
-    analysis = mbsym.load(request.param)
+    analysis = derived(request.param)
     for number in analysis.problems:
         analysis.stage(number)
     return request.param, analysis

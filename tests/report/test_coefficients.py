@@ -6,7 +6,7 @@ import json
 from dataclasses import replace
 
 import pytest
-from conftest import SHIPPED, parsed
+from conftest import SHIPPED, derived, parsed
 
 import mbsym
 from mbsym.algebra.base import Lowering
@@ -20,7 +20,7 @@ PAPER = "v4**2*v2**2 - 4*v2**3*v6 - 4*v4**3*v0 + 18*v6*v4*v2*v0 - 27*v0**2*v6**2
 
 
 def discriminant() -> tuple[mbsym.Analysis, object, Requirement]:
-    analysis = mbsym.load(SHIPPED / "satellite.yaml")
+    analysis = derived(SHIPPED / "satellite.yaml")
     part = next(x for x in analysis.stability.subsystems if len(x.coordinates) == 3)
     return analysis, part, next(r for r in part.theory.requirements if r.label == "discriminant")
 
@@ -43,7 +43,7 @@ def test_the_satellites_discriminant_is_the_papers() -> None:
 
 def test_only_long_conditions_are_told_so() -> None:
     for path in sorted(SHIPPED.glob("*.yaml")):
-        found = mbsym.load(path).optional("stability")
+        found = derived(path).optional("stability")
         for part in () if found is None else found.subsystems:
             for item in statements(part.ring, part.theory.requirements, True):
                 if item.told is not None:
