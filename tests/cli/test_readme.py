@@ -9,6 +9,8 @@ import sys
 from pathlib import Path
 
 import pytest
+from pages import DOCS, pages
+from pages import blocks as shown
 from warm import COMMAND
 
 import mbsym
@@ -48,8 +50,25 @@ FEW = (
 )
 
 
+def said(line: str) -> tuple[str, ...]:
+    """The words of a command, whichever way it spells an option and wherever its systems are."""
+    spelled = {"-s": "--set", "-v": "--vary", "-f": "--format", "-o": "--out"}
+    return tuple(spelled.get(word, word.removeprefix("systems/")) for word in shlex.split(line, comments=True))
+
+
+#: What pages of the documentation run, and hold against what stands there.
+ON_PAGES = {
+    said(line)
+    for page in pages()
+    for block in shown((DOCS / page).read_text(encoding="utf-8"))
+    if block.language == "sh"
+    for line in block.text.splitlines()
+    if line.startswith("mbsym ")
+}
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("line", commands())
+@pytest.mark.parametrize("line", [line for line in commands() if said(line) not in ON_PAGES])
 def test_commands_run(line: str, workplace: Path) -> None:
     if line.split()[1] in ("watch", "lsp", "edit"):
         pytest.skip("never ends; tests of their own have it")
