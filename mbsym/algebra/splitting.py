@@ -85,6 +85,16 @@ class _Work:
     unfinished: int = 0
     generic: list[Polynomial] = field(default_factory=list)
     done: list[Branch] = field(default_factory=list)
+    factored: dict[tuple[int, tuple[int, ...]], list[tuple[Polynomial, list[Polynomial]]]] = field(default_factory=dict)
+
+    def factors(self, p: Polynomial) -> list[Polynomial]:
+        """The irreducible factors of p, which comes up in many branches; raises NoClosedForm."""
+        alike = self.factored.setdefault((len(p), tuple(p.degrees())), [])  # polynomials of flint have no hash
+        known = next((factors for q, factors in alike if q == p), None)
+        if known is None:
+            known = [f for f, _ in irreducible_factors(p)[1]]
+            alike.append((p, known))
+        return known
 
     def is_parameter(self, p: Polynomial) -> bool:
         degrees = p.degrees()
@@ -152,7 +162,7 @@ def _step(work: _Work, branch: Branch, equations: Sequence[Polynomial]) -> list[
             continue
         if len(p) > work.limits.terms:
             raise NoClosedForm(f"an equation of {len(p)} terms")
-        factors = [f for f, _ in irreducible_factors(p)[1] if not work.known(f, branch.nonzero)]
+        factors = [f for f in work.factors(p) if not work.known(f, branch.nonzero)]
         if not factors:
             return []
         if len(factors) > 1:
@@ -169,7 +179,7 @@ def _step(work: _Work, branch: Branch, equations: Sequence[Polynomial]) -> list[
     p = open_equations[place]
     rest = p - slope * p.context().gen(unknown)
     others = [*open_equations[:place], *open_equations[place + 1 :]]
-    slope_factors = [f for f, _ in irreducible_factors(slope)[1] if not work.known(f, branch.nonzero)]
+    slope_factors = [f for f in work.factors(slope) if not work.known(f, branch.nonzero)]
     found = []
     # Where a factor of the slope vanishes, so does the rest.
     passed: tuple[Polynomial, ...] = ()
@@ -210,7 +220,7 @@ def _by_resultants(
         eliminated = p.resultant(q, p.context().name(unknown))
         if eliminated == 0:
             continue
-        factors = [f for f, _ in irreducible_factors(eliminated)[1] if not work.known(f, branch.nonzero)]
+        factors = [f for f in work.factors(eliminated) if not work.known(f, branch.nonzero)]
         if not factors:
             return []
         if len(factors) > 1 or all(factors[0] != x for x in equations):
@@ -230,7 +240,7 @@ def _best(work: _Work, branch: Branch, equations: Sequence[Polynomial]) -> tuple
             if degrees[unknown] != 1:
                 continue
             slope = p.derivative(unknown)
-            may_vanish = [f for f, _ in irreducible_factors(slope)[1] if not work.known(f, branch.nonzero)]
+            may_vanish = [f for f in work.factors(slope) if not work.known(f, branch.nonzero)]
             weight = sum(f.degrees()[k] for f in may_vanish for k in work.unknowns)
             candidates.append(((weight, len(p), rank, place), place, unknown, slope))
     return min(candidates, key=lambda c: c[0])[1:] if candidates else None

@@ -245,14 +245,18 @@ def _counterexample(derived: Derived, claim: Claim, together: Sequence[Claim]) -
     environment = derived.parameters_scene.environment
     sufficient = claim.role == SUFFICIENT
 
+    sides = []
+    for one in together:
+        assert one.right is not None
+        said = text(subtract(one.equals, one.right))
+        both = [one.equals, one.right]
+        sides.append((said, [symbols.opened(side) for side in both], symbols.occurring(both), one.relation))
+
     def claimed(numbers: Any, values: Mapping[str, Any]) -> list[tuple[str, Any, str]]:
         found = []
-        for one in together:
-            assert one.right is not None
-            sides = [one.equals, one.right]
-            lower = symbols.lowering(numbers, values, symbols.occurring(sides))
-            left, right = (lower(symbols.opened(side)) for side in sides)
-            found.append((text(subtract(one.equals, one.right)), left - right, one.relation))
+        for said, (left, right), occurring, relation in sides:
+            lower = symbols.lowering(numbers, values, occurring)
+            found.append((said, lower(left) - lower(right), relation))
         return found
 
     try:
