@@ -47,14 +47,17 @@ def decided(word: Word) -> Word | None:
 
 
 def ignorable(analysis: Analysis) -> tuple[bool, frozenset[str]]:
-    """Whether no force is applied beside the force function, in all orders; the cyclic coordinates, on which none acts.
+    """Whether the applied forces are zero or have a generalized potential; the cyclic coordinates, on which none acts.
 
     Both of the nonlinear system: what only terms of high order hold is not overlooked.
     """
+    from mbsym.problems.normal_forms.generalized_potential import have_generalized_potential  # few ask for it
+
     energies = analysis.energy
     applied = generalized_forces(analysis.held_scene)
     ring, names = analysis.ring, analysis.system.coordinates
-    conservative = all(ring.vanishes(applied[name]) for name in names)
+    running = (*(item.name for item in analysis.system.prescribed), "t")
+    conservative = have_generalized_potential(ring, names, applied, running)
     cyclic = [name for name in names if name in energies.cyclic and ring.vanishes(applied[name])]
     held = {name for x in applied.values() for name in ring.dependencies(x, cyclic)}
     return conservative, frozenset(cyclic) - held

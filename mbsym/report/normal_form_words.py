@@ -107,6 +107,12 @@ def sentences(found: NormalForms, write: Medium) -> Iterator[Said]:
             )
         else:
             yield "What is said is about the other coordinates and all velocities; [[names]] are cyclic.", names
+    if found.taken_in:
+        yield (
+            "The applied forces have a generalized potential (Helmholtz's conditions): Lagrange's function takes it "
+            "in.",
+            {},
+        )
     if found.first is not None:
         yield "At the given values problem 6 says: [[word]].", {"word": write.word(found.first.value)}
     if found.at_values is not None:

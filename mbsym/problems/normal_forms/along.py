@@ -30,6 +30,7 @@ from mbsym.problems.normal_forms.dissipative import judged_field, state_field
 from mbsym.problems.normal_forms.equal import equal_frequencies
 from mbsym.problems.normal_forms.exact import even_part, over_tower, two_eigenvectors
 from mbsym.problems.normal_forms.expansion import Expansion, SingularMass, expansion, faddeev
+from mbsym.problems.normal_forms.generalized_potential import taken_in
 from mbsym.problems.normal_forms.pairs import judged_on_border
 from mbsym.problems.normal_forms.problem import ORDER, PRECISION, at_numbers, at_zero_root, enclosed, twist
 from mbsym.problems.normal_forms.result import Judged
@@ -92,7 +93,8 @@ def along(
 
     @cache
     def to(order: int) -> Expansion:
-        return expansion(scene, whole, equilibrium, order, cyclic)
+        expanded = expansion(scene, whole, equilibrium, order, cyclic)
+        return taken_in(expanded) if conservative else expanded
 
     with ctx.workprec(PRECISION):
         found = to(4)

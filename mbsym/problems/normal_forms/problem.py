@@ -32,6 +32,7 @@ from mbsym.problems.normal_forms.exact import (
     two_eigenvectors,
 )
 from mbsym.problems.normal_forms.expansion import Expansion, Numbers, SingularMass, expansion
+from mbsym.problems.normal_forms.generalized_potential import has_forces, taken_in
 from mbsym.problems.normal_forms.resonant_term import is_zero_exactly
 from mbsym.problems.normal_forms.result import InSymbols, Judged, NormalForms, Outcome, Theorem, Why
 from mbsym.problems.normal_forms.twist import judged
@@ -53,13 +54,17 @@ def normal_forms(
 ) -> NormalForms:
     """What terms of higher order decide of the motion of the system ``whole``; ``scene`` is over the ring.
 
-    ``conservative``: no force is applied beside the force function; ``cyclic`` coordinates are in neither.
+    ``conservative``: applied forces are zero or have a generalized potential; ``cyclic`` coordinates are in neither.
     ``values`` of all parameters, rational or enclosed; None where not all are known.  Raises NotExpanded,
     NoClosedForm.
     """
 
     @cache
     def to(order: int) -> Expansion:
+        return taken_in(expanded(order)) if conservative else expanded(order)
+
+    @cache
+    def expanded(order: int) -> Expansion:
         return expansion(scene, whole, equilibrium, order, cyclic)
 
     found = to(4)
@@ -80,6 +85,7 @@ def normal_forms(
         at_values=at_values,
         in_symbols=in_symbols,
         no_symbols=why,
+        taken_in=conservative and has_forces(expanded(4)),
     )
 
 

@@ -172,6 +172,8 @@ class NormalForms(Shown):
     at_values: Judged | None
     in_symbols: InSymbols | Focus | None
     no_symbols: str = ""
+    #: Whether there are applied forces that Lagrange's function takes in: they have a generalized potential.
+    taken_in: bool = False
     #: What problem 6 says at the same values.
     first: Word | None = None
     #: What it says for all parameters, where that is one verdict that leaves nothing open.

@@ -25,6 +25,7 @@ def data(found: NormalForms, system: System, write: Write) -> dict[str, Any]:
         "coordinates": list(found.coordinates),
         "cyclic": list(found.cyclic),
         "hamiltonian": found.conservative,
+        "generalized_potential": found.taken_in,
         "first_approximation": None if found.first is None else found.first.value,
         "at_values": None if found.at_values is None else _judged(found.at_values),
         "two_frequencies": _in_symbols(symbols, write) if isinstance(symbols, InSymbols) else None,
