@@ -138,6 +138,11 @@ class Formula(GuessesNames):
     def is_zero(self) -> bool:
         return bool(self.polynomial.is_zero())
 
+    @property
+    def is_number(self) -> bool:
+        """Whether it is a rational number as it is written."""
+        return bool(self.polynomial.is_constant())
+
     def __eq__(self, other: object) -> bool:
         """Whether the difference is proved zero in the ring.  Formulas of different systems are never equal."""
         if isinstance(other, int):

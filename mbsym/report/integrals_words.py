@@ -73,6 +73,7 @@ def sentences(found: PolynomialIntegrals) -> Iterator[Said]:
         vectors = found.field.relations and not any(name.startswith("sin(") for name in found.field.variables)
         none = _NONE_BUT_LENGTHS if vectors else _NONE
         yield none[bool(found.field.parameters)] if found.complete else "None was found.", values
+        yield from _left_out(found)
         return
     yield "As functions at least [[count]] of them are independent (proved: rank of the gradients).", values
     if any(one.name.startswith("product of ") for one in found.generators):
@@ -88,6 +89,7 @@ def sentences(found: PolynomialIntegrals) -> Iterator[Said]:
         )
     elif found.complete:
         yield "Every polynomial integral of weighted degree up to [[degree]] is a polynomial in these (proved).", values
+    yield from _left_out(found)
     for count in found.counts:
         if not count.complete:
             yield (
@@ -96,6 +98,18 @@ def sentences(found: PolynomialIntegrals) -> Iterator[Said]:
             )
     if found.complete and not found.new and all(one.name != FUNCTION for one in found.generators):
         yield _NO_OTHER[bool(found.field.parameters)], values
+
+
+def _left_out(found: PolynomialIntegrals) -> Iterator[Said]:
+    """Positions without a force are no variables: x' - B y, of a charge in a magnetic field, is not looked for."""
+    variables = found.field.variables
+    speeds = (name.removesuffix("_dot") for name in variables if name.endswith("_dot"))
+    names = [x for x in speeds if x not in variables and not any(f"({x})" in one for one in variables)]
+    if names:
+        yield (
+            "The equations do not contain [[names]]: integrals that do are not looked for here.",
+            {"names": ", ".join(names)},
+        )
 
 
 _NONE = {

@@ -240,12 +240,17 @@ def _in_symbols(found: InSymbols, everywhere: Word | None, write: Medium) -> Ite
             "discriminant": write.formula(found.discriminant),
         },
     )
-    yield (
-        "D4 = [[determinant]]; it vanishes where [[zero]] = 0.",
-        {"determinant": write.formula(found.determinant), "zero": write.formula(found.zero)},
-    )
+    if found.determinant.is_zero:
+        yield "D4 is zero for all parameters: the theorem of Arnold and Moser decides nothing at this order.", {}
+    elif found.zero.is_number:
+        yield "D4 = [[determinant]]; it vanishes for no parameters.", {"determinant": write.formula(found.determinant)}
+    else:
+        yield (
+            "D4 = [[determinant]]; it vanishes where [[zero]] = 0.",
+            {"determinant": write.formula(found.determinant), "zero": write.formula(found.zero)},
+        )
     for vector, formula in found.resonances:
-        if not formula.is_zero:
+        if not formula.is_number:
             yield (
                 "The resonance [[ratio]] holds where this vanishes: [[formula]].",
                 {
@@ -255,6 +260,8 @@ def _in_symbols(found: InSymbols, everywhere: Word | None, write: Medium) -> Ite
             )
     if everywhere is not None:
         yield "For all parameters problem 6 has decided already: [[word]].", {"word": write.word(everywhere.value)}
+        return
+    if found.determinant.is_zero:
         return
     yield (
         "Where sum, product and discriminant are positive the motion is stable (Arnold-Moser) but for parameters at "

@@ -14,6 +14,7 @@ SENTENCES = {
     "None was found.": "No se encontró ninguna.",
     "As functions at least [[count]] of them are independent (proved: rank of the gradients).": "Como funciones son independientes al menos [[count]] de ellas (demostrado: rango de los gradientes).",
     "Every polynomial integral of weighted degree up to [[degree]] is a polynomial in these, for almost all values of the parameters (proved).": "Toda integral polinómica de grado ponderado hasta [[degree]] es un polinomio en ellas, para casi todos los valores de los parámetros (demostrado).",
+    "The equations do not contain [[names]]: integrals that do are not looked for here.": "Las ecuaciones no contienen [[names]]: las integrales que sí los contienen no se buscan aquí.",
     "Every polynomial integral of weighted degree up to [[degree]] is a polynomial in these (proved).": "Toda integral polinómica de grado ponderado hasta [[degree]] es un polinomio en ellas (demostrado).",
     "Lengths of unit vectors and products of two of them are the same in every motion: 1 and 0.": "Las longitudes de los vectores unitarios y los productos de dos de ellos son los mismos en todo movimiento: 1 y 0.",
     "Of weight [[weight]] there are at most [[more]] more; they were not found within the budget.": "De peso [[weight]] hay como mucho [[more]] más; no se encontraron dentro del presupuesto.",

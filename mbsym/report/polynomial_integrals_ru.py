@@ -14,6 +14,7 @@ SENTENCES = {
     "None was found.": "Ничего не найдено.",
     "As functions at least [[count]] of them are independent (proved: rank of the gradients).": "Как функции независимы по меньшей мере [[count]] из них (доказано: ранг градиентов).",
     "Every polynomial integral of weighted degree up to [[degree]] is a polynomial in these, for almost all values of the parameters (proved).": "Всякий полиномиальный интеграл взвешенной степени не выше [[degree]] есть многочлен от них при почти всех значениях параметров (доказано).",
+    "The equations do not contain [[names]]: integrals that do are not looked for here.": "Уравнения не содержат [[names]]: интегралы, которые их содержат, здесь не ищутся.",
     "Every polynomial integral of weighted degree up to [[degree]] is a polynomial in these (proved).": "Всякий полиномиальный интеграл взвешенной степени не выше [[degree]] есть многочлен от них (доказано).",
     "Lengths of unit vectors and products of two of them are the same in every motion: 1 and 0.": "Длины единичных векторов и произведения двух из них одни и те же во всяком движении: 1 и 0.",
     "Of weight [[weight]] there are at most [[more]] more; they were not found within the budget.": "Веса [[weight]] есть ещё не более [[more]]; в пределах бюджета они не найдены.",

@@ -132,3 +132,47 @@ def test_where_coordinates_are_singular_that_is_the_reason(force: str) -> None:
     told = dict(sentences(hanging.normal_forms, PLAIN))
     assert REASONS[Why.SINGULAR_MASS] in told
     assert hanging.normal_forms.at_values.outcome is Outcome.UNDECIDED
+
+
+ROTATING = """
+mbsym: 1
+name: particle in a rotating plane
+parameters: {Om: positive}
+prescribed: {phi: Om}
+bodies:
+  - {name: plane, attached to: 0, rotation: {axes: [3], angles: [phi]}, mass: 0}
+  - {name: particle, attached to: plane, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}
+loads:
+  - {potential: x**2/8 + y**2/8}
+motion: {}
+values: {Om: 3/2}
+"""
+SPRINGS = """
+mbsym: 1
+name: two springs
+bodies:
+  - {name: particle, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}
+loads:
+  - {potential: x**2/2 + y**2 + x**2*y}
+motion: {}
+"""
+
+
+def test_a_determinant_without_parameters_is_not_said_to_vanish_where_one_is_zero():
+    """Frequencies 1 and sqrt(2), which no parameter changes: no condition on parameters can be told.
+
+    Linear equations have the normal form H2 alone: D4 is zero for all parameters, and decides nothing.
+    """
+    told = told_of(SPRINGS)
+    assert "it vanishes for no parameters" in told
+    assert "it vanishes where" not in told
+    assert "The resonance" not in told
+    told = told_of(ROTATING)
+    assert "D4 is zero for all parameters" in told
+    assert "it vanishes where" not in told
+    assert "the motion is stable (Arnold-Moser) but for" not in told
+
+
+def told_of(description: str) -> str:
+    analysis = mbsym.loads(description, (11,))
+    return "\n".join(text for text, _ in sentences(analysis.normal_forms, PLAIN))

@@ -17,6 +17,7 @@ from mbsym.analysis import polynomial
 from mbsym.analysis.pipeline import Analysis
 from mbsym.formulas.formula import Formula
 from mbsym.problems.polynomial_integrals import linear_relations
+from mbsym.report import integrals_words
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main
 
@@ -211,3 +212,23 @@ def test_sentences_of_symmetries_have_their_translations():
         assert said == set(catalogue)
         for english, other in catalogue.items():
             assert set(re.findall(r"\[\[\w+\]\]", english)) == set(re.findall(r"\[\[\w+\]\]", other))
+
+
+def test_integrals_with_positions_that_no_equation_contains_are_said_not_to_be_sought():
+    """A charge in a uniform magnetic field keeps x' - B y: "every polynomial integral" is not said without a word."""
+    charge = """
+mbsym: 1
+name: charge
+parameters: {B: positive}
+bodies:
+  - {name: P, attached to: 0, connection point: [q_1, y, 0], mass: 1, coordinates: [q_1, y]}
+loads:
+  - {generalized force: {q_1: B*y_dot, y: -B*q_1_dot}}
+"""
+    analysis = Analysis(mbsym.loads(charge).system, problems=(9,))
+    told = dict(integrals_words.sentences(analysis.polynomial_integrals.found))
+    assert told["The equations do not contain [[names]]: integrals that do are not looked for here."] == {
+        "names": "q_1, y"
+    }
+    linear = Analysis(mbsym.loads(charge.replace("q_1: B*y_dot", "q_1: -q_1").replace("-B*q_1_dot", "-y")).system)
+    assert not any("do not contain" in text for text, _ in integrals_words.sentences(linear.polynomial_integrals.found))
