@@ -91,8 +91,9 @@ def trade() -> Tradeoff:
     dynamics = Dynamics(described(PENDULUM))
     truth = whole_reference(dynamics, 4.0, 6.0)
     off: Method = _Off(1e-6, METHODS["dop853"].traits)
-    good = tradeoff(dynamics, [METHODS["rk4"]], truth, 2.0)
-    wrong = tradeoff(dynamics, [off], truth, 3.0)
+    # More seconds than the ladders take: what is there must not depend on how busy the machine is.
+    good = tradeoff(dynamics, [METHODS["rk4"]], truth, 60.0)
+    wrong = tradeoff(dynamics, [off], truth, 60.0)
     return Tradeoff((*good.rows, *wrong.rows), truth, (), ())
 
 
@@ -102,8 +103,9 @@ def test_what_strays_from_constraints_is_seen(trade: Tradeoff) -> None:
     x and y both reach 1 within the motion, from the right over the lowest point to the left.
     """
     stretched = [row for row in trade.rows if row.candidate.method.traits.name == "dop853"]
-    assert len(stretched) > 3
-    for row in stretched[:3]:
+    exact = [row for row in stretched if row.candidate.scalar != "float32"]  # whose own rounding is 1e-7
+    assert len(exact) > 3
+    for row in exact:
         assert row.strayed is not None
         assert row.strayed[0] == pytest.approx(2e-6 / 4, rel=1e-3)
         assert row.strayed[1] < 1e-11
