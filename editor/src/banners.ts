@@ -1,5 +1,6 @@
 // What has to be decided but must not stand in the way: a change of the file from outside, a journal, a server away.
 
+import { save } from "./commands.js";
 import { make } from "./elements.js";
 import type { Model } from "./model.js";
 
@@ -36,8 +37,17 @@ export function bannersOf(model: Model): HTMLElement {
   model.on("told", (told) => {
     if (told.kind !== "outside" || typeof told["text"] !== "string" || typeof told["digest"] !== "string") return;
     const { text, digest } = told as unknown as { text: string; digest: string };
-    if (digest === model.file.digest || text === model.beingSaved) return close("outside");
+    if (digest === model.file.digest || (digest !== "" && text === model.beingSaved)) return close("outside");
     const untouched = model.saved;
+    if (digest === "") {
+      // There is nothing left to be written over, and nothing to be loaded: from now on the text is a new file's.
+      model.fileIsGone();
+      model.say(`${model.file.name} is no longer there`);
+      return offer("outside", {
+        words: `${model.file.name} was deleted, renamed or moved away outside this page. The text stays here; saving writes the file again.`,
+        choices: [{ words: "Save it again", act: () => void save(model) }, { words: "Close", act: () => undefined }],
+      });
+    }
     if (text === model.text) return model.fileIs(digest, text);
     // Until somebody decides the digest stays the old one: saving asks, and writes over nothing by itself.
     offer("outside", {

@@ -2,9 +2,11 @@
 
 import { ask } from "./dialogs.js";
 import { make } from "./elements.js";
+import { branch } from "./layout.js";
 import { entriesOf, nodeAt, remove, set, single, valueOf, vector, type Group, type Row, type Section } from "./fields.js";
 import { addFields } from "./formentry.js";
 import { items } from "./formitems.js";
+import { meaning } from "./formkinds.js";
 import { lines } from "./systemform.js";
 import type { Model } from "./model.js";
 import type { Body, Operation, Path } from "./seam.js";
@@ -88,7 +90,10 @@ function inertia(model: Model, path: Path): Group[] {
 async function helper(model: Model, path: Path, at: Path): Promise<void> {
   const mass = valueOf(model, nodeAt(model, [...path, "mass"])) || "m";
   const kind = make("select", { autofocus: true }, ...SOLIDS.map((solid, index) => make("option", { value: index }, solid.name)));
-  const axis = make("select", {}, ...[1, 2, 3].map((one) => make("option", { value: one, selected: one === 3 }, `axis ${one}`)));
+  // What stretches from its joint to its mass centre mostly does so along its own axis.
+  const centre = [0, 1, 2].filter((index) => !["", "0"].includes(valueOf(model, nodeAt(model, [...path, "mass centre", index]))));
+  const own = centre.length === 1 ? centre[0]! + 1 : 3;
+  const axis = make("select", {}, ...[1, 2, 3].map((one) => make("option", { value: one, selected: one === own }, `axis ${one}`)));
   const sizes = make("div", { class: "sizes-of-shape" });
   const shown = make("output", {});
   const found = (): [string, string, string] => {
@@ -141,7 +146,8 @@ function orientation(model: Model, path: Path, owner: string): Section {
 export function bodySections(model: Model, body: Body): Section[] {
   const { path } = body;
   const bodies = model.understood?.bodies ?? [];
-  const parents: [string, string][] = [["0", FIXED_WORDS], ...bodies.filter((one) => one.name !== body.name).map((one): [string, string] => [one.name, one.name])];
+  const below = new Set([body.name, ...branch(bodies, body.name)]);
+  const parents: [string, string][] = [["0", FIXED_WORDS], ...bodies.filter((one) => !below.has(one.name)).map((one): [string, string] => [one.name, one.name])];
   const general: Group[] = [
     {
       label: "Name",
@@ -178,7 +184,7 @@ export function bodySections(model: Model, body: Body): Section[] {
   const others = entriesOf(nodeAt(model, path)).filter(([key]) => !shown.has(key));
   const owner = body.name;
   const sections: Section[] = [
-    { title: `Body ${bodies.indexOf(body) + 1}: ${body.name}`, key: "body", owner, groups: general },
+    { title: `Body ${bodies.indexOf(body) + 1}: ${body.name}`, key: "body", owner, groups: general.map((group) => ({ ...group, hint: group.hint ?? meaning(model, MEANING[group.label] ?? "") })) },
     { ...lines(model, [...path, "speeds"], "Speeds", "a speed"), owner },
     orientation(model, path, owner),
     items(model, "shapes", [...path, "shapes"], "Shapes", "a shape", { owner }),
@@ -188,6 +194,23 @@ export function bodySections(model: Model, body: Body): Section[] {
   }
   return sections;
 }
+
+/** Groups of the form and the keys of a description that they stand for. */
+const MEANING: Record<string, string> = {
+  Name: "name",
+  "Previous body": "attached to",
+  "Numbers of rotation axes": "rotation",
+  "Rotation angles": "rotation",
+  "Connection point": "connection point",
+  "Relative velocity": "relative velocity",
+  Mass: "mass",
+  "Mass centre": "mass centre",
+  "Inertia about": "inertia about",
+  "Principal moments of inertia": "inertia",
+  "Tensor of inertia": "inertia",
+  "Gyrostatic moment": "gyrostatic moment",
+  Coordinates: "coordinates",
+};
 
 /** What stands between brackets, cut at the outermost commas. */
 function components(source: string): string[] {

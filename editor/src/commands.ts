@@ -55,6 +55,12 @@ export async function save(model: Model): Promise<void> {
   if (answer.saved) return model.say(`${model.file.name} saved`);
   if (answer.other === null) return;
   const { digest, text } = answer.other;
+  if (digest === "") {
+    // Taken away meanwhile: nothing is there that would be lost.
+    model.fileIsGone();
+    if ((await model.save()).saved) model.say(`${model.file.name} saved; it had been deleted or moved away meanwhile`);
+    return;
+  }
   const choice = await ask(
     "The file was changed by someone else",
     [make("p", {}, `${model.file.name} is no longer what this page last read. Nothing was written.`), difference(text, model.text)],

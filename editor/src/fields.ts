@@ -3,6 +3,7 @@
 
 import { make } from "./elements.js";
 import { formula } from "./mathml.js";
+import { remedies } from "./remedies.js";
 import type { Model } from "./model.js";
 import { released } from "./pressing.js";
 import type { Complaint, Operation, Path, TreeNode } from "./seam.js";
@@ -36,6 +37,8 @@ export interface Group {
   /** In place of the label: what it is called, to be changed there. */
   name?: Row;
   actions?: Action[];
+  /** What it means, as the schema says it. */
+  hint?: string;
   /** A row of a matrix: all of it in one line. */
   matrix?: boolean;
 }
@@ -239,21 +242,24 @@ export class Form {
 
   private group(group: Group, signature: string): Part {
     const part: Part = { element: make("div", {}), signature, actions: group.actions ?? [] };
-    const name = group.name ? this.input(group.name) : null;
-    const inputs = group.rows.map((row) => this.input(row));
+    const name = group.name ? make("span", { class: "one" }, ...this.input(group.name)) : null;
+    const rows = group.rows.map((row) => this.input(row));
+    const inputs = group.rows.map((row, index) => make("span", { class: row.wide ? "one wide" : "one" }, rows[index]![0]));
     const id = group.rows[0] ? `${this.name}-${group.rows[0].key}` : null;
     const label = name ?? (group.rows.length === 1 ? make("label", { for: id }, group.label) : make("span", { class: "label" }, group.label));
     const attributes = group.rows.length > 1 || name ? { role: "group", "aria-label": group.label } : {};
     part.element = make(
       "div",
-      { class: "field", ...attributes },
+      { class: "field", title: group.hint, ...attributes },
       label,
       make("div", { class: group.matrix ? "inputs of-matrix" : `inputs of-${Math.min(4, group.rows.length)}` }, ...inputs, ...buttons(part)),
+      // Beneath all of them: a third of a narrow panel is too narrow for a sentence or a formula.
+      make("div", { class: "notes" }, ...rows.map(([, note]) => note)),
     );
     return part;
   }
 
-  private input(row: Row): HTMLElement {
+  private input(row: Row): [HTMLElement, HTMLElement] {
     const id = `${this.name}-${row.key}`;
     const attributes = { id, "aria-label": row.label, "aria-describedby": `${id}-note` };
     const input = row.options
@@ -267,7 +273,9 @@ export class Form {
       if (value === drawn.shown) return;
       drawn.shown = value;
       void this.model.change(() => drawn.row.set(value), `${drawn.row.label}: ${value || "left out"}`).then((outcome) => {
-        if (!outcome.done) this.tell(drawn, outcome.complaints[0]?.message ?? "this cannot be done");
+        if (!outcome.done) return this.tell(drawn, outcome.complaints[0] ?? { message: "this cannot be done", hint: null });
+        const [complaint] = this.complaintsOf(drawn.row.node);
+        if (complaint) this.model.say(`${drawn.row.label}: ${complaint.message}`);
       });
     });
     if (!row.options) {
@@ -280,7 +288,7 @@ export class Form {
       }) as EventListener);
       input.addEventListener("blur", () => released(() => this.complain(drawn)));
     }
-    return make("span", { class: row.wide ? "one wide" : "one" }, input, note);
+    return [input, note];
   }
 
   private fill(row: Row): void {
@@ -308,16 +316,28 @@ export class Form {
 
   private complain(drawn: Drawn): void {
     const [complaint] = this.complaintsOf(drawn.row.node);
-    if (complaint) this.tell(drawn, complaint.message);
+    if (complaint) this.tell(drawn, complaint);
     else {
       drawn.input.removeAttribute("aria-invalid");
-      if (document.activeElement !== drawn.input) drawn.note.replaceChildren();
+      // A formula that is being typed stays shown; what was wrong does not.
+      if (document.activeElement !== drawn.input || drawn.note.querySelector(".wrong")) drawn.note.replaceChildren();
     }
   }
 
-  private tell(drawn: Drawn, words: string): void {
+  private tell(drawn: Drawn, complaint: Pick<Complaint, "message" | "hint"> | Complaint): void {
     drawn.input.setAttribute("aria-invalid", "true");
-    drawn.note.replaceChildren(make("span", { class: "wrong" }, words));
+    const found = "code" in complaint ? remedies(this.model, complaint, drawn.row.node?.path ?? []) : [];
+    const told = JSON.stringify([complaint.message, complaint.hint, found.map((one) => one.words)]);
+    if (drawn.note.dataset["told"] === told && drawn.note.querySelector(".wrong")) return; // a button there may have the focus
+    drawn.note.dataset["told"] = told;
+    const act = (index: number): void => {
+      drawn.input.focus(); // the button goes with the complaint
+      void found[index]?.act();
+    };
+    const buttons = found.map((one, index) => make("button", { type: "button", click: () => act(index) }, one.words));
+    // The remedies say it, but for a slip of the pen.
+    const hint = complaint.hint && (found.length === 0 || complaint.hint.startsWith("did you mean")) ? make("span", { class: "way-out" }, ` ${complaint.hint}`) : null;
+    drawn.note.replaceChildren(make("span", { class: "wrong" }, complaint.message), hint ?? "", ...buttons);
   }
 
   /** What is typed, as a formula. */

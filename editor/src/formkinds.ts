@@ -42,14 +42,15 @@ interface Schema {
 /** The keys that name a body. */
 const BODIES = new Set(["body", "axes", "centre", "about", "reaction on", "on"]);
 
-/** Kinds that are given in one of two ways. */
-const WAYS: Record<string, [words: string, keys: string[]][]> = {
+/** Kinds that are given in one of two ways, each with keys of which the schema says only that they may be there; those
+ * that may be left out even so stand apart. */
+const WAYS: Record<string, [words: string, keys: string[], optional?: string[]][]> = {
   "uniform gravity": [
     ["size and direction", ["acceleration", "direction"]],
     ["as a vector", ["vector"]],
   ],
   spring: [
-    ["on a coordinate", ["coordinate", "stiffness", "rest"]],
+    ["on a coordinate", ["coordinate", "stiffness", "rest"], ["rest"]],
     ["between points", ["between", "stiffness", "length"]],
   ],
   damper: [
@@ -81,6 +82,11 @@ function definitions(model: Model): Record<string, Schema> {
   return (model.file.schema as Schema | null)?.$defs ?? {};
 }
 
+/** What a key of a body means, as the schema says it. */
+export function meaning(model: Model, key: string): string {
+  return definitions(model)["body"]?.properties?.[key]?.description ?? "";
+}
+
 /** Kinds of loads or constraints: `{kind: {key: value}}`. */
 function wrapped(model: Model, definition: string): Kind[] {
   const kinds: Kind[] = [];
@@ -97,9 +103,11 @@ function wrapped(model: Model, definition: string): Kind[] {
     const fields = Object.entries(schema.properties)
       .filter(([inner]) => inner !== "center")
       .map(([inner, one]) => field(inner, one, !schema.required?.includes(inner)));
-    const ways = WAYS[key] ?? [["", fields.map((one) => one.key)]];
-    for (const [words, keys] of ways) {
-      kinds.push({ words: words ? `${key}: ${words}` : key, key, fields: fields.filter((one) => keys.includes(one.key)) });
+    const ways = WAYS[key];
+    if (!ways) kinds.push({ words: key, key, fields });
+    for (const [words, keys, optional] of ways ?? []) {
+      const own = fields.filter((one) => keys.includes(one.key));
+      kinds.push({ words: `${key}: ${words}`, key, fields: own.map((one) => ({ ...one, optional: optional?.includes(one.key) ?? false })) });
     }
   }
   return kinds;

@@ -411,11 +411,20 @@ export class Model extends Listeners<Events> {
     this.tell("saved", this.saved);
   }
 
-  /** Saves; `force` writes over what someone else has written. Another text in the file is answered, not overwritten. */
+  /** The file was taken away: what stands here is nowhere else, and is saved as a new one. */
+  fileIsGone(): void {
+    this.file = { ...this.file, digest: "", new: true };
+    this.stored = "";
+    this.tell("file", this.file);
+    this.tell("saved", this.saved);
+    void this.journal();
+  }
+
   get beingSaved(): string | null {
     return this.saving;
   }
 
+  /** Saves; `force` writes over what someone else has written. Another text in the file is answered, not overwritten. */
   async save(force = false): Promise<{ saved: true } | { saved: false; other: { digest: string; text: string } | null }> {
     const text = this.text;
     this.saving = text;

@@ -117,9 +117,10 @@ export function lines(model: Model, path: Path, title: string, adding: string, o
     rows: [single(model, `${section}-${name}`, `${title}: ${name}`, [...path, name], { formula: true, wide: true })],
     actions: entryActions(model, [...path, name], title, ordered && index > 0 ? [...path, entries[index - 1]![0]] : null),
   }));
+  const words = path.at(-1) === "speeds" ? "of velocities, linear: x_dot is the velocity of x; omega1, omega2, omega3 are the body's own" : "";
   const fields: Field[] = [
     { key: "name", sort: "text", words: "", optional: false },
-    { key: "equals", sort: "formula", words: "", optional: false },
+    { key: "equals", sort: "formula", words, optional: false },
   ];
   const act = () => addFields(model, `${title}: add ${adding}`, fields, (values) => [{ op: "insert", path: [...path, values.get("name")!], source: values.get("equals")! }]);
   return { title, groups, actions: [{ words: `Add ${adding}`, label: `Add ${adding}`, act }], closed: groups.length === 0 };

@@ -83,6 +83,8 @@ class Storage:
             if not self.path.exists() and not self.path.is_symlink():
                 return Content("", "")
             if not self.path.is_file():
+                if self.path.is_dir():
+                    raise Unreadable("it is no file, but a folder")
                 raise Unreadable("it is no file" if self.path.exists() else "it is a link to nothing")
             with self.path.open("rb") as stream:
                 data = stream.read(MOST_BYTES + 1)

@@ -57,7 +57,7 @@ def draft_bodies(node: Node | None, reading: Reading) -> list[Draft]:
         reading.error("too-large", message, node.span)
         raise TooManyComplaints  # without them every name would be unknown
     if not items and isinstance(node, Sequence):
-        reading.error("missing-value", "there are no bodies", node.span)
+        reading.error("missing-value", "there are no bodies", node.span, "each has a name and a mass")
     drafts = [_draft(number, item, reading) for number, item in enumerate(items, start=1)]
     _check_repeated(drafts, reading)
     for draft in drafts:
@@ -276,7 +276,8 @@ def _rotation(node: Node | None, draft: Draft, reading: Reading) -> Rotation:
         return Rotation()
     for axis, angle, item in zip(axes, angles, angle_items, strict=True):
         if axis == 0 and not is_number(angle, 0):
-            reading.error("bad-axis", "axis 0 means no rotation, so its angle is 0", item.span)
+            hint = "the axis that it turns about is 1, 2 or 3"
+            reading.error("bad-axis", "axis 0 means no rotation, so its angle is 0", item.span, hint)
     for angle, item in zip(angles, angle_items, strict=True):
         _check_rounded(angle, item, reading)
     turns = [(axis, angle) for axis, angle in zip(axes, angles, strict=True) if axis and not is_number(angle, 0)]

@@ -281,6 +281,8 @@ def _misplaced_hint(kind: str, allowed: Allowed) -> str | None:
         return "inputs stand in forces: 'generalized force', 'force', 'torque', and in outputs"
     if kind == "velocity" and allowed is POTENTIAL:
         return "a force that depends on velocities belongs under 'generalized force', 'damper' or 'rayleigh'"
+    if kind in ("coordinate", "prescribed") and allowed.what == "a direction":
+        return "a force whose direction turns with a body is a 'force' with components in the 'axes' of that body"
     return None
 
 

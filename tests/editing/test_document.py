@@ -458,3 +458,16 @@ def test_a_copy_has_no_more_speeds_than_coordinates() -> None:
         assert not complaints.errors, body
         assert system is not None, body
         assert len(system.speeds) == speeds
+
+
+def test_what_acts_on_a_coordinate_acts_on_the_body_that_introduces_it() -> None:
+    """Listed, or the angle of its joint; a name that nobody introduces is nobody's."""
+    view = look(
+        "mbsym: 1\nname: n\nparameters: {m: positive, k: positive}\nbodies:\n"
+        "  - {name: cart, attached to: 0, connection point: [x, 0, 0], coordinates: [x], mass: m}\n"
+        "  - {name: pole, attached to: cart, rotation: {axes: [3], angles: [q]}, mass centre: [0, 1, 0], mass: m}\n"
+        "loads:\n  - spring: {coordinate: q, stiffness: k}\n  - damper: {coordinate: x, coefficient: k}\n"
+        "  - generalized force: {q: 1, x: k}\n  - damper: {coordinate: y, coefficient: k}\n",
+        "a.yaml",
+    )
+    assert [one["bodies"] for one in view["loads"]] == [["pole"], ["cart"], ["pole", "cart"], []]

@@ -158,7 +158,7 @@ def test_without_the_extra_it_is_told_what_to_install(name: str, monkeypatch: py
 
 @pytest.mark.parametrize(
     ("arguments", "word"),
-    [(["nowhere/x.yaml"], "no such folder"), (["."], "no file"), (["x.yaml", "--port", "99999"], "--port")],
+    [(["nowhere/x.yaml"], "no such folder"), (["."], "a folder"), (["x.yaml", "--port", "99999"], "--port")],
 )
 def test_what_cannot_be_edited_is_refused(arguments: list[str], word: str, monkeypatch: Any, tmp_path: Path) -> None:
     monkeypatch.chdir(tmp_path)

@@ -49,13 +49,14 @@ def look(text: str, name: str, folder: Path | None = None) -> Json:
     found = written(text, name, folder=folder)
     shown = found if found.tree is not None else _what_can_be_had(found)
     tree = shown.tree if isinstance(shown.tree, Mapping) else None
+    bodies = [] if tree is None else list(_bodies(shown, tree))
     view: Json = {
         "name": _text(tree, "name"),
         "format": "text" if shown.editor else "yaml",
         "tree": None if tree is None else _node(shown, tree, []),
-        "bodies": [] if tree is None else list(_bodies(shown, tree)),
+        "bodies": bodies,
         "constraints": [] if tree is None else list(ties(shown, tree, "constraints")),
-        "loads": [] if tree is None else list(ties(shown, tree, "loads")),
+        "loads": [] if tree is None else list(ties(shown, tree, "loads", _moved_by(bodies))),
         "complaints": [complaint_view(found, one) for one in found.complaints],
     }
     offsets = original_offsets(text)
@@ -161,16 +162,39 @@ def _items(node: Node) -> tuple[Node, ...]:
 # --- loads, constraints -----------------------------------------------------------------------------------------------
 
 
-def ties(found: Written, tree: Mapping, section: str) -> Iterator[Json]:
-    """Loads or constraints: their kinds and the bodies that they name."""
+def _moved_by(bodies: list[Json]) -> dict[str, str]:
+    """Coordinates, each with the body that introduces it."""
+    owners: dict[str, str] = {}
+    for body in bodies:
+        field = body["fields"]["coordinates"]
+        source = field["source"] or (field["derived"] or {}).get("source") or ""
+        for name in re.findall(r"[A-Za-z]\w*", source):
+            owners.setdefault(name, body["name"])
+    return owners
+
+
+def ties(found: Written, tree: Mapping, section: str, owners: dict[str, str] | None = None) -> Iterator[Json]:
+    """Loads or constraints: their kinds and the bodies that they name; what acts on a coordinate acts on the body that
+    introduces it (``owners``)."""
     nodes = child(tree, section)
     for index, node in enumerate(_items(nodes) if nodes is not None else ()):
         start, end = found.extent(node)
         entry = node.entries[0] if isinstance(node, Mapping) and node.entries else None
         kind = "" if entry is None else ALIASES.get(entry.key.text, entry.key.text)
         bodies = [] if entry is None else list(dict.fromkeys(named_bodies(kind, entry.value)))
+        if entry is not None and owners and not bodies:
+            named = (owners.get(one) for one in _coordinates_in(kind, entry.value))
+            bodies = list(dict.fromkeys(one for one in named if one is not None))
         path = [section, index]
         yield {"name": f"{kind} {index + 1}", "kind": kind, "path": path, "bodies": bodies, "from": start, "to": end}
+
+
+def _coordinates_in(kind: str, node: Node) -> list[str]:
+    """Those that a load acts on by name."""
+    if kind == "generalized force" and isinstance(node, Mapping):
+        return [one.key.text for one in node.entries]
+    value = child(node, "coordinate") if isinstance(node, Mapping) else None
+    return [value.text] if isinstance(value, Scalar) else []
 
 
 def named_bodies(kind: str, node: Node) -> Iterator[str]:

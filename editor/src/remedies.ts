@@ -1,0 +1,44 @@
+// What can be done at once about a complaint in the form: a name that nobody knows becomes a coordinate or a parameter.
+
+import { nodeAt } from "./fields.js";
+import type { Model } from "./model.js";
+import type { Complaint, Operation, Path } from "./seam.js";
+import { list } from "./turns.js";
+
+export interface Remedy {
+  words: string;
+  act: () => unknown;
+}
+
+/** Fields of a body in which a name may be a coordinate. */
+const MOVING = new Set(["connection point", "rotation"]);
+
+export function remedies(model: Model, complaint: Complaint, path: Path): Remedy[] {
+  const name = (model.understoodText ?? "").slice(complaint.from, complaint.to);
+  if (complaint.code !== "unknown-name" || !/^[A-Za-z]\w*$/.test(name)) return [];
+  if (/_dot$|_ddot$/.test(name)) return [];
+  const found: Remedy[] = [];
+  const change = (operations: () => Operation[], what: string) => () => model.change(operations, `${name} is ${what} now`);
+  if (path[0] === "bodies" && path.length > 3 && MOVING.has(String(path[2]))) {
+    found.push({ words: `${name} is a coordinate`, act: change(() => coordinate(model, path.slice(0, 2), name), "a coordinate") });
+  }
+  found.push({ words: `${name} is a parameter`, act: change(() => parameter(model, name), "a parameter") });
+  return found;
+}
+
+/** Those that the body introduces by its angles have to be listed, too, where there is a list. */
+function coordinate(model: Model, body: Path, name: string): Operation[] {
+  const at: Path = [...body, "coordinates"];
+  const known = list(model, at);
+  if (nodeAt(model, at)?.kind === "sequence") return known.includes(name) ? [] : [{ op: "insert", path: [...at, known.length], source: name }];
+  const derived = model.understood?.bodies.find((one) => one.path.join() === body.join())?.fields["coordinates"]?.derived?.source ?? "";
+  const all = derived.replace(/[[\](){}]/g, "").split(",").map((one) => one.trim()).filter(Boolean);
+  return [{ op: "set", path: at, source: `[${[...new Set([...all, name])].join(", ")}]` }];
+}
+
+/** Of any sign: which one it has is nobody's guess. */
+function parameter(model: Model, name: string): Operation[] {
+  const listed = nodeAt(model, ["parameters"]);
+  if (listed?.kind === "sequence") return [{ op: "insert", path: ["parameters", listed.children?.length ?? 0], source: name }];
+  return [{ op: "insert", path: ["parameters", name], source: "real" }];
+}

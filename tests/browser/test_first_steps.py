@@ -1,0 +1,69 @@
+"""What somebody meets who opens the editor for the first time: names that nobody knows, a file that is taken away."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+import windows
+import yaml
+from windows import Window, serving
+
+browser, opened = windows.browser, windows.opened
+pytestmark = pytest.mark.slow
+
+CART = """mbsym: 1
+name: Cart
+bodies:
+  - name: cart
+    attached to: 0
+    mass: 0
+  - name: pole
+    attached to: cart
+    rotation: {axes: [3, 0, 0], angles: [theta, 0, 0]}
+    mass centre: [0, 1, 0]
+    mass: 1
+"""
+
+
+def test_unknown_names_are_settled_where_they_stand_and_a_deleted_file_is_written_again(
+    tmp_path: Path, opened: Callable[..., Window]
+) -> None:
+    path = tmp_path / "cart.yaml"
+    path.write_text(CART, encoding="utf-8")
+    with serving(path) as address:
+        window = opened(address, path)
+        window.undrawn()
+        form = window.page.locator("#form")
+        window.body("cart").click()
+        options = form.get_by_label("Previous body", exact=True).locator("option").all_text_contents()
+        assert options == ["fixed axes (0)"]  # not what hangs on it
+        window.field("Connection point, 1", "x")
+        assert "unknown name 'x'" in window.page.locator("#said").inner_text()
+        form.get_by_role("button", name="x is a coordinate", exact=True).click()
+        window.told("x is a coordinate now")
+        assert window.complaints == []
+        # Where it stood the focus is, and nothing says any more that it is unknown.
+        assert window.page.evaluate("document.activeElement.ariaLabel") == "Connection point, 1"
+        assert form.locator(".wrong").count() == 0
+        window.field("Mass", "M*2")
+        assert form.get_by_role("button", name="M is a coordinate").count() == 0
+        form.get_by_role("button", name="M is a parameter", exact=True).click()
+        window.told("M is a parameter now")
+        window.form_of("System")
+        form.get_by_label("Add a load", exact=True).click()
+        dialog = window.page.locator("dialog[open]")
+        dialog.get_by_label("Kind").select_option("spring: between points")
+        dialog.get_by_label("stiffness", exact=True).fill("M")
+        dialog.get_by_role("button", name="Add", exact=True).click()
+        dialog.get_by_text("length is not filled in").wait_for()  # not found out by a complaint afterwards
+        window.press("Escape")
+        assert yaml.safe_load(window.text)["bodies"][0]["coordinates"] == ["x"]
+
+        path.unlink()
+        window.page.locator(".banner.outside").filter(has_text="was deleted").wait_for()
+        assert window.page.locator("#saved").inner_text() == "not saved"
+        window.page.get_by_role("button", name="Save it again", exact=True).click()
+        window.told("saved")
+        assert yaml.safe_load(path.read_bytes())["parameters"] == {"M": "real"}
