@@ -338,6 +338,7 @@ export class Form {
     // The remedies say it, but for a slip of the pen.
     const hint = complaint.hint && (found.length === 0 || complaint.hint.startsWith("did you mean")) ? make("span", { class: "way-out" }, ` ${complaint.hint}`) : null;
     drawn.note.replaceChildren(make("span", { class: "wrong" }, complaint.message), hint ?? "", ...buttons);
+    if (document.activeElement === drawn.input) drawn.note.scrollIntoView({ block: "nearest" }); // it may begin below the fold
   }
 
   /** What is typed, as a formula. */
