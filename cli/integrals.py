@@ -40,8 +40,9 @@ def command(
     Variables are speeds and unit vectors where FILE declares them (keys 'speeds' and 'orientation'), otherwise rates,
     sines and cosines of angles, and lengths.  Parameters stay symbols, so
     that what is said holds for almost all their values; --set puts in exact numbers, where there may be more.
-    A weighted degree counts each variable with its weight: those under which the equations are quasi-homogeneous where
-    there are such, otherwise 1, but 2 for unit vectors.
+    A weighted degree counts each variable with its weight: rates, sines, cosines and lengths with 1, speeds and unit
+    vectors with those under which the equations are quasi-homogeneous where there are such, otherwise 1 and 2;
+    --weight gives others.  Positions that the equations do not contain are no variables, which is said.
 
     --vary finds every value of one parameter in an interval at which there are more, also those that hold only where
     another integral is zero; other parameters need numbers.  --cases looks for conditions on the parameters: zeros,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from mbsym.report.integrals_words import case_title, conditions_text, level_title, weights_text
+from mbsym.report.integrals_words import aside_text, case_title, conditions_text, level_title, weights_text
 
 if TYPE_CHECKING:
     from mbsym.analysis.polynomial import Setting
@@ -27,20 +27,21 @@ def along_lines(there: Setting, usual: PolynomialIntegrals, found: Along) -> Ite
         yield f"whether there are more at {found.name} = {value} is undecided"
     for p in found.irrational:
         yield f"undecided at the zeros of {str(p).replace('x', found.name)}"
+    without = f" that does not contain {aside_text(usual)}" if usual.aside else ""
     others = "At all other values" if found.values or found.undecided else "At all values"
     interval = f"of {found.name} from {found.low} to {found.high}"
     if not found.usual:
         yield f"What there is for almost all {found.name} is not known to be all: of other values nothing is proved."
     elif found.whole:
         yield (
-            f"{others} {interval}, rational or not, there is none of weight up to {degree} "
+            f"{others} {interval}, rational or not, there is none of weight up to {degree}{without} "
             "(proved, but for algebraic numbers whose polynomials over the integers need coefficients beyond 10^9"
             f"{length})."
         )
     else:
         yield (
-            f"{others} {interval} with numerator and denominator up to 10^9 there is none of weight up to {degree} "
-            f"(proved{length}); irrational values are undecided."
+            f"{others} {interval} with numerator and denominator up to 10^9 there is none of weight up to {degree}"
+            f"{without} (proved{length}); irrational values are undecided."
         )
 
 

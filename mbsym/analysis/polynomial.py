@@ -19,6 +19,7 @@ from mbsym.mechanics.motion import relations
 from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.mechanics.states import Oracles
+from mbsym.model.speeds import Quaternion, UnitVector
 from mbsym.problems import perturbation
 from mbsym.problems.angle_field import in_angles
 from mbsym.problems.integrals import PROVED, Integral
@@ -37,7 +38,8 @@ if TYPE_CHECKING:
 class Setting:
     """The field of a system: ``whole`` over all parameters, ``field`` with numbers in place of some.
 
-    ``kinds``: variables that have one weight, speeds first; ``known``: integrals of problem 7 over ``field``.
+    ``kinds``: variables that have one weight, speeds first; ``known``: integrals of problem 7 over ``field``;
+    ``aside``: positions on which no equation depends, which are no variables.
     """
 
     whole: PolynomialField
@@ -46,6 +48,7 @@ class Setting:
     kinds: tuple[tuple[str, ...], ...]
     vectors: tuple[tuple[str, ...], ...]
     known: tuple[tuple[str, Any], ...]
+    aside: tuple[str, ...] = ()
 
     def formula(self, p: Any) -> Formula:
         """A polynomial over ``field``, or one with numbers in place of further parameters, as a formula."""
@@ -87,9 +90,11 @@ def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None) ->
         angles = [name.removeprefix("sin") for name in whole.variables if name.startswith("sin(")]
         vectors: Any = [(angle, (f"sin{angle}", f"cos{angle}")) for angle in angles]
         speeds: tuple[str, ...] = whole.variables
+        held = [*whole.variables, *(angle.strip("()").split("/")[0] for angle in angles)]
+        aside = tuple(name for name in analysis.system.coordinates if name not in held)
     else:
         whole, transfer = in_speeds(form, equations, also, images)
-        vectors, speeds = equations.vectors, equations.speeds
+        vectors, speeds, aside = equations.vectors, equations.speeds, _aside(form, equations.aside)
     numbers = {name: fmpq(x.numerator, x.denominator) for name, x in (values or {}).items() if name in whole.parameters}
     field = whole.at(numbers) if numbers else whole
     known = _known(whole, field, numbers, transfer, listed)
@@ -99,7 +104,21 @@ def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None) ->
     alone = [(name,) for name in whole.variables if name not in grouped and name not in speeds]
     found = [one for one in grouped_by if one]
     kinds = (whole.variables,) if form is None else tuple(x for x in (speeds, *dict.fromkeys(found), *alone) if x)
-    return Setting(whole, field, transfer, kinds, tuple(found), tuple(known))
+    return Setting(whole, field, transfer, kinds, tuple(found), tuple(known), aside)
+
+
+def _aside(form: SpeedForm, aside: Sequence[str]) -> tuple[str, ...]:
+    """Positions on which no equation depends, unit vectors and quaternions as wholes.
+
+    Of unit vectors those that the description asks for: nobody expects others.
+    """
+    whole = {name: one for body in form.oriented for one in body.orientation for name in one.components}
+    kept = (name if name not in whole else whole[name].name if _asked(whole[name]) else None for name in aside)
+    return tuple(dict.fromkeys(name for name in kept if name is not None))
+
+
+def _asked(one: UnitVector | Quaternion) -> bool:
+    return isinstance(one, Quaternion) or one.asked
 
 
 def _without_aside(form: SpeedForm, aside: Sequence[str], one: Integral) -> Integral:
@@ -173,7 +192,8 @@ def weights_of(there: Setting, weights: Mapping[str, int] | None = None) -> Grad
 
 def integrals_of(there: Setting, degree: int, weights: Mapping[str, int] | None = None) -> PolynomialIntegrals:
     """All polynomial integrals up to a weighted degree.  Raises NoClosedForm where that is too much."""
-    return polynomial_integrals(there.field, weights_of(there, weights), degree, there.known)
+    found = polynomial_integrals(there.field, weights_of(there, weights), degree, there.known)
+    return replace(found, aside=there.aside)
 
 
 #: Problem 9 looks at integrals up to this weighted degree; ``mbsym integrals --degree`` at others.

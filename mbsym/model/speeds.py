@@ -48,11 +48,15 @@ class Speed:
 
 @dataclass(frozen=True, slots=True)
 class UnitVector:
-    """Axis number ``axis`` of the frame that a body hangs on, in the axes of the body: name1, name2, name3."""
+    """Axis number ``axis`` of the frame that a body hangs on, in the axes of the body: name1, name2, name3.
+
+    ``asked``: the description wants it; others tell the orientation besides.
+    """
 
     name: str
     axis: int
     span: Span | None = field(default=None, compare=False, repr=False)
+    asked: bool = field(default=True, compare=False, repr=False)
 
     @property
     def word(self) -> str:

@@ -47,7 +47,7 @@ from mbsym.report.html_told import longer, told_passages, told_terms
 from mbsym.report.inertias import accepted_inertias
 from mbsym.report.integrals_words import sentences as polynomial_sentences
 from mbsym.report.invariant_words import Medium as InvariantMedium
-from mbsym.report.invariant_words import closing, family_title, of_family, of_set, opening
+from mbsym.report.invariant_words import closing, family_title, of_family, of_set, opening, told_families
 from mbsym.report.latex_description import shown_points
 from mbsym.report.lengths import COUNTED, PAPER, PAPER_PROGRAM, program_not_printed, withheld
 from mbsym.report.normal_form_words import Medium as HigherMedium
@@ -247,12 +247,11 @@ def _of_invariant_sets(found: InvariantSets, names: MathNames) -> Iterator[list[
         return list(_filled((text, {k: Markup(v) for k, v in values.items()}) for text, values in told))
 
     yield said(opening(found, write))
-    for family in found.families:
-        if family.sets or family.unfinished or family.singular or family.parts:
-            title = escape(f"K = {family_title(family, found)}")
-            yield [title, *said(of_family(family, write))]
-            for k, one in enumerate(family.sets, start=1):
-                yield said(of_set(one, k, write))
+    for family in told_families(found):
+        title = escape(f"K = {family_title(family, found)}")
+        yield [title, *said(of_family(family, write))]
+        for k, one in enumerate(family.sets, start=1):
+            yield said(of_set(one, k, write))
     yield said(closing(found, write))
 
 

@@ -64,6 +64,7 @@ def integrals_data(there: Setting, found: PolynomialIntegrals) -> dict[str, Any]
         "quasi_homogeneous": found.grading.homogeneous,
         "complete": found.complete,
         "independent": found.independent,
+        "not_contained": list(found.aside),
         "integrals": [
             {
                 "weight": one.weight,

@@ -68,10 +68,11 @@ def _equation(p: Any, write: Callable[[Any], str]) -> str:
 
 def sentences(found: PolynomialIntegrals) -> Iterator[Said]:
     """What is known of the list as a whole."""
-    values: dict[str, object] = {"degree": found.degree, "count": found.independent}
+    values: dict[str, object] = {"degree": found.degree, "count": found.independent, "names": aside_text(found)}
     if not found.generators:
         vectors = found.field.relations and not any(name.startswith("sin(") for name in found.field.variables)
         none = _NONE_BUT_LENGTHS if vectors else _NONE
+        none = _NONE_WITHOUT if found.aside and not vectors else none
         yield none[bool(found.field.parameters)] if found.complete else "None was found.", values
         yield from _left_out(found)
         return
@@ -81,14 +82,8 @@ def sentences(found: PolynomialIntegrals) -> Iterator[Said]:
     for one in found.generators:
         if not one.independent:
             yield _DEPENDENT[one.sure], {"name": title(one), "weight": one.weight}
-    if found.complete and found.field.parameters:
-        yield (
-            "Every polynomial integral of weighted degree up to [[degree]] is a polynomial in these, for almost all "
-            "values of the parameters (proved).",
-            values,
-        )
-    elif found.complete:
-        yield "Every polynomial integral of weighted degree up to [[degree]] is a polynomial in these (proved).", values
+    if found.complete:
+        yield _EVERY[bool(found.aside)][bool(found.field.parameters)], values
     yield from _left_out(found)
     for count in found.counts:
         if not count.complete:
@@ -97,21 +92,39 @@ def sentences(found: PolynomialIntegrals) -> Iterator[Said]:
                 {"weight": count.weight, "more": count.most - count.products},
             )
     if found.complete and not found.new and all(one.name != FUNCTION for one in found.generators):
-        yield _NO_OTHER[bool(found.field.parameters)], values
+        yield (_NO_OTHER_WITHOUT if found.aside else _NO_OTHER)[bool(found.field.parameters)], values
+
+
+def aside_text(found: PolynomialIntegrals) -> str:
+    """``x, y``: positions without a force, and others on which no equation depends, are no variables."""
+    return ", ".join(found.aside)
 
 
 def _left_out(found: PolynomialIntegrals) -> Iterator[Said]:
-    """Positions without a force are no variables: x' - B y, of a charge in a magnetic field, is not looked for."""
-    variables = found.field.variables
-    speeds = (name.removesuffix("_dot") for name in variables if name.endswith("_dot"))
-    names = [x for x in speeds if x not in variables and not any(f"({x})" in one for one in variables)]
-    if names:
-        yield (
-            "The equations do not contain [[names]]: integrals that do are not looked for here.",
-            {"names": ", ".join(names)},
-        )
+    """x' - B y, of a charge in a magnetic field, is not looked for, nor the area integral of a free body."""
+    if found.aside:
+        text = "The equations do not contain [[names]]: integrals that do are not looked for here."
+        yield text, {"names": aside_text(found)}
 
 
+_EVERY = {
+    False: {
+        True: "Every polynomial integral of weighted degree up to [[degree]] is a polynomial in these, for almost all "
+        "values of the parameters (proved).",
+        False: "Every polynomial integral of weighted degree up to [[degree]] is a polynomial in these (proved).",
+    },
+    True: {
+        True: "Every polynomial integral of weighted degree up to [[degree]] that does not contain [[names]] is a "
+        "polynomial in these, for almost all values of the parameters (proved).",
+        False: "Every polynomial integral of weighted degree up to [[degree]] that does not contain [[names]] is a "
+        "polynomial in these (proved).",
+    },
+}
+_NONE_WITHOUT = {
+    True: "There is none up to weighted degree [[degree]] that does not contain [[names]] (proved for almost all "
+    "values of the parameters).",
+    False: "There is none up to weighted degree [[degree]] that does not contain [[names]] (proved).",
+}
 _NONE = {
     True: "There is none up to weighted degree [[degree]] (proved for almost all values of the parameters).",
     False: "There is none up to weighted degree [[degree]] (proved).",
@@ -128,6 +141,11 @@ _NO_OTHER = {
     True: "Up to weighted degree [[degree]] there is none beyond those of problem 7, for almost all values of the "
     "parameters.",
     False: "Up to weighted degree [[degree]] there is none beyond those of problem 7.",
+}
+_NO_OTHER_WITHOUT = {
+    True: "Up to weighted degree [[degree]] there is none without [[names]] beyond those of problem 7, for almost all "
+    "values of the parameters.",
+    False: "Up to weighted degree [[degree]] there is none without [[names]] beyond those of problem 7.",
 }
 _DEPENDENT = {
     Sure.PROVED: "That of weight [[weight]] ([[name]]) depends on those before it as a function "

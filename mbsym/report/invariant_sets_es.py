@@ -3,6 +3,8 @@
 # ruff: noqa: E501
 
 SENTENCES = {
+    "First approximation: zero roots: [[zeros]]; among the others are the roots of [[factors]].": "Primera aproximación: raíces nulas: [[zeros]]; entre las demás están las raíces de [[factors]].",
+    "Roots of factors that are not even in lambda, not looked at here but for signs of coefficients: [[n]].": "Raíces de factores que no son pares en lambda, que aquí no se examinan salvo los signos de los coeficientes: [[n]].",
     "Pieces that are not invariant by themselves, left aside: [[n]].": "Partes que no son invariantes por sí mismas, dejadas aparte: [[n]].",
     "What is said of stability is about these variables: [[names]].": "Lo dicho de la estabilidad se refiere a estas variables: [[names]].",
     "Multipliers of the geometry are Lagrange's: along a motion only the others are constant.": "Los multiplicadores de la geometría son los de Lagrange: a lo largo de un movimiento solo los demás son constantes.",

@@ -3,6 +3,8 @@
 # ruff: noqa: E501
 
 SENTENCES = {
+    "First approximation: zero roots: [[zeros]]; among the others are the roots of [[factors]].": "Первое приближение: нулевых корней [[zeros]]; среди остальных --- корни многочленов [[factors]].",
+    "Roots of factors that are not even in lambda, not looked at here but for signs of coefficients: [[n]].": "Корней множителей, не чётных по lambda, здесь не рассмотренных, кроме знаков коэффициентов: [[n]].",
     "Pieces that are not invariant by themselves, left aside: [[n]].": "Части, сами по себе не инвариантные, оставлены в стороне: [[n]].",
     "What is said of stability is about these variables: [[names]].": "Сказанное об устойчивости относится к этим переменным: [[names]].",
     "Multipliers of the geometry are Lagrange's: along a motion only the others are constant.": "Множители геометрических связей — множители Лагранжа: вдоль движения постоянны только остальные.",

@@ -51,6 +51,15 @@ def opening(found: InvariantSets, write: Medium) -> Iterator[Said]:
         yield "Multipliers of the geometry are Lagrange's: along a motion only the others are constant.", {}
 
 
+def told_families(found: InvariantSets) -> list[Family]:
+    """Those of which there is something to tell; where there is nothing of any of them, that."""
+    return [one for one in found.families if not _is_empty(one)] or list(found.families)
+
+
+def _is_empty(family: Family) -> bool:
+    return not (family.sets or family.unfinished or family.singular or family.parts)
+
+
 def family_title(family: Family, whole: InvariantSets) -> str:
     """``K = V0 + lambda1 V1 + lambda2 V2``, in letters that every medium has."""
     first = len(whole.integrals) - len(family.integrals)
@@ -59,7 +68,7 @@ def family_title(family: Family, whole: InvariantSets) -> str:
 
 
 def of_family(family: Family, write: Medium) -> Iterator[Said]:
-    if not (family.sets or family.unfinished or family.singular or family.parts):
+    if _is_empty(family):
         yield "It has no stationary points for almost all parameters (proved).", {}
     if family.unfinished:
         yield (
@@ -158,11 +167,17 @@ _NOTHING = {
 def _first(found: FirstApproximation, write: Medium) -> Iterator[Said]:
     if found.factors:
         factors = ", ".join(write.even(factor) for factor in found.factors)
-        if found.zeros:
+        if found.left:
+            text = "First approximation: zero roots: [[zeros]]; among the others are the roots of [[factors]]."
+            yield text, {"zeros": found.zeros, "factors": factors}
+        elif found.zeros:
             text = "First approximation: zero roots: [[zeros]]; the others are roots of [[factors]]."
             yield text, {"zeros": found.zeros, "factors": factors}
         else:
             yield "First approximation: roots of [[factors]].", {"factors": factors}
+    if found.left:
+        text = "Roots of factors that are not even in lambda, not looked at here but for signs of coefficients: [[n]]."
+        yield text, {"n": found.left}
     if found.unstable:
         yield "Unstable (proved by the first approximation).", {}
         return

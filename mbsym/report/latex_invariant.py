@@ -6,7 +6,7 @@ from mbsym.formulas.formula import Formula
 from mbsym.formulas.latex import LatexNames
 from mbsym.problems.invariant_sets import InvariantSets
 from mbsym.report.even_powers import in_even_powers
-from mbsym.report.invariant_words import Medium, closing, of_family, of_set, opening
+from mbsym.report.invariant_words import Medium, closing, of_family, of_set, opening, told_families
 from mbsym.report.language import Language
 from mbsym.report.latex_formulas import formula
 from mbsym.report.latex_words import escaped
@@ -39,9 +39,7 @@ def of_invariant_sets(found: InvariantSets, names: LatexNames, tongue: Language)
         return [tongue.sentence(text, **values) for text, values in told]  # type: ignore[attr-defined]
 
     paragraphs = [said(opening(found, write))]
-    for family in found.families:
-        if not (family.sets or family.unfinished or family.singular or family.parts):
-            continue
+    for family in told_families(found):
         first = len(found.integrals) - len(family.integrals)
         terms = [f"{name_of(name)} V_{first + k + 1}" for k, name in enumerate(family.multipliers)]
         paragraphs.append([f"$K = {' + '.join([f'V_{first}', *terms])}$:", *said(of_family(family, write))])

@@ -70,7 +70,7 @@ def _orientation(node: Node | None, reading: Reading) -> tuple[UnitVector | Quat
             return _quaternion(_free(Quaternion, "e", (), reading), node.span, reading)
         if word != COSINES:
             return ()
-        found = _unnamed([], node.span, reading)
+        found = _unnamed([], node.span, reading, asked=True)
     else:
         found = []
         entries = list(reading.entries(node, "'orientation'"))
@@ -83,7 +83,7 @@ def _orientation(node: Node | None, reading: Reading) -> tuple[UnitVector | Quat
                 return _quaternion(entry.key.text, entry.key.span, reading)
             elif axis is not None:
                 found.append(UnitVector(entry.key.text, _AXES[axis], entry.key.span))
-        found += _unnamed(found, node.span, reading)
+        found += _unnamed(found, node.span, reading, asked=False)
     axes: set[int] = set()
     sound: list[UnitVector] = []
     for vector in found:
@@ -106,14 +106,14 @@ def _quaternion(name: str, span: Span, reading: Reading) -> tuple[Quaternion, ..
     return (found,) if all(declared) else ()
 
 
-def _unnamed(named: Sequence[UnitVector], span: Span, reading: Reading) -> list[UnitVector]:
+def _unnamed(named: Sequence[UnitVector], span: Span, reading: Reading, asked: bool) -> list[UnitVector]:
     """The unit vectors that nobody named: the place of a body is told by all three."""
     found: list[UnitVector] = []
     axes, words = {one.axis for one in named}, {one.name for one in named}
     for axis, word in enumerate(("alpha", "beta", "gamma"), start=1):
         if axis not in axes:
             make = partial(UnitVector, axis=axis)
-            found.append(UnitVector(_free(make, word, words, reading), axis, span))
+            found.append(UnitVector(_free(make, word, words, reading), axis, span, asked))
     return found
 
 

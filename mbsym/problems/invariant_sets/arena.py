@@ -26,7 +26,8 @@ class Arena:
     """Generators by index in ``ring``; the field x' = numerators/denominator, its integrals and relations there.
 
     ``floating``: so many multipliers, the last ones, belong to relations that alone make integrals of the others (sines
-    and cosines of angles): they are Lagrange's, and need not be constant along a motion.
+    and cosines of angles): they are Lagrange's, and need not be constant along a motion.  ``beside``: integrals that K
+    does not hold, which are constant all the same.
     """
 
     ring: Ring
@@ -40,6 +41,7 @@ class Arena:
     relations: tuple[Polynomial, ...]
     signs: Signs
     floating: int = 0
+    beside: tuple[Polynomial, ...] = ()
 
     @property
     def constant(self) -> tuple[int, ...]:

@@ -33,16 +33,20 @@ IN_ANGLES = SplitLimits(branches=150, terms=120, pairs=4, long=24)
 
 
 def invariant_sets(arena: Arena) -> InvariantSets:
-    """The stationary sets of K = V_0 + sum lambda_k V_k, and of V_1 + sum lambda_k V_k, ..., each family for itself."""
+    """The stationary sets of K = V_0 + sum lambda_k V_k, of V_1 + sum lambda_k V_k, ..., each family for itself.
+
+    The last one has one integral alone, unless it is of the geometry: gradients of relations are independent.
+    """
     families = []
     generic: list[Polynomial] = []
-    for first in range(max(1, len(arena.integrals) - max(1, arena.floating))):
+    for first in range(max(1, len(arena.integrals) - len(arena.relations))):
         names = arena.names[first:]
         multipliers = arena.multipliers[: len(names) - 1]
         whole = arena.integrals[first]
         for g, integral in zip(multipliers, arena.integrals[first + 1 :], strict=True):
             whole = whole + arena.ring.context.gen(g) * integral
-        own = replace(arena, multipliers=multipliers, integrals=arena.integrals[first:], names=names)
+        held, beside = arena.integrals[first:], arena.integrals[:first]
+        own = replace(arena, multipliers=multipliers, integrals=held, names=names, beside=beside)
         family, taken = _family(own, whole)
         families.append(family)
         generic += [p for p in taken if p not in generic]

@@ -71,7 +71,8 @@ class FirstApproximation:
     """The roots lambda at a steady motion: ``zeros`` of them vanish, the others are even factors in lambda^2.
 
     ``necessary``: where one of them is violated the motion is unstable; not ``complete`` where a factor that is not
-    even was left out.  ``unstable``: proved for all parameters that the description allows.
+    even was left out: ``left`` roots belong to these.  ``unstable``: proved for all parameters that the description
+    allows.
     """
 
     zeros: int
@@ -79,6 +80,7 @@ class FirstApproximation:
     necessary: tuple[Relation, ...]
     unstable: bool
     complete: bool
+    left: int = 0
 
 
 @dataclass(frozen=True)

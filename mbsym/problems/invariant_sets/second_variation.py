@@ -15,7 +15,7 @@ were solved for: S = d^2 K/dy^2.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from mbsym.algebra.characteristic import BUDGET, determinant, factor_in_lambda, leading_minors, subdiscriminants
 from mbsym.algebra.failures import Failure
@@ -33,7 +33,7 @@ MOST_TERMS = 600
 def on_level(place: Place, family: Polynomial) -> SecondVariation:
     """Of a steady motion: definiteness on the common tangent space of all integrals and relations."""
     arena = place.arena
-    integrals = (*arena.integrals, *arena.relations)
+    integrals = (*arena.integrals, *arena.relations, *arena.beside)
     gradients = [_cleared(place, [[place.fraction(p.derivative(g)) for g in arena.variables]])[0][0] for p in integrals]
     hessian, scale = _hessian(place, family, arena.variables)
     rows, pivots = _independent(place, gradients)
@@ -79,8 +79,10 @@ def _independent(place: Place, gradients: Rows) -> tuple[Rows | None, list[int]]
     if point is None:
         return None, []
     numbers = [[evaluate(x, point) for x in row] for row in gradients]
-    # Short rows first: what is divided by is a minor of the rows.
-    order = sorted(range(len(gradients)), key=lambda i: sum(len(x) for x in gradients[i]))
+    # Short rows first, then those of low degree: what is divided by is a minor of the rows.
+    order = sorted(
+        range(len(gradients)), key=lambda i: (sum(map(len, gradients[i])), sum(x.total_degree() for x in gradients[i]))
+    )
     kept: list[int] = []
     for i in order:
         if rank([*(numbers[k] for k in kept), numbers[i]]) > len(kept):
@@ -187,12 +189,12 @@ def first_approximation(place: Place) -> FirstApproximation | None:
         return None
     factors = []
     necessary: list[Relation] = []
-    complete, unstable = True, False
-    for factor, _ in factor_in_lambda(rest)[1]:
-        if any(factor[k] != 0 for k in range(1, len(factor), 2)):
-            complete = False  # not even: left to problem 6
+    complete, unstable, left = True, False, 0
+    for even, uneven in _even_factors(rest):
+        if uneven:  # left to problem 6, but for signs that no roots on the left give
+            complete, left = False, left + len(uneven) - 1
+            unstable |= any(arena.signs.sign(place.shortened(c * uneven[-1])) == "negative" for c in uneven)
             continue
-        even = list(factor[::2])
         factors.append(tuple(arena.formula(c) for c in even))
         if len(even) < 2:
             continue
@@ -218,7 +220,20 @@ def first_approximation(place: Place) -> FirstApproximation | None:
                 necessary.append(Relation(arena.formula(-product * product), ">="))
             else:
                 complete = False
-    return FirstApproximation(zeros, tuple(factors), () if unstable else tuple(necessary), unstable, complete)
+    return FirstApproximation(zeros, tuple(factors), () if unstable else tuple(necessary), unstable, complete, left)
+
+
+def _even_factors(rest: list[Polynomial]) -> Iterator[tuple[list[Polynomial], list[Polynomial]]]:
+    """Irreducible factors: coefficients in lambda^2 of those that are even, () and those in lambda of others.
+
+    A polynomial that is even is factored in lambda^2, or lambda^2 - 1 would be two factors that are not.
+    """
+    if not any(c != 0 for c in rest[1::2]):
+        yield from ((list(factor), []) for factor, _ in factor_in_lambda(rest[::2])[1])
+        return
+    for factor, _ in factor_in_lambda(rest)[1]:
+        even = not any(c != 0 for c in factor[1::2])
+        yield (list(factor[::2]), []) if even else ([], list(factor))
 
 
 def _characteristic(place: Place, a: Rows) -> list[Polynomial] | None:

@@ -72,14 +72,14 @@ def _judged(field: PolynomialField, weights: tuple[int, ...]) -> Grading:
 
 
 def rise(field: PolynomialField, weights: Sequence[int]) -> int | None:
-    """k, where every term of x'_i has the weight w_i + k; None where they differ."""
+    """k, where every term of x'_i has the weight w_i + k; None where they differ; 0 where all x'_i vanish."""
     count = len(field.parameters)
     found = {
         sum(w * int(a) for w, a in zip(weights, monomial[count:], strict=True)) - own
         for p, own in zip(field.numerators, weights, strict=True)
         for monomial in p.monoms()
     }
-    return found.pop() if len(found) == 1 else None
+    return None if len(found) > 1 else found.pop() if found else 0
 
 
 def _may_be_left_out(field: PolynomialField, weights: Sequence[int]) -> bool:

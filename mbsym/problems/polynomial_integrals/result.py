@@ -73,7 +73,8 @@ class Count:
 class PolynomialIntegrals:
     """Polynomials in ``generators`` are all integrals of weighted degree up to ``degree``, where ``complete``.
 
-    ``independent``: so many of them are, as functions (a lower bound).
+    ``independent``: so many of them are, as functions (a lower bound).  ``aside``: positions of the system on which no
+    equation depends: they are no variables of the field, and integrals that hold them are not looked for.
     """
 
     field: PolynomialField
@@ -82,6 +83,7 @@ class PolynomialIntegrals:
     generators: tuple[Generator, ...]
     counts: tuple[Count, ...]
     independent: int
+    aside: tuple[str, ...] = ()
 
     @property
     def complete(self) -> bool:

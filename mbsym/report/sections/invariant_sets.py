@@ -17,7 +17,7 @@ from mbsym.problems.invariant_sets import (
     StationarySet,
 )
 from mbsym.report.even_powers import in_even_powers
-from mbsym.report.invariant_words import Medium, closing, family_title, of_family, of_set, opening
+from mbsym.report.invariant_words import Medium, closing, family_title, of_family, of_set, opening, told_families
 from mbsym.report.plain import LONGEST, Write
 from mbsym.report.said import filled
 
@@ -81,6 +81,7 @@ def _first(found: FirstApproximation, write: Write) -> dict[str, Any]:
         "necessary": _relations(found.necessary, write),
         "unstable": found.unstable,
         "complete": found.complete,
+        "roots_left_out": found.left,
     }
 
 
@@ -95,9 +96,7 @@ def lines(found: InvariantSets, analysis: Analysis) -> Iterator[str]:
     """The lines in the terminal."""
     write = plain(found)
     yield from map(filled, opening(found, write))
-    for family in found.families:
-        if not (family.sets or family.unfinished or family.singular or family.parts):
-            continue
+    for family in told_families(found):
         yield f"K = {family_title(family, found)}"
         yield from (f"  {filled(said)}" for said in of_family(family, write))
         for k, one in enumerate(family.sets, start=1):

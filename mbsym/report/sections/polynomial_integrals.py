@@ -28,6 +28,7 @@ def data(result: Polynomials, system: System, write: Write) -> dict[str, Any]:
         "quasi_homogeneous": found.grading.homogeneous,
         "complete": found.complete,
         "independent": found.independent,
+        "not_contained": list(found.aside),
         "integrals": [
             {
                 "weight": one.weight,

@@ -1,0 +1,110 @@
+"""Integrals of systems whose equations lack positions, or vanish: what is said is said of what was looked at."""
+
+from __future__ import annotations
+
+import json
+
+import jsonschema
+import pytest
+from click.testing import CliRunner
+
+import mbsym
+from mbsym.analysis import Analysis
+from mbsym.report import integrals_words, polynomial_integrals_es, polynomial_integrals_ru
+from mbsym.report.said import filled
+from mbsym.report.schemas import schema
+from mbsym_cli.main import main
+
+FREE_BODY = """
+mbsym: 1
+name: free body
+parameters: {A: positive, B: positive, C: positive}
+bodies:
+  - name: body
+    attached to: 0
+    rotation: {axes: [3, 1, 3], angles: [psi, theta, phi]}
+    mass: 0
+    inertia about: joint
+    inertia: {tensor: [A, B, C], accept: true}
+    speeds: {p: omega1, q: omega2, r: omega3}
+    orientation: {gamma: 3}
+"""
+
+PARTICLE = """
+mbsym: 1
+name: free particle
+bodies:
+  - {name: P, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        (FREE_BODY, "gamma"),
+        (FREE_BODY.replace("{gamma: 3}", "direction cosines"), "alpha, beta, gamma"),
+        (FREE_BODY.replace("    orientation: {gamma: 3}\n", ""), "psi, theta, phi"),
+        (FREE_BODY.replace("{gamma: 3}", "{e: quaternion}"), "e"),
+    ],
+)
+def test_every_integral_of_a_free_body_is_not_said_of_those_that_hold_its_orientation(text, names):
+    """Euler's equations have two integrals; A p gamma1 + B q gamma2 + C r gamma3 is a third, of degree two.
+
+    Its derivative is  M . gamma' + M' . gamma = M . (gamma x w) + (M x w) . gamma = 0,  so that "every polynomial
+    integral of degree up to 4 is a polynomial in" energy and |M|^2 is false of p, q, r, gamma.
+    """
+    found = Analysis(mbsym.loads(text).system, problems=(9,)).polynomial_integrals.found
+    assert [one.weight for one in found.generators] == [2, 2]
+    assert found.complete
+    said = [filled(one) for one in integrals_words.sentences(found)]
+    (every,) = [one for one in said if one.startswith("Every")]
+    assert f"that does not contain {names} is a polynomial" in every
+    assert f"The equations do not contain {names}: integrals that do are not looked for here." in said
+
+
+def test_what_the_equations_do_not_contain_is_in_the_data_and_in_what_is_said_of_a_line(tmp_path):
+    """A charge in a magnetic field keeps x' - B y and y' + B x for every B: only integrals without x, y are denied."""
+    path = tmp_path / "charge.yaml"
+    path.write_text(
+        PARTICLE.replace("bodies:", "parameters: {B: real}\nbodies:")
+        + "loads:\n  - {generalized force: {x: B*y_dot, y: -B*x_dot}}\n"
+    )
+    done = CliRunner().invoke(main, ["integrals", str(path), "--vary", "B=-1:1"])
+    assert done.exit_code == 0, done.output
+    told = " ".join(done.output.split())
+    assert "rational or not, there is none of weight up to 4 that does not contain x, y (proved" in told
+    assert "B = 0 further integral of weight 1: x_dot" in told
+    done = CliRunner().invoke(main, ["integrals", str(path), "--json"])
+    data = json.loads(done.output)
+    jsonschema.validate(data, schema("integrals"))
+    assert data["not_contained"] == ["x", "y"]
+
+
+def test_a_free_particle_has_homogeneous_equations_and_relations_are_looked_for(tmp_path):
+    """x'' = y'' = 0: the field of x', y' is zero, homogeneous of any degree; every polynomial in x', y' is kept."""
+    path = tmp_path / "free.yaml"
+    path.write_text(PARTICLE)
+    done = CliRunner().invoke(main, ["integrals", str(path), "--relations"])
+    assert done.exit_code == 0, done.output
+    told = " ".join(done.output.split())
+    assert "the equations are quasi-homogeneous under them" in told
+    # x y' - y x' is of degree two, and kept as well.
+    assert "there is none without x, y beyond those of problem 7" in told
+    assert "There is none of weight up to 4 with K not zero" in told
+
+
+def test_none_is_denied_without_positions():
+    """x'' = -x': of x' alone nothing is kept, but x' + x is."""
+    text = PARTICLE.replace("[x, y, 0]", "[x, 0, 0]").replace("[x, y]", "[x]")
+    text += "loads:\n  - damper: {coordinate: x, coefficient: 1}\n"
+    found = Analysis(mbsym.loads(text).system, problems=(9,)).polynomial_integrals.found
+    said = [filled(one) for one in integrals_words.sentences(found)]
+    assert said[0] == "There is none up to weighted degree 4 that does not contain x (proved)."
+
+
+def test_sentences_about_positions_aside_have_their_translations():
+    every = [x for table in integrals_words._EVERY.values() for x in table.values()]
+    every += [*integrals_words._NONE_WITHOUT.values(), *integrals_words._NO_OTHER_WITHOUT.values()]
+    for text in every:
+        assert text in polynomial_integrals_ru.SENTENCES
+        assert text in polynomial_integrals_es.SENTENCES
