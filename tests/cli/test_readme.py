@@ -39,7 +39,7 @@ def shell(line: str, folder: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=300, check=False)
 
 
-#: What commands over the whole folder see, but for one: that one derives all problems of every system.
+#: What commands over the whole folder see: each system of it is run by tests of `mbsym run`.
 FEW = (
     "satellite.yaml",
     "satellite.txt",
@@ -72,7 +72,7 @@ ON_PAGES = {
 def test_commands_run(line: str, workplace: Path) -> None:
     if line.split()[1] in ("watch", "lsp", "edit"):
         pytest.skip("never ends; tests of their own have it")
-    if "systems" in line.split() and "--brief" not in line:
+    if "systems" in line.split():
         (workplace / "systems").unlink()
         (workplace / "systems").mkdir()
         for name in FEW:

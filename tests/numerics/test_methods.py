@@ -436,17 +436,18 @@ def test_machine_code_can_be_interrupted(name: str, pendulum: Dynamics) -> None:
     run = start(name, pendulum, step_limit=10**12, **setting)
 
     def interrupt(number: int, frame: Any) -> None:
-        raise KeyboardInterrupt
+        if run.work.steps > 1000:  # a busy machine may not have come so far
+            raise KeyboardInterrupt
 
     kept = signal.signal(signal.SIGALRM, interrupt)
     try:
-        signal.setitimer(signal.ITIMER_REAL, 0.2)
+        signal.setitimer(signal.ITIMER_REAL, 0.2, 0.1)
         with pytest.raises(KeyboardInterrupt):
             run.advance(1e7)
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, kept)
-    assert run.work.steps > 1000
+    assert 1000 < run.work.steps < 10**9
 
 
 def test_times_are_hit_exactly_and_may_be_repeated(pendulum: Dynamics) -> None:
