@@ -117,18 +117,18 @@ _LABEL = re.compile(r"\\(label|ref|eqref)\{([^{}#]*)\}|%[^\n]*")
 
 def _labels(text: str) -> None:
     """Each is set once, and whatever is referred to is there."""
-    found: dict[str, int] = {}
-    wanted: dict[str, int] = {}
+    found: set[str] = set()
+    wanted: dict[str, int] = {}  # with the place where it is referred to first
     for match in _LABEL.finditer(text):
         if match[1] is None:
             continue
-        line = text.count("\n", 0, match.start()) + 1
+        name, place = match[2], match.start()
         if match[1] != "label":
-            wanted.setdefault(match[2], line)
-        elif match[2] in found:
-            raise SyntaxError(f"the label {match[2]!r} is set a second time", ("", line, 0, None))
+            wanted.setdefault(name, place)
+        elif name in found:
+            raise SyntaxError(f"the label {name!r} is set a second time", ("", _line(text, place), 0, None))
         else:
-            found[match[2]] = line
-    for name, line in wanted.items():
+            found.add(name)
+    for name, place in wanted.items():
         if name not in found:
-            raise SyntaxError(f"nothing has the label {name!r}", ("", line, 0, None))
+            raise SyntaxError(f"nothing has the label {name!r}", ("", _line(text, place), 0, None))
