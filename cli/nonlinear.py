@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Replace a value; repeatable.")
 @click.option("--vary", "-v", "axis", metavar="NAME=LOW:HIGH", help="The parameter, and its open interval.")
-@click.option("--json", "as_json", is_flag=True, help="With --vary, print JSON instead of a table.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON; without --vary that of problem 11.")
 def command(file: Path, settings: tuple[str, ...], axis: str | None, as_json: bool) -> None:
     """List the values of a parameter at which terms of higher order of FILE decide otherwise than beside them.
 
@@ -42,7 +42,7 @@ def command(file: Path, settings: tuple[str, ...], axis: str | None, as_json: bo
 
     \b
     Examples:
-      mbsym nonlinear systems/three-bodies.yaml --set mu=1/50
+      mbsym nonlinear systems/three-bodies.yaml --set mu=1/50 --json
       mbsym nonlinear systems/three-bodies.yaml --vary mu=0:1/2
       mbsym nonlinear systems/ziegler-damped.yaml --vary P=0:10 --set b2=1/5 --json
     """
@@ -50,7 +50,7 @@ def command(file: Path, settings: tuple[str, ...], axis: str | None, as_json: bo
     asked = Options()
     axis_read, numbers = None, {}
     if system is not None:
-        if axis is not None or as_json:
+        if axis is not None:
             axis_read = read_axis(axis, "--vary", system, asked)
         numbers = read_settings(settings, system, asked)
         check_settings(system, numbers, asked)
@@ -60,7 +60,7 @@ def command(file: Path, settings: tuple[str, ...], axis: str | None, as_json: bo
     if asked.refused(None if system is None else file) or system is None:
         sys.exit(BAD_INPUT)
     if axis_read is None:
-        sys.exit(at_values(file, system, numbers))
+        sys.exit(at_values(file, system, numbers, as_json))
     from mbsym.algebra.failures import Failure
     from mbsym.analysis import Analysis
     from mbsym.analysis.exceptional import exceptional

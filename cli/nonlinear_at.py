@@ -33,8 +33,11 @@ def check_settings(system: System, numbers: Mapping[str, Fraction], asked: Optio
             asked.complain("--set", "sign-contradiction", f"{name} is declared {signs[name]}, {value} is not")
 
 
-def at_values(file: Path, system: System, numbers: Mapping[str, Fraction]) -> int:
-    """Prints what problem 11 says, at numbers where there are all, in parameters where it can; the exit code."""
+def at_values(file: Path, system: System, numbers: Mapping[str, Fraction], as_json: bool) -> int:
+    """Prints what problem 11 says, at numbers where there are all, in parameters where it can; the exit code.
+
+    ``as_json``: as ``results.json`` of that problem.
+    """
     from mbsym.algebra.failures import Failure
     from mbsym.analysis import Analysis
     from mbsym.analysis.stages import Unavailable
@@ -63,6 +66,11 @@ def at_values(file: Path, system: System, numbers: Mapping[str, Fraction]) -> in
     if found.at_values is None and lacking and found.in_symbols is None:
         print(missing(file, lacking, "rational number"), file=sys.stderr)
         return BAD_INPUT
+    if as_json:
+        from mbsym.report.results_json import render
+
+        print(render(analysis, (11,)), end="")
+        return OK
     _show(system.name, file, list(lines(found, analysis)), time.perf_counter() - started)
     out = console()
     if found.at_values is None and lacking:
