@@ -45,7 +45,8 @@ def opening(found: InvariantSets, write: Medium) -> Iterator[Said]:
     if found.relations:
         relations = ", ".join(write.condition(one, "=") for one in found.relations)
         yield "Between the variables: [[relations]].", {"relations": relations}
-
+        text = "Of the zero roots of a first approximation so many belong to these relations, and to no motion: [[n]]."
+        yield text, {"n": len(found.relations)}
     yield "What is said of stability is about these variables: [[names]].", {"names": write.names(found.variables)}
     if found.in_angles and found.relations:
         yield "Multipliers of the geometry are Lagrange's: along a motion only the others are constant.", {}

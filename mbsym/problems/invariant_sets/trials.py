@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator, Mapping, Sequence
 
+import numpy as np
 from flint import arb, ctx, fmpq
 
 from mbsym.algebra.ring import Polynomial
@@ -19,6 +20,8 @@ from mbsym.problems.invariant_sets.result import (
 
 #: Points that are tried, values of free multipliers at each of them, bits of balls.
 POINTS, CHOICES, BITS = 60, 60, 128
+#: Of these values, so many with each multiplier moved along a line.
+LINES = 6
 #: Of coordinates and multipliers, beside parameters: a set of small ones is found by the second.
 SIZES = (fmpq(1, 2), fmpq(1, 16))
 _VALUES = [fmpq(p, q) for p in range(1, 9) for q in (1, 2, 3)]
@@ -44,7 +47,7 @@ def gap_between(place: Place, variation: SecondVariation | None, first: FirstApp
             if not _hold(first.necessary, point, strictly=True):
                 continue
             tried = True
-            if not any(_definite(variation, choice) for choice in _choices(place, point)):
+            if not any(_definite(variation, choice) for choice in _choices(place, point, variation)):
                 return Gap.FOUND
     return Gap.NONE_FOUND if tried else Gap.UNTRIED
 
@@ -78,19 +81,48 @@ def _value(p: Polynomial, point: Mapping[int, arb]) -> arb:
     return total
 
 
-def _choices(place: Place, point: Point) -> Iterator[Point]:
-    """The same state and parameters with other values of the multipliers on which the state does not depend."""
+def _choices(place: Place, point: Point, variation: SecondVariation) -> Iterator[Point]:
+    """The same state and parameters with other values of the multipliers on which the state does not depend.
+
+    None of the other integrals first; then all sizes, and, of one multiplier after another, a value in each interval
+    between the places where conditions change their signs: of one multiplier alone these are all there is to try.
+    """
     yield point
     free = [g for g in place.free_multipliers if not place.fixes(g)]
     if not free:
         return
     chance = random.Random(5)
+    conditions = [one.formula.polynomial for side in (variation.positive, variation.negative) for one in side or ()]
     for k in range(CHOICES):
-        # None of the other integrals first; then all sizes: what suffices may hold near zero only.
         size = fmpq(1, 4 ** (k % 3)) if k else fmpq(0)
         changed = dict(point) | {g: arb(chance.choice(_VALUES) * chance.choice((1, -1)) * size) for g in free}
         if _solve(place, changed):
             yield changed
+            if k < LINES:
+                yield from _along(place, changed, free, conditions)
+
+
+def _along(place: Place, point: Point, free: Sequence[int], conditions: Sequence[Polynomial]) -> Iterator[Point]:
+    for g in free:
+        ends = sorted({x for p in conditions for x in _real_zeros(p, g, point)})
+        if ends:
+            middle = [(a + b) / 2 for a, b in zip(ends, ends[1:], strict=False)]
+            for x in (ends[0] - 1, *middle, ends[-1] + 1):
+                changed = dict(point) | {g: arb(x)}
+                if _solve(place, changed):
+                    yield changed
+
+
+def _real_zeros(p: Polynomial, g: int, point: Mapping[int, arb]) -> list[float]:
+    """Nearly, of p in one generator: they only say where to try."""
+    coefficients = [arb(0)] * (p.degrees()[g] + 1)
+    rest = dict(point) | {g: arb(1)}
+    for power in range(len(coefficients)):
+        part = {m: c for m, c in p.to_dict().items() if m[g] == power}
+        if part:
+            coefficients[power] = _value(p.context().from_dict(part), rest)
+    numbers = [float(c.mid()) for c in reversed(coefficients)]
+    return [float(x.real) for x in np.roots(numbers) if abs(x.imag) <= 1e-9 * (1 + abs(x))]
 
 
 def _points(place: Place, count: int, size: fmpq = SIZES[0]) -> Iterator[Point]:
