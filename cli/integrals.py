@@ -73,12 +73,13 @@ def command(
     from mbsym.algebra.failures import Failure, Limit
     from mbsym.analysis import Analysis
     from mbsym.analysis.invariant_relations import invariant_relations, special_relations
-    from mbsym.analysis.polynomial import integrals_of, setting
+    from mbsym.analysis.polynomial import allowed, integrals_of, setting
     from mbsym.problems.polynomial_integrals import along_of, cases_of
 
     try:
         with status(as_json, f"{file.name}: polynomial integrals"):
-            there = setting(Analysis(system), request.values)
+            analysis = Analysis(system)
+            there = setting(analysis, request.values)
             complain_unfit(there, request, asked)
             if asked.refused(file):
                 sys.exit(BAD_INPUT)
@@ -87,6 +88,7 @@ def command(
             line = None if axis is None else along_of(found, there.kinds, there.known, axis.low, axis.high)
             positive = [one.name for one in system.parameters if one.sign == "positive"]
             special = cases_of(found, there.kinds, there.known, positive, request.seconds) if cases else None
+            special = special and allowed(analysis, there, request.values, special)
             invariant = invariant_relations(there, found, positive) if relations else None
             at = special_relations(there, found, axis.low, axis.high) if relations and axis is not None else None
     except ZeroDivisionError as reason:

@@ -53,8 +53,8 @@ def cases_lines(there: Setting, found: Cases) -> Iterator[str]:
     if not found.cases:
         yield "no case was found"
     yield (
-        f"{found.families} families of parameters were looked at (some zero, some equal), and conditions of degree up "
-        "to 3 in each. Integrals are proved; that there are no other cases is not."
+        f"{found.families} families of parameters were looked at (some zero, some equal that play the same part), and "
+        "conditions of degree up to 3 in each. Integrals are proved; that there are no other cases is not."
     )
     if found.left:
         yield (

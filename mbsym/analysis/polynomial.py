@@ -13,6 +13,7 @@ from flint import fmpq
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.algebra.signs import Signs
 from mbsym.analysis.symmetric import symmetries_of
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.motion import relations
@@ -25,7 +26,7 @@ from mbsym.problems.angle_field import in_angles
 from mbsym.problems.integrals import PROVED, Integral
 from mbsym.problems.polynomial_integrals.gradings import Grading, grading
 from mbsym.problems.polynomial_integrals.levels import levels, on_level
-from mbsym.problems.polynomial_integrals.result import PolynomialIntegrals, Polynomials
+from mbsym.problems.polynomial_integrals.result import Cases, PolynomialIntegrals, Polynomials
 from mbsym.problems.polynomial_integrals.search import polynomial_integrals
 from mbsym.problems.vector_field import Transfer, in_speeds
 
@@ -173,6 +174,24 @@ def _at(whole: PolynomialField, field: PolynomialField, numbers: Mapping[str, An
         for name in (*whole.parameters, *whole.variables)
     ]
     return p.compose(*images, ctx=field.context)
+
+
+def allowed(analysis: Analysis, there: Setting, values: Mapping[str, Fraction], found: Cases) -> Cases:
+    """Without the cases whose conditions contradict the signs and assumptions of the description."""
+    numbers = {name: fmpq(x.numerator, x.denominator) for name, x in values.items() if name in there.whole.parameters}
+    assumed = []
+    for p, relation in analysis.signs.assumptions:
+        with suppress(Failure):  # it holds other parameters than the equations
+            assumed.append((_at(there.whole, there.field, numbers, there.transfer(p)), relation))
+    declared = {one.name: one.sign for one in analysis.system.parameters}
+    words = tuple(declared.get(name, "real") for name in there.field.context.names())
+    signs = Signs(there.field.context, words, tuple(assumed))
+    kept = tuple(
+        one
+        for one in found.cases
+        if not any(signs.sign(p) in ("positive", "negative", "nonzero") for p in one.conditions)
+    )
+    return replace(found, cases=kept)
 
 
 def weights_of(there: Setting, weights: Mapping[str, int] | None = None) -> Grading:

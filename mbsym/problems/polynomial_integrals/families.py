@@ -56,25 +56,38 @@ class Family:
 def families(field: PolynomialField, positive: Sequence[str]) -> Iterator[Family]:
     """Every choice of zeros among parameters that are not positive, and of equalities among those that are.
 
-    Equal to each other are put those that occur with the same exponents, as moments of inertia do.
+    Equal to each other are put those that occur with the same exponents, as moments of inertia do.  Then come, where
+    they are not too many, equalities among parameters that are not positive.
     """
     able = [name for name in field.parameters if name not in positive]
-    parts = _alike(field, positive)
+    parts, others = _alike(field, positive), _alike(field, able)
     found: list[Family] = []
+    further: list[Family] = []
     for count in range(len(able) + 1):
         for zero in combinations(able, count):
-            found += [Family(zero, sum(equal, ())) for equal in product(*map(_partitions, parts))]
+            left = [[name for name in part if name not in zero] for part in others]
+            for equal in product(*map(_partitions, parts)):
+                found.append(Family(zero, sum(equal, ())))
+                if len(further) <= MOST_FAMILIES:
+                    among = (sum(one, ()) for one in product(*map(_partitions, left)))
+                    further += [Family(zero, found[-1].equal + one) for one in among if one]
             if len(found) > 4 * MOST_FAMILIES:
                 break
-    yield from sorted(found, key=lambda one: (len(one.zero) + len(one.equal), len(one.zero)))
+    yield from sorted(found, key=_size)
+    if len(found) + len(further) <= MOST_FAMILIES:
+        yield from sorted(further, key=_size)
 
 
-def _alike(field: PolynomialField, positive: Sequence[str]) -> list[list[str]]:
-    """Positive parameters by the part that they play; of those that occur as a product only, the first."""
+def _size(one: Family) -> tuple[int, int]:
+    return len(one.zero) + len(one.equal), len(one.zero)
+
+
+def _alike(field: PolynomialField, names: Sequence[str]) -> list[list[str]]:
+    """Parameters by the part that they play; of those that occur as a product only, the first."""
     terms = [m for p in field.numerators for m in p.monoms()]
     columns: dict[tuple[int, ...], str] = {}
     for k, name in enumerate(field.parameters):
-        if name in positive:
+        if name in names:
             columns.setdefault(tuple(int(m[k]) for m in terms), name)
     parts: dict[tuple[int, ...], list[str]] = {}
     for column, name in columns.items():
