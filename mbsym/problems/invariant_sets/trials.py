@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
 
 import numpy as np
 from flint import arb, ctx, fmpq
@@ -106,7 +107,7 @@ def _along(place: Place, point: Point, free: Sequence[int], conditions: Sequence
     for g in free:
         ends = sorted({x for p in conditions for x in _real_zeros(p, g, point)})
         if ends:
-            middle = [(a + b) / 2 for a, b in zip(ends, ends[1:], strict=False)]
+            middle = [(a + b) / 2 for a, b in pairwise(ends)]
             for x in (ends[0] - 1, *middle, ends[-1] + 1):
                 changed = dict(point) | {g: arb(x)}
                 if _solve(place, changed):
