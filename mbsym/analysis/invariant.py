@@ -52,7 +52,7 @@ def invariant_sets_of(analysis: Analysis) -> InvariantSets:
             remedy=_remedy(analysis.system),
         )
     found = [(name, _without_constants(field, p)) for name, p in _known(analysis, there)]
-    chosen = _independent(field, [(name, p) for name, p in found if field.reduced(field.derivative(p)) == 0])
+    chosen, left = _independent(field, [(name, p) for name, p in found if field.reduced(field.derivative(p)) == 0])
     if not chosen:
         raise NoClosedForm("no integrals are known but those of geometry")
     signs = {one.name: one.sign for one in analysis.system.parameters}
@@ -64,7 +64,7 @@ def invariant_sets_of(analysis: Analysis) -> InvariantSets:
 
     plain = identifiers(field.variables, field.parameters)
     written = write_in(place.ring, analysis, dict(zip(plain, field.variables, strict=True)) if lagrangian else {})
-    return replace(invariant_sets(place), written=written, in_angles=lagrangian)
+    return replace(invariant_sets(place), written=written, in_angles=lagrangian, left_out=left)
 
 
 def _remedy(system: System) -> str:
@@ -121,28 +121,51 @@ def _without_constants(field: PolynomialField, p: Any) -> Any:
     return field.context.from_dict({m: c for m, c in p.to_dict().items() if any(m[first:])})
 
 
-def _independent(field: PolynomialField, found: list[tuple[str, Any]]) -> list[tuple[str, Any]]:
+def _independent(field: PolynomialField, found: list[tuple[str, Any]]) -> tuple[list[tuple[str, Any]], tuple[str, ...]]:
     """Those whose gradients are independent of the earlier ones' and of the relations', at a random point mod a prime.
 
-    The relations come last, with names of their own: they take part in the families.
+    The relations come last, with names of their own: they take part in the families.  And the names of others, but for
+    those that are sums of these with constant coefficients, which families hold.
     """
     from mbsym.problems.invariant_sets.branches import PRIME, rank
 
     chance = random.Random(3)
     point = {k: chance.randrange(2, PRIME) for k in range(field.context.nvars())}
     rows = [_gradient(field, relation, point) for relation in field.relations]
-    kept = []
+    kept: list[tuple[str, Any]] = []
+    left = []
     for name, p in found:
         row = _gradient(field, p, point)
         if rank([*rows, row]) > len(rows):
             rows.append(row)
             kept.append((name, p))
+        elif not _is_sum(field, p, [q for _, q in kept], point):
+            left.append(name)
     if not kept:
-        return []
+        return [], ()
     for k, relation in enumerate(field.relations):
         number = f" {k + 1}" if len(field.relations) > 1 else ""
         kept.append((f"geometry{number}", _without_constants(field, relation)))
-    return kept
+    return kept, tuple(left)
+
+
+def _is_sum(field: PolynomialField, p: Any, others: list[Any], point: dict[int, int]) -> bool:
+    """Whether p is a sum of others and a constant, at parameters of the point: modulo a prime and the relations."""
+    from mbsym.problems.invariant_sets.branches import PRIME, evaluate, rank
+
+    first = len(field.parameters)
+    listed = []
+    for one in (p, *others):
+        parts: dict[tuple[int, ...], int] = {}
+        for monomial, c in field.reduced(one).to_dict().items():
+            if any(monomial[first:]):
+                term = field.context.from_dict({(*monomial[:first], *(0 for _ in monomial[first:])): c})
+                key = tuple(int(k) for k in monomial[first:])
+                parts[key] = (parts.get(key, 0) + evaluate(term, point)) % PRIME
+        listed.append(parts)
+    columns = sorted({key for parts in listed for key in parts})
+    rows = [[parts.get(key, 0) for key in columns] for parts in listed]
+    return rank(rows) == rank(rows[1:])
 
 
 def _gradient(field: PolynomialField, p: Any, point: dict[int, int]) -> list[int]:

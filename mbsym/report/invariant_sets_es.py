@@ -3,6 +3,7 @@
 # ruff: noqa: E501
 
 SENTENCES = {
+    "Left out of the families, as functions of these (verified at a random state): [[names]].": "Quedan fuera de las familias, por ser funciones de estas (verificado en un estado aleatorio): [[names]].",
     "Of the zero roots of a first approximation so many belong to these relations, and to no motion: [[n]].": "De las raíces nulas de una primera aproximación pertenecen a estas relaciones, y a ningún movimiento: [[n]].",
     "First approximation: zero roots: [[zeros]]; among the others are the roots of [[factors]].": "Primera aproximación: raíces nulas: [[zeros]]; entre las demás están las raíces de [[factors]].",
     "Roots of factors that are not even in lambda, not looked at here but for signs of coefficients: [[n]].": "Raíces de factores que no son pares en lambda, que aquí no se examinan salvo los signos de los coeficientes: [[n]].",

@@ -3,6 +3,7 @@
 # ruff: noqa: E501
 
 SENTENCES = {
+    "Left out of the families, as functions of these (verified at a random state): [[names]].": "Не вошли в семейства как функции этих (проверено в случайном состоянии): [[names]].",
     "Of the zero roots of a first approximation so many belong to these relations, and to no motion: [[n]].": "Из нулевых корней первого приближения этим связям, а не движениям, принадлежит [[n]].",
     "First approximation: zero roots: [[zeros]]; among the others are the roots of [[factors]].": "Первое приближение: нулевых корней [[zeros]]; среди остальных --- корни многочленов [[factors]].",
     "Roots of factors that are not even in lambda, not looked at here but for signs of coefficients: [[n]].": "Корней множителей, не чётных по lambda, здесь не рассмотренных, кроме знаков коэффициентов: [[n]].",

@@ -42,6 +42,12 @@ def opening(found: InvariantSets, write: Medium) -> Iterator[Said]:
     )
     for k, (name, formula) in enumerate(found.integrals):
         yield "V[[k]], [[name]]: [[formula]].", {"k": k, "name": write.word(name), "formula": write.formula(formula)}
+    if found.left_out:
+        names = ", ".join(map(write.word, found.left_out))
+        yield (
+            "Left out of the families, as functions of these (verified at a random state): [[names]].",
+            {"names": names},
+        )
     if found.relations:
         relations = ", ".join(write.condition(one, "=") for one in found.relations)
         yield "Between the variables: [[relations]].", {"relations": relations}

@@ -136,3 +136,29 @@ def test_roots_that_are_not_listed_are_counted():
     for catalogue in (invariant_sets_ru.SENTENCES, invariant_sets_es.SENTENCES):
         assert listed in catalogue
         assert left in catalogue
+
+
+def test_integrals_that_are_functions_of_others_are_named():
+    """2 T = x'^2 + y'^2 of a free point is a function of its momenta: y' is in no family, and every x', y' is steady.
+
+    What claims repeat, with a factor and a constant, is none of these.
+    """
+    claims = '  - {claim: first integral, equals: "3*x_dot**2 + 3*y_dot**2 + 1", place: "(1)"}'
+    found = _sets(PLANE.format(rest="claims:\n" + claims))
+    assert [name for name, _ in found.integrals] == ["generalised energy", "momentum of x"]
+    assert found.left_out == ("momentum of y",)
+    text = "Left out of the families, as functions of these (verified at a random state): [[names]]."
+    assert text in dict(invariant_words.opening(found, section.plain(found)))
+    assert text in invariant_sets_ru.SENTENCES
+    assert text in invariant_sets_es.SENTENCES
+
+
+def test_roots_of_the_geometry_are_told():
+    """Of (p, q, r, gamma) at a rest of a heavy body two roots vanish: the norm's, and that of turns about gamma."""
+    loads = "loads:\n  - potential: 3*gamma3"
+    found = _sets(BODY.format(inertia="[4, 3, 2]", orientation="orientation: {gamma: 3}", loads=loads))
+    said = dict(invariant_words.opening(found, section.plain(found)))
+    text = "Of the zero roots of a first approximation so many belong to these relations, and to no motion: [[n]]."
+    assert said[text] == {"n": 1}
+    assert text in invariant_sets_ru.SENTENCES
+    assert text in invariant_sets_es.SENTENCES

@@ -19,6 +19,10 @@ there: relative equilibria, as conical motions and precessions, are stationary. 
 the others, so its multipliers are Lagrange's, and need not be constant along a motion; they are eliminated.  What is
 said is about places where the angles are regular; others are counted.
 
+The integrals are those of problem 7, those that claims have proved, and polynomial ones up to twice the largest weight
+of a variable (quadratic ones where all weights are 1); those that are functions of others are left out, and named.
+A steady motion that is stationary for no such K is not listed.
+
 All this holds for almost all parameters: polynomials in them that were divided by are listed and taken not to vanish.
 Branches that the budget leaves aside are counted: then the list may be incomplete.
 

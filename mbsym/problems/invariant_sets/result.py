@@ -136,6 +136,8 @@ class InvariantSets(Shown):
     variables: tuple[str, ...] = ()
     #: Variables that stand for something else: sin_theta for sin(theta).
     written: tuple[tuple[str, str], ...] = ()
+    #: Integrals whose gradients depend on those of ``integrals`` at a random point, and that are no sums of these.
+    left_out: tuple[str, ...] = ()
 
     @property
     def complete(self) -> bool:

@@ -29,6 +29,7 @@ def data(found: InvariantSets, system: System, write: Write) -> dict[str, Any]:
     """The section of results.json."""
     return {
         "integrals": [{"name": name, "formula": write(x)} for name, x in found.integrals],
+        "left_out": list(found.left_out),
         "relations": [write(x) for x in found.relations],
         "stand_for": dict(found.written),
         "families": [
