@@ -43,7 +43,7 @@ def command(file: Path, order: str, settings: tuple[str, ...], time: str | None,
       mbsym expand systems/satellite-with-damper-slow.yaml --order 3
       mbsym expand systems/satellite-with-damper-slow.yaml --set rho=0 --json
     """
-    system = read_description(file, unconstrained="expansions", moving="expansions")
+    system = read_description(file, unconstrained="expand", moving="expand")
     asked = Options()
     most = asked.whole("--order", order, 1, MOST_ORDER)
     span = asked.number("--time", time, most=1e9)
