@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator, Mapping, Sequence
-from itertools import pairwise
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import islice, pairwise
 
 import numpy as np
 from flint import arb, ctx, fmpq
@@ -21,7 +21,12 @@ from mbsym.problems.invariant_sets.result import (
 
 #: Points that are tried, values of free multipliers at each of them, bits of balls.
 POINTS, CHOICES, BITS = 60, 60, 128
-#: Of these values, so many with each multiplier moved along a line.
+#: Points of parameters among which those are looked for where what is necessary holds, and how many of these are looked
+#: at: a gap may be narrow (of a satellite on a circular orbit Delp's region is a twentieth of what is necessary).
+PARAMETERS, INSIDE = 3000, 400
+#: A float is known to be negative beyond this part of the sum of sizes of its terms.
+ROUNDING = 1e-9
+#: Of the values of multipliers so many with each multiplier moved along a line.
 LINES = 6
 #: Of coordinates and multipliers, beside parameters: a set of small ones is found by the second.
 SIZES = (fmpq(1, 2), fmpq(1, 16))
@@ -42,15 +47,46 @@ def gap_between(place: Place, variation: SecondVariation | None, first: FirstApp
         return Gap.UNTRIED
     if variation.outcome not in (Definiteness.CONDITIONAL, Definiteness.STABLE):
         return Gap.UNTRIED
-    tried = False
+    sieve = _Sieve(place, first.necessary)
     with ctx.workprec(BITS):
-        for point in _points(place, POINTS):
-            if not _hold(first.necessary, point, strictly=True):
-                continue
-            tried = True
+        points = _points(place, PARAMETERS if sieve.sharp else POINTS, sieve=sieve)
+        inside = list(islice((one for one in points if _hold(first.necessary, one, strictly=True)), INSIDE))
+        for point in inside:
             if not any(_definite(variation, choice) for choice in _choices(place, point, variation)):
                 return Gap.FOUND
-    return Gap.NONE_FOUND if tried else Gap.UNTRIED
+    return Gap.NONE_FOUND if inside else Gap.UNTRIED
+
+
+class _Sieve:
+    """Leaves out in floats, which is quick, what is no point of what is asked: where a polynomial is clearly negative.
+
+    Looked at are what is assumed and those ``relations`` that parameters and free values decide by themselves;
+    ``sharp`` where there are no others.
+    """
+
+    def __init__(self, place: Place, relations: Sequence[Relation]) -> None:
+        known = {*place.arena.parameters, *place.free_multipliers, *place.free_variables}
+        known -= {rule.generator for rule in place.rules}
+        asked = [p for p, _ in place.arena.signs.assumptions] + [r.formula.polynomial for r in relations]
+        terms = [
+            [(float(c), [(g, int(power)) for g, power in enumerate(monomial) if power]) for monomial, c in p.terms()]
+            for p in asked
+        ]
+        self._asked = [one for one in terms if {g for _, powers in one for g, _ in powers} <= known]
+        self.sharp = len(self._asked) == len(asked)
+
+    def __call__(self, point: Mapping[int, arb]) -> bool:
+        values = {g: float(x) for g, x in point.items()}
+        for terms in self._asked:
+            total = size = 0.0
+            for c, powers in terms:
+                for g, power in powers:
+                    c *= values[g] ** power
+                total += c
+                size += abs(c)
+            if total < -ROUNDING * size:
+                return False
+        return True
 
 
 def _definite(variation: SecondVariation, point: Mapping[int, arb]) -> bool:
@@ -126,8 +162,13 @@ def _real_zeros(p: Polynomial, g: int, point: Mapping[int, arb]) -> list[float]:
     return [float(x.real) for x in np.roots(numbers) if abs(x.imag) <= 1e-9 * (1 + abs(x))]
 
 
-def _points(place: Place, count: int, size: fmpq = SIZES[0]) -> Iterator[Point]:
-    """Real points of the set at parameters that the description allows: rational but for roots, in balls."""
+def _points(
+    place: Place, count: int, size: fmpq = SIZES[0], sieve: Callable[[Point], bool] = lambda point: True
+) -> Iterator[Point]:
+    """Real points of the set at parameters that the description allows: rational but for roots, in balls.
+
+    ``count`` of them are begun; of values that the ``sieve`` leaves out nothing is solved.
+    """
     arena = place.arena
     chance = random.Random(11)
     unknown = (*place.free_multipliers, *place.free_variables)
@@ -137,7 +178,7 @@ def _points(place: Place, count: int, size: fmpq = SIZES[0]) -> Iterator[Point]:
         }
         for g in unknown:
             point[g] = arb(chance.choice(_VALUES) * chance.choice((1, -1)) * size)
-        if not _allowed(place, point):
+        if not sieve(point) or not _allowed(place, point):
             continue
         pending = list(place.rules)
         if _roots(pending, point, chance) and _solve(place, point):
