@@ -180,7 +180,7 @@ def test_orbital_equilibria_in_quaternions():
 
     In the region of DeBra and Delp the first approximation is stable by gyroscopic forces: with moments A radial, B
     along the orbit, C along its normal and k1 = (C - A)/B, k3 = (C - B)/A, where k1 > k3, k1 k3 > 0 and
-    1 + 3 k1 + k1 k3 > 4 sqrt(k1 k3). At 14, 20, 13: k1 = -1/20, k3 = -1/2, and 0.875 > 0.632. The energy decides nothing there.
+    1 + 3 k1 + k1 k3 > 4 sqrt(k1 k3). At 14, 20, 13: k1 = -1/20, k3 = -1/2, and 0.875 > 0.632.
     """
     found = mbsym.load("systems/gravity-gradient-quaternion.yaml").invariant_sets
     (family,) = found.families
