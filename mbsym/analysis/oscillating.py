@@ -174,6 +174,7 @@ def oscillating(
         lambda x: str(Formula(ring, in_letters(tower, ring, symbols, x))),
         most,
         constants,
+        lambda x: _sign(analysis, tower, x),
     )
     found = oscillation(there, order, leading or small.leading, which)
     if not found.verified:
@@ -185,10 +186,6 @@ def oscillating(
             f"{found.leading} does not oscillate where {small.name} = 0: the square of its frequency is < 0"
         )
     size = _sign(analysis, tower, found.amplitude * found.amplitude)
-    if found.kind is Amplitude.DETERMINED and size == "negative":
-        raise NoClosedForm(
-            f"secular terms are removed only where the amplitude of {found.leading} is imaginary: its square is < 0"
-        )
     return Oscillating(
         found,
         ring,

@@ -39,6 +39,7 @@ from typing import Any
 from flint import fmpq
 
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.generators import occurring
 from mbsym.algebra.matrices import determinant
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Formula
@@ -103,13 +104,21 @@ class Order:
         return self.ring.context.from_dict({key: c for key, c in total.items() if c})
 
     def _is_plain(self, p: Polynomial, what: str) -> None:
-        degrees = p.degrees()
-        watched = {self.ring.generators[k].name for k in (*self.small, self.rate, *self.phase)}
-        for k in range(self.ring.spare):
+        """Raises NoClosedForm where what is small, large or averaged stands in a denominator, root or function."""
+        watched = {*self.small, self.rate, *self.phase}
+        inside = [k for k in occurring([p]) if k not in watched]
+        seen: set[int] = set()
+        while inside:
+            k = inside.pop()
             argument = self.ring.generators[k].argument
-            if degrees[k] > 0 and argument is not None and self.ring.dependencies(argument, watched):
-                names = ", ".join(self.ring.dependencies(argument, watched))
-                raise NoClosedForm(f"{what} holds {names} in a denominator, root or function")
+            if argument is None or k in seen:
+                continue
+            seen.add(k)
+            within = occurring([argument])
+            hidden = dict.fromkeys(self.ring.generators[j].name for j in within if j in watched)
+            if hidden:
+                raise NoClosedForm(f"{what} holds {', '.join(hidden)} in a denominator, root or function")
+            inside += within
 
 
 def _odd(n: int) -> int:
@@ -131,6 +140,7 @@ def _even(n: int) -> int:
 def averaged(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str, small: Sequence[str]) -> Averaged:
     """V, exactly.  Raises NoClosedForm where the system is none of those described above; the reason says why."""
     ring, names = scene.ring, scene.system.coordinates
+    _refuse_without_waves(ring, phase)
     order = Order(
         ring,
         tuple(ring.index("parameter", name) for name in small),
@@ -175,6 +185,12 @@ def averaged(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str, sm
     )
 
 
+def _refuse_without_waves(ring: Ring, phase: str) -> None:
+    """Raises NoClosedForm where no sine or cosine of the phase occurs: nothing is shaken by it."""
+    if not all(ring.has(kind, phase) for kind in ("sine", "cosine", "prescribed")):
+        raise NoClosedForm(f"no sine or cosine of {phase} occurs: nothing oscillates with it")
+
+
 def _cofactor(ring: Ring, matrix: Sequence[Sequence[Polynomial]], i: int, j: int) -> Polynomial:
     rows = [[x for col, x in enumerate(row) if col != i] for at, row in enumerate(matrix) if at != j]
     value = determinant(ring, rows) if rows else ring.one
@@ -209,8 +225,12 @@ def _other_loads(scene: Scene[Polynomial], order: Order) -> None:
 
 
 def small_parameters(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str) -> tuple[str, ...]:
-    """Parameters without which nothing depends on the phase and the mass matrix stays what it is: one, or none."""
+    """Parameters without which nothing depends on the phase and the mass matrix stays what it is: one, or none.
+
+    Raises NoClosedForm where no sine or cosine of the phase occurs.
+    """
     ring = scene.ring
+    _refuse_without_waves(ring, phase)
     sine, cosine, itself = (ring.index(kind, phase) for kind in ("sine", "cosine", "prescribed"))
     formulas = [energy.A0.polynomial, energy.force_function.polynomial, *(x.polynomial for x in energy.A1)]
     formulas += [x for row in energy.A2.polynomials for x in row]

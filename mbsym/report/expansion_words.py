@@ -144,6 +144,8 @@ def sentences(found: Expansion, write: Medium) -> Iterator[Said]:
         outcome, conditions = found.slow
         told = _SLOW if manifold.steady.zeros else _SLOW | _ALL
         yield told[outcome], values | {"conditions": _told(found, conditions, write)}
+    elif manifold.steady.zeros:
+        yield "All roots of the flow on it are zero: the first approximation decides nothing there.", {}
     yield (
         "The characteristic polynomial of all variables is divided by that of the flow without a remainder up to order "
         "[[known]] (verified).",

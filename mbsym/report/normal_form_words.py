@@ -319,6 +319,8 @@ def _form(quadratic: Sequence[tuple[tuple[int, int], Any]]) -> tuple[str, str]:
 def decimal(x: Any) -> str:
     """A number in decimals: as many digits as its enclosure gives, at most ``DIGITS``; an exact one as it is."""
     if isinstance(x, arb):
+        if x.is_zero():
+            return "0"
         if x.contains(0):
             return f"0 within {float(x.rad() + abs(x.mid())):.1e}"
         return f"{float(x):.{DIGITS}g}" if x.rel_accuracy_bits() > 34 else str(x.str(DIGITS, radius=False))

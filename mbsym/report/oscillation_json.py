@@ -45,7 +45,7 @@ def oscillation_data(told: Oscillating) -> dict[str, Any]:
         "order": found.order,
         "leading": found.leading,
         "phase": told.phase,
-        "amplitude": {"kind": found.kind.value, "value": str(told.formula(found.amplitude))},
+        "amplitude": _amplitude(told),
         "constants": [{"variable": name, "value": str(told.formula(x))} for name, x in found.constants],
         "frequency": str(told.formula(found.frequency)),
         "corrections": [str(told.formula(x)) for x in found.corrections],
@@ -78,6 +78,12 @@ def oscillation_data(told: Oscillating) -> dict[str, Any]:
         "taylor": told.taylor,
         "conditions": [str(x) for x in _positive(told)],
     }
+
+
+def _amplitude(told: Oscillating) -> dict[str, str]:
+    found, others = told.found, told.found.other_amplitudes
+    data = {"kind": found.kind.value, "value": str(told.formula(found.amplitude))}
+    return data if others is None else data | {"others": str(told.formula(others))}
 
 
 def _positive(told: Oscillating) -> Iterator[Formula]:

@@ -32,6 +32,11 @@ _FREE = (
     "Secular terms are removed up to this order with any amplitude. Here it is [[amplitude]], the value of [[leading]] "
     "at the phase 0, where it has no term [[sine]]."
 )
+_FORMAL = (
+    "Whether some remain in higher orders, so that there is no such periodic motion, is not looked at: it is periodic "
+    "up to this order."
+)
+_OTHER_AMPLITUDES = "Other amplitudes are left out, at which they are removed, too: those of [[condition]], where real."
 _DETERMINED = (
     "Secular terms are removed for certain amplitudes only. That of this solution: in first approximation [[leading]] "
     "is [[value]]."
@@ -44,6 +49,14 @@ _LEFT = (
 _NOTHING = "Put into the equations at random rational parameters, it leaves nothing (verified)."
 _TAYLOR = (
     "Of the equations, terms up to degree [[degree]] in the deviations were taken; the others are of higher order."
+)
+_LEFT_OF_TAYLOR = (
+    "Put into the equations cut off so, at random rational parameters, it leaves terms of order [[left]] of [[small]] "
+    "(verified)."
+)
+_NOTHING_OF_TAYLOR = (
+    "Put into the equations cut off so, at random rational parameters, it leaves nothing (verified); of those that are "
+    "not cut off it may leave terms of order [[next]] of [[small]]."
 )
 _REAL = "The frequency without [[small]] is real and not zero where [[condition]]."
 _NONZERO = "It holds where the frequency without [[small]] is not zero: [[condition]]."
@@ -105,18 +118,24 @@ def sentences(told: Oscillating, write: Medium, drifts: bool = False) -> Iterato
     if found.kind is Amplitude.FREE:
         values |= {"amplitude": write.formula(told.formula(found.amplitude)), "sine": write.formula(_wave(told, False))}
         yield _FREE, values
+        yield _FORMAL, {}
     else:
         yield _DETERMINED, values | {"value": write.formula(_wave(told, True))}
         if not told.real_amplitude:
             square = told.formula(found.amplitude * found.amplitude)
             yield _REAL_AMPLITUDE, {"condition": write.condition(square, ">")}
+        if found.other_amplitudes is not None:
+            yield _OTHER_AMPLITUDES, {"condition": write.condition(told.formula(found.other_amplitudes), "=")}
     if found.constants:
         names = ", ".join(write.formula(told.formula(x)) for _, x in found.constants)
         yield _CONSTANTS, values | {"names": names, "variables": write.names([name for name, _ in found.constants])}
     least = [one for one in found.residuals if one is not None]
-    yield (_LEFT, values | {"left": min(least)}) if least else (_NOTHING, values)
+    left = values | {"left": min(least, default=None), "next": found.order + 1}
     if told.taylor:
         yield _TAYLOR, {"degree": found.order + 1}
+        yield (_LEFT_OF_TAYLOR if least else _NOTHING_OF_TAYLOR), left
+    else:
+        yield (_LEFT if least else _NOTHING), left
     if not told.real:
         rooted = any(d > 0 for d in found.frequency.top.degrees()[: -len(found.tower.parameters)])
         real = write.condition(told.formula(found.frequency * found.frequency), ">")

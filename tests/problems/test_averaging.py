@@ -133,6 +133,27 @@ def test_other_systems_are_refused_with_the_reason(changed, reason):
         averaging_of(_shaken(**changed), "phi")
 
 
+def test_roots_and_quotients_that_the_phase_does_not_enter_are_no_matter():
+    """Potential c/(2 + cos theta), c = 2: V'' = 2/9 beside m g l + m a^2 W^2/2 = 9 + 18 at theta = 0, by hand."""
+    found = averaging_of(_shaken(damper="potential: 2/(2 + cos(theta)) + sqrt(3 + theta**2)"), "phi")
+    theta = 1e-3
+    at = [_number(found.potential, m=1, l=1, g=9, a=0.1, W=60, theta=x) for x in (-theta, 0, theta)]
+    # sqrt(3 + theta^2) adds 1/sqrt 3
+    assert (at[0] - 2 * at[1] + at[2]) / theta**2 == pytest.approx(27 + 2 / 9 + 3**-0.5, rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("pivot", "reason"),
+    [
+        ("[0, a*phi, 0]", "no sine or cosine of phi"),
+        ("[0, a*exp(cos(phi)), 0]", "phi in a denominator, root or function"),
+    ],
+)
+def test_a_phase_that_is_not_averaged_is_refused(pivot, reason):
+    with pytest.raises(NoClosedForm, match=reason):
+        averaging_of(_shaken(pivot=pivot), "phi")
+
+
 def test_more_has_to_be_small_where_terms_grow():
     with pytest.raises(NoClosedForm, match="grows with the rate"):
         averaging_of(_shaken(), "phi", ("c",))

@@ -182,11 +182,7 @@ class Orders:
             answer = solved(tower, [*upper, *lower], right)
         names = tuple(self.system.names[i] for i in block)
         if answer is None:
-            told = f"{k} times the frequency" if k > 1 else "the frequency" if k else "the frequency zero"
-            raise Resonance(
-                f"resonance: in the order {order} of the small parameter, {', '.join(names)} are driven at {told}, "
-                "which is a frequency of their own; secular terms cannot be removed, the oscillations exchange energy",
-            )
+            raise Resonance(_driven(names, k, order))
         self._divided(block, k, order, answer)
         return answer[:size], answer[size:] or [zero] * size
 
@@ -291,6 +287,21 @@ class Orders:
                 drifting.add(i)
             found.append(Drift(self.system.names[i], tuple(rates), tuple(waves)))
         return found
+
+
+def _driven(names: Sequence[str], k: int, order: int) -> str:
+    """Why a forced oscillation, or a forced displacement (k = 0), does not exist."""
+    where = f"resonance: in the order {order} of the small parameter, {', '.join(names)} are driven"
+    if k == 0:
+        return (
+            f"{where} at a constant rate, and the root zero is one of theirs: these terms grow with time; solutions in "
+            "which other variables keep them from that are not looked for"
+        )
+    told = f"{k} times the frequency" if k > 1 else "the frequency"
+    return (
+        f"{where} at {told}, which is a frequency of their own: secular terms are not removed; solutions in which "
+        "these oscillate by themselves from the beginning are not looked for"
+    )
 
 
 Pair = tuple[Element, Element]

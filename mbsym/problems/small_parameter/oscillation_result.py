@@ -76,6 +76,8 @@ class Oscillation:
     with_zero: tuple[tuple[str, ...], ...] = ()
     not_known: tuple[tuple[str, ...], ...] = ()
     residuals: tuple[int | None, ...] = ()
+    #: What is zero for other amplitudes at which secular terms are removed, too; in the symbol of the amplitude.
+    other_amplitudes: Element | None = None
 
     @property
     def verified(self) -> bool:

@@ -1,7 +1,8 @@
 """Poincare's and Lindstedt's method from the graded equations to a result: amplitudes found, everything checked.
 
 Periodic solutions are a family with a free amplitude, or secular terms leave in some order m a condition P(a) = 0;
-then the corrections of the amplitude follow from the orders m + 1, m + 2, ..., in which they stand linearly.
+then the corrections of the amplitude follow from the orders m + 1, m + 2, ..., in which they stand linearly.  One of
+the real roots a != 0 of P is taken; the others, and factors of P that square roots do not solve, are named.
 """
 
 from __future__ import annotations
@@ -70,6 +71,8 @@ class Equations:
     told: Callable[[Element], str]
     most: int = 99
     values: Mapping[str, Element] = dataclass_field(default_factory=dict)
+    #: "positive" or "negative" where the sign of an element is known, else None.
+    sign: Callable[[Element], str | None] = lambda x: None
 
     def symbol(self, name: str) -> Element:
         """A symbol of the tower, or its number."""
@@ -87,15 +90,15 @@ def oscillation(there: Equations, order: int, leading: str = "", which: int = 1)
     mode = _mode(there, system, leading, which)
     place = there.names.index(leading) if leading else _leading(there, mode)
     constants = {i: there.symbol(f"#{there.names[i]}") for i in system.constant}
-    kind, amplitude = Amplitude.FREE, there.symbol(AMPLITUDE)
+    kind, amplitude, others = Amplitude.FREE, there.symbol(AMPLITUDE), None
     orders = Orders(system, mode, place, amplitude, constants)
     try:
         for _ in range(order):
             orders.go_on()
     except Demand as demand:
         if order + demand.order > there.most:
-            raise _secular(there, demand) from None
-        amplitude = _determined(there, system, demand)
+            raise _secular(there, demand.order, _but_powers(tower, demand)) from None
+        amplitude, others = _determined(there, there.names[place], demand)
         kind = Amplitude.DETERMINED
         orders = Orders(system, mode, place, amplitude, constants, correction_names(order))
         _with_corrections(there, orders, order, demand.order)
@@ -120,6 +123,7 @@ def oscillation(there: Equations, order: int, leading: str = "", which: int = 1)
         damped=_named(there, system.damped),
         with_zero=_named(there, system.with_zero),
         not_known=_named(there, system.not_known),
+        other_amplitudes=others,
     )
     return replace(found, residuals=residual_orders(there.rows, there.names, found))
 
@@ -165,43 +169,105 @@ def _leading(there: Equations, mode: Mode) -> int:
     return min(mode.block, key=lambda i: (there.names[i] not in there.positions, i))
 
 
-def _determined(there: Equations, system: Generating, demand: Demand) -> Element:
-    """The amplitude a != 0 that a condition determines."""
-    tower, context = there.tower, there.tower.context
-    gens = context.gens()
+def _determined(there: Equations, leading: str, demand: Demand) -> tuple[Element, Element | None]:
+    """An amplitude a != 0 that a condition allows, rather one that is surely real; what the others make zero, if any.
+
+    The condition holds for a and -a alike, which are one solution: its factors are taken by the squares of a.
+    """
+    tower, symbol = there.tower, there.symbol(AMPLITUDE)
     place = MOST_ROOTS + tower.parameters.index(AMPLITUDE)
+    squares: list[Element] = []
+    unsolved: list[Element] = []
+    imaginary, of_parameters = False, tower.context.constant(1)
     for factor, _ in demand.condition.top.factor()[1]:
-        degree = factor.degrees()[place]
-        if degree not in (1, 2) or factor == gens[place]:
-            continue
-        parts: list[dict[Any, Any]] = [{}, {}, {}]
-        for monomial, c in factor.to_dict().items():
-            parts[monomial[place]][(*monomial[:place], 0, *monomial[place + 1 :])] = c
-        zero, one, two = (tower.made(context.from_dict(part), context.constant(1)) for part in parts)
-        if degree == 1:
-            return -zero / one
-        if one.is_zero():
-            square = -zero / two
-            number = tower.rational(square)
-            if number is None or number > 0:
-                return tower.square_root(square)
-    raise _secular(there, demand)
+        if factor.degrees()[place] == 0:
+            of_parameters = of_parameters * factor
+        elif factor != tower.context.gens()[place]:
+            found = _squares(there, _by_powers(tower, factor, place))
+            if found is None:
+                unsolved.append(tower.made(factor, tower.context.constant(1)))
+            real = [x for x in found or () if there.sign(x) != "negative"]
+            imaginary = imaginary or len(real) < len(found or ())
+            squares += [x for x in real if not any((x - y).is_zero() for y in squares)]
+    if not squares and imaginary and not unsolved and of_parameters.is_constant():
+        raise NotPeriodic(
+            f"secular terms are removed only where the amplitude of {leading} is imaginary: its square is < 0"
+        )
+    if not squares:
+        raise _not_solved(there, demand) if unsolved else _secular(there, demand.order, of_parameters)
+    chosen = next((x for x in squares if there.sign(x) == "positive"), squares[0])
+    rest = [symbol * symbol - x for x in squares if x is not chosen] + unsolved
+    others = None
+    for one in rest:
+        others = one if others is None else others * one
+    return _positive_root(tower, chosen), others
 
 
-def _secular(there: Equations, demand: Demand) -> NotPeriodic:
-    context = there.tower.context
-    place = MOST_ROOTS + there.tower.parameters.index(AMPLITUDE)
-    top = _without(demand.condition.top, context.gens()[place])
-    condition = there.tower.made(top / top.leading_coefficient(), context.constant(1))
-    return NotPeriodic(
-        f"no periodic solution near those of the linear system: in the order {demand.order} of {there.small} secular "
-        f"terms remain unless {there.told(condition)} = 0"
+def _by_powers(tower: Tower, p: Any, place: int) -> list[Element]:
+    """The coefficients of the powers of a generator, from low to high."""
+    parts: list[dict[Any, Any]] = [{} for _ in range(p.degrees()[place] + 1)]
+    for monomial, c in p.to_dict().items():
+        parts[monomial[place]][(*monomial[:place], 0, *monomial[place + 1 :])] = c
+    return [tower.made(tower.context.from_dict(part), tower.context.constant(1)) for part in parts]
+
+
+def _squares(there: Equations, coefficients: Sequence[Element]) -> list[Element] | None:
+    """a^2 for the roots a of a factor, without those that are surely complex; None where square roots do not do."""
+    if len(coefficients) == 2:
+        root = coefficients[0] / coefficients[1]
+        return [root * root]
+    if any(not c.is_zero() for c in coefficients[1::2]) or len(coefficients) > 5:
+        return None
+    low, middle = (c / coefficients[-1] for c in coefficients[:3:2])
+    if len(coefficients) == 3:
+        return [-low]
+    half = middle / 2
+    inside = half * half - low
+    if there.sign(inside) == "negative":
+        return []
+    root = there.tower.square_root(inside)
+    return [root - half, -root - half]
+
+
+def _positive_root(tower: Tower, square: Element) -> Element:
+    """The root, the positive one of a rational number."""
+    root = tower.square_root(square)
+    number = tower.rational(root)
+    return -root if number is not None and number < 0 else root
+
+
+def _not_solved(there: Equations, demand: Demand) -> NoClosedForm:
+    tower = there.tower
+    top = _but_powers(tower, demand)
+    condition = there.told(tower.made(top / top.leading_coefficient(), tower.context.constant(1)))
+    return NoClosedForm(
+        f"in the order {demand.order} of {there.small} secular terms remain unless {condition} = 0: amplitudes that "
+        "square roots do not express are not followed"
     )
 
 
-def _without(p: Any, variable: Any) -> Any:
-    while p != 0 and divmod(p, variable)[1] == 0:
-        p = divmod(p, variable)[0]
+def _secular(there: Equations, order: int, condition: Any) -> NoClosedForm:
+    """No real amplitude a != 0 fulfils a condition without ``condition`` = 0, a polynomial without a.
+
+    With constants of the solution in it that is an equation for these, which is not solved.
+    """
+    tower = there.tower
+    none = "no periodic solution near those of the linear system: "
+    where = f"in the order {order} of {there.small} secular terms remain"
+    if condition.is_constant():
+        return NotPeriodic(f"{none}{where} for every real amplitude")
+    told = there.told(tower.made(condition / condition.leading_coefficient(), tower.context.constant(1)))
+    degrees = zip(tower.parameters, condition.degrees()[MOST_ROOTS:], strict=True)
+    if any(degree > 0 and name.startswith("#") for name, degree in degrees):
+        return NoClosedForm(f"{where} unless {told} = 0: values of variables that this determines are not found here")
+    return NotPeriodic(f"{none}{where} unless {told} = 0")
+
+
+def _but_powers(tower: Tower, demand: Demand) -> Any:
+    """The numerator of a condition, divided by the powers of the amplitude that it holds as a factor."""
+    p, amplitude = demand.condition.top, tower.context.gens()[MOST_ROOTS + tower.parameters.index(AMPLITUDE)]
+    while p != 0 and divmod(p, amplitude)[1] == 0:
+        p = divmod(p, amplitude)[0]
     return p
 
 
@@ -220,7 +286,7 @@ def _with_corrections(there: Equations, orders: Orders, order: int, first: int) 
                 if top.degrees()[place] > 0:
                     break
             else:
-                raise _secular(there, demand) from None
+                raise _secular(there, demand.order, _but_powers(tower, demand)) from None
             slope = top.derivative(place)
             if slope.degrees()[place] > 0:
                 raise NoClosedForm("a correction of the amplitude does not stand linearly in its condition") from None

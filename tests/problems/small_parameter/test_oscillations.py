@@ -19,7 +19,10 @@ from mbsym.analysis.oscillating import oscillating
 from mbsym.problems.small_parameter.lindstedt import NotPeriodic, Resonance
 from mbsym.problems.small_parameter.oscillation_checks import residual_orders
 from mbsym.problems.small_parameter.oscillation_result import Amplitude
-from mbsym.report.oscillation_words import numerator
+from mbsym.report.oscillation_json import oscillation_data
+from mbsym.report.oscillation_words import numerator, sentences
+from mbsym.report.said import filled
+from mbsym.report.sections.small_parameters import PLAIN
 from mbsym.simulation.oscillating import measured_orders
 
 POINT = """mbsym: 1
@@ -82,6 +85,67 @@ def test_a_damped_oscillator_has_no_periodic_solution(tmp_path):
     loads = ["potential: w**2*x**2/2 + eps*x**4/4", "generalized force: {x: -k*x_dot}"]
     with pytest.raises(NotPeriodic, match="no pair of imaginary roots"):
         oscillating(point(tmp_path, loads), 2)
+
+
+def _damped_by(even):
+    return ["potential: x**2/2", f"generalized force: {{x: eps*({even})*x_dot}}"]
+
+
+@pytest.mark.parametrize(
+    ("even", "squares"),
+    [
+        ("1 - 3*x**2 + x**4", {2.0, 4.0}),
+        ("1 - 4*x**2 + x**4", {4 - 8**0.5, 4 + 8**0.5}),
+    ],
+)
+def test_every_amplitude_of_several_cycles_is_told(tmp_path, even, squares):
+    """x'' + x = eps (c0 + c2 x^2 + c4 x^4) x': a' = eps a (c0/2 + c2 a^2/8 + c4 a^4/16).
+
+    By hand a^4 - 6 a^2 + 8 = 0 and a^4 - 8 a^2 + 8 = 0, both with two positive squares and simple roots: two cycles.
+    """
+    told = oscillating(point(tmp_path, _damped_by(even)), 2)
+    a = told.found.amplitude
+    taken = float(told.formula(a * a).to_sympy())
+    left = told.formula(told.found.other_amplitudes).to_sympy()
+    (symbol,) = left.free_symbols
+    other = float(-left.subs(symbol, 0))  # a^2 - other
+    assert {round(taken, 9), round(other, 9)} == {round(x, 9) for x in squares}
+    shown = [filled(said) for said in sentences(told, PLAIN)]
+    assert any("Other amplitudes are left out" in one for one in shown)
+    assert "others" in oscillation_data(told)["amplitude"]
+
+
+def test_an_amplitude_that_is_surely_imaginary_is_passed_over(tmp_path):
+    """c0 = 8 k, c2 = -8 (k - 4), c4 = -16: -(a^2 + k)(a^2 - 4) by the formula above; with k > 0 one cycle, a = 2."""
+    told = oscillating(point(tmp_path, _damped_by("8*w - 8*(w - 4)*x**2 - 16*x**4")), 1)
+    assert str(told.formula(told.found.amplitude)) == "2"
+    assert told.found.other_amplitudes is None
+    with pytest.raises(NotPeriodic, match="for every real amplitude"):
+        oscillating(point(tmp_path, _damped_by("1 + x**2 + x**4")), 1)
+
+
+def test_amplitudes_that_are_not_expressed_are_not_denied(tmp_path):
+    """c6 adds 5 a^6/128: 5 a^6 - 72 a^4 + 144 a^2 - 64 is positive at a^2 = 1, negative at 0 and 4."""
+    with pytest.raises(NoClosedForm, match=r"unless \(5\*amplitude\*\*6") as raised:
+        oscillating(point(tmp_path, _damped_by("1 - 9*x**2 + 9*x**4 - x**6")), 1)
+    assert not isinstance(raised.value, NotPeriodic)
+
+
+def test_a_family_is_not_said_to_be_periodic_beyond_its_order(tmp_path):
+    """x'' + x = x^4 x': the energy grows by the integral of x^4 x'^2 > 0; in the order 2 nothing of that is seen."""
+    loads = ["potential: x**2/2", "generalized force: {x: x**4*x_dot}"]
+    told = oscillating(point(tmp_path, loads, small="", more="motion: {x: 0}\n"), 2)
+    shown = " ".join(filled(said) for said in sentences(told, PLAIN))
+    assert "whether some remain in higher orders" in shown.lower()
+    assert "cut off so" in shown
+    assert "may leave terms of order 3" in shown
+
+
+def test_a_root_zero_that_is_driven_is_no_exchange_of_energy(tmp_path):
+    """x'' + x + eps y = 0, y'' + eps x = 0: (s^2 + 1) s^2 = eps^2, so that s = +-i (1 + eps^2/2 + ...) is periodic."""
+    with pytest.raises(Resonance, match="not looked for") as raised:
+        oscillating(point(tmp_path, ["potential: x**2/2 + eps*x*y"], "x, y"), 2, leading="x")
+    assert "energy" not in str(raised.value)
 
 
 def test_two_oscillators_at_one_to_two(tmp_path):
