@@ -99,6 +99,7 @@ def in_groups(system: System, found: Groups, values: bool = True) -> System:
         bodies=tuple(map(_accepted, changed.bodies)),
         parameters=tuple(parameters),
         initial=tuple(_initial(system.initial, found, known)),
+        start=tuple(_initial(system.start, found, known)),
         time_scale=scale if scale is not None and names(scale) else None,
         small=_small(system, {one.name for one in parameters}),
         notation=tuple(item for item in changed.notation if names(item.value)),

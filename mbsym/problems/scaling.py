@@ -39,6 +39,7 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import relations
 from mbsym.problems.equations import Equations
+from mbsym.problems.speeds import SpeedEquations
 from mbsym.problems.stability.linear_form import LinearSystem, add
 
 #: More choices of units than this are not compared: then the first parameters that will do are taken.
@@ -81,15 +82,25 @@ class Groups:
         return tuple(name for name in self.units if name not in inside)
 
 
-def groups(scene: Scene, equations: Equations) -> Groups:
-    """The groups of the nonlinear equations M q'' = f, prescribed motions, relations and the unperturbed motion."""
+def groups(scene: Scene, equations: Equations | SpeedEquations) -> Groups:
+    """The groups of the nonlinear equations M q'' = f, prescribed motions, relations and the unperturbed motion.
+
+    Of equations in speeds, M u' = f and s' = g; unit vectors, quaternions and the angles they replace are numbers.
+    """
     made = _Equations(scene.ring, relations(scene))
     coordinates = scene.system.coordinates
+    if isinstance(equations, SpeedEquations):
+        columns = [made.of_speed(name) for name in equations.speeds]
+        coordinates = (*coordinates, *(name for name in equations.speeds if scene.ring.has("coordinate", name)))
+        made.kinematic(scene, equations)
+    else:
+        columns = [{("coordinate", name): Fraction(1), TIME: Fraction(-1)} for name in coordinates]
     for i, (row, force) in enumerate(zip(equations.mass_matrix.polynomials, equations.forcing, strict=True)):
         made.equal(force.polynomial, {("equation", i): Fraction(1)})
-        for name, entry in zip(coordinates, row, strict=True):
-            weight: Weights = {("equation", i): Fraction(1), ("coordinate", name): Fraction(-1), TIME: Fraction(2)}
-            made.equal(entry, weight)
+        for column, entry in zip(columns, row, strict=True):
+            weight: Weights = {key: -power for key, power in column.items()}
+            weight[TIME] = weight.get(TIME, Fraction(0)) + 1
+            made.equal(entry, {("equation", i): Fraction(1), **weight})
     for item in scene.system.prescribed:
         own: Weights = {("coordinate", item.name): Fraction(1)}
         made.equal(scene.lower(item.rate), {**own, TIME: Fraction(-1)})
@@ -138,6 +149,20 @@ class _Equations:
             row = {key: value for key, value in row.items() if value}
             if row and row not in self.rows:
                 self.rows.append(row)
+
+    def of_speed(self, name: str) -> Weights:
+        """The weight of a speed by its name: one of its own, or that of x' where it is called x_dot."""
+        if self.ring.has("coordinate", name):
+            return {("coordinate", name): Fraction(1)}
+        return {("coordinate", name.removesuffix("_dot")): Fraction(1), TIME: Fraction(-1)}
+
+    def kinematic(self, scene: Scene, equations: SpeedEquations) -> None:
+        """s' = g, with the length of unit vectors and quaternions, and angles that they stand for."""
+        for name, rate in zip(equations.positions, equations.rates, strict=True):
+            self.equal(rate.polynomial, {("coordinate", name): Fraction(1), TIME: Fraction(-1)})
+        for body in (body for body in scene.system.bodies if body.orientation):
+            numbers = [name for one in body.orientation for name in one.components]
+            self.rows += [{("coordinate", name): Fraction(1)} for name in (*numbers, *body.own_angles)]
 
     def parameters(self) -> set[str]:
         """Names of the parameters that occur."""
