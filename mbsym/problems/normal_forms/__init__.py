@@ -3,7 +3,8 @@
 The Lagrangian and the applied forces are expanded about the unperturbed motion to order 4 (6 where that is needed)
 while they are built; cyclic coordinates without forces are left out with their momenta at the unperturbed values.
 
-* Hamiltonian systems (no applied force beside the force function): Birkhoff's normal form
+* Hamiltonian systems (no applied force beside the force function, or one with a generalized potential, as a magnetic
+  field has by Helmholtz's conditions, proved: it is taken into the Lagrangian): Birkhoff's normal form
 
       H = sum Omega_k I_k + sum a_jk I_j I_k + ...,      Omega_k the frequencies with the signs of their energies
 
