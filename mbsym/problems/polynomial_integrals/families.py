@@ -35,6 +35,9 @@ from mbsym.problems.polynomial_integrals.values import special_of
 
 #: Families that are looked at; the degree of F; the lines that are drawn for one F.
 MOST_FAMILIES, MOST_DEGREE, MOST_LINES = 300, 3, 150
+#: Up to so many, those with equalities among real parameters are looked at, too. Of Euler's and Poisson's 75 families
+#: 35 would be of this kind (x0 = y0, which turning the axes gives) and take as long again as all others.
+FEW_FAMILIES = 40
 
 
 @dataclass(frozen=True)
@@ -68,13 +71,13 @@ def families(field: PolynomialField, positive: Sequence[str]) -> Iterator[Family
             left = [[name for name in part if name not in zero] for part in others]
             for equal in product(*map(_partitions, parts)):
                 found.append(Family(zero, sum(equal, ())))
-                if len(further) <= MOST_FAMILIES:
+                if len(further) <= FEW_FAMILIES:
                     among = (sum(one, ()) for one in product(*map(_partitions, left)))
                     further += [Family(zero, found[-1].equal + one) for one in among if one]
             if len(found) > 4 * MOST_FAMILIES:
                 break
     yield from sorted(found, key=_size)
-    if len(found) + len(further) <= MOST_FAMILIES:
+    if len(found) + len(further) <= FEW_FAMILIES:
         yield from sorted(further, key=_size)
 
 
