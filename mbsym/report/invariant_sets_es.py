@@ -3,6 +3,8 @@
 # ruff: noqa: E501
 
 SENTENCES = {
+    "Its stability was not looked at: multipliers vary over it.": "Su estabilidad no se examinó: los multiplicadores varían sobre él.",
+    "Sufficient for stability as a set, near motions on it that stay bounded, for some value of [[chosen]]: [[first]].": "Suficiente para la estabilidad como conjunto, cerca de movimientos acotados sobre él, para algún valor de [[chosen]]: [[first]].",
     "Left out of the families, as functions of these (verified at a random state): [[names]].": "Quedan fuera de las familias, por ser funciones de estas (verificado en un estado aleatorio): [[names]].",
     "Of the zero roots of a first approximation so many belong to these relations, and to no motion: [[n]].": "De las raíces nulas de una primera aproximación pertenecen a estas relaciones, y a ningún movimiento: [[n]].",
     "First approximation: zero roots: [[zeros]]; among the others are the roots of [[factors]].": "Primera aproximación: raíces nulas: [[zeros]]; entre las demás están las raíces de [[factors]].",

@@ -3,6 +3,8 @@
 # ruff: noqa: E501
 
 SENTENCES = {
+    "Its stability was not looked at: multipliers vary over it.": "Его устойчивость не рассмотрена: множители на нём меняются.",
+    "Sufficient for stability as a set, near motions on it that stay bounded, for some value of [[chosen]]: [[first]].": "Достаточно для устойчивости множества вблизи ограниченных движений на нём при некотором значении [[chosen]]: [[first]].",
     "Left out of the families, as functions of these (verified at a random state): [[names]].": "Не вошли в семейства как функции этих (проверено в случайном состоянии): [[names]].",
     "Of the zero roots of a first approximation so many belong to these relations, and to no motion: [[n]].": "Из нулевых корней первого приближения этим связям, а не движениям, принадлежит [[n]].",
     "First approximation: zero roots: [[zeros]]; among the others are the roots of [[factors]].": "Первое приближение: нулевых корней [[zeros]]; среди остальных --- корни многочленов [[factors]].",

@@ -152,8 +152,10 @@ def _variation(one: StationarySet, found: SecondVariation, write: Medium) -> Ite
     elif found.outcome is Definiteness.CONDITIONAL:
         sides = [_all(side, write) for side in (found.positive, found.negative) if side is not None]
         chosen: dict[str, object] = {"chosen": write.names(found.chosen), "first": sides[0], "second": sides[-1]}
-        if found.chosen:
+        if found.chosen and steady:
             yield "Sufficient for stability, for some value of [[chosen]]: [[first]].", chosen
+        elif found.chosen:
+            yield _AS_A_SET_FOR_SOME, chosen
         elif steady:
             yield "Sufficient for stability: [[first]].", chosen
         else:
@@ -164,10 +166,14 @@ def _variation(one: StationarySet, found: SecondVariation, write: Medium) -> Ite
         yield _NOTHING[found.outcome], {}
 
 
+_AS_A_SET_FOR_SOME = (
+    "Sufficient for stability as a set, near motions on it that stay bounded, for some value of [[chosen]]: [[first]]."
+)
 _NOTHING = {
     Definiteness.NEVER: "The second variation is never definite: this family decides nothing about stability.",
     Definiteness.DEGENERATE: "The second variation is degenerate: this family decides nothing about stability.",
     Definiteness.LEFT_OUT: "The second variation was not looked at: it is beyond the budget.",
+    Definiteness.VARYING: "Its stability was not looked at: multipliers vary over it.",
 }
 
 

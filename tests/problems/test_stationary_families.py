@@ -162,3 +162,45 @@ def test_roots_of_the_geometry_are_told():
     assert said[text] == {"n": 1}
     assert text in invariant_sets_ru.SENTENCES
     assert text in invariant_sets_es.SENTENCES
+
+
+def test_precessions_that_are_unstable_are_not_called_stable():
+    """A body with A = B = 3, C = 2 under (3 (gamma1^2 + gamma2^2) + 2 gamma3^2)/2, its axis across gamma, turns slowly.
+
+    w = Omega gamma, r = Omega f(Omega) gamma3: the precessions of one Omega are a set over which lambda2 varies, and
+    for one gamma3 = u the effective potential  (b - C r u)^2/(2 A (1 - u^2)) + (C - A) u^2/2  has at u = 0, r = 0 the
+    second derivative  A Omega^2 + C - A,  negative for Omega^2 < 1/3: a motion near it turns away from gamma3 = 0 with
+    r = 0, and so from that set.
+    """
+    loads = "loads:\n  - potential: (3*gamma1**2 + 3*gamma2**2 + 2*gamma3**2)/2"
+    found = _sets(BODY.format(inertia="[3, 3, 2]", orientation="orientation: {gamma: 3}", loads=loads))
+    slow = {"lambda1": Fraction(-1, 4), "gamma1": 1, "gamma2": 0, "gamma3": 0}
+    held = [
+        one
+        for family in found.families
+        for one in family.sets
+        if one.kind is Kind.MANIFOLD
+        and {"p", "q", "r"} == {name for name, _ in one.solved}
+        and [Fraction(str(x.subs(slow))) for _, x in one.solved] == [Fraction(1, 4), 0, 0]
+    ]
+    assert held
+    for one in held:
+        assert one.variation.outcome is Definiteness.VARYING
+        text = "Its stability was not looked at: multipliers vary over it."
+        said = dict(invariant_words.of_set(one, 1, section.plain(found)))
+        assert text in said
+        assert not any(x.startswith(("Stable", "Sufficient")) for x in said)
+        assert text in invariant_sets_ru.SENTENCES
+        assert text in invariant_sets_es.SENTENCES
+
+
+def test_of_a_set_it_is_said_that_stability_is_its_own():
+    found = _sets(PLANE.format(rest="loads:\n  - potential: (x**2 + 4*y**2)/2"))
+    plane = next(one for one in found.families[0].sets if one.kind is Kind.MANIFOLD)
+    relation = found.families[0].sets[0].variation.positive
+    conditional = replace(plane.variation, outcome=Definiteness.CONDITIONAL, positive=relation, chosen=("lambda1",))
+    said = dict(invariant_words.of_set(replace(plane, variation=conditional), 1, section.plain(found)))
+    (text,) = [x for x in said if x.startswith("Sufficient")]
+    assert "as a set" in text
+    assert text in invariant_sets_ru.SENTENCES
+    assert text in invariant_sets_es.SENTENCES

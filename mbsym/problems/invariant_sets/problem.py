@@ -261,8 +261,13 @@ def _variation(place: Place, whole: Polynomial, steady: bool) -> SecondVariation
     try:
         if steady:
             return second_variation.on_level(place, whole)
-        if not place.arena.floating and not any(p.degrees()[g] > 0 for p in further for g in variables):
-            return second_variation.across(place, whole)
+        if place.arena.floating or any(p.degrees()[g] > 0 for p in further for g in variables):
+            return SecondVariation(Definiteness.LEFT_OUT, 0)
+        # For fixed multipliers that a branch has in terms of variables the set is smaller: these equations are its own.
+        fixed = [s for s in place.branch.solved if s.unknown in place.arena.multipliers]
+        if any(p.degrees()[g] > 0 for s in fixed for p in (s.numerator, s.denominator) for g in variables):
+            return SecondVariation(Definiteness.VARYING, 0)
+        return second_variation.across(place, whole)
     except Failure:
         pass
     return SecondVariation(Definiteness.LEFT_OUT, 0)

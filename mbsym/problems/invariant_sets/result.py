@@ -32,6 +32,7 @@ class Definiteness(Enum):
     NEVER = "never"  # neither sign is possible: it is not definite
     DEGENERATE = "degenerate"  # its determinant vanishes identically
     LEFT_OUT = "left out"  # beyond the budget
+    VARYING = "multipliers vary"  # over the set, so that it is none for fixed ones: not looked at
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,8 @@ columns p of G with det G_p = d != 0, and r the others,
 
     dx = T y,    T = [-adj(G_p) G_r; d 1],    d^2 > 0,    S = T^t K'' T,
 
-so the leading minors of S decide (Sylvester).  On a manifold K is constant, and y the deviations of the variables that
-were solved for: S = d^2 K/dy^2.
+so the leading minors of S decide (Sylvester).  On a manifold, for fixed multipliers, K is constant, and y the
+deviations of the variables that were solved for: S = d^2 K/dy^2.
 """
 
 from __future__ import annotations
