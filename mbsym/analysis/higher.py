@@ -7,19 +7,21 @@ from typing import TYPE_CHECKING
 
 from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
+from mbsym.formulas.formula import Formula
 from mbsym.mechanics.generalized import generalized_forces
 from mbsym.problems import stability
 from mbsym.problems.checks import FAILED, NUMERICAL, Check
 from mbsym.problems.stability.word import Word
 
 if TYPE_CHECKING:
+    from mbsym.algebra.signs import Signs
     from mbsym.analysis.pipeline import Analysis
-    from mbsym.problems.normal_forms import NormalForms
+    from mbsym.problems.normal_forms import InSymbols, NormalForms
 
 
 def normal_forms_of(analysis: Analysis) -> NormalForms:
     """What terms of higher order decide; with numbers where the description gives all of them."""
-    from mbsym.problems.normal_forms import Judged, Outcome, Theorem, Why, problem  # few ask for it
+    from mbsym.problems.normal_forms import InSymbols, Judged, Outcome, Theorem, Why, problem  # few ask for it
     from mbsym.problems.stabilisation.problem import on_motion
 
     found, scene = analysis.equilibrium, analysis.parameters_scene
@@ -38,7 +40,25 @@ def normal_forms_of(analysis: Analysis) -> NormalForms:
     first = None if judged is None or judged.numerical is None else judged.numerical.word
     if nothing is not Why.NONE:
         result = replace(result, at_values=Judged(Outcome.UNDECIDED, Theorem.NONE, nothing))
+    if isinstance(result.in_symbols, InSymbols):
+        result = replace(result, in_symbols=_told_by_signs(result.in_symbols, analysis.signs))
     return replace(result, first=first, everywhere=None if judged is None else decided(judged.verdict.word))
+
+
+def _told_by_signs(found: InSymbols, signs: Signs) -> InSymbols:
+    """With what may vanish at all for parameters of their signs."""
+    from mbsym.problems.normal_forms import Vanishing
+
+    def left(one: Formula) -> Formula:
+        product = one.ring.one
+        if not one.is_zero:
+            for factor, _ in one.polynomial.factor()[1]:
+                if not signs.never_zero(factor):
+                    product = one.ring.times(product, factor)
+        return one if one.is_zero else Formula(one.ring, one.ring.reduce(product))
+
+    resonances = tuple((vector, left(x)) for vector, x in found.resonances)
+    return replace(found, vanishing=Vanishing(left(found.zero), resonances))
 
 
 def decided(word: Word) -> Word | None:

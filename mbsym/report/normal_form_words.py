@@ -20,8 +20,8 @@ DIGITS = 10
 #: Why nothing is decided.
 REASONS = {
     Why.ZERO_ROOT: "A root is not told from zero, or others beside a zero one are not told apart: nothing is proved.",
-    Why.TWO_ZERO_ROOTS: "Two or more roots are zero, the others are to the left: terms of higher order on a centre "
-    "manifold of that dimension decide, which are not formed.",
+    Why.TWO_ZERO_ROOTS: "Two or more roots are zero, the others are to the left: the motion on a centre manifold of "
+    "that dimension decides, whose equations are not formed.",
     Why.EQUAL_FREQUENCIES: "Frequencies are equal or are not told apart, and what would decide then is not proved.",
     Why.EQUAL_MORE: "Frequencies are equal or are not told apart, the energy is not shown to be definite, and there "
     "are more than two degrees of freedom: Sokolskii's theorems are of two.",
@@ -46,7 +46,7 @@ REASONS = {
     "excluded.",
     Why.FORM_OPEN: "H4 has a zero in the cone of actions Omega.I = 0, or this is not excluded.",
     Why.COEFFICIENT_OPEN: "The coefficients of second and third order on the centre manifold vanish, or are not told "
-    "from zero: terms of higher order decide.",
+    "from zero: terms of higher order may decide.",
     Why.MORE_PAIRS: "More than one pair of roots is imaginary, and there are applied forces: not decided.",
     Why.MIXED_ROOTS: "Zero roots and imaginary ones occur together: not decided.",
     Why.IRRATIONAL: "With applied forces roots on the imaginary axis are proved where all coefficients of the "
@@ -80,8 +80,9 @@ THEOREMS = {
     "of the quadratic part the motion is [[word]] (Sokolskii, resonance of first order).",
     Theorem.BRUNO: "No resonance up to order 4 holds, and H4 has no zero in the cone of actions Omega.I = 0: the "
     "motion is formally stable (Bruno); stability in Lyapunov's sense is not proved.",
-    Theorem.ARNOLD: "No resonance up to order 4 holds, and H4 is not degenerate: invariant tori surround the motion, "
-    "it is stable for most initial states (Arnold); stability in Lyapunov's sense is not proved.",
+    Theorem.ARNOLD: "No resonance up to order 4 holds, and H4 is not degenerate: invariant tori fill most of the "
+    "neighbourhood of the motion, it is stable for most initial states (Arnold); stability in Lyapunov's sense is not "
+    "proved.",
 }
 
 
@@ -181,8 +182,9 @@ def _judged(found: Judged, whole: NormalForms, write: Medium) -> Iterator[Said]:
         yield ABSENT if absent else THEOREMS[found.theorem], _gaps(found, write)
     if found.why in REASONS and found.outcome is Outcome.UNDECIDED:
         yield REASONS[found.why], {}
-        if whole.first is not None and not whole.first.open:
-            yield "That is no matter: problem 6 has decided already.", {}
+    weak = found.outcome in (Outcome.UNDECIDED, Outcome.FORMAL, Outcome.MOST)
+    if weak and whole.first is not None and not whole.first.open:
+        yield "That is no matter: problem 6 has decided already.", {}
 
 
 def _gaps(found: Judged, write: Medium) -> dict[str, object]:
@@ -240,16 +242,18 @@ def _in_symbols(found: InSymbols, everywhere: Word | None, write: Medium) -> Ite
             "discriminant": write.formula(found.discriminant),
         },
     )
+    zero = found.zero if found.vanishing is None else found.vanishing.determinant
+    resonances = found.resonances if found.vanishing is None else found.vanishing.resonances
     if found.determinant.is_zero:
         yield "D4 is zero for all parameters: the theorem of Arnold and Moser decides nothing at this order.", {}
-    elif found.zero.is_number:
+    elif zero.is_number:
         yield "D4 = [[determinant]]; it vanishes for no parameters.", {"determinant": write.formula(found.determinant)}
     else:
         yield (
             "D4 = [[determinant]]; it vanishes where [[zero]] = 0.",
-            {"determinant": write.formula(found.determinant), "zero": write.formula(found.zero)},
+            {"determinant": write.formula(found.determinant), "zero": write.formula(zero)},
         )
-    for vector, formula in found.resonances:
+    for vector, formula in resonances:
         if not formula.is_number:
             yield (
                 "The resonance [[ratio]] holds where this vanishes: [[formula]].",
@@ -275,7 +279,7 @@ def _focus(found: Focus, write: Medium) -> Iterator[Said]:
         yield (
             "Two roots have the sum zero for all parameters, the square of their frequency is [[square]]; on the "
             "centre manifold the growth of the amplitude of [[name]] is without a term of third order for all "
-            "parameters: those of higher order decide.",
+            "parameters: those of higher order may decide.",
             {"square": write.formula(found.square), "name": write.names((found.amplitude_of,))},
         )
         return

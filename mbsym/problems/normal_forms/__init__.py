@@ -45,7 +45,8 @@ from mbsym.problems.normal_forms.result import (
     Outcome,
     Resonance,
     Theorem,
+    Vanishing,
     Why,
 )
 
-__all__ = ["Focus", "InSymbols", "Judged", "NormalForms", "Outcome", "Resonance", "Theorem", "Why"]
+__all__ = ["Focus", "InSymbols", "Judged", "NormalForms", "Outcome", "Resonance", "Theorem", "Vanishing", "Why"]

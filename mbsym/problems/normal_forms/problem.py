@@ -217,6 +217,11 @@ def twist(found: Expansion, values: Mapping[str, Any]) -> tuple[InSymbols, Tower
     told = {name: Formula(ring, in_ring(tower, ring, x)) for name, x in named.items()}
     told["zero"] = Formula(ring, in_ring(tower, ring, primitive(tower, determinant)))
     result = InSymbols(
-        **told, resonances=tuple((k, Formula(ring, in_ring(tower, ring, x))) for k, x in resonances.items())
+        trace=told["trace"],
+        product=told["product"],
+        discriminant=told["discriminant"],
+        determinant=told["determinant"],
+        zero=told["zero"],
+        resonances=tuple((k, Formula(ring, in_ring(tower, ring, x))) for k, x in resonances.items()),
     )
     return result, tower, named | {f"{a}:{b}": x for (a, b), x in resonances.items()}

@@ -132,6 +132,14 @@ class Judged(Shown):
 
 
 @dataclass(frozen=True, repr=False)
+class Vanishing(Shown):
+    """Numerator of D_4 and resonances without the factors that are not zero for any parameters of the given signs."""
+
+    determinant: Formula
+    resonances: tuple[tuple[tuple[int, int], Formula], ...]
+
+
+@dataclass(frozen=True, repr=False)
 class InSymbols(Shown):
     """Of two degrees of freedom, for almost all parameters.
 
@@ -147,6 +155,8 @@ class InSymbols(Shown):
     determinant: Formula
     zero: Formula
     resonances: tuple[tuple[tuple[int, int], Formula], ...]
+    #: What is left of both by the signs of the parameters; None where these were not asked.
+    vanishing: Vanishing | None = None
 
 
 @dataclass(frozen=True, repr=False)

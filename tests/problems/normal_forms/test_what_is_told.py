@@ -176,3 +176,56 @@ def test_a_determinant_without_parameters_is_not_said_to_vanish_where_one_is_zer
 def told_of(description: str) -> str:
     analysis = mbsym.loads(description, (11,))
     return "\n".join(text for text, _ in sentences(analysis.normal_forms, PLAIN))
+
+
+def test_what_parameters_of_their_signs_cannot_make_zero_is_not_told_to_vanish():
+    """Potential x^2/2 + y^2 + k x^4/4: the mean of k x^4/4 is 3 k I^2/8, so that D4 = (3 k/8) 2 = 3 k/4 by hand."""
+    quartic = SPRINGS.replace("x**2*y", "k*x**4/4").replace("bodies:", "parameters: {k: SIGN}\nbodies:")
+    told = told_of(quartic.replace("SIGN", "positive"))
+    assert "it vanishes for no parameters" in told
+    assert "it vanishes where" in told_of(quartic.replace("SIGN", "real"))
+
+
+DRIVEN = """
+mbsym: 1
+name: an oscillator and one that is damped
+bodies:
+  - {name: particle, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}
+loads:
+  - {potential: x**2/2 + y**2}
+  - {generalized force: {y: -y_dot, x: -x*y}}
+motion: {}
+"""
+
+
+def test_higher_terms_are_not_said_to_decide_where_there_are_none():
+    """x'' + x = -x y, y'' + y' + 2 y = 0: y = 0 is the centre manifold, on it x'' + x = 0: no term of any order."""
+    told = told_of(DRIVEN)
+    assert "order decide." not in told
+    assert "may decide" in told
+
+
+def test_formal_stability_is_no_matter_where_problem_6_has_proved_more():
+    """Turning axes about z, V = (x^2 + y^2)/10 + z^2/7 + r^4/4 + z^4/4: at rest in space a minimum: stable."""
+    analysis = mbsym.loads(
+        """
+mbsym: 1
+name: particle
+parameters: {n: positive}
+prescribed: {phi: {rate: n}}
+bodies:
+  - {name: table, attached to: 0, rotation: {axes: [3], angles: [phi]}, mass: 0}
+  - {name: particle, attached to: table, connection point: [x, y, z], mass: 1, coordinates: [x, y, z]}
+loads:
+  - potential: (x**2 + y**2)/10 + z**2/7 + (x**2 + y**2)**2/4 + z**4/4
+motion: {x: 0, y: 0, z: 0}
+values: {n: 1}
+""",
+        (6, 11),
+    )
+    found = analysis.normal_forms
+    assert found.at_values is not None
+    assert found.at_values.outcome is Outcome.FORMAL
+    assert found.first is not None
+    assert found.first.stable
+    assert "problem 6 has decided already" in "\n".join(text for text, _ in sentences(found, PLAIN))
