@@ -17,7 +17,7 @@ def along_lines(there: Setting, usual: PolynomialIntegrals, found: Along) -> Ite
     if found.weights not in (None, usual.grading.weights):
         yield f"weights are {weights_text(there.field.variables, found.weights or ())} here"
     degree = usual.degree
-    length = "" if found.weights is None else "; unit vectors of any length"
+    length = "" if found.weights is None or not there.vectors else "; unit vectors of any length"
     for one in found.values:
         yield f"{found.name} = {one.value}"
         yield from _special(there, one)

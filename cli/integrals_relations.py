@@ -56,7 +56,7 @@ def level_lines(there: Setting, found: PolynomialIntegrals, levels: ZeroLevels |
         return
     if levels.weights not in (None, found.grading.weights):
         yield f"weights are {weights_text(there.field.variables, levels.weights or ())} here"
-    length = "" if levels.weights is None else "; unit vectors of any length"
+    length = "" if levels.weights is None or not there.vectors else "; unit vectors of any length"
     almost = ", for almost all values of the parameters" if there.field.parameters else ""
     for level in levels.levels:
         for weight, f in level.integrals:
@@ -76,6 +76,7 @@ def darboux_lines(there: Setting, usual: PolynomialIntegrals, found: DarbouxPoly
     if found.weights != usual.grading.weights:
         yield f"weights are {weights_text(there.field.variables, found.weights)} here"
     almost = ", for almost all values of the parameters" if there.field.parameters else ""
+    length = "; unit vectors of any length" if there.vectors else ""
     for one in found.polynomials:
         yield f"weight {one.weight}: {there.formula(one.polynomial)} = 0"
         yield f"  K = {there.quotient(one.cofactor, there.field.denominator)}"
@@ -95,7 +96,7 @@ def darboux_lines(there: Setting, usual: PolynomialIntegrals, found: DarbouxPoly
         but = " is a combination of products of these and of integrals" if found.polynomials else ""
         yield (
             f"{none} {found.degree} with K not zero and coefficients that are rational (in the parameters)"
-            f"{but}{almost} (proved; unit vectors of any length)."
+            f"{but}{almost} (proved{length})."
         )
 
 

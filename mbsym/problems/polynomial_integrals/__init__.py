@@ -9,8 +9,11 @@ kernel of a linear map on the monomials of one weighted degree.  The search goes
 * where they are not, the monomials of a further integral are read off, its coefficients are found over QQ(parameters)
   and it is proved by substitution.
 
+Positions that no equation contains are no variables: integrals that hold them are not looked for, which is said.
+
 Weights are looked for under which the equations are quasi-homogeneous (Euler's and Poisson's: angular velocity 1,
-unit vector 2; without forces that are linear in it 1): then each weight stands for itself. Of two unit vectors of one
+unit vector 2; without forces that are linear in it 1): then each weight stands for itself. Rates, sines, cosines and
+lengths have all the weight 1. Of two unit vectors of one
 body, perpendicular to each other, what holds for any lengths and angles is found, and that unit vectors have no
 others is proved modulo their relations; lengths and products of theirs are told as such. Integrals are told apart as
 functions by the rank of their gradients at a random state.
