@@ -90,7 +90,7 @@ def oscillation(there: Equations, order: int, leading: str = "", which: int = 1)
     mode = _mode(there, system, leading, which)
     place = there.names.index(leading) if leading else _leading(there, mode)
     constants = {i: there.symbol(f"#{there.names[i]}") for i in system.constant}
-    kind, amplitude, others = Amplitude.FREE, there.symbol(AMPLITUDE), None
+    kind, amplitude, others = Amplitude.FREE, tower.parameter(AMPLITUDE), None
     orders = Orders(system, mode, place, amplitude, constants)
     try:
         for _ in range(order):
@@ -102,6 +102,14 @@ def oscillation(there: Equations, order: int, leading: str = "", which: int = 1)
         kind = Amplitude.DETERMINED
         orders = Orders(system, mode, place, amplitude, constants, correction_names(order))
         _with_corrections(there, orders, order, demand.order)
+    else:
+        if AMPLITUDE in there.values:
+            amplitude = there.values[AMPLITUDE]
+            if amplitude.is_zero():
+                raise ZeroDivisionError("an amplitude of 0 is no oscillation")
+            orders = Orders(system, mode, place, amplitude, constants)
+            for _ in range(order):
+                orders.go_on()
     names = [i for i in range(len(there.names)) if i not in system.aside]
     found = Oscillation(
         tower,
@@ -172,9 +180,10 @@ def _leading(there: Equations, mode: Mode) -> int:
 def _determined(there: Equations, leading: str, demand: Demand) -> tuple[Element, Element | None]:
     """An amplitude a != 0 that a condition allows, rather one that is surely real; what the others make zero, if any.
 
-    The condition holds for a and -a alike, which are one solution: its factors are taken by the squares of a.
+    The condition holds for a and -a alike, which are one solution: its factors are taken by the squares of a.  Where a
+    number was given for the amplitude, that one is asked.
     """
-    tower, symbol = there.tower, there.symbol(AMPLITUDE)
+    tower, symbol, given = there.tower, there.tower.parameter(AMPLITUDE), there.values.get(AMPLITUDE)
     place = MOST_ROOTS + tower.parameters.index(AMPLITUDE)
     squares: list[Element] = []
     unsolved: list[Element] = []
@@ -196,6 +205,11 @@ def _determined(there: Equations, leading: str, demand: Demand) -> tuple[Element
     if not squares:
         raise _not_solved(there, demand) if unsolved else _secular(there, demand.order, of_parameters)
     chosen = next((x for x in squares if there.sign(x) == "positive"), squares[0])
+    if given is not None:
+        asked = [x for x in squares if (x - given * given).is_zero()]
+        if not asked:
+            raise _other_amplitude(there, demand)
+        chosen = asked[0]
     rest = [symbol * symbol - x for x in squares if x is not chosen] + unsolved
     others = None
     for one in rest:
@@ -243,6 +257,16 @@ def _not_solved(there: Equations, demand: Demand) -> NoClosedForm:
     return NoClosedForm(
         f"in the order {demand.order} of {there.small} secular terms remain unless {condition} = 0: amplitudes that "
         "square roots do not express are not followed"
+    )
+
+
+def _other_amplitude(there: Equations, demand: Demand) -> NotPeriodic:
+    tower = there.tower
+    top = _but_powers(tower, demand)
+    condition = there.told(tower.made(top / top.leading_coefficient(), tower.context.constant(1)))
+    return NotPeriodic(
+        f"with this amplitude secular terms remain in the order {demand.order} of {there.small}: the amplitude has to "
+        f"fulfil {condition} = 0"
     )
 
 

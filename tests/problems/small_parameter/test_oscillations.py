@@ -124,6 +124,24 @@ def test_an_amplitude_that_is_surely_imaginary_is_passed_over(tmp_path):
         oscillating(point(tmp_path, _damped_by("1 + x**2 + x**4")), 1)
 
 
+def test_a_given_amplitude_is_the_one_that_is_meant(tmp_path):
+    """Van der Pol has a = 2 alone: no family with the number 2 in it, and nothing at 1, which denies no other.
+
+    Of a^4 - 6 a^2 + 8 = 0 the given 2 is taken; x'' + x + eps x^2 = 0 is a family, the number is put into it.
+    """
+    system = point(tmp_path, _damped_by("1 - x**2"))
+    assert oscillating(system, 2, {"amplitude": Fraction(2)}).found.kind is Amplitude.DETERMINED
+    with pytest.raises(NotPeriodic, match="with this amplitude secular terms remain in the order 1"):
+        oscillating(system, 2, {"amplitude": Fraction(1)})
+    told = oscillating(point(tmp_path, _damped_by("1 - 3*x**2 + x**4")), 1, {"amplitude": Fraction(2)})
+    assert str(told.formula(told.found.amplitude)) == "2"
+    family = oscillating(point(tmp_path, ["potential: x**2/2 + eps*x**3/3"]), 2, {"amplitude": Fraction(1)})
+    assert family.found.kind is Amplitude.FREE
+    assert corrections(family) == ["0", "-5/12"]
+    with pytest.raises(ZeroDivisionError, match="no oscillation"):
+        oscillating(point(tmp_path, ["potential: x**2/2 + eps*x**3/3"]), 2, {"amplitude": Fraction(0)})
+
+
 def test_amplitudes_that_are_not_expressed_are_not_denied(tmp_path):
     """c6 adds 5 a^6/128: 5 a^6 - 72 a^4 + 144 a^2 - 64 is positive at a^2 = 1, negative at 0 and 4."""
     with pytest.raises(NoClosedForm, match=r"unless \(5\*amplitude\*\*6") as raised:
