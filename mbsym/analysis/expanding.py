@@ -121,6 +121,12 @@ def expansion(analysis: Analysis, order: int, values: Mapping[str, Fraction] | N
         return replace(plain, missing=str(reason))
     except ZeroDivisionError:
         return replace(plain, missing="a denominator of the expansion vanishes on the motion")
+    if steady_found.fast.bounded:
+        raise NoClosedForm(
+            f"no slow manifold: of the roots that would belong to {', '.join(fast)} one stays bounded as {small.name} "
+            "tends to 0, so that not all of these variables are fast",
+            remedy=slow.DECLARE,
+        )
     plain = replace(plain, manifold=replace(found, steady=steady_found))
     return replace(
         plain, fast=_judged(analysis, plain, steady_found.fast), slow=_judged(analysis, plain, steady_found.slow)

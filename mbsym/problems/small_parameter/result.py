@@ -34,6 +34,16 @@ class Hurwitz:
         """Whether a coefficient of every minor is known that is not zero."""
         return all(one.lowest is not None for one in self.minors)
 
+    @property
+    def bounded(self) -> bool:
+        """Whether a root is seen to stay bounded as eps -> +0.
+
+        All roots grow where every side of Newton's polygon falls: where the last coefficient begins with a lower power
+        of eps than all before it.
+        """
+        *before, last = (one.lowest for one in self.polynomial)
+        return last is not None and any(k is not None and k <= last for k in before)
+
 
 @dataclass(frozen=True)
 class SteadyStates:

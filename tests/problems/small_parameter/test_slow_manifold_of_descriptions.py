@@ -76,3 +76,31 @@ def test_assumptions_in_the_small_parameter_decide_nothing():
     found = expansion(light(c="real", more="assumptions: [c > 3*m]"), 1)
     assert found.fast[0] is Outcome.CONDITIONAL
     assert expansion(light(c="real", more="assumptions: [c > 3*k]"), 1).fast == (Outcome.HOLDS, ())
+
+
+CREEPING = """
+mbsym: 1
+name: A light body in a fluid
+parameters: {m: positive, c: positive, b: positive, k: positive}
+small parameter: SMALL
+bodies:
+  - {name: light, attached to: 0, coordinates: [x], connection point: [x, 0, 0], mass: m, speeds: {u: x_dot}}
+loads:
+  - force function: -k*x**2/2
+  - generalized force: {x: FORCE}
+motion: {x: 0}
+"""
+
+
+@pytest.mark.parametrize(("small", "force"), [("m", "-c*x_dot - b*x_dot**3"), ("{m: {fast: [u, x]}}", "-c*x_dot")])
+def test_a_variable_whose_root_stays_bounded_is_not_called_fast(small, force):
+    """m s^2 + c s + k = 0: s = -c/m + ... and s = -k/c + ..., so that x creeps: x = u = 0 is no slow manifold."""
+    with pytest.raises(NoClosedForm, match="one stays bounded as m tends to 0"):
+        expansion(mbsym.loads(CREEPING.replace("SMALL", small).replace("FORCE", force)), 2)
+
+
+def test_two_roots_that_both_grow_are_fast():
+    """m s^2 + k = 0: s = +-i sqrt(k/m), both grow; u = x = 0 is all that is slow."""
+    found = expansion(mbsym.loads(CREEPING.replace("SMALL", "m").replace("FORCE", "-b*x_dot**3")), 2)
+    assert found.manifold.fast == ("u", "x")
+    assert found.fast[0] is Outcome.UNDECIDED
