@@ -10,9 +10,10 @@ not hold the phase this is a system of the same M with the potential energy
 
     V(q) = 1/2 <a.M^-1 a> - <A0> - <U>,      a = A1 - <A1>   (only terms of order eps^0 count)
 
-in the velocities  Q' = M^-1 (p - <A1>);  the motion about it is  q = Q - (1/nu) M^-1 integral a dphi + ...  The part
-<A1>.q' must be a total derivative (as in one coordinate it always is).  For Kapitza's pendulum, theta from the hanging
-position, V = -m g l cos(theta) + m h^2 nu^2 sin(theta)^2/4: upright it is stable where h^2 nu^2 > 2 g l.
+in the velocities  Q' = M^-1 (p - <A1>);  the motion about it is  q = Q - (1/nu) M^-1 integral a dphi + ...  What the
+shaking adds to <A1>.q' must be a total derivative (as in one coordinate it always is).  What A1, A0 and U are without
+h and nu (other prescribed motions) stays as it is, and must not hold the phase.  For Kapitza's pendulum, theta from the
+hanging position, V = -m g l cos(theta) + m h^2 nu^2 sin(theta)^2/4: upright it is stable where h^2 nu^2 > 2 g l.
 
 Other loads may depend on velocities linearly, without the phase.
 
@@ -51,7 +52,9 @@ from mbsym.problems.energy import Energy
 
 @dataclass(frozen=True, repr=False)
 class Averaged(Shown):
-    """V = ``vibrational`` - <U>, but for constants: ``potential``.  ``phase`` and ``rate`` are fast, ``small`` small.
+    """V = ``potential``, but for constants; ``vibrational``: what of it the shaking adds.
+
+    ``phase`` and ``rate`` are fast, ``small`` small.
 
     ``swings`` are M^-1 a by coordinate, in q and the phase: the velocities of the oscillation about Q are -M^-1 a.
     """
@@ -83,6 +86,11 @@ class Order:
                 raise NoClosedForm(f"{what} grows with the rate of the phase: more has to be small than was told")
             if power == 0:
                 kept[monomial] = c
+        return self.ring.context.from_dict(kept)
+
+    def unshaken(self, p: Polynomial) -> Polynomial:
+        """The terms in which neither the rate nor anything small stands."""
+        kept = {m: c for m, c in p.to_dict().items() if not (m[self.rate] or any(m[k] for k in self.small))}
         return self.ring.context.from_dict(kept)
 
     def holds_phase(self, p: Polynomial) -> bool:
@@ -154,11 +162,15 @@ def averaged(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str, sm
     rest = order.leading(energy.A0.polynomial, "T")
     force = order.leading(energy.force_function.polynomial, "U")
     _other_loads(scene, order)
+    for what, parts in (("T", [*linear, rest]), ("U", [force])):
+        if any(order.holds_phase(order.unshaken(x)) for x in parts):
+            raise NoClosedForm(f"{what} depends on {phase} also where {', '.join(small)} = 0")
     means = [order.mean(x, "T") for x in linear]
+    added = [mean - order.unshaken(x) for mean, x in zip(means, linear, strict=True)]
     for i, a in enumerate(names):
         for j, b in enumerate(names[:i]):
-            if not ring.is_zero(ring.derivative(means[i], b) - ring.derivative(means[j], a)):
-                raise NoClosedForm("gyroscopic terms are left: <A1> is no gradient")
+            if not ring.is_zero(ring.derivative(added[i], b) - ring.derivative(added[j], a)):
+                raise NoClosedForm("gyroscopic terms are left: what the shaking adds to <A1> is no gradient")
     swings = [ring.reduce(x - mean) for x, mean in zip(linear, means, strict=True)]
     vibrational = ring.number(0)
     for i, x in enumerate(swings):
@@ -174,12 +186,13 @@ def averaged(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str, sm
     ]
     whole = ring.reduce(divided - order.mean(rest, "T"))
     mean_force = ring.reduce(order.mean(force, "U"))
+    vibrational_alone = whole + order.unshaken(rest) - mean_force + order.unshaken(force)
     moving = without_constants(ring, names)
     return Averaged(
         phase,
         rate,
         tuple(small),
-        Formula(ring, moving(whole)),
+        Formula(ring, moving(ring.reduce(vibrational_alone))),
         Formula(ring, moving(ring.reduce(whole - mean_force))),
         tuple(Formula(ring, ring.reduce(ring.times(x, inverse))) for x in turned),
     )
@@ -218,6 +231,8 @@ def _other_loads(scene: Scene[Polynomial], order: Order) -> None:
         force = order.leading(found, f"the force on {name}")
         if order.holds_phase(force):
             raise NoClosedForm(f"the force on {name} depends on {order.ring.generators[order.phase[2]].name}")
+        if not ring.is_zero(force - order.unshaken(force)):
+            raise NoClosedForm(f"the force on {name} holds products of what is small and the rate of the phase")
         for a in system.coordinates:
             slope = ring.velocity_derivative(force, a)
             if any(not ring.vanishes(ring.velocity_derivative(slope, b)) for b in system.coordinates):

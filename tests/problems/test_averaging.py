@@ -9,6 +9,7 @@ from scipy.integrate import solve_ivp
 
 import mbsym
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.analysis import Analysis
 from mbsym.analysis.averaged import averaged_system, averaging_of
 from mbsym.simulation.averaged import measured
 from mbsym.source import read, to_yaml
@@ -140,6 +141,82 @@ def test_roots_and_quotients_that_the_phase_does_not_enter_are_no_matter():
     at = [_number(found.potential, m=1, l=1, g=9, a=0.1, W=60, theta=x) for x in (-theta, 0, theta)]
     # sqrt(3 + theta^2) adds 1/sqrt 3
     assert (at[0] - 2 * at[1] + at[2]) / theta**2 == pytest.approx(27 + 2 / 9 + 3**-0.5, rel=1e-5)
+
+
+TURNING = """
+mbsym: 1
+name: Shaken pendulum in a turning plane
+parameters: {{m: positive, l: positive, g: positive, a: positive, W: positive, n: real}}
+prescribed: {{phi: {{rate: W}}, psi: {{rate: {rate}}}}}
+bodies:
+  - {{name: frame, attached to: 0, rotation: {{axes: [2], angles: [psi]}}, mass: 0}}
+  - {{name: rod, attached to: frame, connection point: [0, a*cos(phi), 0], rotation: {{axes: [3], angles: [theta]}},
+     mass centre: [0, -l, 0], mass: m}}
+loads:
+  - uniform gravity: {{acceleration: g, direction: [0, -1, 0]}}
+motion: {{theta: 0}}
+values: {{m: 1, l: 1, g: 9, a: 1/10, W: 60, n: 2}}
+initial: {{theta: 0.3}}
+"""
+
+
+@pytest.mark.parametrize("rate", ["2", "n"])
+def test_a_slow_prescribed_turning_is_not_counted_twice(rate):
+    """V = m (-g l cos(theta) + a^2 W^2 sin(theta)^2/4 - l^2 n^2 sin(theta)^2/2), by hand.
+
+    At theta = 0 the square of the frequency is g/l + a^2 W^2/(2 l^2) - n^2 = 9 + 18 - 4 = 23; with the centrifugal
+    potential twice it would be 19, and the distance to the motion itself would not shrink.
+    """
+    analysis = mbsym.loads(TURNING.format(rate=rate))
+    found = averaging_of(analysis, "phi")
+    at = {"m": 1, "l": 1, "g": 9, "a": 0.1, "W": 60, "n": 2}
+    values = [_number(found.vibrational, **at, theta=x) for x in (0.2, 0.7)]
+    assert values[1] - values[0] == pytest.approx(9 * (np.sin(0.7) ** 2 - np.sin(0.2) ** 2))
+    slow = averaged_system(analysis.system, found)
+    assert _number(Analysis(slow).linearisation.K[0, 0], **at) == pytest.approx(23)
+    assert measured(analysis.system, slow, found, time=3).orders[-1] > 0.8
+
+
+def test_gyroscopic_terms_that_are_there_without_shaking_stay():
+    """A bead on a turning table that is shaken: a^2 W^2 m/4 holds no x, y: sqrt(k/m) +- n = 3 +- 1/2 remain."""
+    analysis = mbsym.loads(
+        """
+mbsym: 1
+name: Bead on a table
+parameters: {m: positive, k: positive, a: positive, W: positive, n: positive}
+prescribed: {phi: {rate: W}, psi: {rate: n}}
+bodies:
+  - {name: table, attached to: 0, connection point: [a*cos(phi), 0, 0], rotation: {axes: [3], angles: [psi]}, mass: 0}
+  - {name: bead, attached to: table, connection point: [x, y, 0], mass: m, coordinates: [x, y]}
+loads:
+  - potential: k*(x**2+y**2)/2
+motion: {x: 0, y: 0}
+values: {m: 1, k: 9, a: 1/10, W: 60, n: 1/2}
+"""
+    )
+    found = averaging_of(analysis, "phi")
+    assert found.vibrational.is_zero
+    assert str(found.potential) == "(k - m*n**2)*(x**2 + y**2)/2"
+    assert averaged_system(analysis.system, found).prescribed[0].name == "psi"
+
+
+@pytest.mark.parametrize(
+    ("load", "reason"),
+    [
+        ("potential: c*theta*cos(phi)", "U depends on phi also where a = 0"),
+        ("generalized force: {theta: c*a*W}", "products of what is small and the rate"),
+    ],
+)
+def test_loads_that_the_averaged_description_would_lose_are_refused(load, reason):
+    with pytest.raises(NoClosedForm, match=reason):
+        averaging_of(_shaken(damper=load), "phi", ("a",))
+
+
+def test_a_stiffness_of_the_order_of_the_shaking_is_kept():
+    """Potential c a W theta^2/2: of order eps^0, without the phase; V'' = m g l + m a^2 W^2/2 + c a W."""
+    analysis = _shaken(damper="potential: 3*a*W*theta**2/2")
+    slow = averaged_system(analysis.system, averaging_of(analysis, "phi", ("a",)))
+    assert _number(Analysis(slow).linearisation.K[0, 0], m=1, l=1, g=9, a=0.1, W=60) == pytest.approx(9 + 18 + 18)
 
 
 @pytest.mark.parametrize(
