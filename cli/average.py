@@ -130,6 +130,7 @@ def _verdict(averaged: System) -> Iterator[str]:
 def _measured(system: System, averaged: System, found: Averaged, span: float | None) -> Iterator[str]:
     from mbsym.algebra.failures import Failure
     from mbsym.numerics.scenario import Incomplete
+    from mbsym.report.expansion_words import too_slow
     from mbsym.simulation.averaged import measured
 
     try:
@@ -146,6 +147,8 @@ def _measured(system: System, averaged: System, found: Averaged, span: float | N
     yield f"measured over {told.time:.4g}: largest distance, as a part of the averaged motion: {distances}"
     orders = ", ".join(f"{x:.2f}" for x in told.orders)
     yield f"order of the distance: {orders} (1 is expected where eps is small enough)"
+    if too_slow(told.orders, told.expected):
+        yield "it falls more slowly than expected: eps is too large there, the time too long, or something is wrong"
 
 
 def _written(out: Path, averaged: System) -> int:

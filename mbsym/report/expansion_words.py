@@ -31,6 +31,18 @@ NOTHING = (
 )
 
 
+#: How far below the expected order a measured one may be.
+SLACK = 0.25
+TOO_SLOW = (
+    "It shrinks more slowly than expected: the parameter is too large there, the time too long, or something is wrong."
+)
+
+
+def too_slow(orders: Sequence[float], expected: int) -> bool:
+    """Whether the last of the measured orders falls short of the expected one."""
+    return bool(orders) and orders[-1] < expected - SLACK
+
+
 @dataclass(frozen=True)
 class Medium:
     """How a medium writes names, a formula, ``formula relation 0``, a word."""
@@ -191,6 +203,8 @@ def of_measured(small: str, told: Measured | str, write: Medium) -> Iterator[Sai
             "enough.",
             values | {"orders": ", ".join(f"{x:.1f}" for x in told.orders), "expected": told.expected},
         )
+        if too_slow(told.orders, told.expected):
+            yield TOO_SLOW, {}
 
 
 def of_averaging(one: Averaging, told: MeasuredAverage | str, write: Medium) -> Iterator[Said]:
@@ -263,6 +277,8 @@ def _of_measured_average(told: MeasuredAverage | str, write: Medium) -> Iterator
         values,
     )
     yield "It shrinks like the power [[orders]] of epsilon; 1 is expected where epsilon is small enough.", values
+    if too_slow(told.orders, told.expected):
+        yield TOO_SLOW, {}
 
 
 def of_none(found: SmallParameters, write: Medium) -> Iterator[Said]:

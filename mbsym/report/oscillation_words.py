@@ -10,7 +10,7 @@ from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula
 from mbsym.problems.small_parameter.harmonics import Harmonics
 from mbsym.problems.small_parameter.oscillation_result import Amplitude, Divisor
-from mbsym.report.expansion_words import Coefficient, Medium, scaled
+from mbsym.report.expansion_words import SLACK, Coefficient, Medium, scaled
 from mbsym.report.said import Said
 
 if TYPE_CHECKING:
@@ -88,8 +88,6 @@ _TOO_SLOW = (
 _NOT_MEASURED = "The error of the periodic solution was not measured: [[why]]."
 _NONE = "No periodic solution was expanded in powers of [[small]]: [[why]]."
 _NOT_ASKED = "Periodic solutions in powers of [[small]] are looked for by mbsym oscillations."
-#: How far below the expected order a measured one may be.
-SLACK = 0.25
 
 
 def opening(told: Oscillating, write: Medium) -> Iterator[Said]:

@@ -42,6 +42,7 @@ SENTENCES = {
     "At the given values: [[word]].": "Con los valores dados: [[word]].",
     "The distance to the averaged motion was not measured: [[why]].": "La distancia al movimiento promediado no se midió: [[why]].",
     "Measured over a time of [[time]]: the largest distance of the motion from the averaged one, as a part of its size, is [[distances]] at the given values, and with epsilon a half and a quarter of it.": "Medido durante un tiempo de [[time]]: la mayor distancia del movimiento al promediado, como parte de su tamaño, es [[distances]] con los valores dados, y con la mitad y la cuarta parte de $\\epsilon$.",
+    "It shrinks more slowly than expected: the parameter is too large there, the time too long, or something is wrong.": "Disminuye más despacio de lo esperado: el parámetro es allí demasiado grande, el tiempo demasiado largo, o algo está mal.",
     "It shrinks like the power [[orders]] of epsilon; 1 is expected where epsilon is small enough.": "Disminuye como la potencia [[orders]] de $\\epsilon$; se espera 1 cuando $\\epsilon$ es bastante pequeño.",
     "No slow manifold was found in powers of [[small]]: [[why]].": "No se halló ninguna variedad lenta en potencias de [[small]]: [[why]].",
 }

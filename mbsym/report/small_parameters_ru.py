@@ -42,6 +42,7 @@ SENTENCES = {
     "At the given values: [[word]].": "При заданных значениях: [[word]].",
     "The distance to the averaged motion was not measured: [[why]].": "Расстояние до усреднённого движения не измерено: [[why]].",
     "Measured over a time of [[time]]: the largest distance of the motion from the averaged one, as a part of its size, is [[distances]] at the given values, and with epsilon a half and a quarter of it.": "Измерено за время [[time]]: наибольшее расстояние движения от усреднённого, как доля его величины, равно [[distances]] при заданных значениях, при половине и при четверти $\\epsilon$.",
+    "It shrinks more slowly than expected: the parameter is too large there, the time too long, or something is wrong.": "Оно убывает медленнее ожидаемого: параметр там слишком велик, время слишком долгое или есть ошибка.",
     "It shrinks like the power [[orders]] of epsilon; 1 is expected where epsilon is small enough.": "Оно убывает как степень [[orders]] параметра $\\epsilon$; при достаточно малом $\\epsilon$ ожидается 1.",
     "No slow manifold was found in powers of [[small]]: [[why]].": "Медленное многообразие по степеням [[small]] не найдено: [[why]].",
 }
