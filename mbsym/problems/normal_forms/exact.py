@@ -10,7 +10,7 @@ from typing import Any
 from flint import arb, fmpq, fmpq_poly
 
 from mbsym.algebra.evaluate import Carrier
-from mbsym.algebra.failures import Failure, NoClosedForm
+from mbsym.algebra.failures import Failure, NoClosedForm, NoValue
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.tower import Element, Tower
@@ -193,6 +193,10 @@ def known(compute: Any) -> tuple[Any, str]:
         return compute(), ""
     except ZeroDivisionError:
         return None, "a divisor vanishes for all parameters"
+    except NoValue as reason:
+        if reason.args[0] != "pi":
+            return None, str(reason)
+        return None, "pi in the coefficients: only square roots are exact here"
     except (Failure, NoClosedForm) as reason:
         return None, str(reason)
 

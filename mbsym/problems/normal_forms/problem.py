@@ -9,7 +9,7 @@ from typing import Any
 from flint import acb, arb, ctx
 
 from mbsym.algebra.evaluate import Carrier
-from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.failures import NoClosedForm, NoValue
 from mbsym.algebra.point import Balls
 from mbsym.algebra.tower import Element, Tower
 from mbsym.algebra.truncated import Truncated
@@ -95,7 +95,7 @@ def _judged_field(found: Expansion, values: Mapping[str, Any]) -> Judged:
         return judged_field(found, values)
     except SingularMass:
         return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.SINGULAR_MASS)
-    except NoClosedForm:
+    except (NoClosedForm, NoValue):  # the tower has square roots of numbers, but no pi
         return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.IRRATIONAL)
 
 

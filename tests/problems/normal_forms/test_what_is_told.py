@@ -229,3 +229,12 @@ values: {n: 1}
     assert found.first is not None
     assert found.first.stable
     assert "problem 6 has decided already" in "\n".join(text for text, _ in sentences(found, PLAIN))
+
+
+def test_pi_in_the_coefficients_is_no_failure():
+    """x'' + 2 pi x + x'^3 = 0: a = -3 w^2/8, but over square roots of numbers there is no pi to prove it with."""
+    text = SOFT.replace("w**2*x**2/2", "pi*x**2").replace("FORCE", "-x_dot**3").replace("{w: {sign: positive}}", "{}")
+    found = mbsym.loads(text.replace("values: {w: 2}\n", ""), (6, 11)).normal_forms
+    assert found.at_values is not None
+    assert found.at_values.why is Why.IRRATIONAL
+    assert "pi in the coefficients" in found.no_symbols
