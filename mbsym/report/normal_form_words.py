@@ -108,6 +108,9 @@ def sentences(found: NormalForms, write: Medium) -> Iterator[Said]:
             )
         else:
             yield "What is said is about the other coordinates and all velocities; [[names]] are cyclic.", names
+    if found.conservative and not found.coordinates:
+        yield "All coordinates are cyclic: without them nothing is left that could be judged.", {}
+        return
     if found.taken_in:
         yield (
             "The applied forces have a generalized potential (Helmholtz's conditions): Lagrange's function takes it "

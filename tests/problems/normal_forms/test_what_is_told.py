@@ -238,3 +238,11 @@ def test_pi_in_the_coefficients_is_no_failure():
     assert found.at_values is not None
     assert found.at_values.why is Why.IRRATIONAL
     assert "pi in the coefficients" in found.no_symbols
+
+
+def test_a_free_particle_is_not_called_stable_for_lack_of_coordinates():
+    """x'' = y'' = 0: a drift grows; without x and y, both cyclic, a form in no variables says nothing."""
+    text = SPRINGS.replace("  - {potential: x**2/2 + y**2 + x**2*y}", "  - {potential: 0*x}")
+    told = told_of(text)
+    assert "nothing is left that could be judged" in told
+    assert "stable" not in told
