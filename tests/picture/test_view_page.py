@@ -247,9 +247,12 @@ def test_without_three_dimensions_a_motion_is_told_all_the_same(browser: Any, tm
     page.goto(out.as_uri())
     page.get_by_text("positions are told below in words").wait_for()
     page.locator(".viewer-reading").filter(has_text="energy").wait_for()
-    page.get_by_role("button", name="Pause").click()
     page.get_by_text("In words", exact=True).click()
-    page.locator(".viewer-words tbody tr").wait_for()
+    row = page.locator(".viewer-words tbody tr")
+    row.wait_for()
+    told = row.inner_text()
+    page.wait_for_function("told => document.querySelector('.viewer-words tbody tr').innerText !== told", arg=told)
+    page.get_by_role("button", name="Pause").click()
     assert page.get_by_role("button", name="Closer").count() == 0
     page.close()
 

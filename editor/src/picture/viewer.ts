@@ -312,14 +312,15 @@ export class Viewer {
       this.scrub.setAttribute("aria-valuetext", this.clock.textContent);
     } else this.clock.textContent = playing ? `mode ${playing.k + 1}` : "";
     if (this.track && this.sections.motion.open) this.traces.draw(playing?.what === "motion" ? playing.t : 0);
-    if (this.going) return;
     const { picture } = this;
-    const at = picture.coordinates.map((one) => `${one.name} = ${told(this.state[one.name])}${one.unit ? ` ${one.unit}` : ""}`);
-    this.stage.canvas.setAttribute("aria-label", `${picture.name}: ${picture.bodies.map((body) => body.name).join(", ")}. ${at.join(", ")}`);
+    // Also while it moves: what stands there is where bodies are now.
     if (this.sections.words.open) {
       const values = this.poses.at(this.state);
       this.sections.words.replaceChildren(this.sections.words.firstElementChild!, inWords(picture, values));
     }
+    if (this.going) return;
+    const at = picture.coordinates.map((one) => `${one.name} = ${told(this.state[one.name])}${one.unit ? ` ${one.unit}` : ""}`);
+    this.stage.canvas.setAttribute("aria-label", `${picture.name}: ${picture.bodies.map((body) => body.name).join(", ")}. ${at.join(", ")}`);
   }
 
   private switches(): HTMLElement {
