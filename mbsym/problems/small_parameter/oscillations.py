@@ -199,8 +199,9 @@ def _determined(there: Equations, leading: str, demand: Demand) -> tuple[Element
             imaginary = imaginary or len(real) < len(found or ())
             squares += [x for x in real if not any((x - y).is_zero() for y in squares)]
     if not squares and imaginary and not unsolved and of_parameters.is_constant():
+        which = "with the constants that were given " if any(name != AMPLITUDE for name in there.values) else ""
         raise NotPeriodic(
-            f"secular terms are removed only where the amplitude of {leading} is imaginary: its square is < 0"
+            f"{which}secular terms are removed only where the amplitude of {leading} is imaginary: its square is < 0"
         )
     if not squares:
         raise _not_solved(there, demand) if unsolved else _secular(there, demand.order, of_parameters)
@@ -276,7 +277,8 @@ def _secular(there: Equations, order: int, condition: Any) -> NoClosedForm:
     With constants of the solution in it that is an equation for these, which is not solved.
     """
     tower = there.tower
-    none = "no periodic solution near those of the linear system: "
+    given = " with the constants that were given" if any(name != AMPLITUDE for name in there.values) else ""
+    none = f"no periodic solution near those of the linear system{given}: "
     where = f"in the order {order} of {there.small} secular terms remain"
     if condition.is_constant():
         return NotPeriodic(f"{none}{where} for every real amplitude")

@@ -142,6 +142,18 @@ def test_a_given_amplitude_is_the_one_that_is_meant(tmp_path):
         oscillating(point(tmp_path, ["potential: x**2/2 + eps*x**3/3"]), 2, {"amplitude": Fraction(0)})
 
 
+def test_constants_that_were_given_are_named_where_they_leave_nothing(tmp_path):
+    """x'' + x = eps (1 - z') x', z'' = eps (x^2 - z'): z' = 1 and a^2 = 2 by hand, from the means of both."""
+    loads = ["potential: x**2/2", "generalized force: {x: eps*(1 - z_dot)*x_dot, z: eps*(x**2 - z_dot)}"]
+    system = point(tmp_path, loads, "x, z")
+    told = oscillating(system, 1, {"z_dot_0": Fraction(1)}, "x")
+    assert str(told.formula(told.found.amplitude)) == "sqrt(2)"
+    with pytest.raises(NotPeriodic, match="with the constants that were given"):
+        oscillating(system, 1, {"z_dot_0": Fraction(2)}, "x")
+    with pytest.raises(NoClosedForm, match="unless z_dot_0 - 1 = 0"):
+        oscillating(system, 1, {}, "x")
+
+
 def test_amplitudes_that_are_not_expressed_are_not_denied(tmp_path):
     """c6 adds 5 a^6/128: 5 a^6 - 72 a^4 + 144 a^2 - 64 is positive at a^2 = 1, negative at 0 and 4."""
     with pytest.raises(NoClosedForm, match=r"unless \(5\*amplitude\*\*6") as raised:
