@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import islice, pairwise
+from typing import Any
 
 import numpy as np
 from flint import arb, ctx, fmpq
@@ -32,7 +33,12 @@ LINES = 6
 SIZES = (fmpq(1, 2), fmpq(1, 16))
 _VALUES = [fmpq(p, q) for p in range(1, 9) for q in (1, 2, 3)]
 
+#: Polynomials whose terms are kept at a time.
+MOST_KEPT = 1000
+
 Point = dict[int, arb]
+#: A coefficient, and the generators with their powers.
+Term = tuple[Any, list[tuple[int, int]]]
 
 
 def is_real(place: Place) -> bool:
@@ -107,13 +113,38 @@ def _hold(relations: Sequence[Relation], point: Mapping[int, arb], strictly: boo
     return True
 
 
+class _Terms:
+    """The terms of polynomials, each read once: one of many generators lists the exponents of all of them."""
+
+    def __init__(self) -> None:
+        self._known: dict[int, tuple[Polynomial, list[Term]]] = {}
+
+    def __call__(self, p: Polynomial) -> list[Term]:
+        known = self._known.get(id(p))  # which is its own as long as it is kept here
+        if known is None:
+            if len(self._known) >= MOST_KEPT:
+                self._known.clear()
+            known = self._known[id(p)] = (p, _terms_of(p))
+        return known[1]
+
+
+_terms = _Terms()
+
+
+def _terms_of(p: Polynomial) -> list[Term]:
+    return [(c, [(g, int(power)) for g, power in enumerate(monomial) if power]) for monomial, c in p.to_dict().items()]
+
+
 def _value(p: Polynomial, point: Mapping[int, arb]) -> arb:
+    return _sum(_terms(p), point)
+
+
+def _sum(terms: Sequence[Term], point: Mapping[int, arb]) -> arb:
     total = arb(0)
-    for monomial, c in p.to_dict().items():
+    for c, powers in terms:
         term = arb(c)
-        for g, power in enumerate(monomial):
-            if power:
-                term *= point[g] ** int(power)
+        for g, power in powers:
+            term *= point[g] if power == 1 else point[g] ** power
         total += term
     return total
 
@@ -157,7 +188,7 @@ def _real_zeros(p: Polynomial, g: int, point: Mapping[int, arb]) -> list[float]:
     for power in range(len(coefficients)):
         part = {m: c for m, c in p.to_dict().items() if m[g] == power}
         if part:
-            coefficients[power] = _value(p.context().from_dict(part), rest)
+            coefficients[power] = _sum(_terms_of(p.context().from_dict(part)), rest)
     numbers = [float(c.mid()) for c in reversed(coefficients)]
     return [float(x.real) for x in np.roots(numbers) if abs(x.imag) <= 1e-9 * (1 + abs(x))]
 
@@ -221,7 +252,7 @@ def _root(rule: Rule, point: Point, chance: random.Random) -> arb | None:
     for power in range(degree + 1):
         part = rule.top(rule.equation, power)
         if part != 0:
-            coefficients[power] = _value(part, rest)
+            coefficients[power] = _sum(_terms_of(part), rest)
 
     def at(x: fmpq) -> arb:
         total = arb(0)
