@@ -98,6 +98,13 @@ def equilibrium(scene: Scene, residuals: Sequence[Polynomial], signs: Signs, on_
     )
 
 
+def unsolved(scene: Scene, found: Equilibrium) -> list[Polynomial]:
+    """The conditions of problem 4 that were not solved for a parameter, what was solved for put in."""
+    ring, at = scene.ring, found.determined(scene)
+    values = (ring.substitute(x.polynomial, dict(at)) for x in found.conditions)
+    return [ring.fraction(x)[0] for x in values if ring.is_zero(x) is not True]
+
+
 def essential(scene: Scene, x: Polynomial, signs: Signs) -> Polynomial | None:
     """The square-free part of x's numerator, factors that cannot vanish dropped; None if x is zero."""
     ring = scene.ring
