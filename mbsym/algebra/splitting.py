@@ -171,18 +171,12 @@ def vanishes_with(ring: Ring, x: Polynomial, equations: Sequence[Polynomial]) ->
     hidden = {k for _, g in present if g.argument is not None for k in occurring([g.argument])}
     unknowns = [k for k, g in present if g.kind == "parameter" and k not in hidden and g.name not in ring.angles]
     found = split(equations, unknowns)
-    if found.unfinished or not all(_is_number(ring, p) and ring.is_zero(p) is False for p in found.generic):
+    if found.unfinished or not all(ring.is_number(p) and ring.is_zero(p) is False for p in found.generic):
         return None
     left = [bool(ring.reduce(branch.numerator(numerator))) for branch in found.branches]
     if not any(left):
         return True
     return False if any(one and not branch.remaining for one, branch in zip(left, found.branches, strict=True)) else None
-
-
-def _is_number(ring: Ring, p: Polynomial) -> bool:
-    """Whether p holds nothing but sines, roots and functions of numbers."""
-    generators = [ring.generators[k] for k in occurring([p])]
-    return all(g.argument is not None and g.argument.is_constant() for g in generators)
 
 
 def _step(work: _Work, branch: Branch, equations: Sequence[Polynomial]) -> list[tuple[Branch, tuple[Polynomial, ...]]]:

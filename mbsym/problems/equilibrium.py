@@ -73,7 +73,8 @@ def equilibrium(scene: Scene, residuals: Sequence[Polynomial], signs: Signs, on_
     while pending:
         condition = min(pending, key=len)
         pending.remove(condition)
-        if condition.is_constant() or signs.never_zero(condition):
+        a_number = ring.is_number(condition) and ring.is_zero(condition) is False
+        if a_number or signs.never_zero(condition):
             impossible.append(condition)
             continue
         conditions.append(condition)
