@@ -38,7 +38,9 @@ def command(file: Path, out: Path | None, quiet: bool) -> None:
       mbsym groups systems/spring-pendulum.yaml --out spring-in-groups.yaml
     """
     system = read_description(file, unconstrained="groups")
-    if system is None:
+    asked = Options()
+    asked.unwritten("--out", out)
+    if asked.refused(file) or system is None:
         sys.exit(BAD_INPUT)
     from mbsym.algebra.failures import Failure
     from mbsym.analysis import Analysis
