@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from fractions import Fraction
 
+from mbsym.expressions.constants import sign_of
 from mbsym.expressions.parser import ascii_safe, decimal_comma, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import CONSTANTS, ZERO, Expression, names
@@ -70,6 +72,7 @@ def _parameter(entry: Entry, reading: Reading) -> Parameter:
         message = f"a parameter is described by a sign word or a number, not by {ascii_safe(scalar.text)}"
         reading.error("bad-word", message, scalar.span, hint)
         return Parameter(name, span=span)
+    reading.check_range(value, scalar)
     return Parameter(name, _sign_of(value), value, span=span)
 
 
@@ -116,8 +119,10 @@ def _sign(fields: Fields, reading: Reading) -> str | None:
 
 
 def _check_sign(parameter: Parameter, span: Span, reading: Reading) -> None:
-    value = rational(parameter.value)
-    if value is not None and not has_sign(value, parameter.sign):
+    if parameter.value is None:
+        return
+    found = sign_of(parameter.value)
+    if found is not None and not has_sign(Fraction(found), parameter.sign):
         reading.error("sign-contradiction", f"'{parameter.name}' is declared {parameter.sign}, its value is not", span)
 
 
