@@ -218,8 +218,13 @@ class _Constants:
             if self._is_zero(cosine):
                 raise _NoValue(node, "tan has a pole here")
             return self._finite(node, _ball(x).sin() / cosine)
-        if function in ("sign", "step", "pulse"):
-            return None  # 0, 1/2 or 1, whatever stands there
+        if function == "sign":
+            return Fraction(self.sign(x))
+        if function == "step":
+            return Fraction(1 + self.sign(x), 2)
+        if function == "pulse":  # step(x - start) - step(x - end)
+            start, end = (self.sign(_ball(x) - _ball(edge)) for edge in parts[1:])
+            return Fraction(start - end, 2)
         if function == "abs":
             return abs(x)
         return self._finite(node, getattr(_ball(x), function)())

@@ -165,7 +165,8 @@ def parse_expression(
     bounds: Bounds = WRITTEN,
     tables: Mapping[str, Table] = NO_TABLES,
 ) -> Expression | None:
-    """The tree of an expression, or None with at least one complaint.
+    """The tree of an expression, or None with at least one complaint; of one that holds a number that is none, log(0),
+    both the tree, for its names count, and the complaint.
 
     ``span_of(start, end)`` turns offsets in ``text`` into places of the file.  Names are not looked up here: which
     names a place allows is the reader's business; where it allows none (``named`` is false) no hint speaks of any.
@@ -186,6 +187,7 @@ def parse_expression(
     if complaints.error_count == errors_before and (nothing := meaningless(tree)) is not None:
         node, why = nothing
         complaints.error("no-number", f"this is no real number: {why}", node.span, _no_number_hint(node))
+        return tree
     return tree if complaints.error_count == errors_before else None
 
 

@@ -322,7 +322,9 @@ def _check_given(system: System, reading: Reading) -> None:
     held += [one for limit in system.limits for one in (limit.lower, limit.upper)]
     held += [one.initial for one in system.prescribed if one.initial]
     for expression in held:
-        if names(expression) <= known.keys() and (nothing := meaningless(expression, known)) is not None:
+        if not names(expression) or not names(expression) <= known.keys():
+            continue  # without names it has been judged where it stands
+        if (nothing := meaningless(expression, known)) is not None:
             node, why = nothing
             reading.error("no-number", f"with the given values this is no real number: {why}", node.span)
 

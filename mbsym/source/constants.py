@@ -65,6 +65,10 @@ def _parameter(entry: Entry, reading: Reading) -> Parameter:
         return Parameter(name, scalar.text.lower(), span=span)
     refused = Complaints()
     value = parse_expression(scalar.text, refused, scalar.place, named=False)
+    if value is not None and refused.errors:  # log(0)
+        for one in refused:
+            reading.error(one.code, one.message, one.span, one.hint)
+        return Parameter(name, span=span)
     if value is None or not names(value) <= set(CONSTANTS):
         close = did_you_mean(scalar.text.lower(), SIGNS) or decimal_comma(scalar.text)
         unit = next((one.hint for one in refused if one.hint and re.match("[-+.0-9]", scalar.text)), None)

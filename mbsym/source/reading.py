@@ -12,10 +12,10 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
 
-from mbsym.expressions.constants import out_of_range, unsupported_power
+from mbsym.expressions.constants import out_of_range, unsupported_power, value
 from mbsym.expressions.parser import NO_TABLES, ascii_safe, decimal_comma, names_apart, parse_expression
 from mbsym.expressions.place import Complaints, Span
-from mbsym.expressions.tree import ZERO, Expression, Name
+from mbsym.expressions.tree import ZERO, Call, Expression, Name, names, walk
 from mbsym.model.system import Vector
 from mbsym.model.units import Declared
 from mbsym.source import placed
@@ -157,7 +157,8 @@ class Reading:
                 self.scope.check(one, allowed)
             return ZERO
         self.scope.check(tree, allowed)
-        self.check_range(tree, scalar)
+        if len(self.complaints.items) == before:
+            self.check_range(tree, scalar)
         return tree
 
     def check_range(self, tree: Expression, scalar: Scalar) -> None:
@@ -168,8 +169,11 @@ class Reading:
         if exponent is not None:
             message = f"the power {exponent}: only whole and half exponents are supported"
             self.error("no-number", message, scalar.span, f"for 2**({exponent}) write exp(log(2)*{exponent})")
-        why = out_of_range(tree)
-        if why:
+        if names(tree) or any(isinstance(node, Call) and node.table for node in walk(tree)):
+            return
+        if value(tree) is None:
+            self.error("no-number", "what this number is cannot be told: too many digits cancel", scalar.span)
+        elif why := out_of_range(tree):
             self.error("no-number", f"nothing can be computed with this number: {why}", scalar.span, "take other units")
 
     def vector(self, node: Node, allowed: Allowed) -> Vector:
