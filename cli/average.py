@@ -159,6 +159,6 @@ def _written(out: Path, averaged: System) -> int:
     try:
         write_whole(out, to_yaml(averaged))
     except OSError as error:
-        complain(out, f"cannot be written: {error}")
+        complain(out, f"cannot be written: {error.strerror or error}")
         return FAILED
     return OK

@@ -174,7 +174,8 @@ def write_files(request: Request, summary: Summary) -> bool:
     Of one that cannot be, the reason is told, and none is left of an earlier batch, which would speak for this one.
     """
     writers: dict[str, Callable[[], object]] = {
-        name: partial(deliver, request.out, {name: text}, SUMMARY, ()) for name, text in summary_files(request, summary).items()
+        name: partial(deliver, request.out, {name: text}, SUMMARY, ())
+        for name, text in summary_files(request, summary).items()
     }
     if request.appendix:
         from mbsym_cli.batch_appendix import FILENAME as APPENDIX
