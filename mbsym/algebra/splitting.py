@@ -176,9 +176,8 @@ def vanishes_with(ring: Ring, x: Polynomial, equations: Sequence[Polynomial]) ->
     left = [bool(ring.reduce(branch.numerator(numerator))) for branch in found.branches]
     if not any(left):
         return True
-    return (
-        False if any(one and not branch.remaining for one, branch in zip(left, found.branches, strict=True)) else None
-    )
+    solved = [one for one, branch in zip(left, found.branches, strict=True) if not branch.remaining]
+    return False if any(solved) else None
 
 
 def _step(work: _Work, branch: Branch, equations: Sequence[Polynomial]) -> list[tuple[Branch, tuple[Polynomial, ...]]]:

@@ -93,7 +93,7 @@ def _is_empty(node: Node) -> bool:
 class Reading:
     """The complaints and the declared names of one description; ``units`` are those that stand in records.
 
-    ``folder`` is where the description is, if it is a file.  ``doubles``: with what is read one computes; of claims it is off.
+    ``folder`` is where the description is, if it is a file.  ``doubles``: numbers have to fit into such; not in claims.
     """
 
     complaints: Complaints
