@@ -141,7 +141,7 @@ def test_every_command_that_writes_is_here() -> None:
 
 
 def test_there_is_no_other_way_to_write() -> None:
-    """Single files go through ``Options.unwritten``, sets through ``deliver``; chunks of sweeps are named by digests."""
+    """Single files go through ``Options.unwritten``, sets through ``deliver``; chunks of sweeps are their own."""
     for path in Path(mbsym_cli.__file__).parent.glob("*.py"):
         calls = {
             getattr(node.func, "attr", getattr(node.func, "id", ""))
