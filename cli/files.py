@@ -73,7 +73,7 @@ class Force:
 
 def taken(path: Path) -> bool:
     """Whether there is something in the place of a single file that is not to be replaced."""
-    return not Force.wanted and (path.exists() or path.is_symlink())
+    return not Force.wanted and os.path.lexists(path)
 
 
 # --- one file ---------------------------------------------------------------------------------------------------------
@@ -120,7 +120,6 @@ def deliver(
             inner = (folder / name).parent
             if inner != folder and (inner.is_symlink() or (inner.exists() and not inner.is_dir())):
                 raise NotADirectoryError(f"{inner} is no folder")
-        _spare(folder, files)
         stage = Path(tempfile.mkdtemp(prefix=_NEW, dir=folder))
         try:
             with ExitStack() as closing:
@@ -129,6 +128,7 @@ def deliver(
                 for name, content in files.items():
                     staged.append(closing.enter_context(_staged(stage / name)))
                     digests[name] = _written(staged[-1], content)
+                _spare(folder, digests)
                 manifest = _manifest_text(_merged(read_manifest(folder), command, digests, gone))
                 staged.append(closing.enter_context(_staged(stage / MANIFEST)))
                 _written(staged[-1], manifest)
@@ -153,12 +153,16 @@ def deliver(
     return [folder / name for name in files]
 
 
-def _spare(folder: Path, names: Iterable[str]) -> None:
-    """Raises FileExistsError where a file would be replaced that mbsym did not write."""
+def _spare(folder: Path, digests: Mapping[str, str]) -> None:
+    """Raises FileExistsError where a file would be replaced that mbsym did not write and that holds something else."""
     if Force.wanted:
         return
     own = {name for _, files in read_manifest(folder) for name in files}
-    foreign = sorted(name for name in names if name not in own and os.path.lexists(folder / name))
+    foreign = sorted(
+        name
+        for name, digest in digests.items()
+        if name not in own and os.path.lexists(folder / name) and digest_of(folder / name) != digest
+    )
     if foreign:
         raise FileExistsError(errno.EEXIST, NOT_OURS, str(folder / ", ".join(foreign)))
 

@@ -80,6 +80,8 @@ def test_by_force_it_is_replaced_and_from_then_on_it_is_ours(tmp_path: Path) -> 
     (tmp_path / "report.tex").write_text("mine")
     assert run(*asked).exit_code == 0  # it is not in the way
     assert run(*asked[:2], "-f", "latex", "-o", tmp_path).exit_code == 1
+    (tmp_path / ".mbsym.json").unlink()
+    assert run(*asked).exit_code == 0  # what holds the same already loses nothing
 
 
 def test_a_batch_keeps_to_it_too(tmp_path: Path) -> None:
