@@ -2,7 +2,7 @@
 
 # ruff: noqa: E501
 
-from mbsym.problems.stability.theorems import CHETAEV, CONVERSE, KELVIN_CHETAEV, LAGRANGE, LYAPUNOV, MALKIN, ROUTH
+from mbsym.problems.stability.theorems import CHETAEV, CONVERSE, KELVIN_CHETAEV, LAGRANGE, LINEAR, LYAPUNOV, MALKIN, ROUTH
 from mbsym.problems.stability.word import Word
 
 SENTENCES = {
@@ -260,6 +260,7 @@ WORDS = {
     MALKIN: "teorema de Lyapunov-Malkin",
     CHETAEV: "combinación de integrales de Chetaev",
     CONVERSE: "recíproco del teorema de Lagrange-Dirichlet",
+    LINEAR: "teoría de las ecuaciones lineales",
     "conservative": "conservativo",
     "constrained in velocities": "con ligaduras en las velocidades",
     "gyroscopic conservative": "giroscópico conservativo",

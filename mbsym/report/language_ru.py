@@ -2,7 +2,7 @@
 
 # ruff: noqa: E501 (Cyrillic letters look like Latin ones)
 
-from mbsym.problems.stability.theorems import CHETAEV, CONVERSE, KELVIN_CHETAEV, LAGRANGE, LYAPUNOV, MALKIN, ROUTH
+from mbsym.problems.stability.theorems import CHETAEV, CONVERSE, KELVIN_CHETAEV, LAGRANGE, LINEAR, LYAPUNOV, MALKIN, ROUTH
 from mbsym.problems.stability.word import Word
 
 _ROUTES = "Эти результаты получены вторым, независимым путём и сравнены."
@@ -366,6 +366,7 @@ WORDS = {
     MALKIN: "теорема Ляпунова-Малкина",
     CHETAEV: "метод связки интегралов Четаева",
     CONVERSE: "обращение теоремы Лагранжа-Дирихле",
+    LINEAR: "теория линейных уравнений",
     "conservative": "консервативная",
     "constrained in velocities": "со связями на скорости",
     "gyroscopic conservative": "гироскопическая консервативная",

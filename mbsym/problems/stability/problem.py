@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from flint import arb, ctx, fmpq
 
 from mbsym.algebra.base import Lowering
+from mbsym.algebra.characteristic import Matrix as Polynomials
 from mbsym.algebra.elimination import Elimination, eliminate
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Failure
@@ -33,12 +34,12 @@ from mbsym.problems.linearisation import Linearisation, Subsystem, first_symbols
 from mbsym.problems.stability import nonholonomic
 from mbsym.problems.stability.enclosed import enclosed_verdict_with_cyclic
 from mbsym.problems.stability.exact import verdict_at
-from mbsym.problems.stability.linear_form import LinearSystem, NonholonomicForm
+from mbsym.problems.stability.linear_form import LinearSystem, NonholonomicForm, add, null_rows
 from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.requirements import Requirement
 from mbsym.problems.stability.spectrum import Spectrum, from_characteristic, from_matrices
 from mbsym.problems.stability.symbolic import Theory, analyse
-from mbsym.problems.stability.verdict import Verdict, combine, off_the_leaf, undecided
+from mbsym.problems.stability.verdict import Verdict, combine, exactly, off_the_leaf, undecided
 
 if TYPE_CHECKING:
     from mbsym.problems.reduction import Reduction
@@ -213,8 +214,10 @@ def _enclosed(
     matrices = matrices_at(scene, linear, part.coordinates, values)
     if part.system.nonholonomic is not None:
         even = theory.variable == "lambda^2"
-        return nonholonomic.enclosed(part.system.nonholonomic, matrices, theory.zero_power, PRECISION, even)
-    found = enclosed_verdict_with_cyclic(matrices, there.law.bounded, cyclic, PRECISION)
+        form, power, exact = part.system.nonholonomic, theory.zero_power, there.exactly_linear
+        found = nonholonomic.enclosed(form, matrices, power, PRECISION, even, exact)
+        return exactly(found) if exact else found
+    found = enclosed_verdict_with_cyclic(matrices, there.law.bounded, cyclic, PRECISION, there.exactly_linear)
     return off_the_leaf(found) if part.system.leaf else found
 
 
@@ -228,7 +231,10 @@ def _judge(scene: Scene, made: Prepared, values: Mapping[str, Fraction] | None, 
 
 @dataclass(frozen=True)
 class Prepared:
-    """A subsystem ready to be judged: matrices times ``factor``, and as polynomials of ``ring`` in ``system``."""
+    """A subsystem ready to be judged: matrices times ``factor``, and as polynomials of ``ring`` in ``system``.
+
+    ``drifts``: a drift along directions on which nothing depends is told apart, as that of cyclic coordinates is.
+    """
 
     coordinates: tuple[str, ...]
     matrices: tuple[Matrix, Matrix, Matrix, Matrix, Matrix]
@@ -236,6 +242,16 @@ class Prepared:
     ring: Ring
     known: Signs
     system: LinearSystem
+    drifts: bool = True
+
+    @cached_property
+    def _shifts(self) -> Polynomials:
+        rows = add(self.system.K, self.system.N)
+        return null_rows(rows, self.known.normalised) if self.drifts else ()
+
+    def exactly(self, exact: bool) -> LinearSystem:
+        """The system, as one without terms of higher order if ``exact``."""
+        return replace(self.system, exact=exact, shifts=self._shifts if exact else ())
 
     @cached_property
     def theory(self) -> Theory:
@@ -245,7 +261,7 @@ class Prepared:
     def at(self, there: Balance) -> LinearSystem:
         """The system with what is known of energy and momenta at parameter values."""
         driven = tuple(i for i in self.system.cyclic if self.coordinates[i] in there.driven)
-        return replace(self.system, conservative=there.law.bounded, driven=driven)
+        return replace(self.exactly(there.exactly_linear), conservative=there.law.bounded, driven=driven)
 
 
 def prepared_parts(
@@ -319,11 +335,20 @@ def _prepared(
         turned = [ring.project(x) for x in turned]
     mass, damping, gyroscopic, stiffness, circulatory = rows
     driven = tuple(i for i in idle if part.coordinates[i] in balance.driven)
-    bounded = balance.law.bounded
     system = LinearSystem(
-        mass, damping, gyroscopic, stiffness, circulatory, bounded, idle, tuple(turned), driven, part.coordinates
+        mass,
+        damping,
+        gyroscopic,
+        stiffness,
+        circulatory,
+        balance.law.bounded,
+        idle,
+        tuple(turned),
+        driven,
+        part.coordinates,
     )
-    return Prepared(part.coordinates, matrices, factor, ring, known, system)
+    made = Prepared(part.coordinates, matrices, factor, ring, known, system, scene.system.linear is None)
+    return replace(made, system=made.exactly(balance.exactly_linear))
 
 
 class ExactVerdicts:

@@ -27,6 +27,10 @@ class Because(Enum):
     MINIMUM_AND_DISSIPATION = auto()
     UNDAMPED_MOTION = auto()  # (coordinates)
     INTEGRALS = auto()  # (which)
+    LINEAR_BOUNDED = auto()
+    LINEAR_SHIFTED = auto()
+    LINEAR_GROWS = auto()
+    LINEAR_GYROSCOPIC = auto()
     HIGHER_MINIMUM = auto()  # (order)
     NO_MINIMUM = auto()  # (order)
     # of what no theorem carries
@@ -53,6 +57,7 @@ class Because(Enum):
     NEAR_BORDER = auto()
     ZERO_ROOT = auto()
     JORDAN_BLOCK = auto()
+    LINEAR_OPEN = auto()
     ZERO_OR_MULTIPLE_BESIDES_TURNED = auto()
     CYCLIC_ZERO_ROOTS = auto()
     NOT_CLOSED = auto()  # (coordinates)

@@ -155,6 +155,12 @@ def differs(label: str, p: Polynomial, known: Signs) -> Requirement:
     return Requirement(label, p, known.nonzero_condition(p), "!=", place=Place.METHOD)
 
 
+def holds_always(p: Polynomial) -> Requirement:
+    """1 > 0, over the ring of p: of a case that requires nothing."""
+    one = p * 0 + 1
+    return Requirement("none", one, Condition("always", one))
+
+
 def unwritten(p: Polynomial) -> Requirement:
     """A condition that is left out."""
     return Requirement("not written out", p, Condition("unwritten", p * 0 + 1))

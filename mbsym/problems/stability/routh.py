@@ -57,6 +57,7 @@ def ignoring_cyclic(system: LinearSystem) -> LinearSystem:
         system.conservative,
         turned=system.turned,
         names=tuple(system.name(i) for i in rest),
+        exact=system.exact,
     )
 
 

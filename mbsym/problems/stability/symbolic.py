@@ -30,6 +30,7 @@ from itertools import combinations
 
 from mbsym.algebra.characteristic import (
     Coefficients,
+    Matrix,
     Polynomial,
     characteristic_polynomial,
     determinant,
@@ -42,6 +43,7 @@ from mbsym.algebra.characteristic import (
 )
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import NoClosedForm, TooLargeError
+from mbsym.algebra.generators import occurring
 from mbsym.algebra.signs import MOST_TERMS, Condition, Signs, conditions
 from mbsym.problems.stability import nonholonomic
 from mbsym.problems.stability.exact import PointVerdict, verdict_at
@@ -51,8 +53,10 @@ from mbsym.problems.stability.linear_form import (
     NonholonomicForm,
     add,
     is_potential,
+    dot,
     is_zero,
     kind_of,
+    null_rows,
 )
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.requirements import (
@@ -66,11 +70,22 @@ from mbsym.problems.stability.requirements import (
     against,
     definiteness,
     differs,
+    holds_always,
     unwritten,
 )
 from mbsym.problems.stability.routh import ignoring_cyclic, momenta_are_constant, only_momenta
-from mbsym.problems.stability.theorems import Fact, Ground, applying
-from mbsym.problems.stability.verdict import Verdict, coasting, concluded, depends, drifting, off_the_leaf, undecided
+from mbsym.problems.stability.theorems import Fact, Ground, applying, implied
+from mbsym.problems.stability.verdict import (
+    Verdict,
+    bounded,
+    coasting,
+    concluded,
+    depends,
+    drifting,
+    exactly,
+    off_the_leaf,
+    undecided,
+)
 
 #: More damped coordinates have too many principal minors.
 MOST_DAMPED = 4
@@ -130,6 +145,15 @@ def analyse(system: LinearSystem, signs: Signs, point: Mapping[int, Fraction] | 
     if system.leaf:
         cases = tuple(replace(case, verdict=off_the_leaf(case.verdict)) for case in found.cases)
         found = replace(found, cases=cases, verdict=off_the_leaf(found.verdict))
+    if system.exact:
+        null = null_rows(add(system.K, system.N), signs.normalised) if found.zero_power else ()
+        calm = len(null) == found.zero_power  # the zero roots have no Jordan blocks
+        cases = tuple(replace(case, verdict=exactly(case.verdict, calm)) for case in found.cases)
+        left_open = found.verdict.because(Because.BORDER)
+        verdict = undecided(Because.LINEAR_OPEN) if left_open else exactly(found.verdict, calm)
+        if verdict.word.open and not occurring(x for matrix in system.matrices for row in matrix for x in row):
+            verdict = verdict_at(system, {}).verdict
+        found = replace(found, cases=cases, verdict=verdict)
     return found if point is None else replace(found, at_point=verdict_at(system, point))
 
 
@@ -203,11 +227,13 @@ def _analyse(system: LinearSystem, signs: Signs) -> Theory:
         turned=turned is not None,
     )
     if system.nonholonomic is not None:
-        cases, reduced = _cases_of_roots(system.nonholonomic, found, known), None
+        cases, reduced = _cases_of_roots(system, system.nonholonomic, found, known), None
     elif zero_power:
         cases, reduced = _cases_with_zero_roots(system, found, known)
     else:
         cases, reduced = _cases(system, found, known), None
+    if system.exact and zero_power and not any(case.verdict.word.stable for case in cases):
+        cases = _cases_of_linear(system, found, known) or cases
     return replace(found, cases=cases, reduced=reduced, verdict=_first_certain(cases, known))
 
 
@@ -360,7 +386,7 @@ def _cases(system: LinearSystem, found: Theory, known: Signs) -> tuple[Case, ...
     if not is_zero(system.N) or found.dissipation is not None:
         if found.variable == "lambda^2":
             why = Reason(Because.IMAGINARY_SIMPLE), Reason(Because.HIGHER_ORDER)
-            return Case(wanted, (), concluded({Fact.BOUNDED}, *why)), *unstable
+            return Case(wanted, (), bounded(facts & {Fact.EXACTLY_LINEAR}, *why)), *unstable
         if found.dissipation is None:
             odd = tuple(differs(f"a{i}", c, known) for i, c in enumerate(found.polynomial) if i % 2 and c != 0)
             return (Case((), odd, concluded({Fact.ROOT_RIGHT}, Reason(Because.RIGHT_BY_TRACE))),)
@@ -386,23 +412,70 @@ def _cases(system: LinearSystem, found: Theory, known: Signs) -> tuple[Case, ...
     return (
         Case(stiff, (), _conservative(minimum)),
         Case(
-            wanted, (), concluded(facts - {Fact.STIFFNESS_POSITIVE} | {Fact.BOUNDED}, Reason(Because.GYROSCOPIC_ONLY))
+            wanted, (), bounded(facts - {Fact.STIFFNESS_POSITIVE}, Reason(Because.GYROSCOPIC_ONLY))
         ),
         Case((), negative[-1:], odd_degree),
         *unstable,
     )
 
 
-def _cases_of_roots(form: NonholonomicForm, found: Theory, known: Signs) -> tuple[Case, ...]:
+def _cases_of_roots(system: LinearSystem, form: NonholonomicForm, found: Theory, known: Signs) -> tuple[Case, ...]:
     """Of a nonholonomic system: by the roots alone."""
     unstable, zeros = _unstable(found.requirements, known), form.zeros(found.zero_power)
     if found.variable == "lambda^2" and found.factors:
         best = undecided(Because.MORE_ZERO_ROOTS, zeros, form.family)
         if zeros in (0, form.family):  # the family's are in the kernel: no blocks
-            best = concluded({Fact.BOUNDED}, *nonholonomic.OPEN)
+            best = bounded(system.facts & {Fact.EXACTLY_LINEAR}, *nonholonomic.OPEN)
         return Case(found.requirements, (), best), *unstable
-    wanted = found.requirements or tuple(replace(r, by_mass=True) for r in found.mass.requirements)
-    return Case(wanted, (), nonholonomic.all_left(form, zeros)), *unstable
+    return Case(_wanted(found), (), nonholonomic.all_left(form, zeros)), *unstable
+
+
+def _cases_of_linear(system: LinearSystem, found: Theory, known: Signs) -> tuple[Case, ...]:
+    """Of exactly linear equations with lambda^z for a factor: by the r null directions of K + N.
+
+    These make r zero roots without Jordan blocks.  Where z = r there are no others, and the zero roots do no harm; else
+    there are blocks wherever K + N has no further null directions.  Where everything may be shifted along the null
+    directions V at constant velocity, (D + G) V = 0, z = 2 r, they are drifts, and nothing but drifts.
+    """
+    unstable = _unstable(found.requirements, known)
+    places, rates = add(system.K, system.N), add(system.D, system.G)
+    null = null_rows(places, known.normalised)
+    if not null:
+        return ()
+    wanted = _wanted(found)
+    decays = found.variable == "lambda" and bool(found.factors)
+    calm = bounded({Fact.EXACTLY_LINEAR})
+    if found.zero_power == len(null):
+        if decays and system.shifts:
+            calm = drifting(_all_left(False), constant_momenta=False)
+        return Case(wanted, (), calm), *unstable
+    still = all(known.normalised(dot(row, v)) == 0 for row in rates for v in null)
+    if system.shifts and still and found.zero_power == 2 * len(null):
+        calm = drifting(_all_left(False) if decays else calm) if found.factors else coasting()
+        return Case(wanted, (), calm), *unstable
+    if system.shifts:
+        return ()
+    return (Case(_of_full_rank(places, len(null), known), (), concluded({Fact.EXACTLY_LINEAR, Fact.JORDAN_BLOCK})),)
+
+
+def _wanted(found: Theory) -> tuple[Requirement, ...]:
+    """What a case requires by which nothing is wrong with the roots: M > 0, or nothing, where they are all zero."""
+    by_mass = tuple(replace(r, by_mass=True) for r in found.mass.requirements)
+    return found.requirements or by_mass or (holds_always(found.removed),)
+
+
+def _of_full_rank(matrix: Matrix, null: int, known: Signs) -> tuple[Requirement, ...]:
+    """A minor of order n - ``null`` that is not zero: the matrix has no further null directions there."""
+    n = len(matrix)
+    size = n - null
+    if not size:
+        return (holds_always(matrix[0][0]),)
+    for rows in combinations(range(n), size):
+        for columns in combinations(range(n), size):
+            minor = known.normalised(determinant([[matrix[i][j] for j in columns] for i in rows]))
+            if minor != 0:
+                return (differs(f"minor of order {size} of K + N", minor, known),)
+    raise ValueError("the rank is smaller")
 
 
 def _semidefinite(system: LinearSystem, known: Signs) -> frozenset[Fact]:
@@ -440,7 +513,7 @@ def _all_left(turned: bool) -> Verdict:
 
 def _conservative(minimum: frozenset[Fact]) -> Verdict:
     """K > 0, D = N = 0."""
-    if Fact.ENERGY_NEVER_GROWS in minimum:
+    if Fact.ENERGY_NEVER_GROWS in implied(minimum):
         return concluded(minimum)
     return concluded(minimum | {Fact.BOUNDED}, Reason(Because.NO_ENERGY), Reason(Because.HIGHER_ORDER))
 

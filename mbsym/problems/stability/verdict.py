@@ -16,6 +16,7 @@ and never gives a stronger verdict than any part has.  Why each ground carries o
   the whole is critical.
 * UNDAMPED: a part that gyroscopic forces stabilise, beside others without dissipation; K of the whole is not positive
   definite if that of one part is not (``INDEFINITE``), and then the whole is stabilised by these forces only.
+* LINEAR, SHIFTED: the solutions of exactly linear equations are those of its parts, side by side.
 * IDLE: nothing but constant momenta, which every other statement survives (they are parameters).
 """
 
@@ -27,7 +28,7 @@ from enum import Enum, auto
 
 from mbsym.problems.stability import sentences
 from mbsym.problems.stability.reasons import Because, Reason
-from mbsym.problems.stability.theorems import LAGRANGE, MALKIN, ROUTH, Fact, Ground, applying, implied, reason_of
+from mbsym.problems.stability.theorems import LAGRANGE, LINEAR, MALKIN, ROUTH, Fact, Ground, applying, implied, reason_of
 from mbsym.problems.stability.word import Word
 
 
@@ -74,7 +75,9 @@ LAW = (
     Row(Word.ASYMPTOTIC_BUT_TURNED, Ground.DECAYS, allowed=_SOUND),
     Row(Word.STABLE, Ground.ENERGY, allowed=frozenset()),
     Row(Word.STABLE, Ground.ENERGY, wanted=_FAMILY, allowed=_FAMILY),  # of a leaf, beside parts that decay
+    Row(Word.STABLE, Ground.LINEAR, allowed=_DRIFT | _FAMILY),  # what may drift by itself stays near, too
     Row(Word.STABLE_BUT_CYCLIC, Ground.ENERGY, wanted=_DRIFT, allowed=_DRIFT),
+    Row(Word.STABLE_BUT_CYCLIC, Ground.SHIFTED, wanted=_DRIFT, allowed=_DRIFT | _FAMILY),
     Row(Word.GYROSCOPIC, Ground.UNDAMPED, wanted=frozenset({Flaw.INDEFINITE})),
     Row(Word.CRITICAL),
 )
@@ -208,13 +211,44 @@ def concluded(shown: Set[Fact], *reasons: Reason, why_not: Because = Because.BOR
         flaws.add(Flaw.STEADY)
     if flaws:  # the energy of a free spin has its minimum at given angular momentum only
         grounds = {ground: names for ground, names in grounds.items() if ground is Ground.DECAYS}
-    if Ground.UNDAMPED in grounds and Ground.ENERGY not in grounds and Fact.STIFFNESS_POSITIVE not in every:
+    positive = Fact.STIFFNESS_POSITIVE in every or Ground.LINEAR in grounds
+    if Ground.UNDAMPED in grounds and Ground.ENERGY not in grounds and not positive:
         flaws.add(Flaw.INDEFINITE)
     row = row_of({*grounds}, flaws)
     theorem = found.get(row.ground)
     told = reasons or ((reason_of(theorem),) if theorem is not None else ())
     names = () if row.ground is None else grounds[row.ground]
     return Verdict(row.word, names, told, tuple(grounds.items()), frozenset(flaws))
+
+
+def bounded(shown: Set[Fact], *reasons: Reason) -> Verdict:
+    """The verdict where the first approximation is stable; ``reasons`` say what that leaves open.
+
+    Nothing is left open where there are no terms of higher order.
+    """
+    every = implied(shown)
+    if Fact.EXACTLY_LINEAR not in every:
+        return concluded(shown | {Fact.BOUNDED}, *reasons)
+    told = [Reason(Because.LINEAR_BOUNDED)]
+    if every >= {Fact.UNDAMPED, Fact.POTENTIAL, Fact.STIFFNESS_NONSINGULAR, Fact.STIFFNESS_NEGATIVE_SOMEWHERE}:
+        told.append(Reason(Because.LINEAR_GYROSCOPIC))
+    return concluded(shown | {Fact.BOUNDED}, *told)
+
+
+def exactly(verdict: Verdict, calm: bool = False) -> Verdict:
+    """A verdict on exactly linear equations: whatever makes them stable, their solutions are bounded.
+
+    ``calm``: those along cyclic coordinates are, too.
+    """
+    if not {Ground.DECAYS, Ground.ENERGY, Ground.LINEAR} & {*verdict.laid}:
+        return verdict
+    grounds = {Ground.SHIFTED: (LINEAR,), **verdict.laid}
+    if calm or Flaw.CYCLIC not in verdict.flawed:
+        grounds.setdefault(Ground.LINEAR, (LINEAR,))
+    row = row_of({*grounds}, verdict.flawed)
+    if row.word == verdict.word:
+        return replace(verdict, grounds=tuple(grounds.items()))
+    return Verdict(row.word, (LINEAR,), (Reason(Because.LINEAR_BOUNDED),), tuple(grounds.items()), verdict.flawed)
 
 
 def drifting(verdict: Verdict, constant_momenta: bool = True) -> Verdict:
@@ -224,6 +258,8 @@ def drifting(verdict: Verdict, constant_momenta: bool = True) -> Verdict:
     """
     flaws = verdict.flawed | {Flaw.CYCLIC}
     grounds = {ground: _at_constant_momenta(names) for ground, names in verdict.laid.items()}
+    if Ground.LINEAR in grounds:  # bounded is what is left when shifts are not counted
+        grounds[Ground.SHIFTED] = grounds.pop(Ground.LINEAR)
     decays = constant_momenta and Ground.DECAYS in verdict.laid
     drift = Because.DRIFT_AT_GIVEN_MOMENTA if decays else Because.DRIFT
     row = row_of({*grounds}, flaws)
@@ -233,7 +269,10 @@ def drifting(verdict: Verdict, constant_momenta: bool = True) -> Verdict:
 
 
 #: How reasons read where cyclic coordinates have zero roots, and where momenta of theirs stay different.
-_BESIDE_ZERO_ROOTS = {Reason(Because.LEFT): Reason(Because.LEFT_BUT_CYCLIC)}
+_BESIDE_ZERO_ROOTS = {
+    Reason(Because.LEFT): Reason(Because.LEFT_BUT_CYCLIC),
+    Reason(Because.LINEAR_BOUNDED): Reason(Because.LINEAR_SHIFTED),
+}
 _BESIDE_CONSTANT_MOMENTA = _BESIDE_ZERO_ROOTS | {Reason(Because.DRIFT): Reason(Because.DRIFT_AT_GIVEN_MOMENTA)}
 
 
@@ -263,7 +302,7 @@ def off_the_leaf(verdict: Verdict) -> Verdict:
 
 def coasting() -> Verdict:
     """All coordinates are cyclic and nothing acts on them: M q'' = 0."""
-    every = tuple((ground, ()) for ground in Ground)
+    every = tuple((ground, ()) for ground in Ground if ground is not Ground.LINEAR)
     return Verdict(Word.STABLE_BUT_CYCLIC, (), (Reason(Because.COASTING),), every, frozenset({Flaw.CYCLIC}))
 
 
@@ -313,6 +352,8 @@ def _reasons(parts: tuple[Verdict, ...], row: Row) -> tuple[Reason, ...]:
         found = {reason for part in told for reason in part.reasons}
     elif row.ground is None:
         found = {Reason(Because.UNLIKE_PARTS)}
+    elif row.ground in (Ground.LINEAR, Ground.SHIFTED):
+        found = {Reason(Because.LINEAR_BOUNDED if row.ground is Ground.LINEAR else Because.LINEAR_SHIFTED)}
     elif row.ground is Ground.DECAYS and len({part.word for part in moving}) == 1:
         found = {reason for part in moving for reason in part.reasons}
     else:
