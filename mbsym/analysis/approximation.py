@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.analysis.regular import regular_at_zero
@@ -62,7 +63,7 @@ def _kept(analysis: Analysis) -> int:
     """How many relations the velocity constraints keep if all are proved to be integrable, without time; else 0."""
     tied = analysis.optional("constraints")
     known = None if tied is None else tied.integrability
-    if known is None or known.rheonomic or known.word != "holonomic" or known.sureness.value != "proved":
+    if known is None or known.rheonomic or known.word != "holonomic" or known.certainty is not Certainty.PROVED:
         return 0
     return int(known.kept)
 

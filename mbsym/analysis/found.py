@@ -7,10 +7,11 @@ from contextlib import suppress
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
 from mbsym.analysis.polynomial import DEGREE, Setting, integrals_of, setting, with_known
 from mbsym.analysis.symmetric import symmetries_of
-from mbsym.problems.integrals import PROVED, Integral
+from mbsym.problems.integrals import Integral
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
@@ -61,7 +62,7 @@ def _of_symmetries(symmetries: Symmetries) -> list[Integral]:
     found = []
     for one in symmetries.new:
         along = ", ".join(name for name, _ in one.directions) or "time"
-        found.append(Integral(f"integral of a symmetry ({along})", SYMMETRY, along, one.integral, PROVED))
+        found.append(Integral(f"integral of a symmetry ({along})", SYMMETRY, along, one.integral, Certainty.PROVED))
     return found
 
 
@@ -74,5 +75,5 @@ def _polynomials(there: Setting, found: PolynomialIntegrals) -> list[Integral]:
             number = count[one.weight] = count.get(one.weight, 0) + 1
             which = str(one.weight) if number == 1 else f"{one.weight} ({number})"
             formula = there.formula(one.polynomial)
-            listed.append(Integral(f"integral of weight {which}", POLYNOMIAL, which, formula, PROVED))
+            listed.append(Integral(f"integral of weight {which}", POLYNOMIAL, which, formula, Certainty.PROVED))
     return listed

@@ -7,11 +7,11 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.problems.claims.forms import in_parameters
 from mbsym.problems.claims.symbols import Symbols
 from mbsym.problems.integrals import ENERGY
-from mbsym.problems.polynomial_integrals.result import Sure
 
 #: Of Lagrange's equations: coordinates, and variables of their field, beyond which splitting takes minutes.
 MOST_ANGLES, MOST_IN_ANGLES = 4, 7
@@ -103,7 +103,7 @@ def _known(analysis: Analysis, there: Setting) -> list[tuple[str, Any]]:
                     known.append((claim.place or f"claim {k + 1}", top))
     with suppress(Failure):
         most = 2 * max(polynomial.weights_of(there).weights)
-        new = [one for one in polynomial.integrals_of(there, most).new if one.sure is Sure.PROVED]
+        new = [one for one in polynomial.integrals_of(there, most).new if one.certainty is Certainty.PROVED]
         for k, one in enumerate(new, 1):
             known.append((f"further integral {k}" if len(new) > 1 else "further integral", one.polynomial))
     order = sorted(range(len(known)), key=lambda k: (known[k][0] not in energies, -_degree(field, known[k][1]), k))

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from flint import fmpq
 
 from mbsym.algebra.base import Lowering
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.signs import Signs
@@ -23,7 +24,7 @@ from mbsym.mechanics.states import Oracles
 from mbsym.model.speeds import Quaternion, UnitVector
 from mbsym.problems import perturbation
 from mbsym.problems.angle_field import in_angles
-from mbsym.problems.integrals import PROVED, Integral
+from mbsym.problems.integrals import Integral
 from mbsym.problems.polynomial_integrals.gradings import Grading, grading
 from mbsym.problems.polynomial_integrals.levels import levels, on_level
 from mbsym.problems.polynomial_integrals.result import Cases, PolynomialIntegrals, Polynomials
@@ -251,13 +252,13 @@ def check(analysis: Analysis) -> Check | None:
     if found is None:
         return None
     new = [
-        Integral(f"integral of weight {one.weight}", "polynomial", "", formula, PROVED)
+        Integral(f"integral of weight {one.weight}", "polynomial", "", formula, Certainty.PROVED)
         for one, formula in zip(found.found.generators, found.formulas, strict=True)
         if one.is_new
     ]
     if found.symmetries is not None:
         new += [
-            Integral(f"integral of symmetry {k}", "symmetry", "", one.integral, PROVED)
+            Integral(f"integral of symmetry {k}", "symmetry", "", one.integral, Certainty.PROVED)
             for k, one in enumerate(found.symmetries.symmetries, start=1)
             if not one.name
         ]

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.derivative import gradient
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import Failure
@@ -15,7 +16,7 @@ from mbsym.model.quantities import integral_unit
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.kernels.llvm import kernels
-from mbsym.problems.integrals import PROVED, Integral, identifiers
+from mbsym.problems.integrals import Integral, identifiers
 
 
 @dataclass(frozen=True)
@@ -56,7 +57,7 @@ def invariants(dynamics: Dynamics, integrals: Sequence[Integral], known: Sequenc
         parts = (program.product(slope, velocity) for slope, velocity in zip(slopes, velocities, strict=True))
         code = Code(program, dynamics.inputs, (node, *parts))
         unit = integral_unit(system, integral.kind, integral.of)
-        found.append(Invariant(integral.name, column, integral.status == PROVED, code, unit))
+        found.append(Invariant(integral.name, column, integral.status is Certainty.PROVED, code, unit))
     return tuple(found)
 
 

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
 from mbsym.model.loads import EXACT
 from mbsym.numerics.dynamics import Dynamics
@@ -23,7 +24,6 @@ from mbsym.numerics.methods.kept import compiled_kernel
 from mbsym.numerics.model_error import ModelEstimate, confirmed, model_error
 from mbsym.numerics.models import Model, droppable, faithful, modelled, orders, scenario_of
 from mbsym.numerics.parametrised import Parametrised
-from mbsym.numerics.plan import ESTIMATED, MEASURED, PROVED
 from mbsym.numerics.rows import Rows, rows
 from mbsym.numerics.scenario import Scenario
 
@@ -51,7 +51,7 @@ class Tried:
     operations: int
     ratio: float
     errors: Any
-    how: str
+    how: Certainty
     why: str = ""
     estimate: ModelEstimate | None = None
 
@@ -114,7 +114,7 @@ def richest(scenario: Scenario) -> tuple[Model, Dynamics, str]:
 def model_settled(scene: Scene, model: Model) -> ModelChoice:
     """A model that somebody settled, with its error, however large.  Raises Failure where it has no program."""
     none = np.zeros(len(scene.targets))
-    whole = Tried(scene.model, scene.rich.right_hand_side.operations, 0.0, none, PROVED)
+    whole = Tried(scene.model, scene.rich.right_hand_side.operations, 0.0, none, Certainty.PROVED)
     if model == scene.model:
         return ModelChoice(whole, scene.rich, (whole,), scene.model)
     dynamics = modelled(scene.scenario, model)
@@ -126,7 +126,7 @@ def model_chosen(scene: Scene, watch: Callable[[str], None] = lambda text: None)
     """The cheapest model that is good enough; the faithful one where none is."""
     operations = scene.rich.right_hand_side.operations
     none = np.zeros(len(scene.targets))
-    whole = Tried(scene.model, operations, 0.0, none, PROVED)
+    whole = Tried(scene.model, operations, 0.0, none, Certainty.PROVED)
     taken, dynamics, tried = whole, scene.rich, [whole]
     truth = _Truth(scene)
     for model in _candidates(scene):
@@ -193,7 +193,7 @@ def _held_against(scene: Scene, model: Model, truth: _Truth) -> tuple[Tried, Dyn
     naive = _naive(scene, dynamics)
     if not naive <= HOPELESS * PART:
         errors = np.full(len(scene.targets), inf)
-        return Tried(model, operations, naive, errors, ESTIMATED, "far off by its residual"), dynamics
+        return Tried(model, operations, naive, errors, Certainty.ESTIMATED, "far off by its residual"), dynamics
     return _estimated(scene, model, dynamics, truth), dynamics
 
 
@@ -202,15 +202,18 @@ def _estimated(scene: Scene, model: Model, dynamics: Dynamics, truth: _Truth) ->
     operations = dynamics.right_hand_side.operations
     unit = float(np.min(scene.targets))
     found = model_error(dynamics, scene.rich, scene.method, scene.setting, scene.times, scene.scale[:-1], unit)
-    rerun, how, why = truth.states(), ESTIMATED, ""
+    rerun, how, why = truth.states(), Certainty.ESTIMATED, ""
     reached = found.states.shape[1] == len(scene.times)
     if rerun is not None and reached:
         trusted = found.trusted
         found = confirmed(found, rerun, scene.scale[:-1], 0.1 * unit)
-        how, why = MEASURED, "" if found.confirmed or not trusted else "a rerun with the richer model says otherwise"
+        how, why = (
+            Certainty.MEASURED,
+            "" if found.confirmed or not trusted else "a rerun with the richer model says otherwise",
+        )
     elif not found.trusted:
         errors = np.full(len(scene.targets), inf)
-        return Tried(model, operations, inf, errors, ESTIMATED, found.trouble, found)
+        return Tried(model, operations, inf, errors, Certainty.ESTIMATED, found.trouble, found)
     errors = np.append(found.by_quantity, _energy_error(scene, dynamics, found))
     asked = np.isfinite(scene.targets)
     ratio = float(np.max(errors[asked] / scene.targets[asked]))

@@ -2,24 +2,25 @@
 
     error of a quantity  <=  model + integration + arithmetic,      relative to its size in the whole motion
 
-Each share says how it is known.  ``MEASURED`` is the difference from a better run over the whole interval, doubled;
-``ESTIMATED`` comes of the equation of the difference, or of a scaling; ``PROVED`` of a theorem; ``TOGETHER`` means that
-it is part of another share, and was not told apart.
+Each share says how surely it is known: measured is the difference from a better run over the whole interval, doubled;
+estimated comes of the equation of the difference, or of a scaling; proved of a theorem; None of a part of another share
+that was not told apart.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import reduce
 from math import inf
+from operator import and_
 from typing import Any
 
 import numpy as np
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.models import Model
-
-PROVED, MEASURED, ESTIMATED, TOGETHER = "proved", "measured", "estimated", "together"
 
 MODEL, INTEGRATION, ARITHMETIC = "model", "integration", "arithmetic"
 
@@ -78,7 +79,7 @@ class Item:
     chosen: str
     why: str
     error: float | None = None
-    how: str = ESTIMATED
+    how: Certainty = Certainty.ESTIMATED
     cost: float | None = None
     unit: str = OPERATIONS
     refused: tuple[Refused, ...] = ()
@@ -86,11 +87,11 @@ class Item:
 
 @dataclass(frozen=True)
 class Share:
-    """A part of the bound; ``how`` it is known."""
+    """A part of the bound; ``how`` it is known, None where another share holds it."""
 
     name: str
     error: float
-    how: str
+    how: Certainty | None
 
 
 @dataclass(frozen=True)
@@ -120,11 +121,10 @@ class Bound:
         return self.total <= self.target
 
     @property
-    def how(self) -> str:
+    def how(self) -> Certainty:
         """The weakest of the ways in which its shares are known."""
-        weakest = (ESTIMATED, MEASURED, PROVED)
-        known = [share.how for share in self.shares if share.how != TOGETHER and share.error > 0]
-        return next((how for how in weakest if how in known), PROVED)
+        known = (share.how for share in self.shares if share.how is not None and share.error > 0)
+        return reduce(and_, known, Certainty.PROVED)
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64
 from mbsym.numerics.kernels.llvm import available
 from mbsym.numerics.methods.interface import Breakdown, Unusable
@@ -15,12 +16,8 @@ from mbsym.numerics.pilot import Bench, Trial
 from mbsym.numerics.plan import (
     ARITHMETIC,
     ENERGY,
-    ESTIMATED,
     INTEGRATION,
-    MEASURED,
     MODEL,
-    PROVED,
-    TOGETHER,
     Accuracy,
     Bound,
     Share,
@@ -35,6 +32,10 @@ GOAL = 0.8 / DOUBLED
 
 #: The other arithmetic is tried where the run takes fewer seconds.
 CHEAP = 5.0
+
+
+#: (name, errors (2n + 1,), how surely they are known; None: a part of another share), in the order in which they add.
+Shares = tuple[tuple[str, Any, Certainty | None], ...]
 
 
 def worth_of(scene: Scene, taken: Tried) -> tuple[Any, float, str]:
@@ -56,25 +57,25 @@ def worth_of(scene: Scene, taken: Tried) -> tuple[Any, float, str]:
     return worth, GOAL, text
 
 
-def shares_of(bench: Bench, found: Trial, stick: Yardstick, model: ModelChoice) -> tuple[tuple[str, Any, str], ...]:
+def shares_of(bench: Bench, found: Trial, stick: Yardstick, model: ModelChoice) -> Shares:
     """(name, errors (2n + 1,), how) of model, integration, arithmetic."""
-    how = PROVED if not np.any(model.taken.errors) else model.taken.how
+    how = Certainty.PROVED if not np.any(model.taken.errors) else model.taken.how
     known = stick.known * np.where(np.isfinite(bench.targets), bench.targets, 0.0)
     measured = DOUBLED * found.errors + known
-    arithmetic, way = np.zeros_like(measured), TOGETHER
+    arithmetic, way = np.zeros_like(measured), None  # a part of the integration's share
     other = {FLOAT64: EXTENDED, FLOAT32: FLOAT64}.get(found.scalar)
     cheap = found.seconds < CHEAP and other is not None
     if cheap and other in found.method.traits.scalars and available(str(other)):
         try:
             twin = bench.run(found.method, str(other), found.setting)
             _, apart = bench.compared(_again(bench, found), twin.states)
-            arithmetic, way = np.minimum(DOUBLED * apart, measured), MEASURED
+            arithmetic, way = np.minimum(DOUBLED * apart, measured), Certainty.MEASURED
             measured = np.maximum(measured - arithmetic, DOUBLED * twin.errors)
         except (Breakdown, Unusable):
             pass
     return (
         (MODEL, RAISED * model.taken.errors, how),
-        (INTEGRATION, measured, MEASURED if isfinite(stick.known) else ESTIMATED),
+        (INTEGRATION, measured, Certainty.MEASURED if isfinite(stick.known) else Certainty.ESTIMATED),
         (ARITHMETIC, arithmetic, way),
     )
 
@@ -86,7 +87,7 @@ def _again(bench: Bench, found: Trial) -> Any:
     return bench.run(found.method, found.scalar, found.setting).states
 
 
-def bounds_of(scene: Scene, accuracy: Accuracy, shares: tuple[tuple[str, Any, str], ...]) -> tuple[Bound, ...]:
+def bounds_of(scene: Scene, accuracy: Accuracy, shares: Shares) -> tuple[Bound, ...]:
     """A bound for every quantity that was named, and for the worst of the others."""
     names = (*scene.rich.system.coordinates, *scene.rich.system.velocities, ENERGY)
     total = sum(errors for _, errors, _ in shares)

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import isfinite
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.model.loads import GRAVITY_ORDERS
 from mbsym.model.welded import lumped
 from mbsym.numerics.choice import Choice
@@ -26,7 +27,7 @@ from mbsym.numerics.kinds import (
 from mbsym.numerics.model_choice import ModelChoice, Scene, Tried
 from mbsym.numerics.models import Model, described, parted
 from mbsym.numerics.pilot import WASTEFUL, Bench, Trial
-from mbsym.numerics.plan import MEASURED, PROVED, SECONDS, Item, Refused
+from mbsym.numerics.plan import SECONDS, Item, Refused
 from mbsym.numerics.reduced import Reduced
 from mbsym.numerics.separable import Part
 from mbsym.numerics.yardstick import Yardstick
@@ -108,20 +109,22 @@ def _resting(settled: Settled) -> Iterator[Item]:
     if found is not None:
         before, after = found.operations
         why = f"{after} operations a right-hand side instead of {before}"
-        yield Item(RESTING, found.names, "not integrated", why, 0.0, PROVED, after)
+        yield Item(RESTING, found.names, "not integrated", why, 0.0, Certainty.PROVED, after)
 
 
 def _parts(settled: Settled) -> Iterator[Item]:
     if settled.parts and not settled.found.method.traits.fixed:
         names = tuple(" ".join(part.names) for part in settled.parts)
-        yield Item(PARTS, names, "each by itself", "nothing links them in these equations", 0.0, PROVED)
+        yield Item(PARTS, names, "each by itself", "nothing links them in these equations", 0.0, Certainty.PROVED)
 
 
 def _welded(settled: Settled) -> Iterator[Item]:
     found = lumped(settled.scene.scenario.system)
     if found and WELDED not in settled.pinned and not settled.model.taken.model.linear:
         carriers = ", ".join(dict.fromkeys(found.values()))
-        yield Item(WELDED, tuple(found), f"one with {carriers}", "no coordinate moves them against it", 0.0, PROVED)
+        yield Item(
+            WELDED, tuple(found), f"one with {carriers}", "no coordinate moves them against it", 0.0, Certainty.PROVED
+        )
 
 
 def _settings(settled: Settled) -> Iterator[Item]:
@@ -134,14 +137,16 @@ def _settings(settled: Settled) -> Iterator[Item]:
         why = f"as asked for{_fitting(found)}"
     if settled.choice.method.traits.implicit and METHOD not in pinned:
         why += f"; motions die out at rates up to {settled.choice.decay:.3g}"
-    yield Item(METHOD, (found.method.traits.title,), name, why, None, MEASURED, found.seconds, SECONDS, others)
+    yield Item(
+        METHOD, (found.method.traits.title,), name, why, None, Certainty.MEASURED, found.seconds, SECONDS, others
+    )
     why = "as asked for" if FINENESS in pinned else "the coarsest tried that is good enough"
     word = f"tolerance {found.fineness:g}" if found.setting.step is None else f"step {found.fineness:g}"
-    yield Item(FINENESS, (), word, why, None, MEASURED, found.seconds, SECONDS)
+    yield Item(FINENESS, (), word, why, None, Certainty.MEASURED, found.seconds, SECONDS)
     refused = tuple(_other_scalars(settled))
     why = "as asked for" if SCALAR in pinned else _why_scalar(found)
-    yield Item(SCALAR, (), found.scalar, why, None, MEASURED, found.seconds, SECONDS, refused)
-    yield Item(KERNEL, (), "scalar", "one motion: nothing to lay side by side", 0.0, PROVED)
+    yield Item(SCALAR, (), found.scalar, why, None, Certainty.MEASURED, found.seconds, SECONDS, refused)
+    yield Item(KERNEL, (), "scalar", "one motion: nothing to lay side by side", 0.0, Certainty.PROVED)
 
 
 def _fitting(found: Trial) -> str:

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
 from mbsym.mechanics.states import SEED
 from mbsym.numerics.dynamics import Dynamics
@@ -23,7 +24,7 @@ from mbsym.numerics.methods.interface import Breakdown, Method, Piece, Run, Sett
 from mbsym.numerics.methods.kept import compiled_kernel
 from mbsym.numerics.methods.passed import Passed, met_by
 from mbsym.numerics.methods.stages import exact_number
-from mbsym.numerics.reduction import PROVED, Reduction, resting
+from mbsym.numerics.reduction import Reduction, resting
 
 #: A coordinate that is accelerated by more than this part of the greatest acceleration is pushed.
 PUSHED = 1e-7
@@ -48,7 +49,7 @@ class Reduced:
     @property
     def proved(self) -> bool:
         """Whether it is a theorem that they rest; only then may they be taken out."""
-        return self.reduction.how == PROVED
+        return self.reduction.how is Certainty.PROVED
 
     @property
     def operations(self) -> tuple[int, int]:

@@ -15,6 +15,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.program import Node
 from mbsym.algebra.ring import Ring
@@ -28,8 +29,6 @@ from mbsym.model.system import System, velocity_name
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.specialise import Specialised, substituted
 
-PROVED, VERIFIED = "proved", "verified numerically"
-
 #: So many random exact states must agree where zero is not decided in the ring.
 STATES = 3
 
@@ -39,7 +38,7 @@ class Reduction:
     """``values`` of the coordinates that rest, how that is known, and the scenario without them."""
 
     values: Mapping[str, Expression]
-    how: str
+    how: Certainty
     scenario: Scenario
 
     def expanded(self, whole: Scenario) -> tuple[tuple[int, ...], tuple[Fraction, ...]]:
@@ -63,7 +62,7 @@ def resting(scenario: Scenario, ring: Ring | None = None, among: Collection[str]
         found = programs(system, ring if ring is not None else ring_of(system))
     except Failure:
         return None
-    how = PROVED
+    how = Certainty.PROVED
     while candidates:
         pushed, how = _pushed(scenario, found, candidates)
         if not pushed:
@@ -113,7 +112,7 @@ class _Held(Specialised):
         return total + self.number(form.turns) * self.input("pi") if form.turns else total
 
 
-def _pushed(scenario: Scenario, found: Programs, candidates: Mapping[str, Expression]) -> tuple[set[str], str]:
+def _pushed(scenario: Scenario, found: Programs, candidates: Mapping[str, Expression]) -> tuple[set[str], Certainty]:
     """The candidates whose forcing or coupling does not vanish, and how zero was decided."""
     system = scenario.system
     forms = {name: form for name, value in candidates.items() if (form := linear_form(value)) is not None}
@@ -136,14 +135,14 @@ def _pushed(scenario: Scenario, found: Programs, candidates: Mapping[str, Expres
         if not fresh.vanishes(node)
     ]
     if not left:
-        return pushed, PROVED
+        return pushed, Certainty.PROVED
     ring = ring_of(held(system, candidates))
     try:
         values = fresh.evaluate([node for _, node in left], ring_environment(held(system, candidates), ring), ring)
-        how = PROVED
+        how = Certainty.PROVED
         moved = {name for (name, _), value in zip(left, values, strict=True) if not ring.reduce(value).is_zero()}
     except NOT_THERE:
-        how = VERIFIED
+        how = Certainty.VERIFIED
         moved = _moved_somewhere(system, candidates, fresh, left, ring)
     return pushed | moved, how
 

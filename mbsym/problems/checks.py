@@ -21,6 +21,7 @@ from typing import Any
 from flint import arb, arb_mat, ctx, fmpq_mat
 
 from mbsym.algebra.base import Scalar
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NotRational, SingularPoint
 from mbsym.algebra.ring import Ring
@@ -36,7 +37,7 @@ from mbsym.problems.equations import Equations
 from mbsym.problems.kinematics import BodyKinematics, Kinematics
 from mbsym.problems.linearisation import Linearisation
 
-EXACT, NUMERICAL, UNDECIDED, FAILED = "exact", "verified numerically", "undecided", "FAILED"
+EXACT, NUMERICAL, UNDECIDED, FAILED = "exact", Certainty.VERIFIED, Certainty.UNDECIDED, "FAILED"
 
 #: How many states; each is enough to catch a slip with probability close to one.
 STATES = 3

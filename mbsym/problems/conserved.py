@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.mechanics.kinematics import Scene
@@ -20,7 +21,7 @@ from mbsym.mechanics.symmetry import is_free_about_the_origin
 from mbsym.problems import equations as lagrange
 from mbsym.problems import integrals as first_integrals
 from mbsym.problems.energy import Energy
-from mbsym.problems.integrals import ENERGY, PROVED, Integral
+from mbsym.problems.integrals import ENERGY, Integral
 from mbsym.problems.stability.bundle import Element, NumberField, definite_combination
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.theorems import Fact
@@ -106,7 +107,7 @@ def of_integrals(scene: Scene, known: Sequence[Integral], left_out: Sequence[str
     ring, system = scene.ring, scene.system
     hidden = [*left_out, *(item.name for item in system.prescribed), "t"]
     free = is_free_about_the_origin(system)
-    proved = [item for item in known if item.status == PROVED or (free and item.kind == "angular momentum")]
+    proved = [item for item in known if item.status is Certainty.PROVED or (free and item.kind == "angular momentum")]
     found = [(item.name, item.formula.polynomial) for item in proved]
     for kind in ("linear momentum", "angular momentum"):
         parts = [item for item in proved if item.kind == kind and ring.dependencies(item.formula.polynomial, hidden)]

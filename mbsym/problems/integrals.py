@@ -34,6 +34,7 @@ from typing import Any
 
 from flint import arb, arb_mat, ctx, fmpq_mat
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Failure, NotRational
 from mbsym.algebra.ring import Polynomial, Ring
@@ -49,8 +50,6 @@ from mbsym.mechanics.variables import expressions
 from mbsym.model.system import INERTIAL, System, acceleration_name
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations, convective_rate
-
-PROVED, NUMERICAL = "proved", "verified numerically"
 
 #: T_2 - T_0 - U.  The energy T - U is the same where nothing moves as prescribed.
 ENERGY = "generalised energy"
@@ -71,7 +70,7 @@ class Integral(Shown):
     kind: str
     of: str
     formula: Formula
-    status: str
+    status: Certainty
 
 
 def identifiers(found: Iterable[Integral], taken: Iterable[str] = ()) -> list[str]:
@@ -149,7 +148,7 @@ def _generalised_energy(scene: Scene, energy: Energy, equations: Equations) -> I
     for i, speed in enumerate(speeds):
         multiplied = multiplied + speed * residual(scene, equations, i)
     if ring.is_zero(total_rate(scene, integral) - multiplied):
-        yield Integral(ENERGY, ENERGY, "time", Formula(ring, integral), PROVED)
+        yield Integral(ENERGY, ENERGY, "time", Formula(ring, integral), Certainty.PROVED)
 
 
 def _cyclic_momenta(scene: Scene, energy: Energy, equations: Equations) -> Iterator[Integral]:
@@ -157,7 +156,7 @@ def _cyclic_momenta(scene: Scene, energy: Energy, equations: Equations) -> Itera
     for i, name in enumerate(scene.system.coordinates):
         momentum = ring.velocity_derivative(energy.kinetic_energy.polynomial, name)
         if name in energy.cyclic and ring.is_zero(total_rate(scene, momentum) - residual(scene, equations, i)):
-            yield Integral(f"momentum of {name}", "cyclic momentum", name, Formula(ring, momentum), PROVED)
+            yield Integral(f"momentum of {name}", "cyclic momentum", name, Formula(ring, momentum), Certainty.PROVED)
 
 
 # --- momenta of the whole system ---
@@ -201,8 +200,8 @@ def _momenta(
             wanted = (kind, axis) in conserved and _is_new(formula, others)
             if wanted and is_conserved(scene, equations, formula):
                 name = f"{kind} about axis {axis}" if kind == "angular momentum" else f"{kind} along axis {axis}"
-                status = PROVED if is_proved(scene, equations, formula) else NUMERICAL
-                if status == NUMERICAL and scene.ring.kinked:
+                status = Certainty.PROVED if is_proved(scene, equations, formula) else Certainty.VERIFIED
+                if status is Certainty.VERIFIED and scene.ring.kinked:
                     continue  # a force that comes late vanishes at every state before
                 found.append(Integral(name, kind, str(axis), Formula(scene.ring, formula), status))
     except Failure:

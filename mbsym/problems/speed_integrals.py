@@ -26,6 +26,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.matrices import determinant
 from mbsym.algebra.ring import Polynomial
@@ -33,7 +34,7 @@ from mbsym.formulas.formula import Formula
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.problems.energy import Energy
-from mbsym.problems.integrals import ENERGY, PROVED, Integral, whole_momenta
+from mbsym.problems.integrals import ENERGY, Integral, whole_momenta
 from mbsym.problems.speeds import SpeedEquations, residual
 
 GEOMETRIC, NORM, SPEED_MOMENTUM = "unit vectors", "quaternion", "speed momentum"
@@ -144,7 +145,7 @@ def candidates(form: SpeedForm, scene: Scene, energy: Energy, equations: SpeedEq
 
 
 def _integral(form: SpeedForm, name: str, kind: str, of: str, x: Polynomial) -> Integral:
-    return Integral(name, kind, of, Formula(form.ring, form.ring.reduce(x)), PROVED)
+    return Integral(name, kind, of, Formula(form.ring, form.ring.reduce(x)), Certainty.PROVED)
 
 
 def is_new(form: SpeedForm, x: Polynomial, known: Sequence[Polynomial]) -> bool:

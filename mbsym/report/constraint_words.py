@@ -8,9 +8,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.constraints.rows import RowName
-from mbsym.problems.constraints import Constraints, Integrability, Sureness
+from mbsym.problems.constraints import Constraints, Integrability
 from mbsym.problems.reduction import Reduction
 from mbsym.report.said import Said as Said
 from mbsym.report.said import filled as filled
@@ -43,7 +44,7 @@ def sentences(found: Constraints, write: Writer) -> Iterator[Said]:
             {
                 "row": label(redundant.name, write),
                 "others": ", ".join(label(one, write) for one in redundant.from_rows),
-                "sure": write.word(redundant.sureness.value),
+                "sure": write.word(redundant.certainty.value),
             },
         )
     if found.parameter_conditions:
@@ -113,9 +114,9 @@ def reduction_sentences(found: Reduction, write: Writer) -> Iterator[Said]:
 
 
 def _integrable(found: Integrability, dimension: int, write: Writer) -> Iterator[Said]:
-    """Frobenius' verdict; its word falls with its sureness."""
+    """Frobenius' verdict; its word falls with its certainty."""
     growth = ", ".join(map(str, found.growth))
-    sure = write.word(found.sureness.value)
+    sure = write.word(found.certainty.value)
     if found.kept is None:
         yield "Whether the velocity constraints are integrable is undecided: the formulas outgrew their budget.", {}
         return
@@ -142,7 +143,7 @@ def _integrable(found: Integrability, dimension: int, write: Writer) -> Iterator
         yield (
             "The system is nonholonomic ([[sure]]): no relation between the coordinates follows from the velocity "
             "constraints; the fields and their Lie brackets span [[growth]] dimensions.",
-            {"sure": write.word(Sureness.PROVED.value), "growth": growth},
+            {"sure": write.word(Certainty.PROVED.value), "growth": growth},
         )
 
 

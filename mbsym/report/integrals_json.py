@@ -72,7 +72,7 @@ def integrals_data(there: Setting, found: PolynomialIntegrals) -> dict[str, Any]
                 "new": one.is_new,
                 "formula": str(there.formula(one.polynomial)),
                 "independent": one.independent,
-                "independence": one.sure.value,
+                "independence": one.certainty.value,
             }
             for one in found.generators
         ],

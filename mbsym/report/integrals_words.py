@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
-from mbsym.problems.polynomial_integrals import FUNCTION, Case, Generator, OnLevel, PolynomialIntegrals, Sure
+from mbsym.algebra.certainty import Certainty
+from mbsym.problems.polynomial_integrals import FUNCTION, Case, Generator, OnLevel, PolynomialIntegrals
 from mbsym.report.said import Said
 
 #: One integral of a list, and one that holds where another is zero.
@@ -81,7 +82,7 @@ def sentences(found: PolynomialIntegrals) -> Iterator[Said]:
         yield _TRIVIAL, values
     for one in found.generators:
         if not one.independent:
-            yield _DEPENDENT[one.sure], {"name": title(one), "weight": one.weight}
+            yield _DEPENDENT[one.certainty], {"name": title(one), "weight": one.weight}
     if found.complete:
         yield _EVERY[bool(found.aside)][bool(found.field.parameters)], values
     yield from _left_out(found)
@@ -148,9 +149,9 @@ _NO_OTHER_WITHOUT = {
     False: "Up to weighted degree [[degree]] there is none without [[names]] beyond those of problem 7.",
 }
 _DEPENDENT = {
-    Sure.PROVED: "That of weight [[weight]] ([[name]]) depends on those before it as a function "
+    Certainty.PROVED: "That of weight [[weight]] ([[name]]) depends on those before it as a function "
     "(proved: no more can be).",
-    Sure.VERIFIED: "That of weight [[weight]] ([[name]]) depends on those before it as a function "
+    Certainty.VERIFIED: "That of weight [[weight]] ([[name]]) depends on those before it as a function "
     "(verified at a random state).",
-    Sure.UNDECIDED: "Whether that of weight [[weight]] ([[name]]) is independent of those before it is undecided.",
+    Certainty.UNDECIDED: "Whether that of weight [[weight]] ([[name]]) is independent of those before it is undecided.",
 }

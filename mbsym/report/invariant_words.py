@@ -13,7 +13,6 @@ from mbsym.problems.invariant_sets import (
     Gap,
     InvariantSets,
     Kind,
-    Proof,
     Relation,
     SecondVariation,
     StationarySet,
@@ -126,9 +125,9 @@ def of_set(one: StationarySet, number: int, write: Medium) -> Iterator[Said]:
 
 
 _INVARIANT = {
-    Proof.PROVED: "It is invariant (proved: d/dt of its equations vanishes on it).",
-    Proof.UNDECIDED: "That it is invariant was not verified: d/dt of its equations could not be reduced on it.",
-    Proof.FAILED: "It is NOT invariant by the equations of motion: this is a defect of mbsym.",
+    True: "It is invariant (proved: d/dt of its equations vanishes on it).",
+    None: "That it is invariant was not verified: d/dt of its equations could not be reduced on it.",
+    False: "It is NOT invariant by the equations of motion: this is a defect of mbsym.",
 }
 
 
@@ -137,7 +136,7 @@ def _all(relations: Sequence[Relation], write: Medium) -> str:
 
 
 def _variation(one: StationarySet, found: SecondVariation, write: Medium) -> Iterator[Said]:
-    if one.invariant is not Proof.PROVED:
+    if not one.invariant:
         return
     steady = one.kind is Kind.STEADY
     if found.outcome is Definiteness.STABLE:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from io import StringIO
 from typing import Any
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.numerics.ledger.entry import NOT_NEEDED, SECONDS, Ledger, Measure, Saving
 
 COLUMNS = ("kind", "what", "why", "how", "quantity", "unit", "without", "with", "saved", "at_least", "standing")
@@ -25,7 +26,7 @@ class LedgerLine:
     kind: str
     what: str
     why: str
-    how: str
+    how: Certainty
     saved: tuple[str, ...]
     standing: str = NOT_NEEDED
 

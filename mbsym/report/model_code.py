@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.derivative import jacobian
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import Failure
@@ -59,7 +60,7 @@ class NamedIntegral:
 
     name: str
     title: str
-    status: str
+    status: Certainty
 
 
 @dataclass(frozen=True)

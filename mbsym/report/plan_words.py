@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.expressions.counting import counted
 from mbsym.numerics.kinds import (
     FINENESS,
@@ -25,11 +26,8 @@ from mbsym.numerics.models import Model
 from mbsym.numerics.plan import (
     ARITHMETIC,
     ENERGY,
-    ESTIMATED,
-    MEASURED,
     MODEL,
     OPERATIONS,
-    TOGETHER,
     Accuracy,
     Alternative,
     Bound,
@@ -45,7 +43,7 @@ if TYPE_CHECKING:
     from mbsym.simulation import Request
 
 #: How a share is known, in words.
-HOW = {MEASURED: "difference from a better run, doubled", ESTIMATED: "estimated"}
+HOW = {Certainty.MEASURED: "difference from a better run, doubled", Certainty.ESTIMATED: "estimated"}
 
 #: Lines of the plan by kinds of items; the tolerance stands with the method, and one motion needs no word on kernels.
 TITLES = {
@@ -114,11 +112,15 @@ def proved_words(bound: Bound) -> str:
 
 def share_words(share: Share) -> str:
     """``integration 4.8e-07 (difference from a better run, doubled)``."""
-    if share.how == TOGETHER:
+    if share.how is None:
         return f"{share.name} (contained in the integration's)"
     if share.error == 0:
         return f"{share.name} 0 (nothing neglected)" if share.name == MODEL else f"{share.name} 0"
-    how = "by a rerun with the richest model" if share.name == MODEL and share.how == MEASURED else HOW[share.how]
+    how = (
+        "by a rerun with the richest model"
+        if share.name == MODEL and share.how is Certainty.MEASURED
+        else HOW[share.how]
+    )
     return f"{share.name} {share.error:.1e} ({how})" if share.name != ARITHMETIC else f"{share.name} {share.error:.1e}"
 
 
@@ -214,7 +216,7 @@ def plan_json(plan: Plan, request: Request) -> dict[str, Any]:
                 "target": bound.target,
                 "total": bound.total,
                 "how": bound.how,
-                "shares": [{"name": x.name, "error": x.error, "how": x.how} for x in bound.shares],
+                "shares": [{"name": x.name, "error": x.error, "how": x.how or "together"} for x in bound.shares],
                 **({} if bound.proved is None else {"proved_at_rows": bound.proved}),
             }
             for bound in plan.bounds

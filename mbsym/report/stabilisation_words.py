@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.formulas.formula import Formula
 from mbsym.problems.stabilisation import (
     Control,
@@ -15,7 +16,6 @@ from mbsym.problems.stabilisation import (
     Rank,
     Region,
     Stabilisation,
-    Sure,
 )
 from mbsym.report.said import Said
 
@@ -233,7 +233,7 @@ def _control(part: Control, write: Medium) -> Iterator[Said]:
             "Controllability of [[names]] by [[inputs]]: no (proved), out of reach are the roots of [[roots]].",
             {**gaps, "roots": roots},
         )
-    elif part.rank.sure is Sure.PROVED:
+    elif part.rank.certainty is Certainty.PROVED:
         yield "Controllability of [[names]] by [[inputs]]: no (proved).", gaps
     else:
         yield (

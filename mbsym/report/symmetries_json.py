@@ -45,6 +45,6 @@ def _one(one: Symmetry, write: Callable[[Formula], Any]) -> dict[str, Any]:
         "integral": write(one.integral),
         "name": one.name,
         "new": one.is_new,
-        "told_apart": one.sure.value,
+        "told_apart": one.certainty.value,
         "substituted": one.substituted.value,
     }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from mbsym.problems.polynomial_integrals import Sure
+from mbsym.algebra.certainty import Certainty
 from mbsym.problems.symmetries import Symmetries, Symmetry
 from mbsym.report.said import Said
 
@@ -31,7 +31,7 @@ def field_text(one: Symmetry) -> str:
 def gives(one: Symmetry) -> str:
     """The sentence of a report; behind those of what has no name the integral stands."""
     if one.name:
-        return DEPENDS if one.sure is Sure.VERIFIED else KNOWN
+        return DEPENDS if one.certainty is Certainty.VERIFIED else KNOWN
     return GIVES if one.is_new else OPEN
 
 
@@ -45,9 +45,9 @@ def title(one: Symmetry) -> str:
 def second_route(one: Symmetry) -> str:
     """How dI/dt = 0 is known besides the identity."""
     return {
-        Sure.PROVED: "dI/dt = 0 by substitution of the accelerations, too (proved)",
-        Sure.VERIFIED: "dI/dt = 0 at random states, too (verified exactly there)",
-        Sure.UNDECIDED: "dI/dt by substitution was not decided within the budget",
+        Certainty.PROVED: "dI/dt = 0 by substitution of the accelerations, too (proved)",
+        Certainty.VERIFIED: "dI/dt = 0 at random states, too (verified exactly there)",
+        Certainty.UNDECIDED: "dI/dt by substitution was not decided within the budget",
     }[one.substituted]
 
 

@@ -11,10 +11,11 @@ from typing import Any
 
 import pytest
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.analysis.pipeline import Analysis
 from mbsym.mechanics.constraints import perturbed
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
-from mbsym.problems.constraints import Sureness, analysis, integrability
+from mbsym.problems.constraints import analysis, integrability
 from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.word import Word
 from mbsym.report.constraint_words import Writer, filled, reduction_sentences
@@ -139,13 +140,13 @@ def test_a_stiffness_that_forgets_the_leaf_is_found(monkeypatch: pytest.MonkeyPa
 
 def test_what_is_not_proved_is_no_leaf(monkeypatch: pytest.MonkeyPatch) -> None:
     def unproved(*arguments: Any) -> Any:
-        return dataclasses.replace(integrability.integrability(*arguments), sureness=Sureness.NUMERICAL)
+        return dataclasses.replace(integrability.integrability(*arguments), certainty=Certainty.VERIFIED)
 
     monkeypatch.setattr(analysis, "integrability", unproved)
     found = bead()
     known = found.constraints.integrability
     assert known is not None
-    assert (known.word, known.sureness.value) == ("holonomic", "verified numerically")
+    assert (known.word, known.certainty.value) == ("holonomic", "verified numerically")
     about = found.linearisation.constrained
     assert about is not None
     assert (about.leaf, about.holonomic) == (0, False)

@@ -19,6 +19,7 @@ from conftest import SHIPPED
 from flint import fmpq
 
 import mbsym
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.point import Rationals
 from mbsym.analysis import ALL_PROBLEMS, Analysis
@@ -34,12 +35,9 @@ from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kinds import PARTS
 from mbsym.numerics.ledger import code
 from mbsym.numerics.ledger.entry import (
-    ESTIMATED,
     OPERATIONS,
-    PROVED,
     SECONDS,
     TERMS,
-    UNDECIDED,
     Ledger,
     Measure,
     Saving,
@@ -133,7 +131,7 @@ def test_every_row_saves_something_and_says_why(name: str) -> None:
 def test_plane_motion_is_found_and_true_in_the_whole_system() -> None:
     analysis = mbsym.loads(satellite_in_plane(), (5,))
     (item,) = savings(analysis)["plane motion"]
-    assert item.how == PROVED
+    assert item.how == Certainty.PROVED
     assert set(item.what) == {"psi", "phi", "sigma"}
     assert "axis 3" in item.why
     assert (item.measures[0].without, item.measures[0].taken) == (5, 2)
@@ -202,7 +200,7 @@ def test_dropped_parameters_are_those_that_make_no_difference(name: str, expecte
     analysis, found = shipped(name)
     rows = found.get("parameters that drop out", [])
     assert {parameter for item in rows for parameter in item.what} == expected
-    assert all(item.how == PROVED for item in rows)
+    assert all(item.how == Certainty.PROVED for item in rows)
     system = analysis.system
     assert {p for p in used_parameters(system) if holds_with_another_value(system, p)} == expected
 
@@ -364,7 +362,7 @@ def test_the_order_of_gravity_is_judged_by_a_number() -> None:
     """l/R of the gyrostat by hand: distance of the mass centre and radius of gyration, over the distance R."""
     analysis = mbsym.load(SHIPPED / "gyrostat.yaml", (2,))
     (item,) = savings(analysis)["order of gravity"]
-    assert item.how == ESTIMATED
+    assert item.how == Certainty.ESTIMATED
     values = scenario(analysis.system).parameters
     m, moments = float(values["M"]), sum(float(values[x]) for x in "ABC")
     centre = sum(float(values[x]) ** 2 for x in ("x0", "y0", "z0"))
@@ -377,7 +375,7 @@ def test_without_numbers_the_order_of_gravity_is_undecided() -> None:
     system = mbsym.load(SHIPPED / "gyrostat.yaml").system
     bare = replace(system, parameters=tuple(replace(p, value=None) for p in system.parameters), initial=())
     (item,) = savings(Analysis(bare, (2,)))["order of gravity"]
-    assert item.how == UNDECIDED
+    assert item.how == Certainty.UNDECIDED
 
 
 # --- bounds ---
@@ -546,7 +544,7 @@ def test_seconds_are_told_only_where_they_differ_beyond_doubt() -> None:
     measures = tuple(
         Measure(str(number), SECONDS if unit == "s" else TERMS, without, taken) for number, unit, without, taken in told
     )
-    lines = ledger_lines(Ledger((Saving("kind", ("what",), "why", PROVED, measures),)))
+    lines = ledger_lines(Ledger((Saving("kind", ("what",), "why", Certainty.PROVED, measures),)))
     assert [text.split(":")[0] for text in lines[0].saved] == ["2", "3"]
 
 
@@ -560,7 +558,7 @@ def test_parts_that_nothing_links_are_listed() -> None:
     )
     found = [saving for saving in ledger(mbsym.loads(text)).savings if saving.kind == PARTS]
     assert [saving.what for saving in found] == [("x", "y")]
-    assert found[0].how == PROVED
+    assert found[0].how == Certainty.PROVED
     assert [(item.without, item.taken) for item in found[0].measures] == [(2, 1), (16, 8)]
     linked = text.replace("y**2/2", "y**2/2 + x*y/2")
     assert not [saving for saving in ledger(mbsym.loads(linked)).savings if saving.kind == PARTS]

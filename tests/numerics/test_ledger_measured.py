@@ -12,10 +12,11 @@ import pytest
 from click.testing import CliRunner
 
 import mbsym
+from mbsym.algebra.certainty import Certainty
 from mbsym.numerics import model_choice
 from mbsym.numerics.kinds import GRAVITY, MASSES
 from mbsym.numerics.ledger import measured
-from mbsym.numerics.ledger.entry import ESTIMATED, MEASURED, NEEDED, NOT_NEEDED, OPEN, PROVED, Saving
+from mbsym.numerics.ledger.entry import NEEDED, NOT_NEEDED, OPEN, Saving
 from mbsym.numerics.ledger.work import Wanted, Work
 from mbsym.numerics.models import Model, emptied, parted
 from mbsym.numerics.plan import Accuracy
@@ -67,12 +68,12 @@ def gravity(accuracy: float | None) -> Saving:
 
 def test_without_an_accuracy_an_estimate_decides_nothing() -> None:
     found = gravity(None)
-    assert (found.how, found.standing, found.error) == (ESTIMATED, OPEN, None)
+    assert (found.how, found.standing, found.error) == (Certainty.ESTIMATED, OPEN, None)
 
 
 def test_what_the_ledger_measures_is_the_difference_of_two_runs() -> None:
     found = gravity(1e-6)
-    assert found.how == MEASURED
+    assert found.how == Certainty.MEASURED
     assert found.error is not None
     assert 0.5 * difference() < found.error < 2 * difference()
 
@@ -115,10 +116,10 @@ def test_what_is_proved_is_not_needed_and_what_is_estimated_is_open() -> None:
     def of(how: str, error: float | None = None, tolerable: float | None = None) -> str:
         return Saving("kind", ("what",), "why", how, (), error, tolerable).standing
 
-    assert of(PROVED) == NOT_NEEDED
-    assert of(ESTIMATED) == OPEN
-    assert of(ESTIMATED, 2e-6, 1e-6) == NEEDED
-    assert of(MEASURED, 1e-6, 1e-6) == NOT_NEEDED
+    assert of(Certainty.PROVED) == NOT_NEEDED
+    assert of(Certainty.ESTIMATED) == OPEN
+    assert of(Certainty.ESTIMATED, 2e-6, 1e-6) == NEEDED
+    assert of(Certainty.MEASURED, 1e-6, 1e-6) == NOT_NEEDED
 
 
 # --- negligible masses ---

@@ -12,12 +12,13 @@ import pytest
 from scipy.special import ellipj, ellipk
 
 import mbsym
+from mbsym.algebra.certainty import Certainty
 from mbsym.numerics import pilot, plan_bounds, planning
 from mbsym.numerics.accuracy import ErrorEstimate
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.models import Model
-from mbsym.numerics.plan import ENERGY, ESTIMATED, MEASURED, PROVED, TOGETHER, Accuracy, Bound, Share
+from mbsym.numerics.plan import ENERGY, Accuracy, Bound, Share
 from mbsym.numerics.planning import Pins, planned
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.numerics.yardstick import Yardstick
@@ -368,14 +369,18 @@ def test_one_mass_that_must_stay_does_not_keep_all_else() -> None:
 
 
 def test_laws_of_bounds() -> None:
-    shares = (Share("model", 1e-3, ESTIMATED), Share("integration", 2e-3, MEASURED), Share("arithmetic", 0.0, TOGETHER))
+    shares = (
+        Share("model", 1e-3, Certainty.ESTIMATED),
+        Share("integration", 2e-3, Certainty.MEASURED),
+        Share("arithmetic", 0.0, None),
+    )
     bound = Bound("theta", shares, 4e-3)
     assert bound.total == pytest.approx(3e-3)
     assert bound.reached
     assert not replace(bound, target=2e-3).reached
-    assert bound.how == ESTIMATED
-    assert replace(bound, shares=shares[1:]).how == MEASURED
-    assert replace(bound, shares=(Share("model", 0.0, PROVED),)).how == PROVED
+    assert bound.how == Certainty.ESTIMATED
+    assert replace(bound, shares=shares[1:]).how == Certainty.MEASURED
+    assert replace(bound, shares=(Share("model", 0.0, Certainty.PROVED),)).how == Certainty.PROVED
 
 
 def test_laws_of_accuracies() -> None:

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import mbsym
+from mbsym.algebra.certainty import Certainty
 from mbsym.numerics.kinds import SKEW
-from mbsym.numerics.ledger.entry import VERIFIED
 from mbsym.numerics.ledger.plane import skew_plane
 from mbsym.numerics.ledger.work import Wanted, Work
 
@@ -37,7 +37,7 @@ POINT = (
 
 def directions(text: str, time: float = 3.0) -> list[str]:
     found = list(skew_plane(Work(mbsym.loads(text, ()), wanted=Wanted(1e-6, time))))
-    assert all((item.kind, item.how) == (SKEW, VERIFIED) for item in found)
+    assert all((item.kind, item.how) == (SKEW, Certainty.VERIFIED) for item in found)
     return [item.why for item in found]
 
 

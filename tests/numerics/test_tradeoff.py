@@ -15,11 +15,12 @@ import pytest
 from click.testing import CliRunner
 
 import mbsym
+from mbsym.algebra.certainty import Certainty
 from mbsym.expressions.tree import number
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.fidelity import measured, model_advice
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.reduction import PROVED, resting
+from mbsym.numerics.reduction import resting
 from mbsym.numerics.reference import Reference, reference
 from mbsym.numerics.scenario import scenario
 from mbsym.numerics.trade_study import studied
@@ -195,7 +196,7 @@ PLANE = {name: number(0) for name in ("psi", "phi", "sigma", "psi_dot", "phi_dot
 def test_the_satellite_in_the_plane_of_its_orbit_has_two_degrees_of_freedom() -> None:
     found = resting(scenario(mbsym.load(SYSTEMS / "satellite.yaml").system, PLANE))
     assert found is not None
-    assert found.how == PROVED
+    assert found.how == Certainty.PROVED
     assert set(found.values) == {"psi", "phi", "sigma"}
     assert found.scenario.system.coordinates == ("theta", "delta")
 

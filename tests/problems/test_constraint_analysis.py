@@ -10,13 +10,14 @@ from typing import Any
 import pytest
 
 import mbsym
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.analysis.constrained import programs_of
 from mbsym.analysis.pipeline import Analysis
 from mbsym.formulas.formula import Matrix, column
 from mbsym.mechanics.constraints.states import Manifold
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
-from mbsym.problems.constraints import Constraints, Embedded, Sureness
+from mbsym.problems.constraints import Constraints, Embedded
 from mbsym.problems.constraints.checks import check_embedded, check_rows
 from mbsym.problems.constraints.integrability import by_program
 
@@ -69,10 +70,10 @@ def analysed(text: str) -> Analysis:
     return mbsym.loads(text, (1, 2, 3))
 
 
-def integrability(*constraints: str) -> tuple[str, tuple[int, ...], Sureness]:
+def integrability(*constraints: str) -> tuple[str, tuple[int, ...], Certainty]:
     found = analysed(FREE + "\n".join(f"  - {one}" for one in constraints)).constraints.integrability
     assert found is not None
-    return found.word, found.growth, found.sureness
+    return found.word, found.growth, found.certainty
 
 
 # --- Frobenius, on Pfaffian forms of textbooks ---
@@ -92,7 +93,7 @@ def integrability(*constraints: str) -> tuple[str, tuple[int, ...], Sureness]:
     ],
 )
 def test_frobenius_decides_one_form(constraint: str, word: str, growth: tuple[int, ...]) -> None:
-    assert integrability(constraint) == (word, growth, Sureness.PROVED)
+    assert integrability(constraint) == (word, growth, Certainty.PROVED)
 
 
 @pytest.mark.parametrize(
@@ -129,7 +130,7 @@ def test_two_forms_may_be_integrable_together_and_in_part() -> None:
     assert found.integrability is not None
     # w exp(-x^2) is kept, the contact form keeps nothing: growth 2, 3 in 4 dimensions.
     assert (found.integrability.word, found.integrability.growth[:2], found.integrability.kept) == ("partly", (2, 3), 1)
-    assert found.integrability.sureness is not Sureness.UNDECIDED
+    assert found.integrability.certainty is not Certainty.UNDECIDED
 
 
 @pytest.mark.parametrize("text", [SLEIGH, SPHERE, FREE + "  - velocity: z_dot = x*y_dot - y*x_dot"])
@@ -154,7 +155,7 @@ def test_the_bicycle_is_nonholonomic() -> None:
     assert (found.position_rank, found.velocity_rank, len(found.free)) == (1, 5, 3)
     assert found.integrability is not None
     assert (found.integrability.word, found.integrability.growth[-1]) == ("nonholonomic", 7)
-    assert found.integrability.sureness is Sureness.PROVED
+    assert found.integrability.certainty is Certainty.PROVED
 
 
 # --- ranks and counts ---
@@ -166,7 +167,7 @@ def test_the_rows_of_a_rolling_sphere_and_what_follows_from_its_height() -> None
     (redundant,) = found.redundant
     assert redundant.name.label == "rolling 2, component 3"
     assert [one.label for one in redundant.from_rows] == ["relation 1"]
-    assert redundant.sureness is Sureness.PROVED
+    assert redundant.certainty is Certainty.PROVED
     assert found.integrability is not None
     # Neimark & Fufaev: the sphere's velocities reach all five dimensions with the first brackets.
     assert (found.integrability.word, found.integrability.growth) == ("nonholonomic", (3, 5))

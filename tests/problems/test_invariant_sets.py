@@ -12,7 +12,7 @@ import sympy
 from conftest import SHIPPED
 
 import mbsym
-from mbsym.problems.invariant_sets import Definiteness, Gap, Kind, Proof
+from mbsym.problems.invariant_sets import Definiteness, Gap, Kind
 from mbsym.problems.invariant_sets.arena import arena
 from mbsym.problems.invariant_sets.problem import invariant_sets
 from mbsym.problems.vector_field import in_speeds
@@ -57,7 +57,7 @@ def test_the_manifolds_of_clebsch_tisserand_brun(clebsch):
     (family, *_) = clebsch.families
     found = [one for one in family.sets if one.kind is Kind.MANIFOLD and len(one.free) == 3 and "p" not in one.free]
     one = next(one for one in found if one.free == ("gamma1", "gamma2", "gamma3"))
-    assert one.invariant is Proof.PROVED
+    assert one.invariant is True
     assert one.real
     assert one.dimension == 2
     # With lambda1^2 = N (1 + 2 A s)(1 + 2 B s)(1 + 2 C s), s = lambda2, sigma = 2 N s: numbers that make it a square.
@@ -147,7 +147,7 @@ def test_the_cone_of_staude(tmp_path):
     (one,) = found.families[0].sets
     assert one.kind is Kind.STEADY
     assert one.union == 1
-    assert one.invariant is Proof.PROVED
+    assert one.invariant is True
     numbers = {
         "A": 3,
         "B": 5,
@@ -186,7 +186,7 @@ def test_orbital_equilibria_in_quaternions():
     (family,) = found.families
     assert not found.complete
     assert family.unfinished
-    assert all(one.kind is Kind.STEADY and one.invariant is Proof.PROVED for one in family.sets)
+    assert all(one.kind is Kind.STEADY and one.invariant is True for one in family.sets)
     numbers = {"omega0": 1, "R": 1, "m": 1}  # nu = omega0^2 R^3 is a relation of the description
     for A, B, C in ((5, 4, 6), (4, 5, 6), (5, 6, 4), (6, 4, 5)):
         for one in family.sets:
@@ -212,7 +212,7 @@ def test_orbital_equilibria_in_quaternions():
 def test_pieces_of_the_sets_of_kovalevskayas_top_are_no_defect():
     """Zeros of Kovalevskaya's integral, a sum of two squares, are stationary: r = gamma3 = 0 is no set of its own."""
     found = mbsym.load("systems/kovalevskaya.yaml").invariant_sets
-    assert all(one.invariant is not Proof.FAILED for family in found.families for one in family.sets)
+    assert all(one.invariant is not False for family in found.families for one in family.sets)
     assert all(family.parts for family in found.families[:2])
     assert not found.complete
 
@@ -226,9 +226,9 @@ def test_a_wrong_sign_in_the_equations_is_seen():
     further = field.numerators[3] + field.generator("r") * field.generator("gamma3")  # gamma1' with a term too many
     wrong = replace(field, numerators=(*field.numerators[:3], further, *field.numerators[4:]))
     right = invariant_sets(arena(field, known, signs)).families[0].sets
-    assert {one.invariant for one in right} == {Proof.PROVED}
+    assert {one.invariant for one in right} == {True}
     planted = invariant_sets(arena(wrong, known, signs)).families[0].sets
-    assert Proof.FAILED in {one.invariant for one in planted}
+    assert False in {one.invariant for one in planted}
 
 
 def test_definiteness_agrees_with_eigenvalues(clebsch):

@@ -13,9 +13,10 @@ from flint import fmpq, fmpq_mat
 from jsonschema import Draft202012Validator
 
 import mbsym
+from mbsym.algebra.certainty import Certainty
 from mbsym.analysis import Analysis, Unavailable
 from mbsym.problems.checks import EXACT
-from mbsym.problems.stabilisation import Locus, Stabilisation, Sure, numbers
+from mbsym.problems.stabilisation import Locus, Stabilisation, numbers
 from mbsym.problems.stabilisation.checks import check_stabilisation
 from mbsym.problems.stabilisation.numbers import AtValues
 from mbsym.report.language import Language
@@ -123,7 +124,12 @@ def test_signs_that_contradict_each_other_make_no_region() -> None:
 def test_a_damper_on_one_mass_is_pervasive_through_the_spring() -> None:
     """y at rest with D x' = 0: x' = 0 needs k y' = 0.  Without the spring y is on its own."""
     (part,) = found("{" + PAIR + ", D: [[c, 0], [0, 0]]}", TWO).dissipation
-    assert (part.complete, part.semidefinite, part.rank.full, part.rank.sure) == (False, True, True, Sure.PROVED)
+    assert (part.complete, part.semidefinite, part.rank.full, part.rank.certainty) == (
+        False,
+        True,
+        True,
+        Certainty.PROVED,
+    )
     assert part.rank.locus == Locus()
     loose = found("{" + PAIR + ", D: [[c, 0], [0, 0]]}", TWO.replace("k: positive", "k: real")).dissipation[0]
     assert loose.rank.locus is not None
@@ -167,7 +173,7 @@ def test_a_uniform_motion_that_is_not_felt() -> None:
     text = "{coordinates: [x, y], K: [[k, -k], [-k, k]], D: [[c, -c], [-c, c]]}"
     (part,) = found(text, "{k: {positive: true, value: 1}, c: {positive: true, value: 1}}").dissipation
     assert part.at_values is False
-    assert (part.rank.full, part.rank.sure) == (False, Sure.PROVED)
+    assert (part.rank.full, part.rank.certainty) == (False, Certainty.PROVED)
     assert [[str(x) for x in factor] for factor in part.rank.factors] == [["0", "1"]]
     (held,) = found(text.replace("D: [[c, -c]", "D: [[c+1, -c]"), "{k: positive, c: positive}").dissipation
     assert (held.rank.full, held.rank.locus) == (True, Locus())
@@ -405,7 +411,7 @@ def test_many_coordinates_are_told_to_be_many() -> None:
     got = analysed(whole, "{}", "inputs: [u]").stabilisation
     assert got.feedback is None
     assert got.no_feedback == "there are more than 12 coordinates"
-    assert got.control[0].rank.sure is Sure.UNDECIDED
+    assert got.control[0].rank.certainty is Certainty.UNDECIDED
 
 
 def test_parameters_that_a_condition_ties_are_not_called_independent() -> None:

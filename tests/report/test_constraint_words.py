@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 import mbsym
-from mbsym.problems.constraints import Integrability, Sureness
+from mbsym.algebra.certainty import Certainty
+from mbsym.problems.constraints import Integrability
 from mbsym.report import constraint_description, constraint_words
 from mbsym.report.constraint_words import Writer, filled, sentences
 from mbsym.report.language import Language
@@ -44,12 +45,12 @@ def test_the_word_for_integrability_falls_with_what_is_known() -> None:
     found = mbsym.load(DISC, (1, 2, 3)).constraints
     told = " ".join(map(filled, sentences(found, WRITE)))
     assert "The system is nonholonomic (proved)" in told
-    open_ = replace(found, integrability=Integrability((), None, 2, Sureness.UNDECIDED, rheonomic=False))
+    open_ = replace(found, integrability=Integrability((), None, 2, Certainty.UNDECIDED, rheonomic=False))
     told = " ".join(map(filled, sentences(open_, WRITE)))
     assert "undecided" in told
     assert "nonholonomic" not in told
     assert "proved" not in told.replace("by itself (proved)", "")
-    seen = replace(found, integrability=Integrability((3, 3), 2, 2, Sureness.NUMERICAL, rheonomic=False))
+    seen = replace(found, integrability=Integrability((3, 3), 2, 2, Certainty.VERIFIED, rheonomic=False))
     told = " ".join(map(filled, sentences(seen, WRITE)))
     assert "holonomic" in told
     assert "verified numerically" in told

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.program import Node, Program
 from mbsym.mechanics import factorisation
@@ -12,7 +13,7 @@ from mbsym.mechanics.forward_dynamics import ARTICULATED, FACTORISED, forward_dy
 from mbsym.mechanics.programs import Programs, programs
 from mbsym.mechanics.variables import ring_of
 from mbsym.numerics.kinds import DEAD, ROUTE, SPARSITY, STEADY, SYMMETRY, VALUES, ZEROS
-from mbsym.numerics.ledger.entry import COUNT, OPERATIONS, PROVED, Measure, Saving
+from mbsym.numerics.ledger.entry import COUNT, OPERATIONS, Measure, Saving
 from mbsym.numerics.ledger.work import Work
 from mbsym.numerics.scenario import Scenario, changed
 from mbsym.numerics.specialise import bound, substituted
@@ -28,7 +29,7 @@ def steady_operations(work: Work) -> Iterator[Saving]:
     measures = (Measure("operations of q'' for one state", OPERATIONS, every, work.operations(forward.accelerations)),)
     steady = every - int(measures[0].taken)
     why = "liveness: no coordinate, velocity or time reaches them"
-    yield Saving(STEADY, (f"{steady} subexpressions",), why, PROVED, measures)
+    yield Saving(STEADY, (f"{steady} subexpressions",), why, Certainty.PROVED, measures)
 
 
 def dead_operations(work: Work) -> Iterator[Saving]:
@@ -41,7 +42,7 @@ def dead_operations(work: Work) -> Iterator[Saving]:
     written, live = (alone.program.operations(x, given) for x in (every, alone.accelerations))
     measures = (Measure("operations written for one state", OPERATIONS, written, live),)
     why = "liveness: counted backwards from q'', no output needs them"
-    yield Saving(DEAD, (f"{written - live} operations",), why, PROVED, measures)
+    yield Saving(DEAD, (f"{written - live} operations",), why, Certainty.PROVED, measures)
 
 
 def route(work: Work) -> Iterator[Saving]:
@@ -58,7 +59,9 @@ def route(work: Work) -> Iterator[Saving]:
         bound_only = False
     quantity = "operations of q'' and the pivots for one state"
     measures = (Measure(quantity, OPERATIONS, costs[other], costs[forward.method], bound_only),)
-    yield Saving(ROUTE, (f"{forward.method} instead of {other}",), "both solve M q'' = f exactly", PROVED, measures)
+    yield Saving(
+        ROUTE, (f"{forward.method} instead of {other}",), "both solve M q'' = f exactly", Certainty.PROVED, measures
+    )
 
 
 def branch_sparsity(work: Work) -> Iterator[Saving]:
@@ -79,7 +82,7 @@ def branch_sparsity(work: Work) -> Iterator[Saving]:
         Measure("operations of solving M q'' = f", OPERATIONS, dense, sparse),
     )
     why = "structural zeros: coordinates on different branches, or normal to each other, share no kinetic energy"
-    yield Saving(SPARSITY, (f"{2 * len(zeros)} entries of M",), why, PROVED, measures)
+    yield Saving(SPARSITY, (f"{2 * len(zeros)} entries of M",), why, Certainty.PROVED, measures)
 
 
 def symmetry(work: Work) -> Iterator[Saving]:
@@ -97,7 +100,7 @@ def symmetry(work: Work) -> Iterator[Saving]:
         Measure("operations of solving M q'' = f", OPERATIONS, whole, half),
     )
     why = "identity: M_ij = d2T/dq_i' dq_j' = M_ji"
-    yield Saving(SYMMETRY, (f"{below} entries below the diagonal",), why, PROVED, measures)
+    yield Saving(SYMMETRY, (f"{below} entries below the diagonal",), why, Certainty.PROVED, measures)
 
 
 def _factorised(work: Work) -> Programs | None:
@@ -162,11 +165,11 @@ def values(work: Work) -> Iterator[Saving]:
     if zero:
         measures = (Measure("operations of q'' at these values", OPERATIONS, without_zeros, here),)
         why = "exact folding: 0 x = 0, so their terms are no instructions"
-        yield Saving(ZEROS, zero, why, PROVED, measures)
+        yield Saving(ZEROS, zero, why, Certainty.PROVED, measures)
     symbolic = work.operations(work.forward.accelerations)
     measures = (Measure("operations of q'' for one state", OPERATIONS, symbolic, without_zeros),)
     why = "exact folding: constants are rational, 1 x = x, and equal values make equal nodes"
-    yield Saving(VALUES, (f"{len(work.numbers.parameters)} parameters",), why, PROVED, measures)
+    yield Saving(VALUES, (f"{len(work.numbers.parameters)} parameters",), why, Certainty.PROVED, measures)
 
 
 def _generic(names: Sequence[str]) -> Mapping[str, Fraction]:

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from flint import arb, ctx, fmpq
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.point import Balls
 from mbsym.expressions.tree import ZERO, Expression, names
@@ -18,7 +19,7 @@ from mbsym.model.loads import EXACT, GRAVITY_ORDERS, NewtonianGravity
 from mbsym.model.system import Body, Inertia, Rotation, Tensor, acceleration_name, rational
 from mbsym.model.welded import lumped
 from mbsym.numerics.kinds import AXES, GRAVITY, MASSLESS, POINTS, TURNS, WELDED
-from mbsym.numerics.ledger.entry import ESTIMATED, OPERATIONS, PROVED, SECONDS, UNDECIDED, Measure, Saving
+from mbsym.numerics.ledger.entry import OPERATIONS, SECONDS, Measure, Saving
 from mbsym.numerics.ledger.work import Symbols, Work, changed_bodies, moving_names
 from mbsym.numerics.scenario import PRECISION, Scenario
 
@@ -36,7 +37,7 @@ def massless_bodies(work: Work) -> Iterator[Saving]:
     other = changed_bodies(work.system, heavy, symbols)
     why = "structural zero: m = 0 and no inertia, so T, forces and moments of the body are identically 0"
     measures = (*work.right_hand_sides(other), *work.kinetic_energies(other))
-    yield Saving(MASSLESS, _in_order(work, found), why, PROVED, measures)
+    yield Saving(MASSLESS, _in_order(work, found), why, Certainty.PROVED, measures)
 
 
 def welded_bodies(work: Work) -> Iterator[Saving]:
@@ -53,7 +54,7 @@ def welded_bodies(work: Work) -> Iterator[Saving]:
     )
     carriers = ", ".join(dict.fromkeys(found.values()))
     why = f"no coordinate moves them against {carriers}: m, m c and the tensor add up there, once, by Steiner's theorem"
-    yield Saving(WELDED, tuple(found), why, PROVED, measures)
+    yield Saving(WELDED, tuple(found), why, Certainty.PROVED, measures)
 
 
 def point_masses(work: Work) -> Iterator[Saving]:
@@ -73,7 +74,7 @@ def point_masses(work: Work) -> Iterator[Saving]:
     other = changed_bodies(work.system, extended, symbols)
     why = "structural zero: the tensor about the mass centre is 0, so is omega.J omega/2 and its moment"
     measures = (*work.right_hand_sides(other), *work.kinetic_energies(other))
-    yield Saving(POINTS, _in_order(work, found), why, PROVED, measures)
+    yield Saving(POINTS, _in_order(work, found), why, Certainty.PROVED, measures)
 
 
 def unused_axes(work: Work) -> Iterator[Saving]:
@@ -94,7 +95,7 @@ def unused_axes(work: Work) -> Iterator[Saving]:
     other = changed_bodies(work.system, turned, symbols)
     why = "structural: a turn that is not there is the identity matrix, and is never multiplied"
     measures = (*work.right_hand_sides(other), *work.kinetic_energies(other))
-    yield Saving(AXES, _in_order(work, found), why, PROVED, measures)
+    yield Saving(AXES, _in_order(work, found), why, Certainty.PROVED, measures)
 
 
 def constant_rotations(work: Work) -> Iterator[Saving]:
@@ -116,7 +117,7 @@ def constant_rotations(work: Work) -> Iterator[Saving]:
     other = changed_bodies(work.system, turned, symbols)
     why = "the angle holds no coordinate and no time: its sine and cosine are worked out once, or are 0 and 1"
     measures = work.right_hand_sides(other, changing=symbols.names)
-    yield Saving(TURNS, tuple(found), why, PROVED, measures)
+    yield Saving(TURNS, tuple(found), why, Certainty.PROVED, measures)
 
 
 def gravity_orders(work: Work) -> Iterator[Saving]:
@@ -133,7 +134,7 @@ def gravity_orders(work: Work) -> Iterator[Saving]:
         if ratio is None:
             why, how = (
                 f"terms above (l/R)^{order} are dropped; without numbers for l and R nobody knows if that is safe",
-                UNDECIDED,
+                Certainty.UNDECIDED,
             )
         else:
             dropped, kept = ratio ** (order + 1), ratio ** (order - 1)
@@ -141,7 +142,7 @@ def gravity_orders(work: Work) -> Iterator[Saving]:
                 f"with the size l of the bodies about O1, l/R = {ratio:.1e}: the largest term dropped is "
                 f"about (l/R)^{order + 1} = {dropped:.1e} of nu m/R, {kept:.1e} of the terms of order 2"
             )
-            how = ESTIMATED
+            how = Certainty.ESTIMATED
         yield Saving(GRAVITY, (f"terms of the field above order {order}",), why, how, measures)
 
 

@@ -8,15 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-#: How it is known that leaving something out changes nothing (PROVED, VERIFIED), or how much it changes (MEASURED by a
-#: run without it, else ESTIMATED); UNDECIDED where there are no numbers to estimate it with.
-PROVED, VERIFIED, MEASURED, ESTIMATED, UNDECIDED = (
-    "proved",
-    "verified numerically",
-    "measured",
-    "estimated",
-    "undecided",
-)
+from mbsym.algebra.certainty import Certainty
 
 #: What follows: the scene does not need it; it does; or nobody knows until an accuracy is asked for.
 NOT_NEEDED, NEEDED, OPEN = "not needed", "needed", "open"
@@ -52,7 +44,10 @@ class Measure:
 
 @dataclass(frozen=True)
 class Saving:
-    """``what`` was left out; ``why`` is the justification and ``how`` its kind.
+    """``what`` was left out; ``why`` is the justification.
+
+    ``how`` it is known that this changes nothing (proved, verified), or how much it changes (measured by a run without
+    it, else estimated); undecided where there are no numbers to estimate it with.
 
     ``error`` is what that changes of the motion, relative to its size, and ``tolerable`` what it may change; both are
     None where it changes nothing, or where nobody asked for an accuracy.
@@ -61,7 +56,7 @@ class Saving:
     kind: str
     what: tuple[str, ...]
     why: str
-    how: str
+    how: Certainty
     measures: tuple[Measure, ...]
     error: float | None = None
     tolerable: float | None = None
@@ -74,7 +69,7 @@ class Saving:
         """
         if self.error is not None and self.tolerable is not None:
             return NOT_NEEDED if self.error <= self.tolerable else NEEDED
-        return NOT_NEEDED if self.how in (PROVED, VERIFIED) else OPEN
+        return NOT_NEEDED if self.how in (Certainty.PROVED, Certainty.VERIFIED) else OPEN
 
     @property
     def saves(self) -> bool:

@@ -6,13 +6,14 @@ import time
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.characteristic import BUDGET as DETERMINANT
 from mbsym.algebra.characteristic import characteristic_polynomial
 from mbsym.algebra.failures import Failure, Limit
 from mbsym.analysis import PROBLEMS, USUAL_PROBLEMS
 from mbsym.formulas.formula import Matrix
 from mbsym.numerics.kinds import ENTRIES, NOT_ASKED, SUBSYSTEMS
-from mbsym.numerics.ledger.entry import COUNT, PROVED, Measure, Saving
+from mbsym.numerics.ledger.entry import COUNT, Measure, Saving
 from mbsym.numerics.ledger.work import Counted, Work
 from mbsym.problems.linearisation import Linearisation, components
 
@@ -38,7 +39,7 @@ def problems_not_asked(work: Work) -> Iterator[Saving]:
             why += "; the linearisation is that of the quadratised Lagrangian"
         what = f"problem {number}, {problem.title}"
         measures = found.measures(Counted(0, 0, 0.0), "it")
-        yield Saving(NOT_ASKED, (what,), why, PROVED, measures)
+        yield Saving(NOT_ASKED, (what,), why, Certainty.PROVED, measures)
 
 
 def _given_up(work: Work, number: int) -> Counted:
@@ -68,7 +69,7 @@ def vanishing_entries(work: Work) -> Iterator[Saving]:
         what.append(f"{', '.join(gone)} as a whole")
     why = "identities of the ring: their polynomials are 0"
     measures = (Measure("entries of M, D, G, K, N", COUNT, 5 * n * n, entries),)
-    yield Saving(ENTRIES, tuple(what), why, PROVED, measures)
+    yield Saving(ENTRIES, tuple(what), why, Certainty.PROVED, measures)
 
 
 def subsystems(work: Work) -> Iterator[Saving]:
@@ -86,7 +87,7 @@ def subsystems(work: Work) -> Iterator[Saving]:
     names = ("{" + ", ".join(found.coordinates[i] for i in part) + "}" for part in parts)
     why = "identities of the ring: no matrix couples them, so the determinant is the product of theirs"
     measures = there.measures(here, "det(M s^2 + (D + G) s + K + N)")
-    yield Saving(SUBSYSTEMS, tuple(names), why, PROVED, measures)
+    yield Saving(SUBSYSTEMS, tuple(names), why, Certainty.PROVED, measures)
 
 
 def _linearisation(work: Work) -> Linearisation | None:

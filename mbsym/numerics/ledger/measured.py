@@ -13,14 +13,14 @@ from math import isfinite
 
 import numpy as np
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.numerics.kinds import LEFT_OUT, LINEARITY, MASSES
 from mbsym.numerics.ledger import described
-from mbsym.numerics.ledger.entry import ESTIMATED, MEASURED, OPERATIONS, UNDECIDED, Measure, Saving
+from mbsym.numerics.ledger.entry import OPERATIONS, Measure, Saving
 from mbsym.numerics.ledger.work import Wanted, Work
 from mbsym.numerics.methods.interface import Breakdown
 from mbsym.numerics.model_choice import PART, Scene, Tried, model_chosen, model_settled
 from mbsym.numerics.models import Model, parted
-from mbsym.numerics.plan import MEASURED as BY_A_RERUN
 from mbsym.numerics.plan import Accuracy
 from mbsym.numerics.planning import outlined
 
@@ -51,7 +51,7 @@ def simpler_model(work: Work) -> Iterator[Saving]:
     measures = (Measure("operations of the right-hand side at these values", OPERATIONS, before, taken.operations),)
     why = f"simulate --accuracy {work.wanted.accuracy:g} leaves it out"
     for kind, what in _left_out(scene, model):
-        yield _held(Saving(kind, what, why, ESTIMATED, measures), taken, work.wanted)
+        yield _held(Saving(kind, what, why, Certainty.ESTIMATED, measures), taken, work.wanted)
 
 
 def _left_out(scene: Scene, model: Model) -> Iterator[tuple[str, tuple[str, ...]]]:
@@ -80,11 +80,10 @@ def _held(saving: Saving, tried: Tried, wanted: Wanted) -> Saving:
     tolerable = PART * wanted.accuracy
     if not isfinite(tried.worst):
         why = f"{saving.why}; what that changes of the motion could not be measured"
-        return replace(saving, why=f"{why}: {tried.why}" if tried.why else why, how=UNDECIDED)
-    how = MEASURED if tried.how == BY_A_RERUN else ESTIMATED
+        return replace(saving, why=f"{why}: {tried.why}" if tried.why else why, how=Certainty.UNDECIDED)
     word = "no more" if tried.worst <= tolerable else "more"
     why = (
         f"{saving.why}; until {wanted.time:g} it changes the motion by {tried.worst:.1e} of its size, {word} than the "
         f"{tolerable:g} that a model may at an accuracy of {wanted.accuracy:g}"
     )
-    return replace(saving, why=why, how=how, error=tried.worst, tolerable=tolerable)
+    return replace(saving, why=why, how=tried.how, error=tried.worst, tolerable=tolerable)

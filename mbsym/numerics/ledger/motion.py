@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from flint import arb, ctx
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.tree import names
@@ -16,7 +17,7 @@ from mbsym.mechanics.variables import expressions, ring_environment, ring_of
 from mbsym.model.system import INERTIAL, System
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kinds import CYCLIC, DROPPED, PARTS, PLANE, RESTING
-from mbsym.numerics.ledger.entry import COUNT, OPERATIONS, PROVED, SECONDS, TERMS, VERIFIED, Measure, Saving
+from mbsym.numerics.ledger.entry import COUNT, OPERATIONS, SECONDS, TERMS, Measure, Saving
 from mbsym.numerics.ledger.work import Work, holds
 from mbsym.numerics.reduced import reduced
 from mbsym.numerics.scenario import Scenario
@@ -73,7 +74,7 @@ def separate_parts(work: Work) -> Iterator[Saving]:
         ),
     )
     why = "the blocks of M between them vanish, and none occurs in the accelerations of another"
-    yield Saving(PARTS, tuple(" and ".join(part.names) for part in parts), why, PROVED, measures)
+    yield Saving(PARTS, tuple(" and ".join(part.names) for part in parts), why, Certainty.PROVED, measures)
 
 
 def _written(scenario: Scenario) -> Dynamics:
@@ -115,7 +116,7 @@ def cyclic_coordinates(work: Work) -> Iterator[Saving]:
         "told, not used: mbsym simulate integrates them"
     )
     measures = (Measure("order of the equations, on a level of the momenta", COUNT, 2 * n, 2 * (n - len(found))),)
-    yield Saving(CYCLIC, found, why, PROVED, measures)
+    yield Saving(CYCLIC, found, why, Certainty.PROVED, measures)
 
 
 def _undriven(work: Work) -> set[str]:
@@ -146,9 +147,9 @@ def dropped_parameters(work: Work) -> Iterator[Saving]:
     unread = [name for name in used if name not in live]
     if unread:
         why = "liveness: no instruction that q'' needs reads it"
-        yield Saving(DROPPED, tuple(unread), why, PROVED, _dropped(work, used, unread))
+        yield Saving(DROPPED, tuple(unread), why, Certainty.PROVED, _dropped(work, used, unread))
     read = [name for name in used if name in live]
-    by_reason: dict[tuple[str, str], list[str]] = {}
+    by_reason: dict[tuple[str, Certainty], list[str]] = {}
     for name in _without_influence(work, read):
         by_reason.setdefault(_reason(work, name), []).append(name)
     for (why, how), found in by_reason.items():
@@ -203,17 +204,17 @@ def _same(a: arb, b: arb) -> bool:
     return bool(narrow and a.overlaps(b))
 
 
-def _reason(work: Work, name: str) -> tuple[str, str]:
+def _reason(work: Work, name: str) -> tuple[str, Certainty]:
     """Why a parameter makes no difference: (justification, how)."""
     equations = work.result("equations")
     if equations is not None:
         ring, matrix = equations.mass_matrix[0, 0].ring, equations.mass_matrix.polynomials
         rows = [[*row, force.polynomial] for row, force in zip(matrix, equations.forcing, strict=True)]
         if not any(holds(ring, x, name) for row in rows for x in row):
-            return "identity of the ring: it cancels from M and f", PROVED
+            return "identity of the ring: it cancels from M and f", Certainty.PROVED
         if _proportional(ring, rows, name):
-            return FACTOR, PROVED
-    return f"q'' is the same for two values at {STATES} random states, in {PRECISION}-bit balls", VERIFIED
+            return FACTOR, Certainty.PROVED
+    return f"q'' is the same for two values at {STATES} random states, in {PRECISION}-bit balls", Certainty.VERIFIED
 
 
 def _proportional(ring: Ring, rows: Sequence[Sequence[Polynomial]], name: str) -> bool:

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
 from mbsym.model.system import rational
 from mbsym.numerics.body_motion import BodyMotions, body_motions
@@ -19,7 +20,7 @@ from mbsym.numerics.choice import choose
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kinds import SKEW
-from mbsym.numerics.ledger.entry import COUNT, VERIFIED, Measure, Saving
+from mbsym.numerics.ledger.entry import COUNT, Measure, Saving
 from mbsym.numerics.ledger.work import Work
 from mbsym.numerics.methods.interface import Breakdown, Setting
 from mbsym.numerics.rows import rows
@@ -63,7 +64,7 @@ def skew_plane(work: Work) -> Iterator[Saving]:
         ),
     )
     names = tuple(name for name, a, b in zip(found.names, turning, moving, strict=True) if a or b)
-    yield Saving(SKEW, names, why, VERIFIED, measures)
+    yield Saving(SKEW, names, why, Certainty.VERIFIED, measures)
 
 
 def _kinds(work: Work, found: BodyMotions) -> tuple[list[bool], list[bool]]:

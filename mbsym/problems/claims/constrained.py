@@ -23,6 +23,7 @@ from typing import Any
 from flint import arb, arb_mat, ctx, fmpq, fmpq_poly
 
 from mbsym.algebra.base import Algebra
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, NoClosedForm, SingularPoint
 from mbsym.algebra.point import Rationals
@@ -56,7 +57,7 @@ from mbsym.problems.claims.result import (
 from mbsym.problems.claims.symbols import Symbols
 from mbsym.problems.constraints.along import STATES, AlongMotion
 from mbsym.problems.constraints.result import Constraints
-from mbsym.problems.integrals import PROVED, total_rate
+from mbsym.problems.integrals import total_rate
 
 #: Digits of the numbers of a state that refutes a claim.
 DIGITS_SHOWN = 8
@@ -127,7 +128,7 @@ def _integral(derived: Derived, result: ClaimResult) -> ClaimResult:
     if all(ring.is_zero(slope) is True for slope in along.along_speeds(own)):
         remark = "with the velocities that the constraints allow it contains none"
         return replace(result, outcome=FAILS, remark=remark)
-    known = [item.formula.polynomial for item in _integrals(derived) if item.status == PROVED]
+    known = [item.formula.polynomial for item in _integrals(derived) if item.status is Certainty.PROVED]
     if any(ring.is_zero(along.restricted(claimed - one)) is True for one in known):
         return result
     return _vanishing(derived, along, result, total_rate(derived.scene, claimed), own, "dI/dt")

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.ring import Ring
 from mbsym.algebra.signs import Signs
 from mbsym.expressions.tree import (
@@ -44,8 +45,8 @@ EQUIVALENT = "holds up to a total time derivative"
 DIGITS = "holds to the digits printed"
 TOLERANCE = "holds within the tolerance"
 DOUBLES = "holds to the rounding of double precision"
-NUMERICAL = "verified numerically"
-UNDECIDED = "undecided"
+NUMERICAL = Certainty.VERIFIED
+UNDECIDED = Certainty.UNDECIDED
 DIFFERS = "differs"
 SCALED = "differs by a factor"
 FAILS = "does not hold"

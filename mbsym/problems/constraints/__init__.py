@@ -18,7 +18,7 @@ Neimark & N. A. Fufaev, Dynamics of Nonholonomic Systems, chapter 1 (integrabili
 
 from mbsym.problems.constraints.analysis import Fault, Unsound, constraints, faults
 from mbsym.problems.constraints.motion import Embedded, embedded_equations
-from mbsym.problems.constraints.result import Constraints, Integrability, Redundant, Solved, Sureness
+from mbsym.problems.constraints.result import Constraints, Integrability, Redundant, Solved
 
 __all__ = [
     "Constraints",
@@ -27,7 +27,6 @@ __all__ = [
     "Integrability",
     "Redundant",
     "Solved",
-    "Sureness",
     "Unsound",
     "constraints",
     "embedded_equations",

@@ -9,6 +9,7 @@ from typing import Any
 
 from flint import ctx, fmpq_mat
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import Constrained, Failure, NoClosedForm
 from mbsym.algebra.ring import Polynomial, Ring
@@ -22,7 +23,7 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.model.constraints import is_holonomic, kind_name
 from mbsym.model.system import System
 from mbsym.problems.constraints.integrability import Field, by_program, integrability, is_exact_by_itself, undecided
-from mbsym.problems.constraints.result import Constraints, Integrability, Redundant, Solved, Sureness
+from mbsym.problems.constraints.result import Constraints, Integrability, Redundant, Solved
 
 #: At so many points ranks are taken.
 POINTS = 3
@@ -310,7 +311,7 @@ class _Analysis:
         return Redundant(
             self.rows[i].name,
             tuple(self.rows[k].name for k in points.combined(independent, i)),
-            Sureness.PROVED if proved else Sureness.NUMERICAL,
+            Certainty.PROVED if proved else Certainty.VERIFIED,
         )
 
     def _follows(self, row: Sequence[Polynomial], side: Polynomial, found: Embedding) -> bool:

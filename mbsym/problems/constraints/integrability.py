@@ -7,6 +7,7 @@ from dataclasses import replace
 from itertools import combinations
 from typing import Any
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.derivative import directional
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.program import Node
@@ -16,7 +17,7 @@ from mbsym.mechanics.constraints.programs import ConstrainedPrograms
 from mbsym.mechanics.constraints.ranks import eliminated
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.oracle import State
-from mbsym.problems.constraints.result import Integrability, Sureness
+from mbsym.problems.constraints.result import Integrability
 
 #: A vector field on the coordinates and t: the components of the coordinates, then that of t.
 Field = tuple[Polynomial, ...]
@@ -44,8 +45,8 @@ def integrability(
     # A rank that is reached is proved; that it goes no further only where the ring says so.
     reached = growth[-1]
     proved = reached == whole or bounded or (reached == growth[0] and _is_involutive(scene, found, shift_matters))
-    sureness = Sureness.PROVED if proved else Sureness.NUMERICAL
-    return Integrability(growth, whole - reached, imposed, sureness, shift_matters)
+    certainty = Certainty.PROVED if proved else Certainty.VERIFIED
+    return Integrability(growth, whole - reached, imposed, certainty, shift_matters)
 
 
 def _growth(
@@ -111,7 +112,7 @@ def by_program(
     growth, _ = _growth(fields, whole, bracketed, lambda x: all(map(program.vanishes, x)), rank)
     if growth[-1] < whole:
         return None
-    return Integrability(growth, 0, imposed, Sureness.PROVED, rheonomic=False)
+    return Integrability(growth, 0, imposed, Certainty.PROVED, rheonomic=False)
 
 
 def _is_involutive(scene: Scene, found: Embedding, shift_matters: bool) -> bool:
@@ -203,4 +204,4 @@ def is_exact_by_itself(scene: Scene, row: Sequence[Polynomial], shift: Polynomia
 
 def undecided(imposed: int, rheonomic: bool) -> Integrability:
     """Nothing is known: formulas outgrew their budget."""
-    return Integrability((), None, imposed, Sureness.UNDECIDED, rheonomic)
+    return Integrability((), None, imposed, Certainty.UNDECIDED, rheonomic)

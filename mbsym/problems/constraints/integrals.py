@@ -25,6 +25,7 @@ from typing import Any
 
 from flint import ctx, fmpq_mat
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Formula
@@ -36,7 +37,7 @@ from mbsym.problems.constraints.along import STATES, AlongMotion
 from mbsym.problems.constraints.result import Constraints
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
-from mbsym.problems.integrals import ENERGY, NUMERICAL, PROVED, Integral, residual, total_rate, whole_momenta
+from mbsym.problems.integrals import ENERGY, Integral, residual, total_rate, whole_momenta
 
 
 def integrals(
@@ -79,7 +80,7 @@ class _Known:
         still = {ring.index("velocity", name): ring.zero for name in self.names}
         drifts = [ring.substitute(self.tied.velocity[i].polynomial, still) for i in self.tied.independent]
         if all(ring.is_zero(x) is True for x in drifts) and self._is(self.energy, self.speeds):
-            yield Integral(ENERGY, ENERGY, "time", Formula(ring, self.energy), PROVED)
+            yield Integral(ENERGY, ENERGY, "time", Formula(ring, self.energy), Certainty.PROVED)
 
     def momenta(self) -> Iterator[Integral]:
         """Of coordinates alone, and along the columns of Y whose entries are constants."""
@@ -89,7 +90,11 @@ class _Known:
             if self._allowed(xi) and self._is(self.momentum[i], xi) and not self.ring.vanishes(self.momentum[i]):
                 done.append(name)
                 yield Integral(
-                    f"momentum of {name}", "cyclic momentum", name, Formula(self.ring, self.momentum[i]), PROVED
+                    f"momentum of {name}",
+                    "cyclic momentum",
+                    name,
+                    Formula(self.ring, self.momentum[i]),
+                    Certainty.PROVED,
                 )
         solved = self.tied.solved
         for place, name in enumerate(self.tied.free if solved is not None else ()):
@@ -100,7 +105,7 @@ class _Known:
             along = self.ring.dot(self.momentum, xi)
             if self._allowed(xi) and self._is(along, xi):
                 title = f"momentum along the displacement of {name} that the constraints allow"
-                yield Integral(title, "cyclic momentum", name, Formula(self.ring, along), PROVED)
+                yield Integral(title, "cyclic momentum", name, Formula(self.ring, along), Certainty.PROVED)
 
     def _moves(self, x: Polynomial) -> bool:
         changing = [*self.names, "t", *(item.name for item in self.scene.system.prescribed)]
@@ -129,7 +134,7 @@ class _Whole(AlongMotion):
                     proved = self._is_proved(formula)
                     if not proved and self.ring.kinked:
                         continue  # a force that comes late vanishes at every state before
-                    status = PROVED if proved else NUMERICAL
+                    status = Certainty.PROVED if proved else Certainty.VERIFIED
                     found.append(Integral(name, kind, str(axis), Formula(self.ring, formula), status))
         except Failure:
             pass  # what was found so far is right; the rest is not known

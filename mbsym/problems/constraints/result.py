@@ -3,25 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import Enum
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.formulas.formula import Column, Formula, Matrix
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.constraints.embedding import Embedding, Pivots
 from mbsym.mechanics.constraints.rows import RowName
-
-
-class Sureness(Enum):
-    """How a statement is known; the three words mean different things."""
-
-    PROVED = "proved"
-    NUMERICAL = "verified numerically"
-    UNDECIDED = "undecided"
-
-    def __and__(self, other: Sureness) -> Sureness:
-        """Of two statements together: that of the weaker one."""
-        order = (Sureness.PROVED, Sureness.NUMERICAL, Sureness.UNDECIDED)
-        return order[max(order.index(self), order.index(other))]
 
 
 @dataclass(frozen=True)
@@ -36,7 +23,7 @@ class Integrability:
     growth: tuple[int, ...]
     kept: int | None
     constraints: int
-    sureness: Sureness
+    certainty: Certainty
     rheonomic: bool
 
     @property
@@ -55,7 +42,7 @@ class Redundant:
 
     name: RowName
     from_rows: tuple[RowName, ...]
-    sureness: Sureness
+    certainty: Certainty
 
 
 @dataclass(frozen=True, repr=False)

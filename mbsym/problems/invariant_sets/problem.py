@@ -20,7 +20,6 @@ from mbsym.problems.invariant_sets.result import (
     Gap,
     InvariantSets,
     Kind,
-    Proof,
     SecondVariation,
     StationarySet,
 )
@@ -77,7 +76,7 @@ def _family(arena: Arena, whole: Polynomial) -> tuple[Family, tuple[Polynomial, 
     sets = [one for one in looked if one is not None]
     # A piece of a larger set may be cut off it by what was divided by; alone it need not be invariant.  The whole is,
     # where K is an integral; where that is not seen a set that is not invariant stays, and is told as a defect.
-    failed = [one for one in sets if one.invariant is Proof.FAILED]
+    failed = [one for one in sets if one.invariant is False]
     parts = failed if arena.floating or (failed and _conserved(arena)) else []
     sets = [one for one in sets if one not in parts]
     # A branch on which no point was found modulo a prime may be empty, or may not: nothing is said of it.
@@ -296,7 +295,7 @@ def _denominators(place: Place) -> list[Polynomial]:
     return found
 
 
-def _invariant(place: Place) -> Proof:
+def _invariant(place: Place) -> bool | None:
     """d/dt of every equation of the set, for constant multipliers, vanishes on it by the equations of motion."""
     arena = place.arena
     context = arena.ring.context
@@ -306,6 +305,6 @@ def _invariant(place: Place) -> Proof:
         s.denominator * context.gen(s.unknown) - s.numerator for s in place.branch.solved if s.unknown not in floating
     ]
     if not _is_steady(place) and any(p.degrees()[g] > 0 for p in equations for g in floating):
-        return Proof.UNDECIDED  # their rates are not known
+        return None  # their rates are not known
     answers = [place.vanishes(arena.derivative(p)) for p in equations]
-    return Proof.FAILED if False in answers else Proof.UNDECIDED if None in answers else Proof.PROVED
+    return False if False in answers else None if None in answers else True

@@ -16,14 +16,6 @@ class Kind(Enum):
     MANIFOLD = "invariant manifold"
 
 
-class Proof(Enum):
-    """How it is known that a set is invariant."""
-
-    PROVED = "proved"
-    UNDECIDED = "undecided"
-    FAILED = "failed"
-
-
 class Definiteness(Enum):
     """What the second variation says, for almost all parameters that the description allows."""
 
@@ -102,7 +94,8 @@ class StationarySet:
     dimension: int
     union: int
     motion: tuple[tuple[str, Formula], ...]
-    invariant: Proof
+    #: By the equations of motion, in the ring; None where that was not decided.
+    invariant: bool | None
     variation: SecondVariation | None
     first: FirstApproximation | None
     gap: Gap

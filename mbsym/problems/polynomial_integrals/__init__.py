@@ -76,7 +76,6 @@ from mbsym.problems.polynomial_integrals.result import (
     Relations,
     Special,
     SpecialLevel,
-    Sure,
 )
 from mbsym.problems.polynomial_integrals.search import polynomial_integrals
 from mbsym.problems.polynomial_integrals.values import along
@@ -104,7 +103,6 @@ __all__ = [
     "Relations",
     "Special",
     "SpecialLevel",
-    "Sure",
     "ZeroLevels",
     "along",
     "along_of",

@@ -11,10 +11,10 @@ import random
 
 from flint import nmod_mat
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.problems.polynomial_integrals import frames
 from mbsym.problems.polynomial_integrals.gradings import Grading
 from mbsym.problems.polynomial_integrals.modular import ModularField, Terms
-from mbsym.problems.polynomial_integrals.result import Sure
 
 
 class Independence:
@@ -37,16 +37,16 @@ class Independence:
         self.rank = 0
         self._related = related
 
-    def of(self, f: Terms) -> tuple[bool, Sure]:
+    def of(self, f: Terms) -> tuple[bool, Certainty]:
         """Whether f is independent of those before it; it is one of them from now on."""
         if self.state is None:
-            return False, Sure.UNDECIDED
+            return False, Certainty.UNDECIDED
         rows = [*self.rows, self._gradient(f)]
         if nmod_mat(rows, self.there.prime).rank() == len(rows):
             self.rows, self.rank = rows, self.rank + 1
-            return True, Sure.PROVED
+            return True, Certainty.PROVED
         moves = any(self.there.slopes)
-        return False, Sure.PROVED if self.rank == self.most and moves else Sure.VERIFIED
+        return False, Certainty.PROVED if self.rank == self.most and moves else Certainty.VERIFIED
 
     def depends(self, f: Terms) -> bool:
         """Whether f adds nothing to the rank of those before it, at the random state."""

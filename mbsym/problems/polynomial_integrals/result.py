@@ -7,20 +7,13 @@ from enum import Enum
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.formulas.formula import Formula
 from mbsym.problems.polynomial_integrals.gradings import Grading
 
 if TYPE_CHECKING:
     from mbsym.problems.symmetries.result import Symmetries
-
-
-class Sure(Enum):
-    """How a statement is known: an identity or a rank that bounds; a random point modulo a prime; not at all."""
-
-    PROVED = "proved"
-    VERIFIED = "verified"
-    UNDECIDED = "undecided"
 
 
 #: The name of an integral that depends on those of problem 7 as a function, at a random state.
@@ -43,7 +36,7 @@ class Generator:
     weight: int
     name: str
     independent: bool
-    sure: Sure
+    certainty: Certainty
 
     @property
     def is_new(self) -> bool:

@@ -46,7 +46,6 @@ from mbsym.problems.stabilisation.result import (
     Rank,
     Region,
     Stabilisation,
-    Sure,
 )
 
 __all__ = [
@@ -60,5 +59,4 @@ __all__ = [
     "Rank",
     "Region",
     "Stabilisation",
-    "Sure",
 ]

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE
 from mbsym.algebra.point import Rationals
@@ -17,7 +18,7 @@ from mbsym.problems.linearisation import Linearisation
 from mbsym.problems.stabilisation import numbers as exact
 from mbsym.problems.stabilisation.numbers import AtValues
 from mbsym.problems.stabilisation.problem import MOST_COORDINATES, at_values, feels_everything
-from mbsym.problems.stabilisation.result import Locus, Stabilisation, Sure
+from mbsym.problems.stabilisation.result import Locus, Stabilisation
 from mbsym.problems.stability.exact import inertia
 
 #: Points at which everything is compared, and how many are tried.
@@ -83,13 +84,13 @@ def _wrong(
     for damped in found.dissipation:
         at = [names.index(name) for name in damped.coordinates]
         own = there.only(at)
-        if _is_generic(damped.rank.locus, vanishes) and damped.rank.sure is Sure.PROVED:
+        if _is_generic(damped.rank.locus, vanishes) and damped.rank.certainty is Certainty.PROVED:
             matrix = (own.rates + own.rates.transpose()) / 2
             if feels_everything(own, matrix) != damped.rank.full:
                 yield "pervasiveness"
     for control in found.control:
         own = there.only([names.index(name) for name in control.coordinates])
-        told = _is_generic(control.rank.locus, vanishes) and control.rank.sure is Sure.PROVED
+        told = _is_generic(control.rank.locus, vanishes) and control.rank.certainty is Certainty.PROVED
         if told and exact.is_controllable(own) != control.rank.full:
             yield "controllability"
 

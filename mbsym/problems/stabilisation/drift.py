@@ -12,12 +12,13 @@ from __future__ import annotations
 from itertools import combinations
 from math import comb
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.characteristic import determinant
 from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.ring import Polynomial
 from mbsym.problems.stabilisation.clearing import Cleared, Rows
 from mbsym.problems.stabilisation.hautus import MOST_BLOCKS, _open_factors, annihilator
-from mbsym.problems.stabilisation.result import Locus, Rank, Sure
+from mbsym.problems.stabilisation.result import Locus, Rank
 
 
 def without_drift(rank: Rank, whole: Cleared, gyro: Rows, stiff: Rows, damping: Rows) -> Rank:
@@ -26,7 +27,7 @@ def without_drift(rank: Rank, whole: Cleared, gyro: Rows, stiff: Rows, damping: 
     Where some are there for all parameters, lambda is a root; else all is said where the minors that exclude them do
     not vanish.  Raises TooLargeError.
     """
-    if not rank.full or rank.sure is not Sure.PROVED or whole.known.never_zero(determinant(stiff)):
+    if not rank.full or rank.certainty is not Certainty.PROVED or whole.known.never_zero(determinant(stiff)):
         return rank
     damped = [j for j, row in enumerate(damping) if any(x != 0 for x in row)]
     beside = [[*k, *(d[j] for j in damped)] for k, d in zip(stiff, damping, strict=True)]
@@ -39,7 +40,7 @@ def without_drift(rank: Rank, whole: Cleared, gyro: Rows, stiff: Rows, damping: 
             drift = (whole.formula(both * 0), whole.formula(both * 0 + 1))
             turned = any(x != 0 for row in gyro for x in row)  # then w is needed, which a lower rank of K may deny
             open_ = _open_factors(held, whole.known) if turned else []
-            return Rank(False, Sure.PROVED, (drift,), Locus((), (), tuple(map(whole.formula, open_))))
+            return Rank(False, Certainty.PROVED, (drift,), Locus((), (), tuple(map(whole.formula, open_))))
         needed.append(found)
     if rank.locus is None:
         return rank
@@ -49,7 +50,7 @@ def without_drift(rank: Rank, whole: Cleared, gyro: Rows, stiff: Rows, damping: 
         doubtful = {text: x for text, x in doubtful.items() if text not in map(str, locus.factors)}
     factors = tuple(x for x in locus.factors if str(x) not in doubtful)
     provided = {str(x): x for x in locus.provided} | doubtful
-    return Rank(True, rank.sure, (), Locus(factors, locus.together, tuple(provided.values())), rank.why_not)
+    return Rank(True, rank.certainty, (), Locus(factors, locus.together, tuple(provided.values())), rank.why_not)
 
 
 def _paired(u: list[Polynomial], gyro: Rows, v: list[Polynomial]) -> Polynomial:

@@ -20,13 +20,14 @@ from itertools import combinations
 from math import comb
 from typing import Any
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.characteristic import _Variable, determinant, resultant
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import Signs
 from mbsym.problems.stabilisation.clearing import Cleared, Rows
-from mbsym.problems.stabilisation.result import Locus, Rank, Sure
+from mbsym.problems.stabilisation.result import Locus, Rank
 
 #: So many maximal minors are formed, of so many rows at most.
 MOST_MINORS, MOST_ROWS = 60, 6
@@ -45,7 +46,7 @@ def rank_of(whole: Cleared, mass: Rows, rates: Rows, places: Rows, inputs: Rows,
     beta, annihilating = annihilator(inputs, whole.known, size)
     provided = tuple(whole.formula(x) for x in _open_factors(beta, whole.known))
     if not annihilating:
-        return Rank(True, Sure.PROVED, (), Locus((), (), provided))
+        return Rank(True, Certainty.PROVED, (), Locus((), (), provided))
     variable = _Variable(whole.ring.context)
     rows = [
         [variable.assemble([sum((w[k] * part[k][j] for k in range(size)), whole.ring.zero) for part in parts])
@@ -55,7 +56,7 @@ def rank_of(whole: Cleared, mass: Rows, rates: Rows, places: Rows, inputs: Rows,
     ]  # fmt: skip
     minors = _maximal_minors(rows, variable)
     if not minors:
-        return Rank(False, Sure.PROVED, (), None, "the inputs do not even enter")
+        return Rank(False, Certainty.PROVED, (), None, "the inputs do not even enter")
     common = minors[0]
     for one in minors[1:]:
         common = common.gcd(one)
@@ -66,13 +67,13 @@ def rank_of(whole: Cleared, mass: Rows, rates: Rows, places: Rows, inputs: Rows,
         factors = tuple(
             tuple(whole.formula(c) for c in variable.coefficients(x, variable.degree(x))) for x in in_lambda
         )
-        return Rank(False, Sure.PROVED, factors, Locus((), (), provided))
+        return Rank(False, Certainty.PROVED, factors, Locus((), (), provided))
     quotients = [divmod(one, common)[0] for one in minors]
     if not rest:
         quotients = [_without_zero_roots(x, variable) for x in quotients]
     spare = [x for x in free if whole.known.never_zero(x) is False and not _divides(x, beta)]
     locus = _locus(whole, quotients, variable, spare, provided)
-    return Rank(True, Sure.PROVED, (), locus, "" if locus is not None else "the formulas outgrew their budget")
+    return Rank(True, Certainty.PROVED, (), locus, "" if locus is not None else "the formulas outgrew their budget")
 
 
 def annihilator(inputs: Rows, known: Signs, size: int) -> tuple[Polynomial, Rows]:

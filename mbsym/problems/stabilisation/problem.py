@@ -10,6 +10,7 @@ from typing import Any
 
 from flint import fmpq, fmpq_mat
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.characteristic import determinant
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Failure, TooLargeError
@@ -35,7 +36,6 @@ from mbsym.problems.stabilisation.result import (
     Motion,
     Rank,
     Stabilisation,
-    Sure,
 )
 from mbsym.problems.stability.exact import is_positive
 from mbsym.problems.stability.requirements import Definite, definiteness
@@ -157,13 +157,13 @@ def _energy(whole: Cleared | None, names: tuple[str, ...], damped: Matrix, there
 def _dissipation(whole: Cleared | None, names: tuple[str, ...], there: AtValues | None, damped: Any) -> Dissipation:
     pervasive = None if there is None or damped is None else feels_everything(there, damped)
     if whole is None:
-        rank = Rank(False, Sure.UNDECIDED, why_not="the matrices hold roots or functions of parameters")
+        rank = Rank(False, Certainty.UNDECIDED, why_not="the matrices hold roots or functions of parameters")
         return Dissipation(names, False, False, rank, (), pervasive)
     mass, damping, gyro, stiff = whole.matrices
     word = definiteness(damping, whole.known, "D").word
     complete = word is Definite.POSITIVE
     if complete:
-        return Dissipation(names, True, True, Rank(True, Sure.PROVED, (), Locus()), (), True if there else None)
+        return Dissipation(names, True, True, Rank(True, Certainty.PROVED, (), Locus()), (), True if there else None)
     opposite = [[-x for x in row] for row in gyro]  # [P(lambda); D] transposed is [P(-lambda), D] with D instead of B
     try:
         rank = without_drift(rank_of(whole, mass, opposite, stiff, damping, rest=False), whole, gyro, stiff, damping)
@@ -275,7 +275,7 @@ def _controlled(
 def _control(whole: Cleared | None, linear: Linearisation, at: Sequence[int], there: AtValues | None) -> Control:
     names = tuple(linear.coordinates[i] for i in at)
     if whole is None:
-        rank = Rank(False, Sure.UNDECIDED, why_not="the matrices hold roots or functions of parameters")
+        rank = Rank(False, Certainty.UNDECIDED, why_not="the matrices hold roots or functions of parameters")
     else:
         rank = _ranked(whole, at, range(len(linear.inputs)))
     if there is None:
@@ -310,8 +310,8 @@ def _at_random(whole: Cleared, mass: Rows, rates: Rows, places: Rows, inputs: Ro
 
         there = AtValues(at(mass), at(rates), at(places), at(inputs))
         if there.mass.det() != 0 and numbers.is_controllable(there):
-            return Rank(True, Sure.PROVED, (), None, why)
-    return Rank(False, Sure.UNDECIDED, why_not=why)
+            return Rank(True, Certainty.PROVED, (), None, why)
+    return Rank(False, Certainty.UNDECIDED, why_not=why)
 
 
 def _sum(first: Rows, second: Rows) -> Rows:
@@ -331,6 +331,6 @@ def _least(whole: Cleared, linear: Linearisation) -> tuple[tuple[str, ...], ...]
         enough = [chosen for chosen, rank in ranks.items() if rank.full]
         if enough:
             return tuple(tuple(linear.inputs[j] for j in chosen) for chosen in enough)
-        if any(rank.sure is Sure.UNDECIDED for rank in ranks.values()):
+        if any(rank.certainty is Certainty.UNDECIDED for rank in ranks.values()):
             return ()
     return ()

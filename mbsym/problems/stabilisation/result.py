@@ -3,19 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import StrEnum
 from fractions import Fraction
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.notebook import Shown
 from mbsym.problems.stability.verdict import Verdict
-
-
-class Sure(StrEnum):
-    """How a statement is known."""
-
-    PROVED = "proved"
-    UNDECIDED = "undecided"
 
 
 @dataclass(frozen=True)
@@ -75,7 +68,7 @@ class Rank(Shown):
     """
 
     full: bool
-    sure: Sure
+    certainty: Certainty
     factors: tuple[tuple[Formula, ...], ...] = ()
     locus: Locus | None = None
     why_not: str = ""

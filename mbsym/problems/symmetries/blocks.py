@@ -6,13 +6,13 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.problems import integrals
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations, convective_rate
-from mbsym.problems.polynomial_integrals.result import Sure
 from mbsym.problems.speed_integrals import Field
 from mbsym.problems.speeds import SpeedEquations
 from mbsym.problems.vector_field import put_in
@@ -43,7 +43,7 @@ class Blocks:
     state: tuple[Callable[[Polynomial], Polynomial], ...]
     norms: tuple[tuple[str, ...], ...]
     vanishes: Callable[[Polynomial], bool | None]
-    keeps: Callable[[Polynomial], Sure | None]
+    keeps: Callable[[Polynomial], Certainty | None]
     in_speeds: bool
 
 
@@ -60,14 +60,14 @@ def in_coordinates(scene: Scene, energy: Energy, equations: Equations, images: I
     whole = ring.reduce(ring.dot(momenta, speeds) - lagrangian)
     power = convective_rate(scene, ring, whole) + ring.dot(speeds, [f.polynomial for f in equations.forcing])
 
-    def keeps(x: Polynomial) -> Sure | None:
+    def keeps(x: Polynomial) -> Certainty | None:
         rate = integrals.rate_on_motion(scene, equations, x)
         if rate is not None:
             zero = ring.is_zero(put_in(ring, rate[0], images))
-            return None if zero is False else Sure.PROVED if zero else Sure.UNDECIDED
+            return None if zero is False else Certainty.PROVED if zero else Certainty.UNDECIDED
         if images:
-            return Sure.UNDECIDED
-        return Sure.VERIFIED if integrals.is_conserved(scene, equations, x) else None
+            return Certainty.UNDECIDED
+        return Certainty.VERIFIED if integrals.is_conserved(scene, equations, x) else None
 
     return _with(
         ring,
@@ -99,9 +99,9 @@ def in_speeds(form: SpeedForm, energy: Energy, equations: SpeedEquations, images
     work = sum((ring.times(u, f) for u, f in zip(own, forcing, strict=True)), ring.zero)
     field = Field(form, equations)
 
-    def keeps(x: Polynomial) -> Sure | None:
+    def keeps(x: Polynomial) -> Certainty | None:
         zero = form.vanishes(put_in(ring, field.rate(x), images))
-        return None if zero is False else Sure.PROVED if zero else Sure.UNDECIDED
+        return None if zero is False else Certainty.PROVED if zero else Certainty.UNDECIDED
 
     replaced = [name for body in form.by_vectors for name in body.own_angles]
     by_quaternion = [body.orientation[0].components for body in form.by_quaternion]

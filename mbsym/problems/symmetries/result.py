@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.formulas.formula import Formula
-from mbsym.problems.polynomial_integrals.result import Sure
 
 #: The name of an integral that depends on those of problem 7 and of the list before it, at an exact random state.
 DEPENDENT = "function of those before it"
@@ -26,13 +26,13 @@ class Symmetry:
     gauge: Formula
     integral: Formula
     name: str
-    sure: Sure
-    substituted: Sure
+    certainty: Certainty
+    substituted: Certainty
 
     @property
     def is_new(self) -> bool:
         """Whether it is proved that problem 7 does not know it, as a function."""
-        return not self.name and self.sure is Sure.PROVED
+        return not self.name and self.certainty is Certainty.PROVED
 
 
 @dataclass(frozen=True)

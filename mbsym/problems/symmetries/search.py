@@ -9,6 +9,7 @@ from typing import Any
 
 from flint import fmpq, fmpq_mat, nmod_mat
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Failure, Limit, NoClosedForm
 from mbsym.algebra.point import Rationals
@@ -19,7 +20,7 @@ from mbsym.mechanics.states import rational_states
 from mbsym.model.system import System
 from mbsym.problems.integrals import Integral
 from mbsym.problems.polynomial_integrals.modular import PRIMES, null_space
-from mbsym.problems.polynomial_integrals.result import FUNCTION, Sure
+from mbsym.problems.polynomial_integrals.result import FUNCTION
 from mbsym.problems.symmetries.blocks import Blocks
 from mbsym.problems.symmetries.kernel import coefficients, independent, kernel
 from mbsym.problems.symmetries.result import DEPENDENT, Symmetries, Symmetry
@@ -215,7 +216,7 @@ def _symmetry(blocks: Blocks, unknowns: Sequence[Unknown], vector: dict[int, Pol
         return None
     directions = tuple((name, Formula(ring, xi)) for name, xi in zip(blocks.names, field, strict=True) if xi != 0)
     shift, gained = Formula(ring, ring.reduce(time)), Formula(ring, ring.reduce(gauge))
-    return Symmetry(directions, shift, gained, Formula(ring, whole), "", Sure.UNDECIDED, second)
+    return Symmetry(directions, shift, gained, Formula(ring, whole), "", Certainty.UNDECIDED, second)
 
 
 def _told_apart(
@@ -236,14 +237,14 @@ def _told_apart(
     for one in sorted(moving, key=lambda one: (not one.name, one.integral.terms)):
         x = one.integral.polynomial
         if one.name:
-            judged.append(replace(one, sure=Sure.PROVED))
+            judged.append(replace(one, certainty=Certainty.PROVED))
         elif known is None or (grown := of_all.add(x)) is None:
             judged.append(one)
         elif grown:
-            judged.append(replace(one, sure=Sure.PROVED))
+            judged.append(replace(one, certainty=Certainty.PROVED))
         else:
             name = FUNCTION if of_known.grows(x) is False else DEPENDENT
-            judged.append(replace(one, name=name, sure=Sure.VERIFIED))
+            judged.append(replace(one, name=name, certainty=Certainty.VERIFIED))
     return judged
 
 

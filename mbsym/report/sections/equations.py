@@ -63,7 +63,7 @@ def _constraints(found: Constraints, write: Write) -> dict[str, Any]:
             {
                 "row": one.name.label,
                 "follows_from": [name.label for name in one.from_rows],
-                "known": one.sureness.value,
+                "known": one.certainty.value,
             }
             for one in found.redundant
         ],
@@ -74,7 +74,7 @@ def _constraints(found: Constraints, write: Write) -> dict[str, Any]:
             "word": integrable.word,
             "growth": list(integrable.growth),
             "kept": integrable.kept,
-            "known": integrable.sureness.value,
+            "known": integrable.certainty.value,
         },
         "integrable_alone": [{"row": name.label, "integrable": decided} for name, decided in found.alone],
         "dependent": list(found.dependent),

@@ -11,7 +11,6 @@ from mbsym.model.system import System
 from mbsym.problems.invariant_sets import (
     FirstApproximation,
     InvariantSets,
-    Proof,
     Relation,
     SecondVariation,
     StationarySet,
@@ -46,7 +45,7 @@ def data(found: InvariantSets, system: System, write: Write) -> dict[str, Any]:
 
 
 def _set(one: StationarySet, write: Write) -> dict[str, Any]:
-    stands = one.invariant is Proof.PROVED
+    stands = one.invariant is True
     return {
         "kind": one.kind.value,
         "dimension": one.dimension,
@@ -57,7 +56,7 @@ def _set(one: StationarySet, write: Write) -> dict[str, Any]:
         "free": list(one.free),
         "multipliers": {name: None if x is None else write(x) for name, x in one.multipliers},
         "motion": {name: write(x) for name, x in one.motion},
-        "invariant": one.invariant.value,
+        "invariant": {True: "proved", None: "undecided", False: "failed"}[one.invariant],
         "real_point_found": one.real,
         "second_variation": None if one.variation is None or not stands else _variation(one.variation, write),
         "first_approximation": None if one.first is None else _first(one.first, write),

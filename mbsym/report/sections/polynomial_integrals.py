@@ -36,7 +36,7 @@ def data(result: Polynomials, system: System, write: Write) -> dict[str, Any]:
                 "new": one.is_new,
                 "formula": write(formula),
                 "independent": one.independent,
-                "independence": one.sure.value,
+                "independence": one.certainty.value,
             }
             for one, formula in zip(found.generators, result.formulas, strict=True)
         ],

@@ -82,7 +82,7 @@ def data(found: Stabilisation, system: System, write: Write) -> dict[str, Any]:
 def _rank(found: Rank, write: Write) -> dict[str, Any]:
     return {
         "full": found.full,
-        "sure": found.sure.value,
+        "sure": found.certainty.value,
         "roots_without": [[write(x) for x in factor] for factor in found.factors],
         "lost": None if found.locus is None else _locus(found.locus, write),
         "why_not": found.why_not,

@@ -8,9 +8,10 @@ from math import comb
 import pytest
 from flint import Ordering, fmpq_mpoly_ctx
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
-from mbsym.problems.polynomial_integrals import Sure, grading, polynomial_integrals
+from mbsym.problems.polynomial_integrals import grading, polynomial_integrals
 from mbsym.problems.polynomial_integrals.modular import PRIMES, count, monomials
 from mbsym.problems.polynomial_integrals.search import Search
 
@@ -135,7 +136,7 @@ def test_what_depends_on_the_others_is_told():
     found = polynomial_integrals(field, grading(field, (("x", "y", "z", "w"),)), 4)
     assert [one.weight for one in found.generators] == [2, 2, 2, 2]
     assert sum(one.independent for one in found.generators) == found.independent == 3
-    assert found.generators[3].sure is Sure.PROVED
+    assert found.generators[3].certainty is Certainty.PROVED
     assert found.complete
 
 

@@ -9,11 +9,12 @@ from pathlib import Path
 import pytest
 
 import mbsym
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Constrained
 from mbsym.analysis import symmetric
 from mbsym.analysis.pipeline import Analysis
 from mbsym.analysis.symmetric import symmetries_of
-from mbsym.problems.polynomial_integrals import FUNCTION, Sure
+from mbsym.problems.polynomial_integrals import FUNCTION
 from mbsym.problems.symmetries import in_speeds
 from mbsym.problems.symmetries.kernel import independent
 from mbsym.problems.symmetries.result import DEPENDENT
@@ -64,7 +65,7 @@ def test_lagranges_top_in_odd_axes():
     """r of the axes of symmetry: C (3 p + 4 r)/5."""
     result = found(ODD)
     assert told(result) == [({"p": "3/4", "r": "1"}, "0", "C*(3*p + 4*r)/4")]
-    assert [one.substituted for one in result.symmetries] == [Sure.PROVED] * 3
+    assert [one.substituted for one in result.symmetries] == [Certainty.PROVED] * 3
     assert (result.complete, result.in_speeds, result.symbols) == (True, True, True)
 
 
@@ -117,7 +118,7 @@ def test_forces_without_a_force_function_take_part():
     result = found(TWO + "  - generalized force: {x: n*y_dot, y: -n*x_dot}\n")
     assert told(result) == [({"x": "1"}, "n*y", "m1*x_dot - n*y"), ({"y": "1"}, "-n*x", "m2*y_dot + n*x")]
     (rotation,) = [one for one in result.symmetries if one.name == DEPENDENT]
-    assert rotation.sure is Sure.VERIFIED
+    assert rotation.certainty is Certainty.VERIFIED
     damped = found(TWO + "  - damper: {coordinate: x, coefficient: n}\n  - spring: {coordinate: y, stiffness: k}\n")
     # (m1 x' + n x)^2/2 + m1 (m2 y'^2 + k y^2)/2: with the square of the first the energy of the other body.
     square = "(m1**2*x_dot**2 + m1*m2*y_dot**2 + 2*m1*n*x_dot*x + n**2*x**2 + m1*k*y**2)/2"
@@ -145,7 +146,7 @@ def test_what_depends_on_problem_7_is_called_so():
     result = found(text.replace("loads:", ""))
     names = {one.name for one in result.symmetries}
     assert names >= {"momentum of x", "momentum of y"}
-    assert all(one.name in (FUNCTION, DEPENDENT) or one.sure is Sure.PROVED for one in result.symmetries)
+    assert all(one.name in (FUNCTION, DEPENDENT) or one.certainty is Certainty.PROVED for one in result.symmetries)
 
 
 def test_norms_are_no_symmetries():
