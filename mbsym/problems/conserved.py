@@ -21,7 +21,7 @@ from mbsym.mechanics.symmetry import is_free_about_the_origin
 from mbsym.problems import equations as lagrange
 from mbsym.problems import integrals as first_integrals
 from mbsym.problems.energy import Energy
-from mbsym.problems.integrals import ENERGY, Integral
+from mbsym.problems.integrals import ENERGIES, Integral
 from mbsym.problems.stability.bundle import Element, NumberField, definite_combination
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.theorems import Fact
@@ -122,7 +122,7 @@ def of_integrals(scene: Scene, known: Sequence[Integral], left_out: Sequence[str
                 except Failure:
                     continue
     seen = [(name, x) for name, x in found if not ring.dependencies(x, hidden)]
-    if len(seen) < 2 or not any(item.kind == ENERGY for item in proved):
+    if len(seen) < 2 or not any(item.kind in ENERGIES for item in proved):
         return None
     kept = tuple(name for name in system.coordinates if name not in left_out)
     return Conserved(ring, tuple(name for name, _ in seen), tuple(x for _, x in seen), kept, system.coordinates)

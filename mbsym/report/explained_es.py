@@ -96,6 +96,7 @@ EXPLAINED = {
     "squared factor {}": "factor al cuadrado {0}",
     # first integrals
     "generalised energy": "energía generalizada",
+    "energy with the potential of the forces": "energía con el potencial de las fuerzas",
     "momentum of {}": "momento generalizado de {0}",
     "linear momentum along axis {}": "cantidad de movimiento a lo largo del eje {0}",
     "angular momentum about axis {}": "momento cinético respecto al eje {0}",

@@ -96,6 +96,7 @@ EXPLAINED = {
     "squared factor {}": "квадратный множитель {0}",
     # first integrals
     "generalised energy": "обобщённая энергия",
+    "energy with the potential of the forces": "энергия вместе с потенциалом сил",
     "momentum of {}": "обобщённый импульс {0}",
     "linear momentum along axis {}": "количество движения вдоль оси {0}",
     "angular momentum about axis {}": "кинетический момент относительно оси {0}",

@@ -151,7 +151,7 @@ SENTENCES = {
     "Eigenvalues there, in physical time, of $[[names]]$": "Собственные значения при них, в физическом времени, для $[[names]]$",
     "On the theorems": "О теоремах",
     "Problem 7. First integrals": "Задача 7. Первые интегралы",
-    "None of the kinds that are looked for.": "Интегралов тех видов, которые разыскиваются, нет.",
+    "None in closed form of the kinds that are looked for.": "Интегралов тех видов, которые разыскиваются, в замкнутом виде нет.",
     "What was found": "Что получено",
     "Bodies and frames: [[bodies]]; degrees of freedom: [[freedom]].": (
         "Тела и системы координат: [[bodies]]; степени свободы: [[freedom]]."
@@ -218,7 +218,7 @@ SENTENCES = {
     "while the others keep to the unperturbed motion": "пока остальные следуют невозмущённому движению",
     "Stability of the whole system": "Устойчивость всей системы",
     "First integrals": "Первые интегралы",
-    "none of the kinds that are looked for": "тех видов, которые разыскиваются, нет",
+    "none in closed form of the kinds that are looked for": "тех видов, которые разыскиваются, в замкнутом виде нет",
     "Claims: [[held]] hold, [[refuted]] do not, [[open]] undecided.": (
         "Утверждения публикаций: верны --- [[held]], неверны --- [[refuted]], не решено --- [[open]]."
     ),
