@@ -6,12 +6,15 @@ import json
 from fractions import Fraction as F
 from itertools import product
 from pathlib import Path
+from random import Random
 from typing import Any
 
+import numpy as np
 import pytest
 from flint import fmpq, fmpq_poly
 
 import mbsym
+from mbsym.maps.boundaries import Origin
 from mbsym.maps.line_map import line_map
 from mbsym.maps.mapping import plane_map
 from mbsym.maps.result import LineMap, PlaneMap
@@ -61,6 +64,34 @@ def test_any_damping_ends_it() -> None:
         judged = at(found, damping, 10)
         assert (judged.word, judged.judged.right, judged.judged.real_right) == (Word.UNSTABLE, 2, 0)
     assert Word.ASYMPTOTIC not in {one.word for one in found.strata}
+
+
+def test_complete_dissipation_leaves_the_borders_of_k_alone() -> None:
+    """Kelvin-Chetaev: with D > 0 and N = 0 as many roots are to the right as K has negative eigenvalues, here counted by
+    NumPy, and without G they are real.  A resultant of degree 672 was in the way of exact regions."""
+    found = plane(mbsym.load("tests/cases/statements/complete-dissipation.yaml"), ("a", 0, 2), ("b", -3, 3))
+    assert {one.origin for told in found.boundaries.conditions for one in told} <= {
+        *(Origin.CONSTANT, Origin.DAMPING, Origin.STIFFNESS, Origin.UNDAMPED, Origin.SIGN)
+    }
+    source = Random(26)
+    for _ in range(30):
+        a, b = F(source.randint(1, 1999), 1000), F(source.randint(-2999, 2999), 1000)
+        rows = [[2 * a, -1, -a + b], [-1, b - 2, -a - b + F(1, 2)], [-a + b, -a - b + F(1, 2), b + 2]]
+        negative = int((np.linalg.eigvalsh(np.array(rows, dtype=float)) < 0).sum())
+        judged = at(found, a, b).judged
+        assert (judged.right, judged.real_right) == (negative, negative)
+        assert judged.verdict.word is (Word.UNSTABLE if negative else Word.ASYMPTOTIC)
+
+
+@pytest.mark.parametrize(
+    ("sign", "low", "hurwitz"),
+    [("positive", 0, False), ("real", 1, False), ("positive", -1, False), ("nonnegative", 0, True), ("real", 0, True)],
+)
+def test_minors_of_hurwitz_stay_where_the_dissipation_may_vanish(sign: str, low: int, hurwitz: bool) -> None:
+    """D = diag(a, 2 a) > 0 for a > 0; on the edge a = 0 the gyroscopic system has borders of its own."""
+    text = "{coordinates: [x, y], D: [[a, 0], [0, 2*a]], G: [[0, 3], [-3, 0]], K: [[b, 0], [0, -1]]}"
+    found = plane(described(text, f"{{a: {{sign: {sign}}}, b: {{}}}}"), ("a", low, 2), ("b", -2, 2))
+    assert (Origin.HURWITZ in {one.origin for told in found.boundaries.conditions for one in told}) is hurwitz
 
 
 def test_the_rotating_shaft() -> None:
