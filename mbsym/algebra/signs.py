@@ -623,7 +623,20 @@ class Signs:
             if _is_bound(polynomial, generator, relation):
                 constant, slope = (c.leading_coefficient() if c != 0 else fmpq(0) for c in _ends(polynomial, generator))
                 (below if slope > 0 else above).append((-constant / slope, relation == ">"))
-        return max(below, default=None), min(above, key=lambda bound: (bound[0], not bound[1]), default=None)
+        least = max(below, default=None)
+        most = min(above, key=lambda bound: (bound[0], not bound[1]), default=None)
+        return self._strictly(generator, least), self._strictly(generator, most)
+
+    def _strictly(self, generator: int, bound: tuple[Any, bool] | None) -> tuple[Any, bool] | None:
+        """A bound, strict if an assumption excludes equality: 1 - c^2 > 0 excludes c = 1."""
+        if bound is None or bound[1]:
+            return bound
+        excluded = any(
+            0 not in RELATIONS[relation] and p.degrees()[generator] and _at(p, generator, bound[0]) == 0
+            for p, relation in self.assumptions
+            if p != 0 and len(p) <= MOST_TERMS
+        )
+        return bound[0], excluded
 
 
 def conditions(requirements: Iterable[Condition]) -> tuple[Condition, ...]:

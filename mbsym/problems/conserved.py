@@ -27,6 +27,8 @@ from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.theorems import Fact
 from mbsym.problems.stability.verdict import Verdict, concluded, drifting
 
+#: How the name of a sum of squares of components of a momentum begins.
+SQUARE = "square of the "
 #: Momenta of more terms than this are not squared.
 MOST_TERMS = 80
 #: Coordinates of systems whose integrals are looked for.
@@ -118,7 +120,7 @@ def of_integrals(scene: Scene, known: Sequence[Integral], left_out: Sequence[str
                 axes = " and ".join(item.of for item in chosen)
                 try:
                     square = sum((ring.times(x, x) for item in chosen if (x := item.formula.polynomial)), ring.zero)
-                    found.append((f"square of the {kind} across ({axes})", ring.reduce(square)))
+                    found.append((f"{SQUARE}{kind} across ({axes})", ring.reduce(square)))
                 except Failure:
                     continue
     seen = [(name, x) for name, x in found if not ring.dependencies(x, hidden)]

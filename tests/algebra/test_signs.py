@@ -43,6 +43,8 @@ def signs(words: str, *assumptions: tuple[Any, str]) -> Signs:
         ("real real negative", ((x * z - y**2, ">"),), x, "negative"),
         ("real real positive", ((x * z - y**2, ">="),), x, "nonnegative"),
         ("real real real", ((x * z - y**2, ">"), (z, ">")), x, "positive"),
+        ("real real real", ((1 - z**2, ">"), (1 + z, ">=")), 1 - z, "positive"),
+        ("positive real real", ((x - x * z**2, ">"), (1 - z, ">="), (1 + z, ">=")), 1 + z, "positive"),
         # (x + y + z)^2/2 + (x^2 + y^2 + z^2)/2, and sums of three squares: one discriminant within the other
         ("real real real", (), x**2 + y**2 + z**2 + x * y + y * z + z * x, "nonnegative"),
         ("real real real", (), (x - y) ** 2 + (y - z) ** 2 + z**2, "nonnegative"),

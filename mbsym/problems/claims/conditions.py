@@ -22,7 +22,7 @@ from functools import partial
 from typing import Any
 
 from mbsym.algebra.failures import NoClosedForm
-from mbsym.algebra.signs import Signs
+from mbsym.algebra.signs import ContradictionError, Signs
 from mbsym.expressions.tree import subtract, text
 from mbsym.model.claims import NECESSARY, SUFFICIENT, Claim
 from mbsym.problems.claims.counterexample import Counterexample
@@ -31,6 +31,7 @@ from mbsym.problems.claims.regions import Inequality, Region, is_certain
 from mbsym.problems.claims.result import BORDERS, EXACT, FAILS, UNDECIDED, ClaimResult, Derived
 from mbsym.problems.claims.symbols import Symbols
 from mbsym.problems.stability.sentences import with_theorem
+from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word
 
 #: Verdicts of a motion that is stable, if only in first approximation.
@@ -204,7 +205,24 @@ def _sufficient(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimRes
                 remark = f"in the first approximation {subject} suffice{'s' if len(together) == 1 else ''}; " + (
                     "whether the motion itself is stable is open"
                 )
+    found = _by_integrals(derived, claim, together)
+    if found is not None:
+        note = f"{'with it' if len(together) == 1 else f'with {subject}'} the motion is "
+        return replace(result, remark=note + with_theorem(found.word, found.theorem))
     return replace(result, outcome=UNDECIDED, remark=remark)
+
+
+def _by_integrals(derived: Derived, claim: Claim, together: Sequence[Claim]) -> Verdict | None:
+    """The verdict of a combination of integrals where the conditions of one place hold."""
+    from mbsym.problems.claims import by_integrals  # few claims need it
+
+    try:
+        region = Region(derived, claim, own=False)
+        facts = [wanted_of(region, one) for one in together]
+        known = region.signs.assuming((x.polynomial, x.relation) for x in facts if not x.polynomial.is_constant())
+        return by_integrals.verdict_with(derived, known)
+    except (ContradictionError, NoClosedForm):
+        return None
 
 
 def _of_its_place(derived: Derived, claim: Claim) -> list[Claim]:
