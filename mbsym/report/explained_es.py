@@ -58,7 +58,7 @@ EXPLAINED = {
     "Conditions are too long to be written out; see the cases.": "Las condiciones son demasiado largas para escribirse; véanse los casos.",
     "On a border: no theorem of the first approximation decides.": "En una frontera: ningún teorema de la primera aproximación decide.",
     "On a border, or too close to one: no theorem of the first approximation decides.": "En una frontera, o demasiado cerca de ella: ningún teorema de la primera aproximación decide.",
-    "A zero root: terms of higher order decide.": "Una raíz nula: deciden los términos de orden superior.",
+    "No root has a positive real part, but some are zero.": "Ninguna raíz tiene parte real positiva, pero algunas son nulas.",
     "A multiple root on the imaginary axis is not semisimple: the linear equations have growing solutions, the nonlinear system is not decided by them.": "Una raíz múltiple en el eje imaginario no es semisimple: las ecuaciones lineales tienen soluciones crecientes, pero no deciden sobre el sistema no lineal.",
     "Besides the turned steady spins there are zero or multiple imaginary roots.": f"Además de las de {_TURNED} hay raíces nulas o imaginarias múltiples.",
     "Cyclic coordinates give zero roots, and no theorem decides about the rest.": "Las coordenadas cíclicas dan raíces nulas, y ningún teorema decide sobre las demás.",

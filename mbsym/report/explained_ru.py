@@ -58,7 +58,7 @@ EXPLAINED = {
     "Conditions are too long to be written out; see the cases.": "Условия слишком длинны для записи; см. случаи.",
     "On a border: no theorem of the first approximation decides.": "Граничный случай: ни одна теорема о первом приближении не решает вопроса.",
     "On a border, or too close to one: no theorem of the first approximation decides.": "Граничный или слишком близкий к нему случай: ни одна теорема о первом приближении не решает вопроса.",
-    "A zero root: terms of higher order decide.": "Нулевой корень: вопрос решают члены более высокого порядка.",
+    "No root has a positive real part, but some are zero.": "Корней с положительной вещественной частью нет, но есть нулевые.",
     "A multiple root on the imaginary axis is not semisimple: the linear equations have growing solutions, the nonlinear system is not decided by them.": "Кратный корень на мнимой оси не полупрост: линейные уравнения имеют растущие решения, вопроса о нелинейной системе они не решают.",
     "Besides the turned steady spins there are zero or multiple imaginary roots.": f"Кроме корней {_TURNED}, есть нулевые или кратные чисто мнимые корни.",
     "Cyclic coordinates give zero roots, and no theorem decides about the rest.": "Циклические координаты дают нулевые корни, об остальных ни одна теорема вопроса не решает.",

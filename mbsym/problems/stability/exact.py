@@ -128,8 +128,8 @@ def _judge(system: LinearSystem, matrices: Sequence[Numbers], a: Numbers, roots:
     blocks = counted(a.minpoly()) if max(roots.imaginary_multiplicity, roots.zero) > 1 else roots
     if max(blocks.imaginary_multiplicity, blocks.zero) > 1:
         return undecided(Because.JORDAN_BLOCK)
-    if roots.zero:
-        return undecided(Because.ZERO_ROOT)
+    if roots.zero:  # without blocks, as a simple pair
+        return concluded({Fact.BOUNDED}, Reason(Because.ZERO_ROOT), Reason(Because.HIGHER_ORDER))
     facts |= {Fact.BOUNDED}
     if facts >= {Fact.MASS_POSITIVE, Fact.UNDAMPED, Fact.POTENTIAL}:
         coinciding = [Reason(Because.COINCIDENCE)] if roots.imaginary_multiplicity > 1 else []

@@ -49,13 +49,14 @@ def at_rationals(form: NonholonomicForm, first_order: Any) -> Verdict:
     roots = counted(reduced.charpoly())
     if roots.right:
         return concluded({Fact.ROOT_RIGHT}, Reason(Because.RIGHT_ROOTS, (roots.right,)))
-    if roots.left + roots.zero == roots.degree:
+    if roots.left + roots.zero == roots.degree and (roots.zero == form.family or form.drifts):
         return all_left(form, roots.zero)
     blocks = counted(reduced.minpoly())
     if max(blocks.imaginary_multiplicity, blocks.zero) > 1:
         return undecided(Because.JORDAN_BLOCK)
     if roots.zero > form.family:
-        return undecided(Because.MORE_ZERO_ROOTS, roots.zero, form.family)
+        why = Reason(Because.MORE_ZERO_ROOTS, (roots.zero, form.family))
+        return undecided(why.code, *why.data) if form.drifts else concluded({Fact.BOUNDED}, why)
     return concluded({Fact.BOUNDED}, *OPEN)
 
 

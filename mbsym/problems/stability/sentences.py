@@ -121,7 +121,7 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
     Because.CONDITIONS_UNWRITTEN: "Conditions are too long to be written out; see the cases.",
     Because.BORDER: "On a border: no theorem of the first approximation decides.",
     Because.NEAR_BORDER: "On a border, or too close to one: no theorem of the first approximation decides.",
-    Because.ZERO_ROOT: "A zero root: terms of higher order decide.",
+    Because.ZERO_ROOT: "No root has a positive real part, but some are zero.",
     Because.JORDAN_BLOCK: (
         "A multiple root on the imaginary axis is not semisimple: the linear equations have growing solutions, the "
         "nonlinear system is not decided by them."

@@ -495,7 +495,11 @@ def _cases_with_zero_roots(system: LinearSystem, found: Theory, known: Signs) ->
     """Cyclic coordinates: ignore them (Routh) or strike their roots; other zero roots are a border."""
     unstable = _unstable(found.requirements, known)
     if not system.cyclic:
-        return unstable, None
+        null = null_rows(add(system.K, system.N), known.normalised)
+        if len(null) != found.zero_power:  # Jordan blocks
+            return unstable, None
+        why = Reason(Because.ZERO_ROOT), Reason(Because.HIGHER_ORDER)
+        return (Case(_wanted(found), (), concluded({Fact.BOUNDED}, *why)), *unstable), None
     if only_momenta(system):
         by_mass = tuple(replace(r, by_mass=True) for r in found.mass.requirements)
         return (Case(by_mass, (), coasting()),), None

@@ -53,7 +53,7 @@ class Fact(Enum):
     LEFT_BUT_TURNED = "Re lambda < 0 for every root but those of turned steady spins"
     #: The zero roots are as many as the steady motions near by have dimensions, all others are to the left.
     LEFT_BUT_STEADY = "Re lambda < 0 for every root but the zero ones of a family of steady motions"
-    #: No root to the right, and those on the imaginary axis are semisimple and not zero.
+    #: No root to the right, and those on the imaginary axis, zero ones too, are semisimple.
     BOUNDED = "the first approximation is stable"
     #: The equations of motion are their own first approximation (``exact_linearity``).
     EXACTLY_LINEAR = "the equations of motion are exactly linear"
