@@ -1,9 +1,9 @@
 """Antiderivatives of elements of the ring, and potentials of fields of them, where they have a closed form there.
 
-W with dW/dx = F is looked for as a combination, with rational numbers, of monomials: those of F with the powers of x, of
-the sine and cosine of x and of what is adjoined to the ring and depends on x raised or lowered by one, then those that
-their derivatives bring in.  It is linear algebra over the rationals, and what is found is proved by differentiation;
-where nothing is found there may be a closed form all the same.
+W with dW/dx = F is looked for as a combination, with rational numbers, of monomials: those of F with the powers of x,
+of the sine and cosine of x and of what is adjoined to the ring and depends on x raised or lowered by one, then those
+that their derivatives bring in.  It is linear algebra over the rationals, and what is found is proved by
+differentiation; where nothing is found there may be a closed form all the same.
 """
 
 from __future__ import annotations

@@ -202,9 +202,7 @@ def _needless(system: LinearSystem, section: Section, known: Sequence[tuple[Poly
     return (Origin.HURWITZ, Origin.MEETING) if is_zero(system.G) else (Origin.HURWITZ,)
 
 
-def _of_roots(
-    system: LinearSystem, part: int, reduced: bool, left_out: Sequence[Origin] = ()
-) -> Iterator[Condition]:
+def _of_roots(system: LinearSystem, part: int, reduced: bool, left_out: Sequence[Origin] = ()) -> Iterator[Condition]:
     """Where roots may cross the imaginary axis, or meet on it, but for origins ``left_out``."""
 
     def told(origin: Origin, polynomial: Polynomial, about: str) -> Condition:

@@ -10,7 +10,8 @@ Constraints whose velocity rows are such polynomials, too, leave exactly linear 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.generators import occurring
@@ -66,24 +67,23 @@ def _excess(scene: Scene, formulas: Iterable[Polynomial], most: int) -> Excess:
     found: list[Polynomial] = []
     for formula in formulas:
         x = ring.substitute(formula, images)
-        inner: Callable[[int], bool] = lambda k: bool(ring.dependencies(ring.context.gen(k), moving))  # noqa: E731
-        timely: Callable[[int], bool] = lambda k: bool(ring.dependencies(ring.context.gen(k), running))  # noqa: E731
-        used = occurring([x])
-        bad = {k for k in used if k not in direct and inner(k)}
-        late = {k for k in used if k not in direct and timely(k)}
-        parts: dict[tuple[int, ...], Polynomial] = {}
+        others = [(k, ring.context.gen(k)) for k in occurring([x]) if k not in direct]
+        curved = {k for k, g in others if ring.dependencies(g, moving)}
+        late = {k for k, g in others if ring.dependencies(g, running)}
+        apart: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
         for monomial, coefficient in x.terms():
             exponents = list(map(int, monomial))
             degree = sum(exponents[k] for k in direct)
             runs = any(exponents[k] for k in late)
-            if any(exponents[k] for k in bad):
-                degree = most + 1
-            if degree <= most and not (runs and (degree or not most)):
+            bent = any(exponents[k] for k in curved)
+            if degree <= most and not bent and not (runs and (degree or not most)):
                 continue
-            key = tuple(exponents[k] if k in direct or k in bad or k in late else 0 for k in range(len(exponents)))
-            rest = tuple(0 if power else exponent for power, exponent in zip(key, exponents, strict=True))
-            parts[key] = parts.get(key, ring.zero) + ring.context.from_dict({rest: coefficient})
-        found += parts.values()
-        if any(part.is_constant() for part in parts.values()):
-            return None
+            key = tuple(power if k in direct | curved | late else 0 for k, power in enumerate(exponents))
+            rest = tuple(0 if known else power for known, power in zip(key, exponents, strict=True))
+            apart.setdefault(key, {})[rest] = coefficient
+        for terms in apart.values():
+            part = ring.context.from_dict(terms)
+            if part.is_constant():
+                return None
+            found.append(part)
     return tuple(found)

@@ -101,7 +101,9 @@ def integrals(scene: Scene, energy: Energy, equations: Equations, programs: Prog
     """All first integrals of the kinds above (scene over the ring); ``programs`` is used to rule candidates out."""
     found = [*_generalised_energy(scene, energy, equations), *_cyclic_momenta(scene, energy, equations)]
     conserved = _constant_momenta(scene.system, scene.ring, programs)
-    found += _momenta(scene, equations, conserved, [item.formula.polynomial for item in found if item.kind not in ENERGIES])
+    found += _momenta(
+        scene, equations, conserved, [item.formula.polynomial for item in found if item.kind not in ENERGIES]
+    )
     return tuple(found)
 
 

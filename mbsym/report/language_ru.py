@@ -2,7 +2,16 @@
 
 # ruff: noqa: E501 (Cyrillic letters look like Latin ones)
 
-from mbsym.problems.stability.theorems import CHETAEV, CONVERSE, KELVIN_CHETAEV, LAGRANGE, LINEAR, LYAPUNOV, MALKIN, ROUTH
+from mbsym.problems.stability.theorems import (
+    CHETAEV,
+    CONVERSE,
+    KELVIN_CHETAEV,
+    LAGRANGE,
+    LINEAR,
+    LYAPUNOV,
+    MALKIN,
+    ROUTH,
+)
 from mbsym.problems.stability.word import Word
 
 _ROUTES = "Эти результаты получены вторым, независимым путём и сравнены."

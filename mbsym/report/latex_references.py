@@ -6,7 +6,16 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from mbsym.problems.stability import Stability
-from mbsym.problems.stability.theorems import CHETAEV, CONVERSE, KELVIN_CHETAEV, LAGRANGE, LINEAR, LYAPUNOV, MALKIN, ROUTH
+from mbsym.problems.stability.theorems import (
+    CHETAEV,
+    CONVERSE,
+    KELVIN_CHETAEV,
+    LAGRANGE,
+    LINEAR,
+    LYAPUNOV,
+    MALKIN,
+    ROUTH,
+)
 
 
 @dataclass(frozen=True)

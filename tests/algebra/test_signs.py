@@ -115,7 +115,7 @@ def test_bad_knowledge_is_refused() -> None:
 
 
 def test_a_sum_of_squares_is_positive_where_the_other_factors_are() -> None:
-    """Regular precession, p = C (n + w cos), c = cos: K ~ (1 - c^2) ((p - 2 A w c)^2 + A^2 w^2 (1 - c^2)), A w = x > 0."""
+    """Regular precession, c = cos, p = C (n + w c): K ~ (1 - c^2) ((p - 2 x c)^2 + x^2 (1 - c^2)), x = A w > 0."""
     known = signs("positive real real", (1 - z, ">="), (1 + z, ">="))
     found = known.condition((1 - z**2) * ((y - 2 * x * z) ** 2 + x**2 * (1 - z**2)))
     assert found.kind == "nonzero"

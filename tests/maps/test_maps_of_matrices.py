@@ -67,8 +67,8 @@ def test_any_damping_ends_it() -> None:
 
 
 def test_complete_dissipation_leaves_the_borders_of_k_alone() -> None:
-    """Kelvin-Chetaev: with D > 0 and N = 0 as many roots are to the right as K has negative eigenvalues, here counted by
-    NumPy, and without G they are real.  A resultant of degree 672 was in the way of exact regions."""
+    """Kelvin-Chetaev: with D > 0 and N = 0 as many roots are to the right as K has negative eigenvalues, here counted
+    by NumPy, and without G they are real.  A resultant of degree 672 was in the way of exact regions."""
     found = plane(mbsym.load("tests/cases/statements/complete-dissipation.yaml"), ("a", 0, 2), ("b", -3, 3))
     assert {one.origin for told in found.boundaries.conditions for one in told} <= {
         *(Origin.CONSTANT, Origin.DAMPING, Origin.STIFFNESS, Origin.UNDAMPED, Origin.SIGN)

@@ -195,7 +195,9 @@ def contradiction(
         if not one.role and any(same(one, other, points) for other in known):
             return ""
         if "without it the motion is unstable" in result.remark:
-            return next((f"not unstable at {p}" for p in points if not alone(p) and truth(p) not in (UNSTABLE, GROWS)), "")
+            return next(
+                (f"not unstable at {p}" for p in points if not alone(p) and truth(p) not in (UNSTABLE, GROWS)), ""
+            )
         stable: tuple[str, ...] = (STABLE,)
         if result.outcome == EXACT and "asymptotic" not in result.remark:
             stable += (NEUTRAL,)

@@ -58,7 +58,7 @@ claims:
 
 
 def outcomes(text: str, *conditions: str, place: str = "") -> list[str]:
-    """"held", "refuted" or "undecided" of conditions claimed as sufficient, all of one place or each alone."""
+    """ "held", "refuted" or "undecided" of conditions claimed as sufficient, all of one place or each alone."""
     lines = "".join(
         f'  - {{claim: condition, that: "{one}", as: sufficient, place: {place or f"p{k}"}}}\n'
         for k, one in enumerate(conditions)
@@ -96,7 +96,7 @@ def test_euler() -> None:
 
 
 def test_a_planted_multiplier_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Were the restriction to kept integrals or the sign of a pivot taken for granted, half of the claims would hold."""
+    """What takes any form for definite has no say where parameters refute."""
     monkeypatch.setattr(by_integrals._Second, "_is_definite", lambda *_: True)
     assert outcomes(TOP, "W > 0", "A > C") == ["refuted", "refuted"]  # parameters refute before anything is proved
 

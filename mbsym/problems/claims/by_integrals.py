@@ -9,7 +9,7 @@ have a multiplier as large as one likes (Finsler's lemma): it counts as these qu
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from itertools import combinations
 
 from mbsym.algebra.failures import Failure
@@ -72,11 +72,7 @@ class _Second:
     def definite(self) -> tuple[str, ...] | None:
         """The names of integrals of which a combination is definite."""
         rows = list(self.gradients)
-        squares = [
-            k
-            for k, name in enumerate(self.names)
-            if name.startswith(SQUARE) and self.vanishing[k]
-        ]
+        squares = [k for k, name in enumerate(self.names) if name.startswith(SQUARE) and self.vanishing[k]]
         for k in squares:
             rows += [row for row in self.hessians[k] if any(not x.is_zero() for x in row)]
         tangent = self._null(rows, len(rows[0]))

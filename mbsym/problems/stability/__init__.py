@@ -24,8 +24,8 @@ enclosures).  A theorem is named where all its hypotheses are shown:
 * Lyapunov's first method: the signs of the real parts; Lyapunov-Malkin: but for the roots of turned steady spins;
 * theory of linear equations: the equations of motion are exactly linear (M constant, f of first degree in q and q',
   proved in the ring; whatever is given by its matrices): no root to the right and those on the imaginary axis
-  semisimple: stable; a Jordan block there: unstable, like a power of t.  Then no nonlinear system is left open.  A drift
-  of bodies along directions on which nothing depends is told apart, as that of cyclic coordinates is.
+  semisimple: stable; a Jordan block there: unstable, like a power of t.  Then no nonlinear system is left open.  A
+  drift of bodies along directions on which nothing depends is told apart, as that of cyclic coordinates is.
 
 No verdict is given where terms of higher order hold t, or what grows with it, outside of sines and cosines: they are
 not small at all times alike, as Lyapunov's theorems ask; nor where D is not 0 (or G and N are both there) and the rate

@@ -24,9 +24,7 @@ from mbsym.problems.stability.word import Word
 Rows = Sequence[Sequence[Any]]  # flint.arb; an entry known to vanish is exactly 0
 
 
-def enclosed_verdict(
-    matrices: Sequence[Rows], conservative: bool, bits: int = 200, exact: bool = False
-) -> Verdict:
+def enclosed_verdict(matrices: Sequence[Rows], conservative: bool, bits: int = 200, exact: bool = False) -> Verdict:
     """The verdict for M x'' + (D + G) x' + (K + N) x = 0 with entries in balls, matrices in the order M, D, G, K, N.
 
     ``conservative``: the nonlinear system has its energy integral; ``exact``: there is no nonlinear system, these are

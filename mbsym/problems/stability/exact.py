@@ -19,7 +19,16 @@ from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.routh import ignoring_cyclic, momenta_are_constant, only_momenta
 from mbsym.problems.stability.state_matrix import state_matrix
 from mbsym.problems.stability.theorems import Fact, Ground, implied
-from mbsym.problems.stability.verdict import Flaw, Verdict, coasting, concluded, drifting, exactly, off_the_leaf, undecided
+from mbsym.problems.stability.verdict import (
+    Flaw,
+    Verdict,
+    coasting,
+    concluded,
+    drifting,
+    exactly,
+    off_the_leaf,
+    undecided,
+)
 from mbsym.problems.stability.word import Word
 
 Numbers = Any  # a flint.fmpq_mat

@@ -70,12 +70,12 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
         "stays near."
     ),
     Because.LINEAR_GROWS: (
-        "The equations of motion are exactly linear, and a multiple root on the imaginary axis is not semisimple: there "
-        "are disturbances that grow like a power of t."
+        "The equations of motion are exactly linear, and a multiple root on the imaginary axis is not semisimple: "
+        "there are disturbances that grow like a power of t."
     ),
     Because.LINEAR_GYROSCOPIC: (
-        "K is not positive definite: gyroscopic forces alone stabilise the motion, and complete dissipation would make it "
-        "unstable (Kelvin-Chetaev)."
+        "K is not positive definite: gyroscopic forces alone stabilise the motion, and complete dissipation would make "
+        "it unstable (Kelvin-Chetaev)."
     ),
     Because.HIGHER_MINIMUM: (
         "K is only semidefinite, but terms of order {} make a strict minimum of the (changed) potential energy.".format

@@ -52,8 +52,8 @@ from mbsym.problems.stability.linear_form import (
     LinearSystem,
     NonholonomicForm,
     add,
-    is_potential,
     dot,
+    is_potential,
     is_zero,
     kind_of,
     null_rows,
@@ -411,9 +411,7 @@ def _cases(system: LinearSystem, found: Theory, known: Signs) -> tuple[Case, ...
     odd_degree = concluded(facts | {Fact.STIFFNESS_ODD}, Reason(Because.ODD_DEGREE_REMAINS))
     return (
         Case(stiff, (), _conservative(minimum)),
-        Case(
-            wanted, (), bounded(facts - {Fact.STIFFNESS_POSITIVE}, Reason(Because.GYROSCOPIC_ONLY))
-        ),
+        Case(wanted, (), bounded(facts - {Fact.STIFFNESS_POSITIVE}, Reason(Because.GYROSCOPIC_ONLY))),
         Case((), negative[-1:], odd_degree),
         *unstable,
     )

@@ -28,7 +28,17 @@ from enum import Enum, auto
 
 from mbsym.problems.stability import sentences
 from mbsym.problems.stability.reasons import Because, Reason
-from mbsym.problems.stability.theorems import LAGRANGE, LINEAR, MALKIN, ROUTH, Fact, Ground, applying, implied, reason_of
+from mbsym.problems.stability.theorems import (
+    LAGRANGE,
+    LINEAR,
+    MALKIN,
+    ROUTH,
+    Fact,
+    Ground,
+    applying,
+    implied,
+    reason_of,
+)
 from mbsym.problems.stability.word import Word
 
 

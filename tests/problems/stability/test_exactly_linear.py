@@ -19,7 +19,10 @@ from mbsym.problems.stability.word import Word
 
 
 def _times(a, b):
-    return [[sum((x * y for x, y in zip(row, column, strict=True)), Fraction(0)) for column in zip(*b)] for row in a]
+    return [
+        [sum((x * y for x, y in zip(row, column, strict=True)), Fraction(0)) for column in zip(*b, strict=True)]
+        for row in a
+    ]
 
 
 def _inverse(a):
@@ -101,7 +104,8 @@ def test_a_known_jordan_structure_is_what_the_verdict_says(seed):
         assert found.numerical.word is word, (blocks, found.numerical)
         assert found.verdict.word is word, (blocks, found.verdict)  # without parameters both are the same
         told = found.numerical.explanation + found.verdict.explanation
-        assert "higher order" not in told and "nonlinear" not in told
+        assert "higher order" not in told
+        assert "nonlinear" not in told
 
 
 # --- M x'' + C x' + S x = 0 of bodies, and by matrices ---
@@ -156,14 +160,13 @@ def _bodies(C, S, T):
         f"coordinates: [{names[i]}]}}"
         for i in span
     ]
-    transposed = [list(column) for column in zip(*T)]
+    transposed = [list(column) for column in zip(*T, strict=True)]
     rates, places = (_times(_times(transposed, [[-x for x in row] for row in m]), T) for m in (C, S))
-    forces = [
-        form([*rates[i], *places[i]], [*(f"{name}_dot" for name in names), *names]) for i in span
-    ]
+    forces = [form([*rates[i], *places[i]], [*(f"{name}_dot" for name in names), *names]) for i in span]
     loads = ", ".join(f'{name}: "{force}"' for name, force in zip(names, forces, strict=True))
     return mbsym.loads(
-        "mbsym: 1\nname: bodies\nbodies:\n" + "\n".join(lines)
+        "mbsym: 1\nname: bodies\nbodies:\n"
+        + "\n".join(lines)
         + f"\nloads:\n  - generalized force: {{{loads}}}\nmotion: {{}}\n"
     )
 
@@ -200,7 +203,7 @@ def test_matrices_are_decided_by_linear_theory_whole(seed):
     source, kinds, C, S = _choice(seed)
     n = len(C)
     T = _regular(source, n)
-    transposed = [list(column) for column in zip(*T)]
+    transposed = [list(column) for column in zip(*T, strict=True)]
     M = _times(transposed, T)
     C, S = (_times(_times(transposed, x), T) for x in (C, S))
     found = _given(M=M, C=C, S=S).stability
