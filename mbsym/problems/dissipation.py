@@ -121,7 +121,10 @@ class Balance:
     @cached_property
     def exactly_linear(self) -> bool:
         """Whether the equations of motion have no terms of higher order at all."""
-        return self._nonlinear is not None and all(self._put(x).is_zero() for x in self._nonlinear)
+        try:
+            return self._nonlinear is not None and all(self._put(x).is_zero() for x in self._nonlinear)
+        except Failure:  # a formula has no value there
+            return False
 
     @cached_property
     def _nonlinear(self) -> Excess:

@@ -4,7 +4,7 @@
 
 SENTENCES = {
     "Problem 8. Stabilisation": "Problema 8. Estabilización",
-    "About the linear equations of problem 5, in physical time; asymptotic stability and instability carry over to the nonlinear ones.": "Sobre las ecuaciones lineales del problema 5, en tiempo físico; la estabilidad asintótica y la inestabilidad pasan a las no lineales.",
+    "About the linear equations of problem 5, in physical time; asymptotic stability and instability carry over to the equations of motion.": "Sobre las ecuaciones lineales del problema 5, en tiempo físico; la estabilidad asintótica y la inestabilidad pasan a las ecuaciones del movimiento.",
     "The smallest sets of inputs that suffice for almost all parameters (proved): [[sets]].": "Los menores conjuntos de entradas que bastan para casi todos los parámetros (demostrado): [[sets]].",
     "No feedback is given: [[why]].": "No se da realimentación: [[why]].",
     "The degree of instability of K for [[names]] was not found.": "No se halló el grado de inestabilidad de K para [[names]].",

@@ -4,7 +4,7 @@
 
 SENTENCES = {
     "Problem 8. Stabilisation": "Задача 8. Стабилизация",
-    "About the linear equations of problem 5, in physical time; asymptotic stability and instability carry over to the nonlinear ones.": "О линейных уравнениях задачи 5 в физическом времени; асимптотическая устойчивость и неустойчивость переносятся на нелинейные.",
+    "About the linear equations of problem 5, in physical time; asymptotic stability and instability carry over to the equations of motion.": "О линейных уравнениях задачи 5 в физическом времени; асимптотическая устойчивость и неустойчивость переносятся на уравнения движения.",
     "The smallest sets of inputs that suffice for almost all parameters (proved): [[sets]].": "Наименьшие наборы входов, достаточные при почти всех параметрах (доказано): [[sets]].",
     "No feedback is given: [[why]].": "Обратная связь не построена: [[why]].",
     "The degree of instability of K for [[names]] was not found.": "Степень неустойчивости матрицы K для [[names]] не найдена.",

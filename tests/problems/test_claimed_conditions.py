@@ -263,8 +263,9 @@ def test_foucault_needs_no_slow_turning() -> None:
     assert found["l*wz**2 < g", "necessary"].outcome == FAILS
     assert found["l*wz**2 > g", "necessary"].outcome == FAILS
     assert found["2*l*wz**2 < g", "necessary"].outcome == FAILS
-    # In the rotating frame K < 0 beyond it, and problem 6 knows no theorem: true or not, it is not proved.
-    assert found["l*wz**2 > g", "sufficient"].outcome == UNDECIDED
+    # In the rotating frame K < 0 beyond it; energy and momentum together prove it, as the motion is stable everywhere.
+    assert found["l*wz**2 > g", "sufficient"].outcome == EXACT
+    assert "Chetaev" in found["l*wz**2 > g", "sufficient"].remark
     # Without a role it is one of the conditions of problem 6: K > 0, Routh's theorem.
     assert found["l*wz**2 < g", ""].outcome == EXACT
     assert "sufficient" in found["l*wz**2 < g", ""].remark

@@ -22,6 +22,7 @@ from mbsym.problems.stability.theorems import Fact, Ground, implied
 from mbsym.problems.stability.verdict import (
     Flaw,
     Verdict,
+    bounded,
     coasting,
     concluded,
     drifting,
@@ -128,7 +129,7 @@ def _judge(system: LinearSystem, matrices: Sequence[Numbers], a: Numbers, roots:
         return concluded(facts | {Fact.ROOTS_LEFT})
     if implied(facts) >= {Fact.MASS_POSITIVE, Fact.DAMPING_SEMIDEFINITE, Fact.POTENTIAL, Fact.STIFFNESS_POSITIVE}:
         if Fact.ENERGY_NEVER_GROWS not in implied(facts):
-            return concluded(facts | {Fact.BOUNDED}, Reason(Because.NO_ENERGY), Reason(Because.HIGHER_ORDER))
+            return bounded(facts, Reason(Because.NO_ENERGY), Reason(Because.HIGHER_ORDER))
         found = concluded(facts)
         if Fact.UNDAMPED in facts:
             return found
@@ -139,11 +140,10 @@ def _judge(system: LinearSystem, matrices: Sequence[Numbers], a: Numbers, roots:
         return undecided(Because.JORDAN_BLOCK)
     if roots.zero:  # without blocks, as a simple pair
         return concluded({Fact.BOUNDED}, Reason(Because.ZERO_ROOT), Reason(Because.HIGHER_ORDER))
-    facts |= {Fact.BOUNDED}
     if facts >= {Fact.MASS_POSITIVE, Fact.UNDAMPED, Fact.POTENTIAL}:
         coinciding = [Reason(Because.COINCIDENCE)] if roots.imaginary_multiplicity > 1 else []
-        return concluded(facts, Reason(Because.GYROSCOPIC_ONLY), *coinciding)
-    return concluded(facts, Reason(Because.IMAGINARY), Reason(Because.HIGHER_ORDER))
+        return bounded(facts, Reason(Because.GYROSCOPIC_ONLY), *coinciding)
+    return bounded(facts, Reason(Because.IMAGINARY), Reason(Because.HIGHER_ORDER))
 
 
 def _facts(m: Numbers, d: Numbers, g: Numbers, k: Numbers, n: Numbers, conservative: bool) -> frozenset[Fact]:
