@@ -25,7 +25,7 @@ from pathlib import Path
 import pytest
 
 import mbsym
-from mbsym.problems.claims import BORDERS, EXACT, FAILS, UNDECIDED, ClaimResult
+from mbsym.problems.claims import BORDERS, EXACT, FAILS, ClaimResult
 from mbsym.report.claims import claim_line
 
 CASES = Path(__file__).parents[1] / "cases" / "statements"

@@ -98,7 +98,7 @@ def test_a_variable_whose_root_stays_bounded_is_not_called_fast(small, force):
 
     There is one all the same, u = -k x/c + ... of u alone, and nothing denies it.
     """
-    with pytest.raises(NoClosedForm, match="^not all of .* are fast.*one stays bounded as m tends to 0"):
+    with pytest.raises(NoClosedForm, match=r"^not all of .* are fast.*one stays bounded as m tends to 0"):
         expansion(mbsym.loads(CREEPING.replace("SMALL", small).replace("FORCE", force)), 2)
 
 
