@@ -5,6 +5,8 @@
 # make gallery  draws systems/figures again
 # make window   draws the README's pictures of the editor again (Chromium)
 # make robots   27 robots (UR5 to Tiago Dual) derived and held against Pinocchio; installs its URDF files, 400 MB
+# make outputs  every description in every format and language, every documented command, one digest a file;
+#               make outputs REF=<commit> shows what differs from that commit, as a diff that a person reads
 # make docs     builds the documentation site into build/site
 # make bench    mbsym against SymPy in one run, as ratios (some minutes)
 
@@ -13,7 +15,7 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
 
-.PHONY: all lint types test demo systems gallery window docs page robots robot-data consumers bench clean
+.PHONY: all lint types test demo systems gallery window outputs docs page robots robot-data consumers bench clean
 .DEFAULT_GOAL := all
 
 all: lint types test
@@ -100,6 +102,9 @@ gallery: $(READY)
 # The README's picture and animation of the editor.
 window: $(READY)
 	PYTHONPATH=tests:tests/browser $(BIN)/python tests/browser/draw_window.py docs/figures
+
+outputs: $(READY)
+	$(BIN)/python tests/outputs.py build/outputs $(if $(REF),--ref $(REF)) $(if $(ONLY),--only $(ONLY))
 
 docs: $(READY)
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'

@@ -23,6 +23,9 @@ class Certainty(StrEnum):
     #: Not known, for want of a theorem, of numbers or of budget.
     UNDECIDED = "undecided"
 
+    def __repr__(self) -> str:
+        return repr(self.value)
+
     def __and__(self, other: Certainty) -> Certainty:
         """Of two statements together: that of the weaker one."""
         return max(self, other, key=_ORDER.index)

@@ -82,6 +82,7 @@ EXPLAINED = {
     # conditions
     "not needed: equal frequencies of a potential system do no harm": "no hace falta: las frecuencias iguales de un sistema potencial no perjudican",
     "needed by this method only": "solo la exige este método",
+    "condition {}": "condición {0}",
     "minor {} of {}": "menor {0} de {1}",
     "minor {} of {} < 0": "menor {0} de {1} < 0",
     "discriminant": "discriminante",

@@ -82,6 +82,7 @@ EXPLAINED = {
     # conditions
     "not needed: equal frequencies of a potential system do no harm": "не требуется: равные частоты потенциальной системы не вредят",
     "needed by this method only": "требуется лишь этим методом",
+    "condition {}": "условие {0}",
     "minor {} of {}": "минор {0} матрицы {1}",
     "minor {} of {} < 0": "минор {0} матрицы {1} < 0",
     "discriminant": "дискриминант",
