@@ -292,6 +292,7 @@ WORDS = {
     "proved": "demostrado",
     "verified numerically": "verificado numéricamente",
     "undecided": "sin decidir",
+    "singular": "singular",
     "exact": "exacto",
     "FAILED": "DISCREPANCIA",
     "positive": "positivo",

@@ -402,6 +402,7 @@ WORDS = {
     "proved": "доказано",
     "verified numerically": "проверено численно",
     "undecided": "не решено",
+    "singular": "вырождена",
     "exact": "точно",
     "FAILED": "РАСХОЖДЕНИЕ",
     "positive": "положительный",
