@@ -55,6 +55,7 @@ def command(
     for one in small:
         if system is not None and one not in system.parameter_names:
             asked.complain("--small", "unknown-name", f"there is no parameter called {one!r}", "")
+    asked.unwritten("--out", out)
     if asked.refused(None if system is None else file) or system is None or name is None:
         sys.exit(BAD_INPUT)
     from mbsym.algebra.failures import Failure
@@ -158,6 +159,6 @@ def _written(out: Path, averaged: System) -> int:
     try:
         write_whole(out, to_yaml(averaged))
     except OSError as error:
-        complain(out, f"cannot be written: {error}")
+        complain(out, f"cannot be written: {error.strerror or error}")
         return FAILED
     return OK

@@ -25,6 +25,7 @@ from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NotRational, SingularPoint
 from mbsym.algebra.ring import Ring
+from mbsym.algebra.splitting import vanishes_with
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.newton_euler import residuals
@@ -65,6 +66,10 @@ class Check:
     outcome: str
     detail: str = ""
     states: int | None = None
+
+    def __post_init__(self) -> None:
+        if self.failed and not self.detail:
+            object.__setattr__(self, "detail", "the two routes differ")
 
     @property
     def failed(self) -> bool:
@@ -381,6 +386,26 @@ def check_residuals(ring: Ring, first: Sequence[Formula], second: Sequence[Formu
         "the residuals differ" if outcome == FAILED else HOW_EQUAL[outcome],
     )
 
+
+def check_identities(
+    ring: Ring, name: str, routes: tuple[str, str], entries: Mapping[str, Any], conditions: Sequence[Any] = ()
+) -> Check:
+    """Every entry (label -> polynomial) is zero: identically, or where the ``conditions`` of problem 4 hold."""
+    open_entries, needed = [], False
+    for label, x in entries.items():
+        zero = ring.is_zero(x)
+        if not zero and conditions:
+            zero, needed = vanishes_with(ring, x, conditions), True
+        if zero is False:
+            return Check(name, *routes, FAILED, f"{label} differs by {_short(ring.fraction(ring.reduce(x))[0])}")
+        if zero is None:
+            open_entries.append(label)
+    if open_entries:
+        return Check(name, *routes, UNDECIDED, f"open whether they agree in {', '.join(open_entries)}")
+    return Check(name, *routes, EXACT, WHERE_IT_EXISTS if needed else HOW_EQUAL[EXACT])
+
+
+WHERE_IT_EXISTS = "identical polynomials where the conditions of problem 4 hold"
 
 HOW_EQUAL = {
     EXACT: "identical polynomials",

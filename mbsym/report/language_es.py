@@ -315,6 +315,9 @@ WORDS = {
     "perturbed motion": "movimiento perturbado",
     "first integrals": "integrales primeras",
     "identical polynomials": "polinomios idénticos",
+    "identical polynomials where the conditions of problem 4 hold": (
+        "polinomios idénticos donde se cumplen las condiciones del problema 4"
+    ),
     "random parameters": "parámetros aleatorios",
     "regular": "regular",
     "holds": "se cumple",

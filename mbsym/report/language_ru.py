@@ -425,6 +425,9 @@ WORDS = {
     "perturbed motion": "возмущённое движение",
     "first integrals": "первые интегралы",
     "identical polynomials": "тождественные многочлены",
+    "identical polynomials where the conditions of problem 4 hold": (
+        "тождественные многочлены при выполнении условий задачи 4"
+    ),
     "random parameters": "случайные параметры",
     "regular": "невырождена",
     "holds": "верно",

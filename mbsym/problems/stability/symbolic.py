@@ -402,6 +402,8 @@ def _cases_of_roots(form: NonholonomicForm, found: Theory, known: Signs) -> tupl
             best = concluded({Fact.BOUNDED}, *nonholonomic.OPEN)
         return Case(found.requirements, (), best), *unstable
     wanted = found.requirements or tuple(replace(r, by_mass=True) for r in found.mass.requirements)
+    if not wanted:  # equations of first order whose roots are all zero: that they are so many is the requirement
+        wanted = (differs(_power_name(False, found.zero_power), found.characteristic[-1], known),)
     return Case(wanted, (), nonholonomic.all_left(form, zeros)), *unstable
 
 
