@@ -54,7 +54,7 @@ def measured(
 ) -> Measured:
     """Both motions from the initial state of the description, over ``time``.
 
-    Raises Incomplete where numbers are missing, NoClosedForm where one of the motions does not last, or both are the same.
+    Raises Incomplete where numbers are missing, NoClosedForm where a motion does not last, or both are the same.
     """
     given = scenario(system)
     values = dict(given.parameters)
