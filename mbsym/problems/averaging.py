@@ -16,10 +16,11 @@ the motion is within O(eps), over times of order 1, of that of the same M with t
     V(q) = 1/2 <a.M^-1 a> - <A0> - <U_0>      (only terms of order eps^0 count)
 
 in the velocities  Q' = M^-1 (P - <A1>);  the motion about it is  q = Q - (1/nu) M^-1 integral a dphi + ...  M of order
-eps^0 must not hold the phase.  Where Q_1 is no gradient the mean force  sum_j <(dg_j/dq_i - dg_i/dq_j) (M^-1 a)_j>
-must vanish.  What the shaking adds to <A1>.q' must be a total derivative (as in one coordinate it always is).  What A1,
-A0 and U are without the amplitudes (other prescribed motions) stays as it is, and must not hold the phase.  Terms of
-order eps^-2 displace the motion by O(1) within one turn of the phase: then nothing is small, and it is refused.
+eps^0 must not hold the phase.  Where Q_1 is no gradient the mean force  sum_j <(dg_i/dq_j - dg_j/dq_i) (M^-1 a)_j>
+is left; it has to be of a potential, like the means of forces of order 1, and is taken into V.  What the shaking adds
+to <A1>.q' must be a total derivative (as in one coordinate it always is).  What A1, A0 and U are without the amplitudes
+(other prescribed motions) stays as it is, and must not hold the phase.  Terms of order eps^-2 displace the motion by
+O(1) within one turn of the phase: then nothing is small, and it is refused.
 
 For Kapitza's pendulum, theta from the hanging position, V = -m g l cos(theta) + m h^2 nu^2 sin(theta)^2/4: upright it
 is stable where h^2 nu^2 > 2 g l.  For a Paul trap, U = -v cos(phi) x^2/2: V = v^2 x^2/(4 m nu^2).
@@ -223,7 +224,7 @@ def averaged(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str, or
     linear = [order.leading(x.polynomial, "T") for x in energy.A1]
     rest = order.leading(energy.A0.polynomial, "T")
     grown, force = order.split(energy.force_function.polynomial, "U")
-    pushes = _other_loads(scene, order)
+    pushes, steady = _other_loads(scene, order)
     whole_force, whole_rest = (moving(x.polynomial) for x in (energy.force_function, energy.A0))
     for what, parts in (("T", [*(x.polynomial for x in energy.A1), whole_rest]), ("U", [whole_force])):
         if any(order.holds_phase(order.unscaled(x)) for x in parts):
@@ -254,8 +255,12 @@ def averaged(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str, or
         sum((ring.times(_cofactor(ring, mass, i, j), y) for j, y in enumerate(swings)), ring.zero)
         for i in range(len(names))
     ]
-    _refuse_mean_force(ring, order, driven, dict(zip(names, turned, strict=True)))
-    whole = ring.reduce(divided - order.mean(rest, "T"))
+    turned = [ring.reduce(ring.times(x, inverse)) for x in turned]
+    for i in names:
+        for j, turn in zip(names, turned, strict=True):
+            curl = ring.reduce(ring.derivative(driven[j], i) - ring.derivative(driven[i], j))
+            steady[i] -= order.mean(ring.reduce(ring.times(curl, turn)), f"the force on {i}")
+    whole = ring.reduce(divided - order.mean(rest, "T") - _force_function(ring, steady))
     mean_force = ring.reduce(order.mean(force, "U"))
     vibrational_alone = whole + order.unshaken(rest) - mean_force + order.unshaken(force)
     return Averaged(
@@ -264,7 +269,7 @@ def averaged(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str, or
         tuple(orders.items()),
         Formula(ring, moving(ring.reduce(vibrational_alone))),
         Formula(ring, moving(ring.reduce(whole - mean_force))),
-        tuple(Formula(ring, ring.reduce(ring.times(x, inverse))) for x in turned),
+        tuple(Formula(ring, x) for x in turned),
     )
 
 
@@ -283,17 +288,25 @@ def _order(ring: Ring, phase: str, rate: str, orders: Mapping[str, int]) -> Orde
     )
 
 
-def _refuse_mean_force(
-    ring: Ring, order: Order, driven: Mapping[str, Polynomial], turned: Mapping[str, Polynomial]
-) -> None:
-    """Raises NoClosedForm where forces that are no gradient leave a mean force that V does not hold."""
-    for i in driven:
-        force = ring.zero
-        for j in driven:
-            curl = ring.derivative(driven[j], i) - ring.derivative(driven[i], j)
-            force += ring.times(ring.reduce(curl), turned[j])
-        if not ring.is_zero(order.mean(ring.reduce(force), f"the force on {i}")):
-            raise NoClosedForm(f"the fast forces are no gradient, and leave a mean force on {i} beside a potential")
+def _force_function(ring: Ring, forces: Mapping[str, Polynomial]) -> Polynomial:
+    """U with dU/dq = the mean forces that the amplitudes add, polynomials in the coordinates, along rays from q = 0.
+
+    Raises NoClosedForm where there is none.
+    """
+    places = [ring.index("coordinate", name) for name in forces]
+    total = ring.zero
+    for name, force in forces.items():
+        terms = {m: c / (sum(int(m[k]) for k in places) + 1) for m, c in force.to_dict().items()}
+        total += ring.times(ring.generator("coordinate", name), ring.context.from_dict(terms))
+    for name, force in forces.items():
+        if any(not ring.vanishes(ring.velocity_derivative(force, other)) for other in forces):
+            raise NoClosedForm(f"the force on {name} holds products of what is small and the rate of the phase")
+        if not ring.is_zero(ring.derivative(total, name) - force):
+            raise NoClosedForm(
+                f"a mean force on {name} is left that is not seen to be of a potential",
+                remedy="write it as a potential",
+            )
+    return ring.reduce(total)
 
 
 def _cofactor(ring: Ring, matrix: Sequence[Sequence[Polynomial]], i: int, j: int) -> Polynomial:
@@ -316,11 +329,14 @@ def without_constants(ring: Ring, names: Sequence[str]) -> Callable[[Polynomial]
     return moving
 
 
-def _other_loads(scene: Scene[Polynomial], order: Order) -> dict[str, Polynomial]:
-    """The forces of order 1/eps without a force function.  Raises NoClosedForm for what averages in another way."""
+def _other_loads(scene: Scene[Polynomial], order: Order) -> tuple[dict[str, Polynomial], dict[str, Polynomial]]:
+    """Forces without a force function: those of order 1/eps, and what the amplitudes add to the mean of the others.
+
+    Raises NoClosedForm for what averages in another way.
+    """
     ring, system = scene.ring, scene.system
     phase = ring.generators[order.phase[2]].name
-    pushes = {}
+    pushes, steady = {}, {}
     for name, found in generalized_forces(scene).items():
         what = f"the force on {name}"
         grown, force = order.split(found, what)
@@ -339,12 +355,8 @@ def _other_loads(scene: Scene[Polynomial], order: Order) -> dict[str, Polynomial
             raise NoClosedForm(f"{what} depends on {phase} by itself", remedy=_REMEDY)
         if not ring.is_zero(order.mean(grown, what)):
             raise NoClosedForm(f"the mean of {what} over {phase} grows with the rate of the phase")
-        if not ring.is_zero(order.mean(force, what) - order.unshaken(force)):
-            if order.holds_phase(force):
-                raise NoClosedForm(f"the mean of {what} over {phase} is not zero", remedy="write it as a potential")
-            raise NoClosedForm(f"{what} holds products of what is small and the rate of the phase")
-        pushes[name] = grown
-    return pushes
+        pushes[name], steady[name] = grown, ring.reduce(order.mean(force, what) - order.unshaken(force))
+    return pushes, steady
 
 
 def orders_of(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str) -> dict[str, int]:

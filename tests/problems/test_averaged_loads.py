@@ -104,6 +104,20 @@ def _value(formula, **values):
             {"v": -1},
             lambda x, y: 90**2 * (x**2 + y**2) / (4 * 2 * 50**2),
         ),
+        # F = v cos(phi) (y, -x) = v cos(phi) J q, xi = -F/(m nu^2): the mean v^2/(2 m nu^2) (-J J q) drives away
+        (
+            ["generalized force: {x: v*cos(phi)*y, y: -v*cos(phi)*x}"],
+            {"v": -1},
+            lambda x, y: -(90**2) * (x**2 + y**2) / (4 * 2 * 50**2),
+        ),
+        # a field that turns, its amplitude v x: F = v x (cos, sin), xi_x dF/dx = (-v^2 x/(2 m nu^2), 0)
+        (
+            ["force: {body: bead, point: [0, 0, 0], axes: 0, components: [v*cos(phi)*x, v*sin(phi)*x, 0]}"],
+            {"v": -1},
+            lambda x, y: 90**2 * x**2 / (4 * 2 * 50**2),
+        ),
+        # a force whose mean is not zero, of first order
+        (["generalized force: {x: -v*cos(phi)**2*x**3}"], {"v": 0}, lambda x, y: 90 * x**4 / 8),
         # harmonics by themselves, over n^2: v (cos(phi) + cos(3 phi)/2) x
         (
             ["potential: v*(cos(phi)+cos(3*phi)/2)*x**2/2"],
@@ -226,6 +240,7 @@ def test_the_motions_by_hand_come_together_like_1_over_nu(system):
     [
         lambda: _point("potential: (k+v*cos(phi))*(x**2-y**2)/2", values=VALUES),
         lambda: _point("generalized force: {x: v*cos(phi)*x, y: v*sin(phi)*y}", values=VALUES),
+        lambda: _point("generalized force: {x: v*cos(phi)*y, y: -v*cos(phi)*x}", values=VALUES),
         lambda: _rod("generalized force: {theta: v*cos(phi)*sin(theta)}", "[0, h*cos(phi), 0]"),
     ],
 )
@@ -244,12 +259,12 @@ def test_the_measured_distance_is_of_first_order(analysis):
         (["potential: (1+v)*cos(phi)*x**2/2"], "is not plain"),
         (["potential: v**2*cos(phi)*x**2/2"], "is not plain"),
         (["generalized force: {x: v*cos(phi)*y_dot, y: -v*cos(phi)*x_dot}"], "velocities"),
-        # mean force v^2 x/(2 m nu^2) in x from F = v cos(phi) (y, -x)
-        (["generalized force: {x: v*cos(phi)*y, y: -v*cos(phi)*x}"], "no gradient"),
+        # xi = -(F)/(m nu^2), F = v cos(phi) (0, x y): the mean <xi dF/dq> = (0, -v^2 x^2 y/(2 m nu^2)) turns
+        (["generalized force: {y: v*cos(phi)*x*y}"], "a mean force on . is left"),
         (["potential: v*cos(phi)*x**2/2", "generalized force: {x: -c*sign(x_dot)}"], "not linear in the velocities"),
         (["potential: v*cos(phi)*x**2/2", "generalized force: {x: -c*x_dot*abs(x_dot)}"], "not linear in the veloc"),
         (["potential: v*cos(phi)*x**2/2", "generalized force: {x: -c*x_dot**3}"], "not linear in the velocities"),
-        (["generalized force: {x: -v*cos(phi)**2*x}"], "the mean of the force on x over phi is not zero"),
+        (["generalized force: {x: -v*cos(phi)**2*sin(x)}"], "a mean force on x is left"),
         (["potential: v/(2+cos(phi))*x**2"], "in a denominator"),
         (["potential: v*cos(phi)"], "nothing oscillates"),
     ],

@@ -207,7 +207,7 @@ values: {m: 1, k: 9, a: 1/10, W: 60, n: 1/2}
     ("load", "reason"),
     [
         ("potential: c*theta*cos(phi)", "U depends on phi also where a = 0"),
-        ("generalized force: {theta: c*a*W}", "products of what is small and the rate"),
+        ("generalized force: {theta: c*a*W*theta_dot}", "products of what is small and the rate"),
     ],
 )
 def test_loads_that_the_averaged_description_would_lose_are_refused(load, reason):
@@ -220,6 +220,13 @@ def test_a_stiffness_of_the_order_of_the_shaking_is_kept():
     analysis = _shaken(damper="potential: 3*a*W*theta**2/2")
     slow = averaged_system(analysis.system, averaging_of(analysis, "phi", ("a",)))
     assert _number(Analysis(slow).linearisation.K[0, 0], m=1, l=1, g=9, a=0.1, W=60) == pytest.approx(9 + 18 + 18)
+
+
+def test_a_force_of_the_order_of_the_shaking_is_kept():
+    """The force c a W = 6 c on theta is of order eps^0, without the phase: V = ... - 6 c theta, its slope at 0."""
+    found = averaging_of(_shaken(damper="generalized force: {theta: c*a*W}"), "phi", ("a",)).potential
+    at = [_number(found, m=1, l=1, g=9, a=0.1, W=60, c=2, theta=x) for x in (-1e-4, 1e-4)]
+    assert (at[1] - at[0]) / 2e-4 == pytest.approx(-12)
 
 
 @pytest.mark.parametrize(
