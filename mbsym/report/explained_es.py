@@ -49,6 +49,7 @@ EXPLAINED = {
     "This is about the other coordinates at the given momenta of the cyclic ones: momenta that differ a little stay different, the motion then tends to a steady one near by, and the cyclic coordinates may drift away.": "Esto se refiere a las demás coordenadas con los momentos cíclicos dados: los momentos que difieren un poco siguen siendo distintos, el movimiento tiende entonces a uno estacionario cercano, y las coordenadas cíclicas pueden alejarse.",
     "A part of the coordinates is cyclic.": "Una parte de las coordenadas es cíclica.",
     "The momenta of cyclic coordinates are constant, so their velocities stay near theirs.": "Los momentos cíclicos son constantes, y las velocidades cíclicas quedan cerca de las no perturbadas.",
+    "This is so wherever no condition is an equality; about border cases the first approximation says nothing.": "Así es dondequiera que ninguna condición sea una igualdad; de los casos frontera la primera aproximación no dice nada.",
     "It depends on the parameters; see the cases.": "Depende de los parámetros; véanse los casos.",
     "Conditions are too long to be written out; see the cases.": "Las condiciones son demasiado largas para escribirse; véanse los casos.",
     "On a border: no theorem of the first approximation decides.": "En una frontera: ningún teorema de la primera aproximación decide.",
@@ -79,6 +80,7 @@ EXPLAINED = {
     "The conditions of factor {} are not written out ({}); at a point they are exact.": "Las condiciones del factor {0} no se escriben ({1}); en un punto son exactas.",
     "In a conservative system without gyroscopic forces the roots in lambda^2 are real and semisimple: K > 0 is necessary and sufficient for the stability of the first approximation, a vanishing discriminant (equal frequencies) does no harm.": "En un sistema conservativo sin fuerzas giroscópicas las raíces en lambda^2 son reales y semisimples: K > 0 es necesario y suficiente para la estabilidad de la primera aproximación, y un discriminante nulo (frecuencias iguales) no perjudica.",
     # conditions
+    "not needed: equal frequencies of a potential system do no harm": "no hace falta: las frecuencias iguales de un sistema potencial no perjudican",
     "needed by this method only": "solo la exige este método",
     "condition {}": "condición {0}",
     "minor {} of {}": "menor {0} de {1}",

@@ -49,6 +49,7 @@ EXPLAINED = {
     "This is about the other coordinates at the given momenta of the cyclic ones: momenta that differ a little stay different, the motion then tends to a steady one near by, and the cyclic coordinates may drift away.": "Это относится к остальным координатам при заданных циклических импульсах: мало отличающиеся импульсы так и остаются отличными, движение тогда стремится к близкому стационарному, а циклические координаты могут уходить.",
     "A part of the coordinates is cyclic.": "Часть координат циклическая.",
     "The momenta of cyclic coordinates are constant, so their velocities stay near theirs.": "Циклические импульсы постоянны, поэтому циклические скорости остаются близкими к невозмущённым.",
+    "This is so wherever no condition is an equality; about border cases the first approximation says nothing.": "Это так всюду, где ни одно условие не обращается в равенство; о граничных случаях первое приближение ничего не говорит.",
     "It depends on the parameters; see the cases.": "Зависит от параметров; см. случаи.",
     "Conditions are too long to be written out; see the cases.": "Условия слишком длинны для записи; см. случаи.",
     "On a border: no theorem of the first approximation decides.": "Граничный случай: ни одна теорема о первом приближении не решает вопроса.",
@@ -79,6 +80,7 @@ EXPLAINED = {
     "The conditions of factor {} are not written out ({}); at a point they are exact.": "Условия множителя {0} не выписаны ({1}); в отдельной точке они точны.",
     "In a conservative system without gyroscopic forces the roots in lambda^2 are real and semisimple: K > 0 is necessary and sufficient for the stability of the first approximation, a vanishing discriminant (equal frequencies) does no harm.": "В консервативной системе без гироскопических сил корни по lambda^2 вещественны и полупросты: K > 0 необходимо и достаточно для устойчивости первого приближения, обращение дискриминанта в нуль (равные частоты) не вредит.",
     # conditions
+    "not needed: equal frequencies of a potential system do no harm": "не требуется: равные частоты потенциальной системы не вредят",
     "needed by this method only": "требуется лишь этим методом",
     "condition {}": "условие {0}",
     "minor {} of {}": "минор {0} матрицы {1}",

@@ -253,6 +253,7 @@ WORDS = {
     str(Word.UNDECIDED): "sin decidir",
     str(Word.DEPENDS): "depende de los parámetros",
     str(Word.UNSTABLE): "inestable",
+    str(Word.UNSTABLE_BUT_BORDERS): "inestable salvo casos frontera",
     LAGRANGE: "teorema de Lagrange-Dirichlet",
     ROUTH: "teorema de Routh",
     KELVIN_CHETAEV: "teoremas de Kelvin-Chetaev",

@@ -359,6 +359,7 @@ WORDS = {
     str(Word.UNDECIDED): "не решено",
     str(Word.DEPENDS): "зависит от параметров",
     str(Word.UNSTABLE): "неустойчиво",
+    str(Word.UNSTABLE_BUT_BORDERS): "неустойчиво, кроме граничных случаев",
     LAGRANGE: "теорема Лагранжа-Дирихле",
     ROUTH: "теорема Рауса",
     KELVIN_CHETAEV: "теоремы Томсона-Тэта-Четаева",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 from flint import arb, ctx, fmpq
@@ -17,7 +17,7 @@ from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.ring import ParameterRing, Polynomial, Ring
-from mbsym.algebra.signs import Signs
+from mbsym.algebra.signs import MOST_TERMS, Signs
 from mbsym.expressions.tree import names
 from mbsym.formulas.formula import Formula, Matrix
 from mbsym.formulas.notebook import Shown
@@ -31,6 +31,7 @@ from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.knowledge import definition_in_parameters
 from mbsym.problems.linearisation import Linearisation, Subsystem, first_symbols
 from mbsym.problems.stability import nonholonomic
+from mbsym.problems.stability.covering import Cell, Lift, cells_of, everywhere, joined
 from mbsym.problems.stability.enclosed import enclosed_verdict_with_cyclic
 from mbsym.problems.stability.exact import verdict_at
 from mbsym.problems.stability.linear_form import LinearSystem, NonholonomicForm
@@ -39,6 +40,7 @@ from mbsym.problems.stability.requirements import Requirement
 from mbsym.problems.stability.spectrum import Spectrum, from_characteristic, from_matrices
 from mbsym.problems.stability.symbolic import Theory, analyse
 from mbsym.problems.stability.verdict import Verdict, combine, off_the_leaf, undecided
+from mbsym.problems.stability.word import Word
 
 if TYPE_CHECKING:
     from mbsym.problems.reduction import Reduction
@@ -114,8 +116,17 @@ class SubsystemStability(Shown):
                 yield wanted.label, self._formula(x), "!="
 
     def _formula(self, x: Polynomial) -> Formula:
-        whole = self.factor.ring
-        return Formula(whole, self.ring.lift(x) if isinstance(self.ring, ParameterRing) else whole.reduce(x))
+        return Formula(self.factor.ring, self.in_whole(x))
+
+    def in_whole(self, x: Polynomial) -> Polynomial:
+        """A polynomial of ``ring`` in the system's ring."""
+        return self.ring.lift(x) if isinstance(self.ring, ParameterRing) else self.factor.ring.reduce(x)
+
+    def cells(self, lift: Lift) -> tuple[Cell, ...]:
+        """Its cases as sets of parameters in another ring: one where the verdict does not depend on them."""
+        decided = self.theory.verdict.word is not Word.DEPENDS
+        found = None if decided else cells_of([case for case in self.theory.cases if not case.never], lift)
+        return everywhere(self.theory.verdict) if found is None else found
 
 
 @dataclass(frozen=True, repr=False)
@@ -162,7 +173,26 @@ def stability(
         )
         numerical = combine(there, balance.at(values).law.bounded)
     verdict = combine((part.theory.verdict for part in judged), balance.law.bounded)
+    if verdict.word is Word.DEPENDS and len(judged) > 1:
+        verdict = _whole(scene.ring, judged, signs, balance.law.bounded)
     return Stability(judged, verdict, numerical, spectra)
+
+
+def _whole(ring: Ring, parts: Sequence[SubsystemStability], signs: Signs, one_energy: bool) -> Verdict:
+    """The verdict on parts some of which depend on the parameters: their cases are intersected."""
+    minors = [(part, r.polynomial) for part in parts for r in part.theory.mass.requirements]
+    every = [part.in_whole(x) for part in parts for case in part.theory.cases for x in case.polynomials]
+    every += [part.in_whole(x) for part, x in minors]
+    small, known = in_parameters(ring, [[every]], signs)
+
+    def lifted(part: SubsystemStability, x: Polynomial) -> Polynomial:
+        whole = part.in_whole(x)
+        return small.project(whole) if isinstance(small, ParameterRing) else whole
+
+    masses = (lifted(part, x) for part, x in minors if len(x) <= MOST_TERMS)
+    known = known.assuming((x, ">") for x in masses if not x.is_constant())
+    cells = [part.cells(partial(lifted, part)) for part in parts]
+    return joined(cells, known, one_energy)
 
 
 def _spectrum(

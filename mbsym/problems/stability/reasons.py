@@ -48,6 +48,7 @@ class Because(Enum):
     CONSTANT_MOMENTA = auto()
     # of what is open
     SEE_CASES = auto()
+    BORDERS_APART = auto()
     CONDITIONS_UNWRITTEN = auto()
     BORDER = auto()
     NEAR_BORDER = auto()

@@ -4,7 +4,9 @@ M, D, K symmetric, G, N skew.  The roots of det(lambda^2 M + lambda (D + G) + K 
 approximation goes; the theorems below go further.  Nothing is claimed on a border.
 
 * D = N = 0 (the determinant is even): roots in mu = lambda^2 real, negative and simple, by the signs of the
-  coefficients and the discriminant (from degree 4 on all subdiscriminants).  **Necessary** for stability.
+  coefficients and the discriminant (from degree 4 on all subdiscriminants).  **Necessary** for stability, but for the
+  case of equality.  With G = 0, too, by the coefficients alone: the roots are real and semisimple anyway, and the
+  discriminants are listed as what nobody needs.
 * K > 0 besides: stable, by Lagrange-Dirichlet (G = 0) or Routh (G != 0), if the nonlinear system has its energy
   integral.  Without K > 0 the motion is **gyroscopically stabilised only**: any complete dissipation destroys it
   (Kelvin-Chetaev), and the nonlinear system is not decided.  det K < 0: unstable (Kelvin-Chetaev).
@@ -23,7 +25,7 @@ all five matrices: neither the roots nor the signs of leading minors change.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
@@ -44,6 +46,7 @@ from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import NoClosedForm, TooLargeError
 from mbsym.algebra.signs import MOST_TERMS, Condition, Signs, conditions
 from mbsym.problems.stability import nonholonomic
+from mbsym.problems.stability.covering import alone, cells_of
 from mbsym.problems.stability.exact import PointVerdict, verdict_at
 from mbsym.problems.stability.linear_form import (
     CONSERVATIVE,
@@ -74,8 +77,6 @@ from mbsym.problems.stability.verdict import Verdict, coasting, concluded, depen
 
 #: More damped coordinates have too many principal minors.
 MOST_DAMPED = 4
-#: Of more inequalities it is not asked whether two of them exclude each other.
-MOST_COMPARED = 6
 
 
 @dataclass(frozen=True)
@@ -110,6 +111,14 @@ class Theory:
     def potential(self) -> bool:
         """Whether there are no other forces than those of K."""
         return self.kind == CONSERVATIVE
+
+    @property
+    def polynomials(self) -> Iterator[Polynomial]:
+        """What its conditions and cases are about."""
+        for case in self.cases:
+            yield from case.polynomials
+        for r in self.requirements:
+            yield from r.polynomials
 
     @property
     def conditions(self) -> tuple[Condition, ...]:
@@ -253,9 +262,7 @@ def _requirements(
             remarks.append(f"The conditions{suffix} are not written out ({error}); at a point they are exact.")
             requirements.append(unwritten(p[0]))
             continue
-        place = Place.NECESSARY if even else Place.ASYMPTOTIC
-        strict = place if not even else Place.FIRST if is_potential(system) else Place.METHOD
-        reduced = [_required(known, label, suffix, value, p, (place, strict)) for label, value in wanted]
+        reduced = [_required(known, label, suffix, value, p, _places(system, label, even)) for label, value in wanted]
         left_out = ", ".join(one.label for one in reduced if one.unwritten)
         if left_out:
             remarks.append(f"Not written out, but in the coefficients, because of their length: {left_out}.")
@@ -269,6 +276,29 @@ def _requirements(
             "(equal frequencies) does no harm."
         )
     return tuple(requirements), remarks
+
+
+def _is_symmetric(system: LinearSystem) -> bool:
+    """Whether it is a pencil of two symmetric matrices, one of them positive definite.
+
+    Its roots in lambda^2 are real and semisimple: no discriminant is negative, and none that vanishes does any harm.
+    """
+    return is_potential(system) and system.nonholonomic is None
+
+
+def _places(system: LinearSystem, label: str, even: bool) -> tuple[Place, Place]:
+    """What p > 0 is needed for, and what p != 0.
+
+    Where M x'' + (K + N) x = 0, x = x0 + x1 t solves it where (K + N) x0 = (K + N) x1 = 0, which is so with x1 != 0
+    where a coefficient vanishes while no root in lambda^2 is positive: then the last of them vanishes, too.  With other
+    forces a zero root may be semisimple, as roots that coincide may be whatever the forces are.
+    """
+    if not even:
+        return Place.EXPONENTIAL, Place.EXPONENTIAL
+    if _is_symmetric(system) and not label.startswith("v"):
+        return Place.HARMLESS, Place.HARMLESS
+    grows = is_zero(system.D) and is_zero(system.G) and system.nonholonomic is None
+    return Place.NECESSARY, Place.FIRST if grows and label.startswith("v") else Place.METHOD
 
 
 def _required(
@@ -339,7 +369,8 @@ def _simple(system: LinearSystem, factors: tuple[Factor, ...], known: Signs, rem
                 simple = _is_semisimple(system, left)
                 if not simple:
                     never = left.coefficients[0] * 0
-                    requirements.append(differs(f"multiplicity of factor {i + 1}", never, known))
+                    blocks = differs(f"multiplicity of factor {i + 1}", never, known)
+                    requirements.append(replace(blocks, place=Place.FIRST, strict=Place.FIRST))
                 how = "simple elementary divisors" if simple else "Jordan blocks: its roots are never semisimple"
                 remarks.append(f"Factor {i + 1} occurs {left.multiplicity} times, with {how}.")
         except TooLargeError as error:
@@ -367,8 +398,11 @@ def _cases(system: LinearSystem, found: Theory, known: Signs) -> tuple[Case, ...
         if not is_zero(system.N) or found.dissipation.word is not Definite.POSITIVE:
             held = _semidefinite(system, known) if is_zero(system.N) and not found.turned else facts
             minimum = held | {Fact.STIFFNESS_POSITIVE}
-            lasting = [Case(stiff, (), concluded(minimum))] if Ground.ENERGY in applying(minimum) else []
-            return Case(wanted, (), _all_left(found.turned)), *lasting, *unstable
+            if Ground.ENERGY in applying(minimum):
+                # With D >= 0 and N = 0 roots are all to the left only where K > 0 (Kelvin-Chetaev).
+                decaying = concluded(minimum | {Fact.ROOTS_LEFT})
+                return Case(wanted, (), decaying), Case(stiff, (), concluded(minimum)), *unstable
+            return Case(wanted, (), _all_left(found.turned)), *unstable
     negative = against(stiff, known)
     minimum = facts | {Fact.STIFFNESS_POSITIVE}
     if found.dissipation is not None:
@@ -448,35 +482,17 @@ def _conservative(minimum: frozenset[Fact]) -> Verdict:
 
 
 def _first_certain(cases: Sequence[Case], known: Signs) -> Verdict:
-    """The first case proved to hold while all before it are refuted."""
-    for case in cases:
-        if case.always or (not case.all_of and _one_holds(case.any_of, known)):
-            return case.verdict
-        if not case.never and not _contradict(case.all_of, known):
-            possible = (r for other in cases if not other.never for r in (*other.all_of, *other.any_of))
-            return undecided(Because.CONDITIONS_UNWRITTEN) if any(r.unwritten for r in possible) else depends()
-    return undecided(Because.BORDER)
-
-
-def _contradict(wanted: Sequence[Requirement], known: Signs) -> bool:
-    """Whether two inequalities exclude each other: 2 m k - c^2 > 0 and c^2 - 4 m k > 0, whose sum is -2 m k."""
-    return any(
-        known.assuming([(p, ">")]).sign(q) in ("negative", "nonpositive", "zero")
-        for p, q in combinations(_short_inequalities(wanted), 2)
-    )
-
-
-def _one_holds(choice: Sequence[Requirement], known: Signs) -> bool:
-    """Whether of two inequalities one holds wherever the other does not."""
-    plain = [r for r in choice if not r.condition.nonzero]
-    return any(
-        known.assuming([(-p, ">=")]).sign(q) == "positive" for p, q in combinations(_short_inequalities(plain), 2)
-    )
-
-
-def _short_inequalities(wanted: Sequence[Requirement]) -> list[Polynomial]:
-    found = [r.condition.polynomial for r in wanted if r.condition.kind == "inequality"]
-    return [p for p in found if len(p) <= MOST_TERMS][:MOST_COMPARED]
+    """The verdict of the first case, if it always holds; else what all cases have in common that can hold."""
+    possible = [case for case in cases if not case.never]
+    if not possible:
+        return undecided(Because.BORDER)
+    if possible[0].always:
+        return possible[0].verdict
+    cells = cells_of(possible)
+    if cells is None:
+        unwritten = any(r.unwritten for case in possible for r in (*case.all_of, *case.any_of))
+        return undecided(Because.CONDITIONS_UNWRITTEN) if unwritten else depends()
+    return alone(cells, known)
 
 
 def _unstable(requirements: Sequence[Requirement], known: Signs) -> tuple[Case, ...]:

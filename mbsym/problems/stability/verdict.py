@@ -21,7 +21,7 @@ and never gives a stronger verdict than any part has.  Why each ground carries o
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Set
+from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from enum import Enum, auto
 
@@ -41,6 +41,7 @@ class Flaw(Enum):
     OPEN = auto()  # no theorem applies
     DEPENDS = auto()  # it depends on the parameters
     UNSTABLE = auto()
+    INSIDE = auto()  # unstable but for border cases
     SINGULAR = auto()  # the mass matrix is singular: nothing that is computed with it means anything
 
 
@@ -65,6 +66,7 @@ _FAMILY = frozenset({Flaw.STEADY})
 LAW = (
     Row(Word.UNDECIDED, wanted=frozenset({Flaw.SINGULAR})),
     Row(Word.UNSTABLE, wanted=frozenset({Flaw.UNSTABLE})),
+    Row(Word.UNSTABLE_BUT_BORDERS, wanted=frozenset({Flaw.INSIDE})),
     Row(Word.DEPENDS, wanted=frozenset({Flaw.DEPENDS})),
     Row(Word.UNDECIDED, wanted=frozenset({Flaw.OPEN})),
     Row(Word.ASYMPTOTIC, Ground.DECAYS, allowed=frozenset()),
@@ -92,6 +94,7 @@ PLAIN: Mapping[Word, tuple[Set[Ground], Set[Flaw]]] = {
     Word.UNDECIDED: (set(), {Flaw.OPEN}),
     Word.DEPENDS: (set(), {Flaw.DEPENDS}),
     Word.UNSTABLE: (set(), {Flaw.UNSTABLE}),
+    Word.UNSTABLE_BUT_BORDERS: (set(), {Flaw.INSIDE}),
 }
 
 
@@ -184,6 +187,27 @@ def undecided(code: Because, *data: object) -> Verdict:
 def depends() -> Verdict:
     """Different for different parameters."""
     return Verdict(Word.DEPENDS, (), (Reason(Because.SEE_CASES),))
+
+
+def unstable_inside(unstable: Verdict) -> Verdict:
+    """``unstable`` for all parameters but some without inner points, at which it is left open."""
+    return Verdict(Word.UNSTABLE_BUT_BORDERS, unstable.theorems, (*unstable.reasons, Reason(Because.BORDERS_APART)))
+
+
+def weakest(verdicts: Sequence[Verdict]) -> Verdict:
+    """What is true of one system at all parameters, each of which has one of these verdicts."""
+    if len({(one.word, one.theorems, one.reasons, one.grounds, one.flaws) for one in verdicts}) == 1:
+        return verdicts[0]
+    kept = set.intersection(*({*one.laid} for one in verdicts))
+    grounds = {ground: tuple(sorted({name for x in verdicts for name in x.laid[ground]})) for ground in kept}
+    flaws = frozenset[Flaw]().union(*(one.flawed for one in verdicts))
+    row = row_of(kept, flaws)
+    names = () if row.ground is None else grounds[row.ground]
+    alike = [one for one in verdicts if one.word == row.word]
+    if row.ground is None and row.word in (Word.UNSTABLE, Word.UNSTABLE_BUT_BORDERS):
+        names = tuple(sorted({name for one in alike for name in one.theorems}))
+    reasons = {_uncounted(reason) for one in alike for reason in one.reasons}
+    return Verdict(row.word, names, tuple(sorted(reasons, key=lambda x: x.rank)), tuple(grounds.items()), flaws)
 
 
 def concluded(shown: Set[Fact], *reasons: Reason, why_not: Because = Because.BORDER) -> Verdict:
@@ -292,7 +316,7 @@ def combine(verdicts: Iterable[Verdict], one_energy: bool = False) -> Verdict:
         names = grounds[row.ground]
     else:  # those of the parts that have the flaw which decides
         names = tuple(sorted({name for part in parts if row.wanted <= part.flawed for name in part.theorems}))
-        names = names if row.word == Word.UNSTABLE else ()
+        names = names if row.word in (Word.UNSTABLE, Word.UNSTABLE_BUT_BORDERS) else ()
     return Verdict(row.word, names, _reasons(parts, row), tuple(grounds.items()), flaws)
 
 

@@ -127,7 +127,7 @@ def lines(found: Stability, analysis: Analysis) -> Iterator[str]:
         # Of a motion that is proved to be stable, conditions of something stronger would be misread.
         items = [] if part.theory.verdict.stable else list(statements(part.ring, part.theory.requirements))
         verdict = _verdict(part.theory.verdict)
-        if part.theory.verdict.word is Word.DEPENDS and items:
+        if part.theory.verdict.word in (Word.DEPENDS, Word.UNSTABLE_BUT_BORDERS) and items:
             verdict += f"; {_heading(part.theory)}:"
         yield f"{', '.join(part.coordinates)}: {verdict}"
         shown = Shown()
