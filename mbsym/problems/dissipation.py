@@ -53,6 +53,7 @@ from mbsym.model.loads import (
     Load,
 )
 from mbsym.model.system import INERTIAL, rational, velocity_name
+from mbsym.problems.displacements import Displacements, displacements
 from mbsym.problems.energy import Energy
 
 
@@ -132,6 +133,27 @@ class Balance:
         Where all of Q_i is linear it shows in D and N; the momentum is constant if these have no entries.
         """
         return tuple(name for name in self.ignorable if not self._linear(name))
+
+    def displacements(self, coordinates: Sequence[str]) -> Displacements:
+        """Displacements along some coordinates that change no equation; none where there are no closed formulas."""
+        none, system, ring = Displacements(tuple(coordinates)), self.scene.system, self.scene.ring
+        if self.energy is None or self.somewhere or self._forces is None:
+            return none
+        order = (*coordinates, *(name for name in system.coordinates if name not in coordinates))
+        try:
+            forces = [
+                ring.reduce(ring.derivative(self.energy.force_function.polynomial, name) + self._forces[name])
+                for name in order
+            ]
+            moving = (*system.coordinates, *system.velocities)
+            kinetic = self.energy.kinetic_energy.polynomial
+            return displacements(ring, coordinates, kinetic, forces, moving, self._rows_along(coordinates))
+        except Failure:
+            return none
+
+    def _rows_along(self, coordinates: Sequence[str]) -> Sequence[tuple[Polynomial, Sequence[Polynomial]]]:
+        """Of every constraint, g and its partial derivatives by some velocities."""
+        return ()
 
     def _unseen(self, name: str) -> bool:
         """Whether Q does not depend on a coordinate."""

@@ -19,7 +19,7 @@ from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.routh import ignoring_cyclic, momenta_are_constant, only_momenta
 from mbsym.problems.stability.state_matrix import state_matrix
 from mbsym.problems.stability.theorems import Fact, implied
-from mbsym.problems.stability.verdict import Verdict, coasting, concluded, drifting, off_the_leaf, undecided
+from mbsym.problems.stability.verdict import Verdict, coasting, concluded, displaced, drifting, off_the_leaf, undecided
 from mbsym.problems.stability.word import Word
 
 Numbers = Any  # a flint.fmpq_mat
@@ -52,7 +52,8 @@ def verdict_at(system: LinearSystem, point: Mapping[int, Fraction]) -> PointVerd
 def verdict_over(system: LinearSystem, at: ExactPoint) -> PointVerdict:
     """The same where the matrices' entries have exact values of whatever kind; ``polynomial`` is of that kind."""
     found = _verdict_over(system, at)
-    return replace(found, verdict=off_the_leaf(found.verdict)) if system.leaf else found
+    verdict = displaced(found.verdict, system.basis)
+    return replace(found, verdict=off_the_leaf(verdict) if system.leaf else verdict)
 
 
 def _verdict_over(system: LinearSystem, at: ExactPoint) -> PointVerdict:

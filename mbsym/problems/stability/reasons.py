@@ -44,6 +44,7 @@ class Because(Enum):
     COASTING = auto()
     DRIFT = auto()
     DRIFT_AT_GIVEN_MOMENTA = auto()
+    DISPLACEMENTS = auto()  # (how coordinates move together, each a text)
     PARTLY_CYCLIC = auto()
     CONSTANT_MOMENTA = auto()
     # of what is open

@@ -70,7 +70,16 @@ from mbsym.problems.stability.requirements import (
 )
 from mbsym.problems.stability.routh import ignoring_cyclic, momenta_are_constant, only_momenta
 from mbsym.problems.stability.theorems import Fact, Ground, applying
-from mbsym.problems.stability.verdict import Verdict, coasting, concluded, depends, drifting, off_the_leaf, undecided
+from mbsym.problems.stability.verdict import (
+    Verdict,
+    coasting,
+    concluded,
+    depends,
+    displaced,
+    drifting,
+    off_the_leaf,
+    undecided,
+)
 
 #: More damped coordinates have too many principal minors.
 MOST_DAMPED = 4
@@ -127,10 +136,19 @@ def analyse(system: LinearSystem, signs: Signs, point: Mapping[int, Fraction] | 
         found = _analyse(system, signs)
     except TooLargeError as error:
         found = _left_out(system, signs, str(error))
-    if system.leaf:
-        cases = tuple(replace(case, verdict=off_the_leaf(case.verdict)) for case in found.cases)
-        found = replace(found, cases=cases, verdict=off_the_leaf(found.verdict))
+    if system.leaf or system.basis is not None:
+        found = replace(
+            found,
+            cases=tuple(replace(case, verdict=_told(system, case.verdict)) for case in found.cases),
+            verdict=_told(system, found.verdict),
+        )
     return found if point is None else replace(found, at_point=verdict_at(system, point))
+
+
+def _told(system: LinearSystem, verdict: Verdict) -> Verdict:
+    """What the coordinates of the matrices mean for the verdict on the motion."""
+    verdict = displaced(verdict, system.basis)
+    return off_the_leaf(verdict) if system.leaf else verdict
 
 
 def _left_out(system: LinearSystem, signs: Signs, reason: str) -> Theory:

@@ -25,6 +25,7 @@ from collections.abc import Iterable, Mapping, Set
 from dataclasses import dataclass, replace
 from enum import Enum, auto
 
+from mbsym.problems.displacements import Basis
 from mbsym.problems.stability import sentences
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.theorems import LAGRANGE, MALKIN, ROUTH, Fact, Ground, applying, implied, reason_of
@@ -229,7 +230,16 @@ def drifting(verdict: Verdict, constant_momenta: bool = True) -> Verdict:
     row = row_of({*grounds}, flaws)
     names = verdict.theorems if row.ground is None else grounds[row.ground]
     reasons = (*(_BESIDE_ZERO_ROOTS.get(reason, reason) for reason in verdict.reasons), Reason(drift))
-    return Verdict(row.word, names, reasons, tuple(grounds.items()), flaws)
+    return Verdict(row.word, names, tuple(dict.fromkeys(reasons)), tuple(grounds.items()), flaws)
+
+
+def displaced(verdict: Verdict, basis: Basis | None) -> Verdict:
+    """The verdict, which says of a drift in which displacements of the user's coordinates it is."""
+    told = () if basis is None else basis.together
+    if not told or Flaw.CYCLIC not in verdict.flawed:
+        return verdict
+    reason = Reason(Because.DISPLACEMENTS, (", ".join(told),))
+    return replace(verdict, reasons=tuple(sorted((*verdict.reasons, reason), key=lambda reason: reason.rank)))
 
 
 #: How reasons read where cyclic coordinates have zero roots, and where momenta of theirs stay different.
