@@ -5,8 +5,8 @@
 under constraints with rows g = J q' + j besides  J c = 0  and  sum c_i dg/dq_i = 0:  then the constraints allow them.
 
 A cyclic coordinate is one of them, along its own axis; in other coordinates the same is a sum of several (two masses on
-a ring: both move alike).  Taken as coordinates, by a constant linear change q = P y, they are cyclic in the usual sense,
-so that verdicts do not depend on the coordinates of a description.  By Lagrange's equations the momentum along c,
+a ring: both move alike).  Taken as coordinates, by a constant linear change q = P y, they are cyclic in the usual
+sense, so that verdicts do not depend on the coordinates of a description.  By Lagrange's equations the momentum along c
 
     p = sum c_i dT/dq'_i,    p' = sum c_i (dU/dq_i + Q_i),
 

@@ -136,6 +136,12 @@ class Balance:
 
     def displacements(self, coordinates: Sequence[str]) -> Displacements:
         """Displacements along some coordinates that change no equation; none where there are no closed formulas."""
+        return self._displacements(coordinates)
+
+    def _displacements(
+        self, coordinates: Sequence[str], rows: Sequence[tuple[Polynomial, Sequence[Polynomial]]] = ()
+    ) -> Displacements:
+        """``rows``: of every constraint g, and its partial derivatives by the velocities of ``coordinates``."""
         none, system, ring = Displacements(tuple(coordinates)), self.scene.system, self.scene.ring
         if self.energy is None or self.somewhere or self._forces is None:
             return none
@@ -146,14 +152,9 @@ class Balance:
                 for name in order
             ]
             moving = (*system.coordinates, *system.velocities)
-            kinetic = self.energy.kinetic_energy.polynomial
-            return displacements(ring, coordinates, kinetic, forces, moving, self._rows_along(coordinates))
+            return displacements(ring, coordinates, self.energy.kinetic_energy.polynomial, forces, moving, rows)
         except Failure:
             return none
-
-    def _rows_along(self, coordinates: Sequence[str]) -> Sequence[tuple[Polynomial, Sequence[Polynomial]]]:
-        """Of every constraint, g and its partial derivatives by some velocities."""
-        return ()
 
     def _unseen(self, name: str) -> bool:
         """Whether Q does not depend on a coordinate."""

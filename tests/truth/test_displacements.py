@@ -12,8 +12,8 @@ import pytest
 
 import mbsym
 from mbsym.analysis import Analysis
-from mbsym.problems.dissipation import Balance
 from mbsym.problems.displacements import Displacements
+from mbsym.problems.dissipation import Balance
 from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.word import Word
 

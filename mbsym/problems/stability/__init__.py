@@ -50,6 +50,7 @@ from mbsym.problems.stability.problem import (
     ExactVerdicts,
     Stability,
     SubsystemStability,
+    because,
     parameter_values,
     stability,
 )
@@ -58,6 +59,7 @@ __all__ = [
     "ExactVerdicts",
     "Stability",
     "SubsystemStability",
+    "because",
     "parameter_values",
     "stability",
 ]

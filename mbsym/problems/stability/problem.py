@@ -26,9 +26,9 @@ from mbsym.mechanics.motion import dependent, relations
 from mbsym.mechanics.symmetry import Spin, free_spin
 from mbsym.mechanics.variables import expressions
 from mbsym.model.system import rational
-from mbsym.problems.dissipation import Balance
 from mbsym.problems.displacements import Basis, Displacements
 from mbsym.problems.displacements import basis as basis_of
+from mbsym.problems.dissipation import Balance
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.knowledge import definition_in_parameters
 from mbsym.problems.linearisation import Linearisation, Subsystem, first_symbols
@@ -36,7 +36,7 @@ from mbsym.problems.stability import nonholonomic
 from mbsym.problems.stability.enclosed import enclosed_verdict_with_cyclic
 from mbsym.problems.stability.exact import verdict_at
 from mbsym.problems.stability.linear_form import LinearSystem, NonholonomicForm
-from mbsym.problems.stability.reasons import Because
+from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.requirements import Requirement
 from mbsym.problems.stability.spectrum import Spectrum, from_characteristic, from_matrices
 from mbsym.problems.stability.symbolic import Theory, analyse
@@ -136,6 +136,20 @@ class Stability(Shown):
     def terms(self) -> int:
         """Terms of the characteristic polynomials."""
         return sum(x.terms for part in self.subsystems for x in part.characteristic)
+
+
+def because(found: Stability, code: Because, *data: object) -> Stability:
+    """The same with a reason more in every verdict."""
+    reason = Reason(code, data)
+
+    def more(verdict: Verdict) -> Verdict:
+        return replace(verdict, reasons=tuple(sorted((*verdict.reasons, reason), key=lambda one: one.rank)))
+
+    parts = tuple(
+        replace(part, theory=replace(part.theory, verdict=more(part.theory.verdict))) for part in found.subsystems
+    )
+    numerical = None if found.numerical is None else more(found.numerical)
+    return replace(found, subsystems=parts, verdict=more(found.verdict), numerical=numerical)
 
 
 def stability(
@@ -267,8 +281,11 @@ def prepared_parts(
     """Every subsystem, ready to be judged."""
     elimination = elimination_of(scene)
     spin = None if scene.system.constraints else free_spin(scene.system)
+    lagrangian = linear.constrained is None or linear.constrained.holonomic
     prepared = tuple(
-        _prepared(scene, part, elimination, signs, balance, _turned(scene, part, spin, equilibrium), equilibrium)
+        _prepared(
+            scene, part, elimination, signs, balance, _turned(scene, part, spin, equilibrium), equilibrium, lagrangian
+        )
         for part in linear.subsystems
     )
     if scene.system.linear is not None and scene.system.linear.of_first_order:
@@ -282,7 +299,7 @@ def prepared_parts(
             )
             for part in prepared
         )
-    if linear.constrained is None or linear.constrained.holonomic:
+    if lagrangian:
         leaf = 0 if linear.constrained is None else linear.constrained.leaf
         return tuple(replace(part, system=replace(part.system, leaf=leaf)) for part in prepared) if leaf else prepared
     about, free = linear.constrained, equilibrium.satisfied
@@ -318,9 +335,10 @@ def _prepared(
     balance: Balance,
     turned: Sequence[Polynomial],
     equilibrium: Equilibrium,
+    lagrangian: bool,
 ) -> Prepared:
     matrices, factor = _polynomial(scene, part, elimination, signs)
-    rows = [[[x for x in row] for row in matrix.polynomials] for matrix in matrices]
+    rows = [[list(row) for row in matrix.polynomials] for matrix in matrices]
     cyclic = tuple(
         i
         for i, name in enumerate(part.coordinates)
@@ -328,7 +346,7 @@ def _prepared(
     )
     driven = tuple(i for i in cyclic if part.coordinates[i] in balance.driven)
     names, basis = part.coordinates, None
-    hidden = _displaced(scene, part, balance, signs, cyclic, equilibrium)
+    hidden = _displaced(scene, part, balance, signs, cyclic, equilibrium) if lagrangian else None
     if hidden is not None:
         found, basis = hidden
         inner = basis.through(scene.ring, elimination)

@@ -15,7 +15,8 @@ def only_momenta(system: LinearSystem) -> bool:
 def ignoring_cyclic(system: LinearSystem) -> LinearSystem:
     """Routh's reduction: cyclic velocities expressed by their momenta, where these are constant.
 
-    With c the cyclic coordinates of ``with_constant_momenta`` and r the other coordinates, M_cc q_c' + M_cr q_r' + G_cr q_r = const gives::
+    With c the cyclic coordinates of ``with_constant_momenta`` and r the others,
+    M_cc q_c' + M_cr q_r' + G_cr q_r = const gives::
 
         M_R = M_rr - M_rc W M_cr,   G_R = G_rr - M_rc W G_cr - G_rc W M_cr,   K_R = K_rr - G_rc W G_cr,   W = M_cc^-1
 

@@ -72,10 +72,11 @@ LAW = (
     Row(Word.STABLE_BUT_CYCLIC, Ground.IDLE, wanted=_DRIFT, allowed=_DRIFT),
     Row(Word.ASYMPTOTIC_BUT_CYCLIC, Ground.DECAYS, wanted=_DRIFT, allowed=_DRIFT),
     Row(Word.ASYMPTOTIC_BUT_STEADY, Ground.DECAYS, wanted=_FAMILY, allowed=_FAMILY),
+    Row(Word.ASYMPTOTIC_BUT_CYCLIC, Ground.DECAYS, wanted=_DRIFT | _FAMILY, allowed=_DRIFT | _FAMILY),  # on a leaf
     Row(Word.ASYMPTOTIC_BUT_TURNED, Ground.DECAYS, allowed=_SOUND),
     Row(Word.STABLE, Ground.ENERGY, allowed=frozenset()),
     Row(Word.STABLE, Ground.ENERGY, wanted=_FAMILY, allowed=_FAMILY),  # of a leaf, beside parts that decay
-    Row(Word.STABLE_BUT_CYCLIC, Ground.ENERGY, wanted=_DRIFT, allowed=_DRIFT),
+    Row(Word.STABLE_BUT_CYCLIC, Ground.ENERGY, wanted=_DRIFT, allowed=_DRIFT | _FAMILY),
     Row(Word.GYROSCOPIC, Ground.UNDAMPED, wanted=frozenset({Flaw.INDEFINITE})),
     Row(Word.CRITICAL),
 )
