@@ -66,9 +66,11 @@ def _spin(system: System, body: Body) -> str | None:
         return None
     own = {name for name in angles if name is not None}
     hidden = own | {velocity_name(name) for name in own}
-    elsewhere = [*(other for other in system.bodies if other is not body), *system.loads, *system.constraints]
-    place = (body.connection_point, body.mass_centre, body.inertia)
-    if any(hidden & names(x) for part in (*elsewhere, *place) if part is not None for x in expressions(part)):
+    bodies = (replace(other, rotation=Rotation((), ())) if other is body else other for other in system.bodies)
+    elsewhere = (*bodies, *system.loads, *system.constraints)
+    if any(hidden & names(x) for part in elsewhere for x in expressions(part)):
+        return None
+    if any(own & {*load.coordinates} for load in system.loads):  # a spring on an angle is one of this sequence
         return None
     motion = motion_values(system)
     spinning = [name for name in own if motion[name][1] != ZERO]
