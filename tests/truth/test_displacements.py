@@ -106,3 +106,20 @@ def test_a_direction_that_is_none_is_caught(monkeypatch: pytest.MonkeyPatch) -> 
 
     monkeypatch.setattr(Balance, "displacements", wrong)
     assert ring(("a", "b"), "{potential: k*(A - B)**2/2}").stability.verdict.word is Word.UNDECIDED
+
+
+def test_a_cylinder_in_a_cylinder_drifts_with_constraints_and_without() -> None:
+    """Outer cylinder on a plane, inner one in it, both rolling; by hand in p1 and th, or with rolling constraints.
+
+    With c = r1 - r2, u = r1 p1', w = u - c th':  2 T = M1 u^2 + M2 w^2 near th = 0, M1 = (1 + k1) m1, M2 = (1 + k2) m2.
+    Neither T nor V knows p1: M1 u + M2 w is constant, and what remains is  M1 M2 c^2 th'^2/(M1 + M2) = 2 T_R  with
+    2 V = m2 g c th^2: a minimum for r1 > r2, frequency^2 = m2 g (M1 + M2)/(M1 M2 c), here 9.81 5.5/(6 0.75) = 11.99.
+    """
+    for name in ("rolling-cylinders-higher-order-decide", "same-by-hand-decided"):
+        found = mbsym.load(CASES / f"{name}.yaml").stability
+        assert found.numerical is not None
+        assert (found.numerical.word, found.numerical.theorem) == (Word.STABLE_BUT_CYCLIC, "Routh")
+        assert found.verdict.word is Word.DEPENDS  # on the sign of r1 - r2
+        (spectrum,) = found.spectra
+        sizes = sorted(abs(complex(root.ball)) ** 2 for root in spectrum.roots)
+        assert sizes == pytest.approx([0, 11.99, 11.99])

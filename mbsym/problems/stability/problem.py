@@ -280,7 +280,7 @@ def prepared_parts(
 ) -> tuple[Prepared, ...]:
     """Every subsystem, ready to be judged."""
     elimination = elimination_of(scene)
-    spin = None if scene.system.constraints else free_spin(scene.system)
+    spin = None if scene.system.constraints else free_spin(scene.system, still=True)
     lagrangian = linear.constrained is None or linear.constrained.holonomic
     prepared = tuple(
         _prepared(

@@ -231,7 +231,7 @@ def _analyse(system: LinearSystem, signs: Signs) -> Theory:
 
 def _turned_factor(system: LinearSystem, factors: tuple[Factor, ...]) -> int | None:
     """The position of the simple factor that a turned steady spin explains."""
-    if not system.turned:
+    if not system.turned or system.turned[1] == 0:
         return None
     top, bottom = system.turned
     for i, factor in enumerate(factors):
@@ -440,6 +440,9 @@ def _cases_with_zero_roots(system: LinearSystem, found: Theory, known: Signs) ->
     """Cyclic coordinates: ignore them (Routh) or strike their roots; other zero roots are a border."""
     unstable = _unstable(found.requirements, known)
     if not system.cyclic:
+        standing = bool(system.turned) and system.turned[1] == 0  # in any direction of space: two zero roots
+        if standing and found.zero_power == 2 and found.variable == "lambda":
+            return (Case(found.requirements, (), _all_left(True)), *unstable), None
         return unstable, None
     if only_momenta(system):
         by_mass = tuple(replace(r, by_mass=True) for r in found.mass.requirements)
