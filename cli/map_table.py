@@ -33,11 +33,10 @@ def show_map(
 
 
 def _table(found: PlaneMap | LineMap) -> Table:
-    rows: dict[tuple[str, str], tuple[int, float]] = {}
-    for stratum, (area, _) in zip(found.regions, found.areas, strict=True):
-        key = _row(found, stratum)
-        count, total = rows.get(key, (0, 0.0))
-        rows[key] = count + 1, total + area
+    rows: dict[tuple[str, str], tuple[set[int], float]] = {}
+    for stratum, place, (area, _) in zip(found.regions, found.together, found.areas, strict=True):
+        parts, total = rows.setdefault(_row(found, stratum), (set(), 0.0))
+        rows[_row(found, stratum)] = parts | {place}, total + area
     whole = found.whole
     table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold cyan")
     table.add_column("verdict" if found.of is Of.STABILITY else "signature of K", overflow="fold")
@@ -46,9 +45,9 @@ def _table(found: PlaneMap | LineMap) -> Table:
     table.add_column("intervals" if line else "regions", justify="right")
     table.add_column("length" if line else "area", justify="right")
     table.add_column("of the whole", justify="right")
-    for (verdict, theorem), (count, area) in sorted(rows.items(), key=lambda item: -item[1][1]):
+    for (verdict, theorem), (parts, area) in sorted(rows.items(), key=lambda item: -item[1][1]):
         share = 100 * area / whole
-        table.add_row(escape(verdict), escape(theorem), str(count), f"{area:.4g}", f"{share:.2f} %")
+        table.add_row(escape(verdict), escape(theorem), str(len(parts)), f"{area:.4g}", f"{share:.2f} %")
     return table
 
 
@@ -73,6 +72,7 @@ def remarks(found: PlaneMap | LineMap) -> list[str]:
         told = [
             f"{counted(len(found.regions), 'region')}, {counted(len(found.arcs), 'arc')} and "
             f"{counted(len(found.corners), 'corner')} in map.json, each with an exact point"
+            + (", also of curves at which no verdict changes" if len({*found.together}) < len(found.regions) else "")
         ]
     kept = (Origin.SIGN, Origin.ASSUMPTION, Origin.INERTIA)
     if all(one.origin in kept for conditions in found.boundaries.conditions for one in conditions):
@@ -130,7 +130,7 @@ def borders(found: PlaneMap | LineMap) -> Iterator[str]:
     for one in strata:
         stretches = one.soft.stretches or () if one.soft is not None else ()
         if len(stretches) > 1:
-            name = found.section.axes[0].name
+            name = found.section.axes[stretches[0].axis].name
             parts = [f"{x.onset} for {name} from {float_of(x.start):.6g} to {float_of(x.end):.6g}" for x in stretches]
             yield f"imaginary pair, {_place(found, one)}: {'; '.join(parts)}"
 

@@ -49,7 +49,7 @@ def _lines(run: Simulation, file: Path) -> Iterator[tuple[str, str]]:
     from mbsym.report.plan_words import plan_lines
     from mbsym.report.simulation_words import (
         change_lines,
-        conservation_line,
+        energy_lines,
         error_lines,
         inputs_line,
         invariant_line,
@@ -91,11 +91,10 @@ def _lines(run: Simulation, file: Path) -> Iterator[tuple[str, str]]:
     yield from events_lines(run)
     if switches := switch_line(found.passed):
         yield "switches", switches
-    if run.dynamics.natural:
-        yield "energy", conservation_line(run.conservation)
-    else:
-        yield "energies", f"generalised, T2 - T0 - U: {conservation_line(run.conservation)}"
-        yield "", f"T - U: {conservation_line(run.energy_conservation)}"
+    energies = list(energy_lines(run))
+    for place, (which, what) in enumerate(energies):
+        title = "energy" if len(energies) == 1 else "" if place else "energies"
+        yield title, what if len(energies) == 1 else f"{which}: {what}"
     for kept in run.invariants:
         yield "invariant", invariant_line(kept.conservation)
     for place, text in enumerate(error_lines(run.error)):

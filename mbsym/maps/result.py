@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from enum import StrEnum
+from itertools import pairwise
 
 from mbsym.algebra.plane import Arrangement, Point
 from mbsym.algebra.plane.line import Line
@@ -107,6 +108,21 @@ class Shown:
         return (found.verdict.word, found.right, found.real_right)
 
 
+def _together(count: int, alike: Iterable[tuple[int, int]]) -> tuple[int, ...]:
+    """For each of so many regions the first one that it is joined with, over pairs that nothing separates."""
+    first = list(range(count))
+
+    def of(k: int) -> int:
+        while first[k] != k:
+            k = first[k]
+        return k
+
+    for a, b in alike:
+        low, high = sorted((of(a), of(b)))
+        first[high] = low
+    return tuple(of(k) for k in range(count))
+
+
 @dataclass(frozen=True)
 class LineMap(Shown):
     """A map over one axis: ``regions`` are the intervals of ``line``, ``corners`` its zeros, ``areas`` lengths."""
@@ -133,6 +149,16 @@ class LineMap(Shown):
     def whole(self) -> float:
         """The length of the interval."""
         return float(self.line.high - self.line.low)
+
+    @property
+    def together(self) -> tuple[int, ...]:
+        """For each interval the first of those that it makes one with: no zero between them changes what is shown."""
+        pairs: list[tuple[int, int]] = []
+        for one in self.corners:
+            beside = [x.id for x in self.line.intervals if one.number in x.ends]
+            if {self.look(self.regions[k]) for k in beside} == {self.look(one)}:
+                pairs += pairwise(beside)
+        return _together(len(self.regions), pairs)
 
     def changes(self, corner: Stratum) -> bool:
         """Whether what is shown differs at a zero from one of its sides."""
@@ -174,6 +200,16 @@ class PlaneMap(Shown):
         """The regions below and above an arc (left and right of a vertical one); None is outside of the box."""
         below, above = self.arrangement.arcs[arc.number].regions
         return None if below is None else self.regions[below], None if above is None else self.regions[above]
+
+    @property
+    def together(self) -> tuple[int, ...]:
+        """For each region the first of those that it makes one with, as no arc between them changes what is shown."""
+        pairs = []
+        for arc in self.arcs:
+            a, b = self.beside(arc)
+            if a is not None and b is not None and self.look(a) == self.look(arc) == self.look(b):
+                pairs.append((a.number, b.number))
+        return _together(len(self.regions), pairs)
 
     def separates(self, arc: Stratum) -> bool:
         """Whether what is shown differs between the two sides of an arc."""

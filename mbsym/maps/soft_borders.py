@@ -23,13 +23,13 @@ from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
-from flint import acb, acb_poly, arb, ctx, fmpq_poly
+from flint import acb, acb_poly, arb, ctx, fmpq, fmpq_poly
 
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import Failure, Limit, TooLargeError
 from mbsym.algebra.plane import Arrangement, Point
 from mbsym.algebra.plane.arrangement import Arc, Piece, sample_of
-from mbsym.algebra.plane.numbers import between_simply, compare, enclosure, primitive, roots_between
+from mbsym.algebra.plane.numbers import Root, between_simply, compare, enclosure, primitive, roots_between
 from mbsym.algebra.plane.numbers import high as upper
 from mbsym.algebra.plane.numbers import low as lower
 from mbsym.algebra.plane.projection import Curve, coefficients
@@ -75,11 +75,15 @@ class Missing(StrEnum):
 
 @dataclass(frozen=True)
 class Stretch:
-    """A part of an arc between two values of the first axis, in the arc's order; on the open part ``onset`` holds."""
+    """A part of an arc between two values of an axis, in the arc's order; on the open part ``onset`` holds.
+
+    ``axis``: 0, or 1 along a line on which the first axis is constant.
+    """
 
     start: Any
     end: Any
     onset: Onset
+    axis: int = 0
 
 
 @dataclass(frozen=True)
@@ -167,18 +171,47 @@ class SoftBorders:
     def along(self, made: Arrangement, arc: Arc) -> SoftOrHard:
         """On an arc: at its point, and on all of it where formulas are small enough."""
         there = self.at(arc.point)
-        if there.onset is Onset.OPEN or self.section.constant is not None or any(x.vertical for x in arc.pieces):
+        # Where the coefficient vanishes at the arc's point it need not beside it.
+        if there.onset is Onset.OPEN and there.why is not Why.COEFFICIENT_OPEN:
             return there
+        if self.section.constant is not None:
+            return there
+        if arc.pieces[0].vertical:
+            with ctx.workprec(PRECISION):
+                return replace(there, stretches=self._up(made, arc))
         curve = next(k for k, one in enumerate(made.curves) if set(one.of) & set(arc.factors))
         with ctx.workprec(PRECISION):
             if curve not in self._along:
-                self._along[curve] = self._formula(made.curves[curve], arc)
+                self._along[curve] = self._formula(made.curves[curve].polynomial, arc)
             formula = self._along[curve]
             stretches = None if formula is None else _stretches(self, formula, made, arc, curve)
         return replace(there, stretches=stretches)
 
-    def _formula(self, curve: Curve, arc: Arc) -> _Along | None:
-        """a on a curve; None where it outgrows its budgets, or the curve is another one."""
+    def _up(self, made: Arrangement, arc: Arc) -> tuple[Stretch, ...] | None:
+        """Stretches of a line on which the first axis is constant; None where a sign is not told."""
+        piece, x = arc.pieces[0], arc.point.x
+        points = made.fibres[piece.strip].points
+        ends = [points[piece.section + k].y for k in (0, 1)]
+        if not isinstance(x, fmpq) or not all(isinstance(y, (fmpq, Root)) for y in ends):
+            return None
+        formula = self._formula(self.section.context.gen(0) - x, arc, 1)
+        if formula is None:
+            return None
+        found: list[Stretch] = []
+        for low, high in pairwise([ends[0], *formula.between(*ends), ends[1]]):
+            at = (enclosure(x, PRECISION), arb(between_simply(low, high)))
+            onset = _confirmed(self, formula, *at)
+            if onset is None:
+                return None
+            goes_on = bool(found) and found[-1].onset is onset
+            if goes_on and self._at((at[0], enclosure(low, PRECISION))).onset is onset:
+                found[-1] = replace(found[-1], end=high)
+            else:
+                found.append(Stretch(low, high, onset, axis=1))
+        return tuple(found)
+
+    def _formula(self, curve: Any, arc: Arc, axis: int = 0) -> _Along | None:
+        """a on a curve along an axis; None where it outgrows its budgets, or the curve is another one."""
         expanded = self._expanded
         assert not isinstance(expanded, Missing)
         found, images = expanded
@@ -197,7 +230,7 @@ class SoftBorders:
         try:
             field, positions = state_field(Numbers(found, carry, tower.reciprocal, tower.zero, tower.one))
             whole = on_curve(tower, field, positions, size)
-            return _Along(whole, curve) if _lies_on(whole, curve) else None
+            return _Along(whole, curve, axis) if _lies_on(whole, curve) else None
         except (Failure, ZeroDivisionError):
             return None
 
@@ -224,42 +257,42 @@ def _told(judged: Higher) -> SoftOrHard:
     return SoftOrHard(onset, why, frequency, judged.coefficient, judged.amplitude_of)
 
 
-def _plane(x: Any, curve: Curve) -> Any:
-    """A polynomial of a tower without roots in the context of a curve."""
-    context, skipped = curve.polynomial.context(), x.context().nvars() - 2
+def _plane(x: Any, curve: Any) -> Any:
+    """A polynomial of a tower without roots in the context of a curve's."""
+    context, skipped = curve.context(), x.context().nvars() - 2
     return context.from_dict({tuple(map(int, powers))[skipped:]: value for powers, value in x.to_dict().items()})
 
 
-def _lies_on(whole: OnCurve, curve: Curve) -> bool:
+def _lies_on(whole: OnCurve, curve: Any) -> bool:
     """Whether E and O have a common root all along the curve, exactly."""
-    return whole.resultant.is_zero() or divmod(_plane(whole.resultant.top, curve), curve.polynomial)[1] == 0
+    return whole.resultant.is_zero() or divmod(_plane(whole.resultant.top, curve), curve)[1] == 0
 
 
 class _Along:
-    """a along one curve: where its sign may change, and its sign at a point."""
+    """a along one curve, by the values of an ``axis``: where its sign may change, and its sign at a point."""
 
-    def __init__(self, whole: OnCurve, curve: Curve) -> None:
-        self.curve = curve
+    def __init__(self, whole: OnCurve, curve: Any, axis: int = 0) -> None:
+        self.curve, self.axis = curve, axis
         self.top, self.bottom = (_plane(x, curve) for x in (whole.coefficient.top, whole.coefficient.bottom))
         watched = [self.top, self.bottom]
         watched += [_plane(x, curve) for one in (whole.slope, whole.constant) for x in (one.top, one.bottom)]
         self.critical = list(self._abscissas(watched))
 
     def _abscissas(self, watched: Sequence[Any]) -> Iterator[Any]:
-        """Polynomials in x that vanish wherever one of the watched does on the curve.  Raises TooLargeError."""
-        seen = set()
+        """Polynomials along the axis that vanish where one of the watched does on the curve.  Raises TooLargeError."""
+        seen, other = set(), 1 - self.axis
         for p in watched:
             for factor, _ in [] if p.is_constant() else irreducible_factors(p)[1]:
                 if factor.is_constant() or str(factor) in seen:
                     continue
                 seen.add(str(factor))
-                a, b = factor.degrees(), self.curve.polynomial.degrees()
+                a, b = factor.degrees(), self.curve.degrees()
                 if int(a[0]) * int(b[1]) + int(a[1]) * int(b[0]) > MOST_DEGREE:
                     raise TooLargeError("a resultant of a high degree", limit=Limit.DEGREE)
-                met = factor if not a[1] else factor.resultant(self.curve.polynomial, 1)
+                met = factor if not a[other] else factor.resultant(self.curve, other)
                 if met == 0:
                     raise TooLargeError("it vanishes all along the curve", limit=Limit.DEGREE)
-                yield coefficients(met, 1)[0]
+                yield coefficients(met, other)[0]
 
     def between(self, low: Any, high: Any) -> list[Any]:
         """The critical abscissas between two exact numbers, in order, each once."""
@@ -320,15 +353,19 @@ def _of_piece(
     last: Stretch | None = None
     for left, right in pairwise(marks):
         x = between_simply(left, right)
-        y = _ordinate(formula.curve, made, arb(x), place, count)
-        sign = 0 if y is None else formula.sign(arb(x), y)
-        onset = borders._at((arb(x), y)).onset if sign else None
-        if onset is None or (onset is not Onset.OPEN and (onset is Onset.HARD) != (sign > 0)):
+        y = _ordinate(made.curves[curve], made, arb(x), place, count)
+        onset = None if y is None else _confirmed(borders, formula, arb(x), y)
+        if onset is None:
             yield None
             return
         here = Stretch(left, right, onset)
-        if last is not None and last.onset is here.onset and _regular(borders, formula, made, left, place, count, here):
-            last = Stretch(last.start, right, here.onset)
+        if (
+            last is not None
+            and last.onset is here.onset
+            and _regular(borders, made.curves[curve], made, left, place, count, here)
+        ):
+            assert last is not None
+            last = replace(last, end=right)
             continue
         if last is not None:
             yield last
@@ -336,12 +373,21 @@ def _of_piece(
     yield last
 
 
+def _confirmed(borders: SoftBorders, formula: _Along, x: Any, y: Any) -> Onset | None:
+    """The onset at enclosed numbers on the curve, by both routes; None where they do not tell it alike."""
+    sign = formula.sign(x, y)
+    onset = borders._at((x, y)).onset if sign else None
+    if onset is None or onset is Onset.OPEN:
+        return onset
+    return onset if (onset is Onset.HARD) == (sign > 0) else None
+
+
 def _regular(
-    borders: SoftBorders, formula: _Along, made: Arrangement, x: Any, place: int, count: int, here: Stretch
+    borders: SoftBorders, curve: Curve, made: Arrangement, x: Any, place: int, count: int, here: Stretch
 ) -> bool:
     """Whether the onset at an abscissa within a piece is that of its neighbourhood, by enclosures."""
     ball = enclosure(x, PRECISION)
-    y = _ordinate(formula.curve, made, ball, place, count)
+    y = _ordinate(curve, made, ball, place, count)
     return y is not None and borders._at((ball, y)).onset is here.onset
 
 

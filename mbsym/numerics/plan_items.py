@@ -38,7 +38,10 @@ DIGITS = (FLOAT32, FLOAT64, EXTENDED)
 
 @dataclass(frozen=True)
 class Settled:
-    """Everything that was found out; ``pinned`` names the kinds that the user settled."""
+    """Everything that was found out; ``pinned`` names the kinds that the user settled.
+
+    ``enough``: the error of ``found``, and the bound beside it, are within what was asked for.
+    """
 
     scene: Scene
     model: ModelChoice
@@ -49,6 +52,7 @@ class Settled:
     stick: Yardstick
     found: Trial
     pinned: frozenset[str]
+    enough: bool
 
 
 def items_of(settled: Settled) -> tuple[Item, ...]:
@@ -132,7 +136,8 @@ def _settings(settled: Settled) -> Iterator[Item]:
     name = found.method.traits.name
     others = _cheapest_others(settled)
     cheapest = "the cheapest here whose measured error, doubled, is small enough" if others else "none other fits"
-    why = "as asked for" if METHOD in pinned else cheapest
+    closest = "none tried is accurate enough: the cheapest of those within twice the least error"
+    why = "as asked for" if METHOD in pinned else cheapest if settled.enough else closest
     if FINENESS in pinned:
         why = f"as asked for{_fitting(found)}"
     if settled.choice.method.traits.implicit and METHOD not in pinned:
@@ -140,11 +145,13 @@ def _settings(settled: Settled) -> Iterator[Item]:
     yield Item(
         METHOD, (found.method.traits.title,), name, why, None, Certainty.MEASURED, found.seconds, SECONDS, others
     )
-    why = "as asked for" if FINENESS in pinned else "the coarsest tried that is good enough"
+    coarsest = "the coarsest tried that is good enough" if settled.enough else "none tried is good enough"
+    why = "as asked for" if FINENESS in pinned else coarsest
     word = f"tolerance {found.fineness:g}" if found.setting.step is None else f"step {found.fineness:g}"
     yield Item(FINENESS, (), word, why, None, Certainty.MEASURED, found.seconds, SECONDS)
     refused = tuple(_other_scalars(settled))
-    why = "as asked for" if SCALAR in pinned else _why_scalar(found)
+    fits = _why_scalar(found) if settled.enough or found.scalar == EXTENDED else "none tried is accurate enough"
+    why = "as asked for" if SCALAR in pinned else fits
     yield Item(SCALAR, (), found.scalar, why, None, Certainty.MEASURED, found.seconds, SECONDS, refused)
     yield Item(KERNEL, (), "scalar", "one motion: nothing to lay side by side", 0.0, Certainty.PROVED)
 

@@ -118,7 +118,8 @@ def planned(
         if over <= 1 or too_simple or pins.setting is not None or found.ratio > goal:
             break
         goal *= 0.7 / over
-    settled = Settled(scene, model, choice, resting, parts, bench, stick, found, pins.kinds)
+    enough = found.ratio <= goal and (over <= 1 or bool(too_simple))
+    settled = Settled(scene, model, choice, resting, parts, bench, stick, found, pins.kinds, enough)
     more, less = alternatives(bench, found, model.tried, model.taken, accuracy, goal)
     return Plan(
         accuracy,

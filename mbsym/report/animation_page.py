@@ -19,7 +19,7 @@ from mbsym.model.quantities import energy_unit, time_unit, unit_of, with_unit
 from mbsym.model.system import INERTIAL
 from mbsym.report.animation import Animation, basis, dots, extent, moving_points, view
 from mbsym.report.html_environment import embedded, page
-from mbsym.report.simulation_words import conservation_line, error_lines, warnings
+from mbsym.report.simulation_words import energy_lines, error_lines, warnings
 from mbsym.report.unit_text import pretty
 from mbsym.simulation import Simulation
 
@@ -160,7 +160,8 @@ def run_sentences(run: Simulation) -> Iterator[str]:
     if not run.whole:
         why = run.ended.kind if run.ended is not None else "interrupted"
         yield f"The run ended early ({why}); {with_unit(f'{float(run.chosen.times[-1]):.9g}', unit)} was asked for."
-    yield f"Energy: {conservation_line(run.conservation)}."
+    for which, what in energy_lines(run):
+        yield f"Energy ({which}): {what}."
     errors = list(error_lines(run.error))
     yield f"Error of the run: {'; '.join(errors)}." if errors else "The error of the run was not estimated."
     for text in warnings(run.conservation, run.error):

@@ -19,28 +19,41 @@ WRITTEN_OUT = 40
 MOST_TERMS = 60
 
 
+#: Letters of coefficients, the first of which that is no parameter's is taken: of even polynomials, and of others.
+_STEMS = ("v", "a", "c", "h", "w", "z")
+
+
 @dataclass(frozen=True)
 class InCoefficients:
     """``formula`` over letters of its own (v6, v4, ... or a3, a2, ...); ``letters``: each with what it stands for."""
 
     formula: Formula
-    letters: tuple[tuple[str, Formula], ...]
+    letters: tuple[tuple[Formula, Formula], ...]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(str(letter) for letter, _ in self.letters)
+
+
+def names_in(ring: Ring) -> frozenset[str]:
+    """The names that formulas over the ring may hold."""
+    return frozenset(ring.names())
 
 
 def in_coefficients(ring: Ring, requirement: Requirement) -> InCoefficients | None:
     """The form of a requirement that is too long to be read; None where there is none.
 
-    The requirement is an inequality that nothing was split off from, so that form and polynomial have one sign.
+    The requirement is an inequality that nothing was split off from, so that form and polynomial have one sign.  The
+    letters are those of the labels, v4 or a3, where no parameter is called so; of several factors v4_2, of the second.
     """
     condition, coefficients = requirement.condition, requirement.coefficients
     if condition.kind != "inequality" or condition.nonzero or len(condition.polynomial) <= WRITTEN_OUT:
         return None
-    even = "discriminant" in requirement.label
-    names = [f"v{2 * i}" if even else f"a{i}" for i in range(len(coefficients))]
+    label, _, factor = requirement.label.partition(" of factor ")
+    names = _letters("discriminant" in label, len(coefficients), factor, names_in(ring))
     present = [(name, x) for name, x in zip(names, coefficients, strict=True) if x != 0]
     letters = Ring((), (), [name for name, _ in reversed(present)], {})
     given = [letters.generator("parameter", n) if letters.has("parameter", n) else letters.zero for n in names]
-    label = requirement.label.partition(" of factor ")[0]
     value = _made(label, given)
     if value is None or not 2 * len(value) < len(condition.polynomial) or len(value) > MOST_TERMS:
         return None
@@ -48,7 +61,17 @@ def in_coefficients(ring: Ring, requirement: Requirement) -> InCoefficients | No
     images = [standing.get(g.name, ring.zero) for g in letters.generators]
     if value.compose(*images, ctx=ring.context) != requirement.polynomial:
         return None
-    return InCoefficients(Formula(letters, value), tuple((name, Formula(ring, x)) for name, x in reversed(present)))
+    stand_for = [(Formula(letters, letters.generator("parameter", n)), Formula(ring, x)) for n, x in reversed(present)]
+    return InCoefficients(Formula(letters, value), tuple(stand_for))
+
+
+def _letters(even: bool, count: int, factor: str, taken: frozenset[str]) -> list[str]:
+    """Names of the coefficients, from low to high powers, none of which is ``taken``."""
+    power, end = (2 if even else 1), f"_{factor}" if factor else ""
+    stems = _STEMS if even else (*_STEMS[1:], *_STEMS[:1])
+    listed = ([f"{stem}{power * k}{end}" for k in range(count)] for stem in stems)
+    free = next((names for names in listed if taken.isdisjoint(names)), None)
+    return free or [f"coefficient{power * k}{end}" for k in range(count)]
 
 
 def _made(label: str, coefficients: list[Polynomial]) -> Polynomial | None:

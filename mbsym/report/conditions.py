@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from mbsym.algebra.ring import Ring
+from flint import fmpq
+
+from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Formula
 from mbsym.problems.stability import SubsystemStability
 from mbsym.problems.stability.requirements import Case, Place, Requirement
-from mbsym.report.coefficients import InCoefficients, in_coefficients
+from mbsym.report.coefficients import InCoefficients, in_coefficients, names_in
 
 
 @dataclass(frozen=True)
@@ -35,30 +37,68 @@ class Statement:
         return self.place.value if self.place in (Place.METHOD, Place.FIRST) else ""
 
 
-def statements(ring: Ring, requirements: Sequence[Requirement], by_mass: bool = False) -> Iterator[Statement]:
-    """The requirements that are not known to hold; with ``by_mass`` also those that the kinetic energy guarantees."""
+@dataclass(frozen=True)
+class Labels:
+    """What labels of coefficients (v4, a3) mean in the text about one subsystem: one thing, wherever they stand.
+
+    ``letters``: those that forms in coefficients hold, so that they name the coefficients as they are, with their
+    factors of known sign.  ``taken``: those that are names in the formulas, too; they are told as words.
+    """
+
+    letters: frozenset[str] = frozenset()
+    taken: frozenset[str] = frozenset()
+
+    def __call__(self, label: str) -> str:
+        """The label as it is told: ``condition v4`` where a parameter is called v4."""
+        bare = _bare(label)
+        if bare.partition(" ")[0] not in self.taken:
+            return label
+        return f"condition {bare}" if bare == label else f"-(condition {bare})"
+
+
+def label_meanings(ring: Ring, requirements: Sequence[Requirement]) -> Labels:
+    """The meaning of the labels where these requirements are told."""
+    forms = [form for one in requirements if (form := in_coefficients(ring, one)) is not None]
+    return Labels(frozenset(name for form in forms for name in form.names), names_in(ring))
+
+
+def statements(
+    ring: Ring, requirements: Sequence[Requirement], by_mass: bool = False, told: Labels | None = None
+) -> Iterator[Statement]:
+    """The requirements that are not known to hold; with ``by_mass`` also those that the kinetic energy guarantees.
+
+    ``told``: what labels mean beside them, as ``label_meanings`` of all requirements of the subsystem finds it.
+    """
+    told = label_meanings(ring, requirements) if told is None else told
     for requirement in requirements:
-        if requirement.always and not (by_mass and requirement.by_mass):
-            continue
-        condition = requirement.condition
-        note = "holds: the kinetic energy is positive definite" if requirement.by_mass else ""
-        # g f^2 > 0 is g > 0 and f != 0: two polynomials, which must not have one name.
-        several = condition.kind == "inequality" or len(condition.nonzero) > 1
-        if condition.kind == "inequality":
-            label = _part(requirement.label, "without squares") if condition.nonzero else requirement.label
-            told = in_coefficients(ring, requirement)
-            formula = Formula(ring, condition.polynomial)
-            yield Statement(label, formula, requirement.relation, note, None, requirement.place, told)
-        elif condition.kind == "unwritten":
-            too_long = "too long to be written out"
-            yield Statement(requirement.label, None, requirement.relation, too_long, None, requirement.place)
-        elif condition.kind == "never":
-            never = Formula(ring, requirement.polynomial)
-            yield Statement(requirement.label, None, requirement.relation, "never holds", never, requirement.place)
-        for number, polynomial in enumerate(condition.nonzero, 1):
-            which = f"squared factor {number}" if len(condition.nonzero) > 1 else "squared factor"
-            label = _part(_bare(requirement.label), which) if several else requirement.label
-            yield Statement(label, Formula(ring, polynomial), "!=", note, None, requirement.strict)
+        if not requirement.always or (by_mass and requirement.by_mass):
+            yield from _stated(ring, requirement, told)
+
+
+def _stated(ring: Ring, requirement: Requirement, told: Labels) -> Iterator[Statement]:
+    condition, label, place = requirement.condition, told(requirement.label), requirement.place
+    note = "holds: the kinetic energy is positive definite" if requirement.by_mass else ""
+    if _bare(label) in told.letters and condition.kind in ("inequality", "nonzero", "always"):
+        relation = "!=" if condition.kind == "nonzero" else requirement.relation
+        at = requirement.strict if condition.kind == "nonzero" else place
+        yield Statement(label, Formula(ring, requirement.polynomial), relation, note, None, at)
+        return
+    # g f^2 > 0 is g > 0 and f != 0: two polynomials, which must not have one name.
+    several = condition.kind == "inequality" or len(condition.nonzero) > 1
+    if condition.kind == "inequality":
+        form = in_coefficients(ring, requirement)
+        formula = Formula(ring, condition.polynomial)
+        own = _part(label, "without squares") if condition.nonzero else label
+        yield Statement(own, formula, requirement.relation, note, None, place, form)
+    elif condition.kind == "unwritten":
+        yield Statement(label, None, requirement.relation, "too long to be written out", None, place)
+    elif condition.kind == "never":
+        never = Formula(ring, requirement.polynomial)
+        yield Statement(label, None, requirement.relation, "never holds", never, place)
+    for number, polynomial in enumerate(condition.nonzero, 1):
+        which = f"squared factor {number}" if len(condition.nonzero) > 1 else "squared factor"
+        own = _part(_bare(label), which) if several else label
+        yield Statement(own, Formula(ring, polynomial), "!=", note, None, requirement.strict)
 
 
 def _is_opposite(label: str) -> bool:
@@ -77,16 +117,16 @@ def _part(label: str, which: str) -> str:
     return f"{bare}, {which}" if bare == label else f"-({bare}, {which})"
 
 
-def _alternative(ring: Ring, requirement: Requirement) -> Statement:
+def _alternative(ring: Ring, requirement: Requirement, told: Labels) -> Statement:
     """One requirement as one statement: p > 0 and f != 0 together are p f^2 > 0, several f != 0 are their product."""
     condition = requirement.condition
-    if condition.kind not in ("inequality", "nonzero"):
-        return next(statements(ring, [requirement]))
+    if condition.kind not in ("inequality", "nonzero") or _bare(requirement.label) in told.letters:
+        return next(_stated(ring, requirement, told))
     whole, power = condition.polynomial, 2 if condition.kind == "inequality" else 1
     for polynomial in condition.nonzero:
         whole = whole * polynomial**power
     relation = requirement.relation if condition.kind == "inequality" else "!="
-    return Statement(requirement.label, Formula(ring, whole), relation)
+    return Statement(told(requirement.label), Formula(ring, whole), relation)
 
 
 @dataclass(frozen=True)
@@ -109,15 +149,15 @@ class CaseStatement:
         return ", ".join(self.theorems)
 
 
-def cases(ring: Ring, found: Sequence[Case]) -> list[CaseStatement]:
-    """The cases that can occur: none after one that always holds."""
+def cases(ring: Ring, found: Sequence[Case], told: Labels) -> list[CaseStatement]:
+    """The cases that can occur: none after one that always holds.  ``told``: what labels mean beside them."""
     certain = next((k for k, case in enumerate(found) if case.always), len(found))
     return [
         CaseStatement(
-            tuple(statements(ring, case.all_of)),
+            tuple(statements(ring, case.all_of, told=told)),
             ()
             if any(r.always for r in case.any_of)
-            else tuple(_alternative(ring, r) for r in case.any_of if not r.never),
+            else tuple(_alternative(ring, r, told) for r in case.any_of if not r.never),
             case.verdict.word,
             case.verdict.theorems,
             case.verdict.explanation,
@@ -150,12 +190,12 @@ class Shown:
         if statement.formula is not None and self.reference(statement) is None:
             self._shown.append((statement.label, statement.formula))
 
-    def unshown(self, told: InCoefficients) -> tuple[tuple[str, Formula], ...]:
+    def unshown(self, told: InCoefficients) -> tuple[tuple[Formula, Formula], ...]:
         """The letters of a form that do not stand for what was shown under their names."""
         return tuple(
-            (name, value)
-            for name, value in told.letters
-            if not any(label == name and shown.polynomial == value.polynomial for label, shown in self._shown)
+            (letter, value)
+            for letter, value in told.letters
+            if not any(label == str(letter) and shown.polynomial == value.polynomial for label, shown in self._shown)
         )
 
     def reference(self, statement: Statement) -> Reference | None:
@@ -168,13 +208,20 @@ class Shown:
         for own in (True, False):
             for under, formula in self._shown:
                 bare, shown = _bare(under), -formula.polynomial if _is_opposite(under) else formula.polynomial
-                if (bare == label) is not own or len(shown) != len(polynomial):
+                if (bare == label) is not own:
                     continue
-                if shown == polynomial:
-                    return Reference(label, bare, relation)
-                if shown == -polynomial and not own:
-                    return Reference(label, bare, _OPPOSITE.get(relation, relation))
+                ratio = _ratio(polynomial, shown)
+                if ratio > 0 or (ratio < 0 and not own):
+                    return Reference(label, bare, relation if ratio > 0 else _OPPOSITE.get(relation, relation))
         return None
+
+
+def _ratio(p: Polynomial, q: Polynomial) -> fmpq:
+    """c with p = c q, a rational number; 0 where there is none."""
+    if not p or not q or len(p) != len(q):
+        return fmpq(0)
+    ratio = fmpq(p.leading_coefficient()) / fmpq(q.leading_coefficient())
+    return ratio if p == q * ratio else fmpq(0)
 
 
 _HELD = (

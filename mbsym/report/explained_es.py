@@ -82,6 +82,7 @@ EXPLAINED = {
     "In a conservative system without gyroscopic forces the roots in lambda^2 are real and semisimple: K > 0 is necessary and sufficient for the stability of the first approximation, a vanishing discriminant (equal frequencies) does no harm.": "En un sistema conservativo sin fuerzas giroscópicas las raíces en lambda^2 son reales y semisimples: K > 0 es necesario y suficiente para la estabilidad de la primera aproximación, y un discriminante nulo (frecuencias iguales) no perjudica.",
     # conditions
     "needed by this method only": "solo la exige este método",
+    "condition {}": "condición {0}",
     "minor {} of {}": "menor {0} de {1}",
     "minor {} of {} < 0": "menor {0} de {1} < 0",
     "discriminant": "discriminante",

@@ -82,6 +82,7 @@ EXPLAINED = {
     "In a conservative system without gyroscopic forces the roots in lambda^2 are real and semisimple: K > 0 is necessary and sufficient for the stability of the first approximation, a vanishing discriminant (equal frequencies) does no harm.": "В консервативной системе без гироскопических сил корни по lambda^2 вещественны и полупросты: K > 0 необходимо и достаточно для устойчивости первого приближения, обращение дискриминанта в нуль (равные частоты) не вредит.",
     # conditions
     "needed by this method only": "требуется лишь этим методом",
+    "condition {}": "условие {0}",
     "minor {} of {}": "минор {0} матрицы {1}",
     "minor {} of {} < 0": "минор {0} матрицы {1} < 0",
     "discriminant": "дискриминант",

@@ -26,7 +26,7 @@ from mbsym.report.brief import brief
 from mbsym.report.canonical import forms_of, upper_brackets
 from mbsym.report.claims import HELD, REFUTED, claim_line, counterexample, repair, titles, together
 from mbsym.report.compact import compact
-from mbsym.report.conditions import Shown, cases, factors, provided, statements
+from mbsym.report.conditions import Shown, cases, factors, label_meanings, provided, statements
 from mbsym.report.expansion_words import Coefficient
 from mbsym.report.expansion_words import Medium as SmallMedium
 from mbsym.report.first_order import first_order
@@ -316,6 +316,7 @@ def _functions(long: frozenset[int]) -> dict[str, Callable[..., Any]]:
         "prose": shown.prose,
         "short": lambda value: value.terms < 60,
         "moving": moving,
+        "label_meanings": label_meanings,
         "statements": statements,
         "cases": cases,
         "Shown": Shown,

@@ -25,7 +25,7 @@ from mbsym.problems.stability.word import Word
 from mbsym.report.canonical import Forms, forms_of, upper_brackets
 from mbsym.report.claims import claim_line, counterexample, repair, titles, together
 from mbsym.report.compact import compact
-from mbsym.report.conditions import Shown, cases, factors, provided, statements
+from mbsym.report.conditions import Shown, cases, factors, label_meanings, provided, statements
 from mbsym.report.first_order import first_order
 from mbsym.report.functions import moving
 from mbsym.report.inertias import accepted_inertias
@@ -159,6 +159,7 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "reactions": analysis.optional("reactions") if system.reactions and 3 in problems else (),
         "forms": forms,
         "denominators": denominators,
+        "label_meanings": label_meanings,
         "statements": statements,
         "cases": cases,
         "Shown": Shown,

@@ -161,7 +161,8 @@ def soft_data(one: Stratum) -> dict[str, Any]:
     along = None
     if found.stretches is not None:
         along = [
-            {"from": coordinate(x.start), "to": coordinate(x.end), "onset": x.onset.value} for x in found.stretches
+            {"axis": x.axis, "from": coordinate(x.start), "to": coordinate(x.end), "onset": x.onset.value}
+            for x in found.stretches
         ]
     data = {
         "onset": found.onset.value,

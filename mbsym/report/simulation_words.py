@@ -14,6 +14,7 @@ from mbsym.numerics.methods.interface import Change
 
 if TYPE_CHECKING:
     from mbsym.numerics.scenario import Scenario
+    from mbsym.simulation.result import Simulation
 
 
 def standing_words(found: Conservation) -> str:
@@ -29,6 +30,13 @@ def conservation_line(found: Conservation) -> str:
     what = "drift" if found.standing in (Standing.PROVED, Standing.VERIFIED) else "change"
     far = f"; largest relative {what} {found.change:.1e}" if isfinite(found.change) else ""
     return standing_words(found) + far
+
+
+def energy_lines(run: Simulation) -> Iterator[tuple[str, str]]:
+    """(which, what is said of it): T2 - T0 - U and T - U, which are the same where nothing moves as prescribed."""
+    if not run.dynamics.natural:
+        yield "generalised, T2 - T0 - U", conservation_line(run.conservation)
+    yield "T - U", conservation_line(run.energy_conservation)
 
 
 def invariant_line(found: Conservation) -> str:

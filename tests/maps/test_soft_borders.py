@@ -30,7 +30,7 @@ from mbsym.report.language import Language
 from mbsym.report.map_words import onset_words
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main
-from mbsym_cli.map_table import borders_of_slices
+from mbsym_cli.map_table import borders_of_slices, remarks
 
 TEXT = """
 mbsym: 1
@@ -45,7 +45,7 @@ motion: {x: 0}
 """
 
 
-def mapped(text: str, across: str, up: str, low: int = -1, **settings: int) -> PlaneMap:
+def mapped(text: str, across: str, up: str, low: int = -1, **settings: int | Fraction) -> PlaneMap:
     axes = [Axis(name, Fraction(low), Fraction(1)) for name in (across, up)]
     return plane_map(mbsym.loads(text), axes, {k: Fraction(v) for k, v in settings.items()})
 
@@ -237,3 +237,76 @@ def test_borders_of_slices() -> None:
     seen = {(one.critical, x.soft.onset) for one in found.layers if one.plane for x in one.plane.arcs if x.soft}
     assert seen == {(True, Onset.SOFT), (False, Onset.SOFT)}
     assert any("of slices: soft" in line for line in borders_of_slices(planes))
+
+
+VERTICAL = """
+mbsym: 1
+name: soft but near one point
+parameters: {a: real, b: real, c: real}
+bodies:
+  - {name: one, connection point: [x, 0, 0], mass: 1, coordinates: [x]}
+loads:
+  - spring: {coordinate: x, stiffness: 1}
+  - generalized force: {x: "-a*x_dot - (4*b**2 - c)*x**2*x_dot + x**4*x_dot"}
+motion: {x: 0}
+"""
+
+
+def test_a_border_along_the_second_axis_is_told_whole() -> None:
+    """r' = -(a/2) r - (4 b^2 - c) r^3/8 + ... on a = 0: with c = 1/100 hard for |b| < 1/20 only; the point at which the
+    arc is judged, b = 0, once spoke for all of it."""
+    found = mapped(VERTICAL, "a", "b", c=Fraction(1, 100))
+    (one,) = borders(found)
+    assert one.soft is not None
+    assert one.soft.stretches is not None
+    twentieth = fmpq(1, 20)
+    assert [(x.start, x.end, x.onset, x.axis) for x in one.soft.stretches] == [
+        (fmpq(-1), -twentieth, Onset.SOFT, 1),
+        (-twentieth, twentieth, Onset.HARD, 1),
+        (twentieth, fmpq(1), Onset.SOFT, 1),
+    ]
+    (line,) = [x for x in remarks(found) if x.startswith("imaginary pair")]
+    assert line.endswith("soft for b from -1 to -0.05; hard for b from -0.05 to 0.05; soft for b from 0.05 to 1")
+
+
+def test_a_zero_of_the_coefficient_at_the_arcs_own_point_leaves_the_arc_decided() -> None:
+    """With c = 0 the coefficient -b^2/2 vanishes at b = 0 alone: soft on both sides of it."""
+    (one,) = borders(mapped(VERTICAL, "a", "b", c=0))
+    assert one.soft is not None
+    assert one.soft.stretches is not None
+    assert [(x.start, x.end, x.onset) for x in one.soft.stretches] == [
+        (fmpq(-1), fmpq(0), Onset.SOFT),
+        (fmpq(0), fmpq(1), Onset.SOFT),
+    ]
+    (line,) = borders(mapped(VERTICAL.replace("4*b**2 - c", "c - 4*b**2"), "b", "a", c=0))
+    assert line.soft is not None
+    assert {x.onset for x in line.soft.stretches or ()} == {Onset.HARD}
+    assert {x.axis for x in line.soft.stretches or ()} == {0}
+
+
+UNCHANGED = """
+mbsym: 1
+name: gyroscopic forces beside complete damping change no verdict
+parameters: {a: real, b: real, d: real}
+bodies:
+  - {name: one, mass: 1, connection point: [x, y, 0], coordinates: [x, y]}
+loads:
+  - potential: (x**2 + 2*y**2)/2
+  - damper: {coordinate: x, coefficient: d}
+  - damper: {coordinate: y, coefficient: d}
+  - generalized force: {x: (a - b)*y_dot, y: -(a - b)*x_dot}
+motion: {}
+"""
+
+
+def test_regions_that_no_change_of_verdict_separates_are_counted_as_one() -> None:
+    """K > 0 and D > 0: asymptotically stable whatever G is (Kelvin-Chetaev), on the line G = 0 as well."""
+    found = mapped(UNCHANGED, "a", "b", d=1)
+    assert len(found.regions) == 2
+    assert found.together == (0, 0)
+    assert any("also of curves at which no verdict changes" in x for x in remarks(found))
+    # Without damping the motion is stable on both sides and on the line: one; with d over an axis: d = 0 separates.
+    assert len({*mapped(UNCHANGED, "a", "b", d=0).together}) == 1
+    across = mapped(UNCHANGED, "d", "a", b=0)
+    words = {across.regions[k].word for k in across.together}
+    assert len({*across.together}) == len(words) == 2

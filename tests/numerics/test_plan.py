@@ -200,6 +200,32 @@ def test_what_cannot_be_reached_is_said_not_to_be() -> None:
     assert plan.bound.total > 1e-7
 
 
+PUSHED = """
+mbsym: 1
+name: Pushed from an unstable rest
+parameters: {k: positive}
+bodies:
+  - {name: b, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}
+loads:
+  - potential: -k*x**2/2
+values: {k: 1}
+initial: {x: {position: 1, velocity: -0.9999999999}}
+"""
+
+
+def test_nothing_is_called_good_enough_where_the_bound_is_beyond_the_target() -> None:
+    """x'' = x: whatever is wrong grows like e^t, by 2.4e17 until t = 40: 1e-12 is out of reach of the methods here."""
+    plan = planned(described(PUSHED), Accuracy(1e-12), np.linspace(0, 40, 401))
+    assert not plan.reached
+    chosen = {item.kind: item.why for item in plan.items}
+    assert chosen["method"].startswith("none tried is accurate enough")
+    assert not any("small enough" in why or why.endswith("tried that is good enough") for why in chosen.values())
+    assert plan.bounds[0].total > 1e-12
+    easy = planned(described(PUSHED), Accuracy(1e-4), np.linspace(0, 2, 41))
+    assert easy.reached
+    assert {item.kind: item.why for item in easy.items}["method"].startswith("the cheapest here")
+
+
 def test_quantities_by_name_have_errors_of_their_own() -> None:
     given, times = described(PENDULUM), np.linspace(0, 10, 1001)
     loose = planned(given, Accuracy(None, {"theta": 1e-2}), times)

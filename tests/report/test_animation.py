@@ -16,13 +16,14 @@ from typing import Any
 import numpy as np
 import pytest
 import windows
-from conftest import SHIPPED, browsed, needs_chromium
+from conftest import SHIPPED, TESTS, browsed, needs_chromium
 from PIL import Image
 
 import mbsym
+from mbsym.picture.motion import motion_of
 from mbsym.report.animation import Animation, animation, projection, view
 from mbsym.report.animation_gif import MOST, TALL, WIDE, animation_gif
-from mbsym.report.animation_page import animation_page
+from mbsym.report.animation_page import animation_page, run_sentences
 from mbsym.report.figures import figures
 from mbsym.report.html_motion import animated
 from mbsym.report.parsing import unreadable
@@ -105,7 +106,7 @@ def test_the_page_says_what_was_integrated() -> None:
     assert unreadable("animation.html", text) == ""
     for said in (
         f"Integrated from t = 0 to 6 by {whole.chosen.method.traits.title} (tolerance 1e-10 per step",
-        "Energy: conserved (proved)",
+        "Energy (T - U): conserved (proved)",
         "<span>relative drift of the energy",
         "Error of the run: about ",
         "between frames points are joined by straight lines, nothing is computed there",
@@ -117,6 +118,20 @@ def test_the_page_says_what_was_integrated() -> None:
     early = mbsym.simulate(SHIPPED / "double-pendulum.yaml", 6, step_limit=100, samples=601)
     assert not early.whole
     assert "The run ended early (step limit); 6 was asked for." in animation_page(animation(early), early)
+
+
+def test_what_is_called_conserved_is_the_energy_that_is() -> None:
+    """A bead on a hoop that is turned: h = m R^2 (theta'^2 - Omega^2 sin^2 theta)/2 - m g R cos theta is constant,
+    T - U = h + m R^2 Omega^2 sin^2 theta is not: the motor works."""
+    found = mbsym.simulate(TESTS / "cases" / "statements" / "bead_on_hoop.yaml", 4, samples=401)
+    theta, rate = found.trajectory.states[:2]
+    h = 0.1 * 0.3**2 * (rate**2 - 64 * np.sin(theta) ** 2) / 2 - 0.1 * 9.81 * 0.3 * np.cos(theta)
+    energy = h + 0.1 * 0.3**2 * 64 * np.sin(theta) ** 2
+    assert np.ptp(h) < 1e-9 * np.ptp(energy)
+    for said in (tuple(run_sentences(found)), motion_of(found).sentences):
+        assert any(x.startswith("Energy (generalised, T2 - T0 - U): conserved (proved)") for x in said)
+        assert any(x.startswith("Energy (T - U): not conserved") for x in said)
+        assert not any("conserved (proved)" in x and "(T - U)" in x for x in said)
 
 
 # --- a browser ---

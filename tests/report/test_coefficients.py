@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 import json
+import random
+import re
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from fractions import Fraction
 
 import pytest
 from conftest import SHIPPED, derived, parsed
 
 import mbsym
 from mbsym.algebra.base import Lowering
+from mbsym.formulas.formula import Formula
+from mbsym.problems.stability import SubsystemStability
 from mbsym.problems.stability.requirements import Requirement
 from mbsym.report.coefficients import WRITTEN_OUT, InCoefficients, in_coefficients
-from mbsym.report.conditions import statements
+from mbsym.report.conditions import Shown, statements
+from mbsym.report.sections import stability
 from mbsym.report.targets import TARGETS
 
 #: Banshchikov & Vetrov, condition (6).
@@ -26,7 +33,7 @@ def discriminant() -> tuple[mbsym.Analysis, object, Requirement]:
 
 
 def told(found: InCoefficients) -> dict[str, str]:
-    return {name: str(value) for name, value in found.letters}
+    return {str(letter): str(value) for letter, value in found.letters}
 
 
 def test_the_satellites_discriminant_is_the_papers() -> None:
@@ -34,7 +41,7 @@ def test_the_satellites_discriminant_is_the_papers() -> None:
     found = in_coefficients(part.ring, requirement)  # type: ignore[attr-defined]
     assert found is not None
     letters = found.formula.ring
-    names = {name: letters.generator("parameter", name) for name, _ in found.letters}
+    names = {name: letters.generator("parameter", name) for name in found.names}
     assert Lowering(letters, names)(parsed(PAPER)) == found.formula.polynomial
     # The letters are the coefficients of the characteristic polynomial, which is the paper's (claims of the system).
     characteristic = part.characteristic  # type: ignore[attr-defined]
@@ -77,3 +84,97 @@ def test_reports_show_it_with_its_length(target: str) -> None:
         return
     assert "written out 376 terms, of degree 12; in full in results.json" in text
     assert ("27 v_{6}^{2} v_{0}^{2}" if target == "latex" else "27") in text
+
+
+#: Three coupled gyroscopic coordinates, with parameters that are called as coefficients are.
+NAMED = """
+mbsym: 1
+name: parameters that look like coefficients
+parameters: {v0: real, v2: real, k: real, b: real, s: real}
+linear system:
+  coordinates: [x, y, z]
+  G: [[0, -b, 0], [b, 0, -s], [0, s, 0]]
+  K: [[v0, k, s], [k, v2, 1], [s, 1, b]]
+"""
+#: alpha, gamma, p1, p2 at which the satellite flutters: v0 is positive as it was printed, the discriminant is not.
+FLUTTER = {"alpha": Fraction(-1, 2), "gamma": Fraction(1, 2), "p1": Fraction(2, 5), "p2": Fraction(1, 5)}
+
+
+def printed(text: str) -> dict[str, tuple[str, str]]:
+    """The conditions of a terminal by their labels: formula and relation."""
+    return {
+        match[1]: (match[2], match[3])
+        for line in text.splitlines()
+        if (match := re.fullmatch(r"\s+([\w ,]+): (.*) (>|<|>=|!=) 0(?: \(.*\))?", line))
+    }
+
+
+@pytest.mark.parametrize("text", [(SHIPPED / "satellite.yaml").read_text(encoding="utf-8"), NAMED])
+def test_letters_mean_on_the_terminal_what_stands_beside_them_there(text: str) -> None:
+    """Each formula is evaluated from the terminal's text alone, letters by what stands there under their names."""
+    analysis = mbsym.loads(text)
+    for part in analysis.stability.subsystems:
+        own = list(_block(stability.lines(analysis.stability, analysis), part.coordinates))
+        shown = printed("\n".join(own))
+        names = {p.name for p in analysis.system.parameters} | {item.name for item in analysis.system.notation}
+        truth = dict(_true_conditions(part))
+        assert shown
+        source = random.Random(1)
+        for _ in range(50):
+            point = {name: Fraction(source.randint(-9, 9), source.randint(1, 4)) for name in names}
+            letters = {label: eval(formula, {}, dict(point)) for label, (formula, _) in shown.items() if label in OWN}
+            for label, (formula, relation) in shown.items():
+                # A letter that is a parameter's name is the parameter: nobody can read it otherwise.
+                value = eval(formula, {}, {**letters, **point})
+                exact = truth[label.removeprefix("condition ")](point)
+                assert (value > 0, value < 0) == (exact > 0, exact < 0) or relation == "!=", label
+
+
+OWN = ("v0", "v2", "v4", "v6")
+
+
+def _block(lines: Iterator[str], coordinates: tuple[str, ...]) -> Iterator[str]:
+    """The lines of one subsystem."""
+    inside = False
+    for line in lines:
+        if not line.startswith("  "):
+            inside = line.startswith(f"{', '.join(coordinates)}: ")
+        elif inside:
+            yield line
+
+
+def _true_conditions(part: SubsystemStability) -> Iterator[tuple[str, Callable[[dict[str, Fraction]], Fraction]]]:
+    """Each requirement's own polynomial as a function of the parameters."""
+    for requirement in part.theory.requirements:
+        formula = str(Formula(part.ring, requirement.polynomial))
+        yield requirement.label, lambda point, formula=formula: eval(formula, {}, dict(point))
+
+
+def test_the_point_at_which_the_satellite_flutters_is_told_by_what_is_printed() -> None:
+    """D = -16.1 there by the paper's formula (6), typed here; the flagship's terminal once made it positive."""
+    alpha, gamma, p1, p2 = FLUTTER.values()
+    values = {
+        "v6": (1 + gamma * alpha) * p1 - (alpha + 1) * p2,
+        "v4": 3 * (1 + alpha * gamma) + (alpha + 1) * (p1 * (alpha + 3 * gamma + 2) - (alpha + 8) * p2),
+        "v2": (1 + 3 * gamma + alpha * (alpha + 2 * gamma + 3)) * (3 + p1)
+        + 4 * alpha * p1 * (gamma + alpha)
+        - 8 * p2 * (alpha + 1) * (alpha + 2),
+        "v0": 4 * alpha * ((alpha + gamma) * (3 + p1) - 4 * (alpha + 1) * p2),
+    }
+    assert eval(PAPER, {}, values) < -16
+    analysis, part, requirement = discriminant()
+    found = in_coefficients(part.ring, requirement)  # type: ignore[attr-defined]
+    assert found is not None
+    # It is shown once, as the coefficient that the discriminant holds: 4 alpha (...), not alpha (...).
+    assert r"v_{0} \colon\quad 4 \alpha" in TARGETS["latex"].render(analysis, (6,))
+    shown = printed("\n".join(_block(stability.lines(analysis.stability, analysis), ("psi", "phi", "sigma"))))
+    assert eval(shown["v0"][0], {}, dict(FLUTTER)) == values["v0"]
+
+
+def test_a_dropped_letter_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Planted: the terminal shows the form whether or not its letters stand there."""
+    monkeypatch.setattr(Shown, "unshown", lambda self, told: ())
+    with pytest.raises(NameError):
+        test_letters_mean_on_the_terminal_what_stands_beside_them_there(
+            (SHIPPED / "satellite.yaml").read_text(encoding="utf-8")
+        )

@@ -11,7 +11,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
-from conftest import SHIPPED, browsed, needs_chromium, precision
+from conftest import SHIPPED, TESTS, browsed, derived, needs_chromium, precision
 from flint import arb, fmpq
 from mathml_reader import Reader, formulas, tokens_of, tree, written
 
@@ -337,3 +337,23 @@ def test_nothing_but_the_page_itself_is_run(tmp_path: Path) -> None:
     dom, said = browsed(tmp_path / "report.html")
     assert "<title>owned" not in dom
     assert any("Content Security Policy" in line for line in said)
+
+
+def test_equations_with_multipliers_are_not_told_as_equations_without() -> None:
+    """Of a rolling disc in speeds M u' = f + J^T lambda: the equations of the bodies alone are not M u' = f."""
+    text = TARGETS["html"].render(derived(SHIPPED / "rolling-disc-speeds.yaml"), (3,))
+    said = re.sub(r"\s+", "", re.sub(r"<[^>]+>", "", text))
+    assert "sortedby" in said
+    assert "M\u02d9u=f;" not in said
+    assert "Mu\u02d9=f;" not in said
+    assert "Mu\u02d9=f+JTλandJu\u02d9+γ=0" in said
+    free = TARGETS["html"].render(derived(SHIPPED / "clebsch-poisson.yaml"), (3,))
+    assert "Mu\u02d9=f;" in re.sub(r"\s+", "", re.sub(r"<[^>]+>", "", free))
+
+
+def test_nothing_is_told_of_independent_velocities_where_there_are_none() -> None:
+    """A bead that is driven along its line: the constraint leaves no velocity free."""
+    text = TARGETS["html"].render(derived(TESTS / "cases" / "statements" / "driven-bead.yaml"), (3,))
+    assert "The constraints determine all velocities: nothing is left to be integrated." in text
+    assert "(of )" not in re.sub(r"<[^>]+>", "", text)
+    assert "without multipliers" not in text

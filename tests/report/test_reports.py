@@ -28,7 +28,7 @@ from mbsym.formulas.formula import Formula
 from mbsym.formulas.latex import LatexNames
 from mbsym.problems.stability.requirements import Case, Requirement
 from mbsym.problems.stability.verdict import Verdict
-from mbsym.report.conditions import Reference, Shown, Statement, cases, statements
+from mbsym.report.conditions import Labels, Reference, Shown, Statement, cases, statements
 from mbsym.report.latex_description import expression
 from mbsym.report.latex_formulas import LONGEST_CONDITION, counted
 from mbsym.report.latex_words import LINE, broken
@@ -332,7 +332,8 @@ def test_what_was_shown_is_recognised_with_either_sign():
     assert shown.reference(Statement("-(a)", Formula(ring, p), ">=")) == Reference("a", "a", "<=")
     assert shown.reference(Statement("b", Formula(ring, p), ">")) == Reference("b", "a", "<")
     assert shown.reference(Statement("b", Formula(ring, -p), "!=")) == Reference("b", "a", "!=")
-    assert shown.reference(Statement("b", Formula(ring, 2 * p), ">")) is None
+    assert shown.reference(Statement("b", Formula(ring, 2 * p), "<")) == Reference("b", "a", ">")  # -p, shown, is a
+    assert shown.reference(Statement("b", Formula(ring, p * p), ">")) is None
     assert shown.reference(Statement("b", None, ">")) is None
 
 
@@ -692,7 +693,7 @@ def test_an_alternative_is_one_inequality() -> None:
     ring = analysis_of("heavy-top.yaml").ring
     p, f = (ring.context.gen(ring.index("parameter", name)) for name in ("m", "g"))
     required = Requirement("a", p * f**2, Condition("inequality", p, nonzero=(f,)))
-    (one,) = cases(ring, [Case((), (required,), Verdict("unstable"))])
+    (one,) = cases(ring, [Case((), (required,), Verdict("unstable"))], Labels())
     assert [(item.formula.polynomial, item.relation) for item in one.any_of] == [(p * f**2, ">")]
 
 

@@ -1,9 +1,9 @@
 """Dual spin: a despun platform with a damper, a rotor, and the rule of Landon and Iorillo.
 
 A platform (moments A, A, C) at rest carries a rotor (Ar, Ar, Cr) that spins at the rate W about its axis 3; with
-At = A + Ar the transverse angular velocity nutates at  Cr W/At  as seen from the platform, at  Cr W/At - W  as seen from
-the rotor.  A small damper takes energy at given angular momentum (Landon and Stewart 1964; Iorillo 1965): in the platform
-it attracts, whatever the shape; in the rotor alone it attracts for Cr > At and repels for Cr < At.  As the platform
+At = A + Ar the transverse angular velocity nutates at  Cr W/At  as seen from the platform, at  Cr W/At - W  from the
+rotor.  A small damper takes energy at given angular momentum (Landon, Stewart 1964; Iorillo 1965): in the platform it
+attracts, whatever the shape; in the rotor alone it attracts for Cr > At and repels for Cr < At.  As the platform
 stands in any direction of space, two roots of the tilts are zero; the others decay, or one pair grows.
 """
 

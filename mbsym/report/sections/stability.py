@@ -19,7 +19,7 @@ from mbsym.problems.stability.spectrum import RootNumbers, Spectrum, numbers
 from mbsym.problems.stability.symbolic import Theory
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word
-from mbsym.report.conditions import CaseStatement, Shown, Statement, cases, provided, statements
+from mbsym.report.conditions import CaseStatement, Shown, Statement, cases, label_meanings, provided, statements
 from mbsym.report.plain import LONGEST, Write, shortened, statement_text
 
 if TYPE_CHECKING:
@@ -71,7 +71,8 @@ def _datum(value: object) -> int | str:
 
 
 def _subsystem(part: SubsystemStability, variable: str) -> dict[str, Any]:
-    listed = list(statements(part.ring, part.theory.requirements))
+    told = label_meanings(part.ring, part.theory.requirements)
+    listed = list(statements(part.ring, part.theory.requirements, told=told))
     shown = Shown()
     for item in listed:
         shown.show(item)
@@ -84,7 +85,7 @@ def _subsystem(part: SubsystemStability, variable: str) -> dict[str, Any]:
         "conditions": [
             _statement(item) | _in_coefficients(item) | {"place": item.place.name.lower()} for item in listed
         ],
-        "cases": [_case(case, shown) for case in cases(part.ring, part.theory.cases)],
+        "cases": [_case(case, shown) for case in cases(part.ring, part.theory.cases, told)],
     }
 
 
@@ -103,7 +104,7 @@ def _in_coefficients(item: Statement) -> dict[str, Any]:
     """A long condition in the coefficients of the characteristic polynomial, and what these are."""
     if item.told is None:
         return {}
-    letters = {name: str(value) for name, value in item.told.letters}
+    letters = {str(letter): str(value) for letter, value in item.told.letters}
     return {"in_coefficients": {"formula": str(item.told.formula), "coefficients": letters}}
 
 
@@ -133,8 +134,12 @@ def lines(found: Stability, analysis: Analysis) -> Iterator[str]:
         if part.theory.verdict.word is Word.DEPENDS and items:
             verdict += f"; {_heading(part.theory)}:"
         yield f"{', '.join(part.coordinates)}: {verdict}"
+        shown = Shown()
         for item in items:
-            yield f"  {_condition(item)}"
+            if item.told is None and item.formula is not None and len(statement_text(item)) <= LONGEST:
+                shown.show(item)
+        for item in items:
+            yield f"  {_condition(item, shown)}"
     told = [one for part in found.subsystems for one in part.theory.verdict.reasons if one.code in _OF_COORDINATES]
     for one in dict.fromkeys(told):
         yield _clause(sentence(one))
@@ -177,7 +182,8 @@ def root_text(root: RootNumbers) -> str:
     return text + times
 
 
-def _condition(item: Statement) -> str:
+def _condition(item: Statement, shown: Shown) -> str:
+    """A condition as long as it can be read; in coefficients only where each of these stands in the terminal, too."""
     if item.formula is None and item.never is None:
         return f"a condition is {item.note}"
     if item.never is not None:
@@ -185,7 +191,7 @@ def _condition(item: Statement) -> str:
         left = f"{item.label} = {value}" if len(value) <= LONGEST else item.label
         return f"{left} {item.relation} 0 {item.note}"
     remark = f" ({item.remark})" if item.remark else ""
-    if item.told is not None and item.formula is not None:
+    if item.told is not None and item.formula is not None and not shown.unshown(item.told):
         length = counted(item.formula.terms, "term")
         return f"{item.label}: {item.told.formula} {item.relation} 0 (written out {length}){remark}"
     return f"{item.label}: {shortened(statement_text(item), 0 if item.formula is None else item.formula.terms)}{remark}"
