@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from mbsym.algebra.characteristic import Matrix, Polynomial, determinant
 from mbsym.problems.stability.linear_form import LinearSystem, is_zero
+from mbsym.problems.stability.theorems import Fact
 
 
 def only_momenta(system: LinearSystem) -> bool:
@@ -76,6 +77,24 @@ def with_constant_momenta(system: LinearSystem) -> tuple[int, ...]:
 def momenta_are_constant(system: LinearSystem) -> bool:
     """Whether there are such coordinates, and others."""
     return 0 < len(with_constant_momenta(system)) < system.size
+
+
+#: What Lagrange's theorem needs where K is that of ``besides_cyclic``.
+ENERGY_BESIDES = frozenset(
+    {
+        Fact.MASS_POSITIVE,
+        Fact.POTENTIAL,
+        Fact.STIFFNESS_POSITIVE,
+        Fact.DAMPING_SEMIDEFINITE,
+        Fact.ENERGY_NEVER_GROWS,
+    }
+)
+
+
+def besides_cyclic(system: LinearSystem) -> Matrix:
+    """K of the coordinates that are not cyclic."""
+    rest = [i for i in range(system.size) if i not in system.cyclic]
+    return tuple(tuple(system.K[i][j] for j in rest) for i in rest)
 
 
 def adjugate(block: Matrix) -> Matrix:

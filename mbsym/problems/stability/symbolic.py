@@ -68,7 +68,13 @@ from mbsym.problems.stability.requirements import (
     differs,
     unwritten,
 )
-from mbsym.problems.stability.routh import ignoring_cyclic, momenta_are_constant, only_momenta
+from mbsym.problems.stability.routh import (
+    ENERGY_BESIDES,
+    besides_cyclic,
+    ignoring_cyclic,
+    momenta_are_constant,
+    only_momenta,
+)
 from mbsym.problems.stability.theorems import Fact, Ground, applying
 from mbsym.problems.stability.verdict import (
     Verdict,
@@ -450,9 +456,23 @@ def _cases_with_zero_roots(system: LinearSystem, found: Theory, known: Signs) ->
     if momenta_are_constant(system):
         reduced = analyse(ignoring_cyclic(system), known)
         return tuple(replace(c, verdict=drifting(c.verdict)) for c in reduced.cases), reduced
+    lasting = _energy_besides(system, known)
     if found.zero_power == len(system.cyclic) and found.variable == "lambda":
-        return (Case(found.requirements, (), drifting(_all_left(False), constant_momenta=False)), *unstable), None
-    return unstable, None
+        energy = ENERGY_BESIDES if any(case.always for case in lasting) else frozenset()
+        verdict = drifting(concluded(energy | {Fact.ROOTS_LEFT}), constant_momenta=False)
+        return (Case(found.requirements, (), verdict), *lasting, *unstable), None
+    return (*lasting, *unstable), None
+
+
+def _energy_besides(system: LinearSystem, known: Signs) -> tuple[Case, ...]:
+    """Lagrange's theorem for the coordinates that are not cyclic, and all velocities, where D >= 0 is known."""
+    block = besides_cyclic(system)
+    if not block or not system.conservative or not is_zero(system.N):
+        return ()
+    if Fact.DAMPING_SEMIDEFINITE not in _semidefinite(system, known):
+        return ()
+    wanted = definiteness(block, known, "K").requirements
+    return (Case(wanted, (), drifting(concluded(ENERGY_BESIDES), constant_momenta=False)),)
 
 
 def _all_left(turned: bool) -> Verdict:
