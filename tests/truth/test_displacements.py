@@ -62,8 +62,10 @@ TRUTH = {
     "rayleigh: d*A'**2/2": Word.ASYMPTOTIC_BUT_CYCLIC,
     # a damper of third order between them takes energy, nothing from the momentum
     "potential: k*(A - B)**2/2}, {rayleigh: d*(A' - B')**4/4": Word.STABLE_BUT_CYCLIC,
-    # ... on one of them it acts on the momentum: no theorem that is tried
-    "potential: k*(A - B)**2/2}, {rayleigh: d*A'**4/4": Word.UNDECIDED,
+    # ... on one of them it acts on the momentum, too; the energy has a minimum in u and all velocities all the same
+    "potential: k*(A - B)**2/2}, {rayleigh: d*A'**4/4": Word.STABLE_BUT_CYCLIC,
+    # ... if it puts energy in, no theorem that is tried says anything
+    "potential: k*(A - B)**2/2}, {rayleigh: -d*A'**4/4": Word.UNDECIDED,
     # a maximum of the potential energy along u
     "potential: -k*(A - B)**2/2": Word.UNSTABLE,
     # a belt: R A - 2 B is what stretches

@@ -99,9 +99,9 @@ def _energy_besides(system: LinearSystem, at: ExactPoint, d: Numbers, n: Numbers
     V has a strict minimum in the others, T in the velocities, whatever acts on the cyclic coordinates.
     """
     block = besides_cyclic(system)
-    if not block or not system.conservative or not _no(n) or inertia(d)[2]:
+    if not system.conservative or not _no(n) or inertia(d)[2]:
         return frozenset()
-    if inertia(evaluated(block, at))[1:] != (0, 0):
+    if block and inertia(evaluated(block, at))[1:] != (0, 0):
         return frozenset()
     return ENERGY_BESIDES
 

@@ -467,11 +467,13 @@ def _cases_with_zero_roots(system: LinearSystem, found: Theory, known: Signs) ->
 def _energy_besides(system: LinearSystem, known: Signs) -> tuple[Case, ...]:
     """Lagrange's theorem for the coordinates that are not cyclic, and all velocities, where D >= 0 is known."""
     block = besides_cyclic(system)
-    if not block or not system.conservative or not is_zero(system.N):
+    if not system.conservative or not is_zero(system.N):
         return ()
     if Fact.DAMPING_SEMIDEFINITE not in _semidefinite(system, known):
         return ()
-    wanted = definiteness(block, known, "K").requirements
+    wanted = definiteness(block or system.kinetic, known, "K" if block else "M").requirements
+    if not block:  # T is all of the energy
+        wanted = tuple(replace(r, by_mass=True) for r in wanted)
     return (Case(wanted, (), drifting(concluded(ENERGY_BESIDES), constant_momenta=False)),)
 
 
