@@ -118,7 +118,8 @@ def described(one: Sketch, extra: str = "") -> str:
     for i in one.order:
         place = linear(units[i], one.change)
         bodies.append(
-            f"- {{name: c{i}, attached to: 0, connection point: ['{place}', 0, 0], coordinates: [{owned(place)}], mass: m{i}}}"
+            f"- {{name: c{i}, attached to: 0, connection point: ['{place}', 0, 0], "
+            f"coordinates: [{owned(place)}], mass: m{i}}}"
         )
     for k, (cart, _) in enumerate(one.pendulums):
         angle = linear(units[one.carts + k], one.change)
