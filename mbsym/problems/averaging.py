@@ -256,10 +256,10 @@ def averaged(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str, or
         for i in range(len(names))
     ]
     turned = [ring.reduce(ring.times(x, inverse)) for x in turned]
-    for i in names:
-        for j, turn in zip(names, turned, strict=True):
-            curl = ring.reduce(ring.derivative(driven[j], i) - ring.derivative(driven[i], j))
-            steady[i] -= order.mean(ring.reduce(ring.times(curl, turn)), f"the force on {i}")
+    for a in names:
+        for b, turn in zip(names, turned, strict=True):
+            curl = ring.reduce(ring.derivative(driven[b], a) - ring.derivative(driven[a], b))
+            steady[a] -= order.mean(ring.reduce(ring.times(curl, turn)), f"the force on {a}")
     whole = ring.reduce(divided - order.mean(rest, "T") - _force_function(ring, steady))
     mean_force = ring.reduce(order.mean(force, "U"))
     vibrational_alone = whole + order.unshaken(rest) - mean_force + order.unshaken(force)

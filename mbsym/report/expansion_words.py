@@ -241,7 +241,7 @@ def of_averaging(told: JudgedAverage, write: Medium) -> Iterator[Said]:
         "theorem).",
         {},
     )
-    yield "What the shaking adds: [[formula]].", {"formula": write.formula(one.found.vibrational)}
+    yield "What the fast phase adds: [[formula]].", {"formula": write.formula(one.found.vibrational)}
     yield "Effective potential: [[formula]].", {"formula": write.formula(one.found.potential)}
     yield from _of_averaged_motion(one, write)
     yield from _of_measured_average(told.measured, write)

@@ -158,7 +158,7 @@ def _of_small_parameters(found: SmallParameters, system: System) -> Iterator[Tol
         if each.found is not None:
             over = f"averaged over {each.found.phase} ({each.found.scaling})"
             yield f"effective potential, {over}", each.found.potential
-            yield f"what the shaking adds, {over}", each.found.vibrational
+            yield f"what the fast phase adds, {over}", each.found.vibrational
 
 
 FORMULAS: Mapping[int, Callable[[Any, System], Iterable[Told]]] = {

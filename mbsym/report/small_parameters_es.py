@@ -35,7 +35,7 @@ SENTENCES = {
     "Taken as of the order of the power [[power]] of epsilon: [[names]].": "Se toman del orden de la potencia [[power]] de $\\epsilon$: [[names]].",
     "For times of order 1 the motion stays within order epsilon of one in the effective potential below (averaging theorem).": "Durante tiempos de orden 1 el movimiento queda a una distancia de orden $\\epsilon$ de uno en el potencial efectivo de abajo (teorema del promedio).",
     "The result of averaging over [[phase]] is withdrawn: over a time of [[time]] the largest distance of the motion from the averaged one, as a part of its size, is [[distances]] at the given values, and with epsilon a half and a quarter of it; it changes like the power [[orders]] of epsilon instead of 1.": "El resultado de promediar sobre [[phase]] se retira: durante un tiempo de [[time]] la mayor distancia del movimiento al promediado, como parte de su tamaño, es [[distances]] con los valores dados, y con la mitad y la cuarta parte de $\\epsilon$; cambia como la potencia [[orders]] de $\\epsilon$ en lugar de 1.",
-    "What the shaking adds: [[formula]].": "Lo que añade la vibración: [[formula]].",
+    "What the fast phase adds: [[formula]].": "Lo que añade la fase rápida: [[formula]].",
     "Effective potential: [[formula]].": "Potencial efectivo: [[formula]].",
     "Of the stability of the averaged motion there is no result: [[why]].": "De la estabilidad del movimiento promediado no hay resultado: [[why]].",
     "The averaged motion is there where [[conditions]].": "El movimiento promediado existe donde [[conditions]].",

@@ -35,7 +35,7 @@ SENTENCES = {
     "Taken as of the order of the power [[power]] of epsilon: [[names]].": "Считаются величинами порядка степени [[power]] параметра $\\epsilon$: [[names]].",
     "For times of order 1 the motion stays within order epsilon of one in the effective potential below (averaging theorem).": "За времена порядка 1 движение отличается на величину порядка $\\epsilon$ от движения с эффективным потенциалом, указанным ниже (теорема об усреднении).",
     "The result of averaging over [[phase]] is withdrawn: over a time of [[time]] the largest distance of the motion from the averaged one, as a part of its size, is [[distances]] at the given values, and with epsilon a half and a quarter of it; it changes like the power [[orders]] of epsilon instead of 1.": "Результат усреднения по [[phase]] отозван: за время [[time]] наибольшее расстояние движения от усреднённого, как доля его величины, равно [[distances]] при заданных значениях, при половине и при четверти $\\epsilon$; оно меняется как степень [[orders]] параметра $\\epsilon$ вместо 1.",
-    "What the shaking adds: [[formula]].": "Вклад вибрации: [[formula]].",
+    "What the fast phase adds: [[formula]].": "Вклад быстрой фазы: [[formula]].",
     "Effective potential: [[formula]].": "Эффективный потенциал: [[formula]].",
     "Of the stability of the averaged motion there is no result: [[why]].": "Об устойчивости усреднённого движения результата нет: [[why]].",
     "The averaged motion is there where [[conditions]].": "Усреднённое движение существует, если [[conditions]].",
