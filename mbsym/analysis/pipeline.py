@@ -235,7 +235,9 @@ class Analysis(Stages):
         if self.system.constraints and name not in KNOW_CONSTRAINTS:
             compute = self._without_constraints
         elif self.system.speeds and name in IN_COORDINATES:
-            compute = lambda: getattr(self.in_coordinates, name)  # noqa: E731
+            from mbsym.analysis import in_coordinates
+
+            compute = lambda: in_coordinates.told(self, name)  # noqa: E731
         elif self.system.speeds and name not in KNOW_SPEEDS:
             compute = _without_speeds
         elif self.system.linear is not None and name not in given.KNOWN:

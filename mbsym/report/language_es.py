@@ -293,6 +293,7 @@ WORDS = {
     "proved": "demostrado",
     "verified numerically": "verificado numéricamente",
     "undecided": "sin decidir",
+    "singular": "singular",
     "exact": "exacto",
     "FAILED": "DISCREPANCIA",
     "positive": "positivo",
@@ -315,6 +316,9 @@ WORDS = {
     "perturbed motion": "movimiento perturbado",
     "first integrals": "integrales primeras",
     "identical polynomials": "polinomios idénticos",
+    "identical polynomials where the conditions of problem 4 hold": (
+        "polinomios idénticos donde se cumplen las condiciones del problema 4"
+    ),
     "random parameters": "parámetros aleatorios",
     "regular": "regular",
     "holds": "se cumple",

@@ -403,6 +403,7 @@ WORDS = {
     "proved": "доказано",
     "verified numerically": "проверено численно",
     "undecided": "не решено",
+    "singular": "вырождена",
     "exact": "точно",
     "FAILED": "РАСХОЖДЕНИЕ",
     "positive": "положительный",
@@ -425,6 +426,9 @@ WORDS = {
     "perturbed motion": "возмущённое движение",
     "first integrals": "первые интегралы",
     "identical polynomials": "тождественные многочлены",
+    "identical polynomials where the conditions of problem 4 hold": (
+        "тождественные многочлены при выполнении условий задачи 4"
+    ),
     "random parameters": "случайные параметры",
     "regular": "невырождена",
     "holds": "верно",

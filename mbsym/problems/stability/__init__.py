@@ -52,6 +52,7 @@ from mbsym.problems.stability.problem import (
     ExactVerdicts,
     Stability,
     SubsystemStability,
+    because,
     parameter_values,
     stability,
 )
@@ -60,6 +61,7 @@ __all__ = [
     "ExactVerdicts",
     "Stability",
     "SubsystemStability",
+    "because",
     "parameter_values",
     "stability",
 ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from mbsym.algebra.characteristic import Matrix, Polynomial
+from mbsym.problems.displacements import Basis
 from mbsym.problems.stability.theorems import Fact
 
 
@@ -41,7 +42,8 @@ class LinearSystem:
     the squared rate of a steady spin that may be turned in space; () where there is none.  ``ValueError`` for wrong
     shapes and for a pattern of zeros that no (row-scaled) symmetric or skew matrix has.  ``names`` of the coordinates
     are for sentences.  ``nonholonomic``: the five matrices are no more than the split of two, and say nothing about
-    energy.  ``leaf``: they are those of disturbances that keep so many relations, which others change.
+    energy.  ``leaf``: they are those of disturbances that keep so many relations, which others change.  ``basis``:
+    the coordinates are not those of the description but combinations of them.
     """
 
     M: Matrix
@@ -56,6 +58,7 @@ class LinearSystem:
     names: tuple[str, ...] = ()
     nonholonomic: NonholonomicForm | None = None
     leaf: int = 0
+    basis: Basis | None = None
 
     def __post_init__(self) -> None:
         n = len(self.M)

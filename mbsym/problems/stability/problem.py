@@ -8,7 +8,7 @@ from fractions import Fraction
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
-from flint import arb, ctx, fmpq
+from flint import arb, arb_mat, ctx, fmpq
 
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.elimination import Elimination, eliminate
@@ -26,6 +26,8 @@ from mbsym.mechanics.motion import dependent, relations
 from mbsym.mechanics.symmetry import Spin, free_spin
 from mbsym.mechanics.variables import expressions
 from mbsym.model.system import rational
+from mbsym.problems.displacements import Basis, Displacements
+from mbsym.problems.displacements import basis as basis_of
 from mbsym.problems.dissipation import Balance
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.knowledge import definition_in_parameters
@@ -35,11 +37,11 @@ from mbsym.problems.stability.covering import Cell, Lift, cells_of, everywhere, 
 from mbsym.problems.stability.enclosed import enclosed_verdict_with_cyclic
 from mbsym.problems.stability.exact import verdict_at
 from mbsym.problems.stability.linear_form import LinearSystem, NonholonomicForm
-from mbsym.problems.stability.reasons import Because
+from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.requirements import Requirement
 from mbsym.problems.stability.spectrum import Spectrum, from_characteristic, from_matrices
 from mbsym.problems.stability.symbolic import Theory, analyse
-from mbsym.problems.stability.verdict import Verdict, combine, off_the_leaf, undecided
+from mbsym.problems.stability.verdict import Verdict, combine, displaced, off_the_leaf, undecided
 from mbsym.problems.stability.word import Word
 
 if TYPE_CHECKING:
@@ -147,6 +149,20 @@ class Stability(Shown):
         return sum(x.terms for part in self.subsystems for x in part.characteristic)
 
 
+def because(found: Stability, code: Because, *data: object) -> Stability:
+    """The same with a reason more in every verdict."""
+    reason = Reason(code, data)
+
+    def more(verdict: Verdict) -> Verdict:
+        return replace(verdict, reasons=tuple(sorted((*verdict.reasons, reason), key=lambda one: one.rank)))
+
+    parts = tuple(
+        replace(part, theory=replace(part.theory, verdict=more(part.theory.verdict))) for part in found.subsystems
+    )
+    numerical = None if found.numerical is None else more(found.numerical)
+    return replace(found, subsystems=parts, verdict=more(found.verdict), numerical=numerical)
+
+
 def stability(
     scene: Scene,
     balance: Balance,
@@ -214,11 +230,21 @@ def _spectrum(
 
 
 def matrices_at(
-    scene: Scene, linear: Linearisation, coordinates: Sequence[str], values: Mapping[str, Fraction]
+    scene: Scene,
+    linear: Linearisation,
+    coordinates: Sequence[str],
+    values: Mapping[str, Fraction],
+    basis: Basis | None = None,
 ) -> list[list[list[Any]]]:
-    """The blocks of M, D, G, K, N that belong to some coordinates, as enclosures at parameter values."""
+    """The blocks of M, D, G, K, N that belong to some coordinates, or to a basis, as enclosures at parameter values.
+
+    What vanishes identically is exactly 0.
+    """
     at = [linear.coordinates.index(name) for name in coordinates]
-    return [_balls(scene, [[matrix.polynomials[i][j] for j in at] for i in at], values) for matrix in linear.matrices]
+    blocks = [[[matrix.polynomials[i][j] for j in at] for i in at] for matrix in linear.matrices]
+    if basis is not None:
+        blocks = [basis.congruent(scene.ring, block) for block in blocks]
+    return [_balls(scene, block, values) for block in blocks]
 
 
 def _balls(scene: Scene, rows: Sequence[Sequence[Polynomial]], values: Mapping[str, Fraction]) -> list[list[Any]]:
@@ -238,13 +264,12 @@ def _enclosed(
 ) -> Verdict:
     """The verdict on a subsystem at values where its matrices hold irrational numbers (sqrt(3), a sine)."""
     there = balance.at(values)
-    constant = not any(name in there.driven for name in part.coordinates)  # the momenta of cyclic coordinates
-    cyclic = part.system.cyclic if constant else ()
-    matrices = matrices_at(scene, linear, part.coordinates, values)
+    cyclic = () if part.at(there).driven else part.system.cyclic
+    matrices = matrices_at(scene, linear, part.coordinates, values, part.system.basis)
     if part.system.nonholonomic is not None:
         even = theory.variable == "lambda^2"
         return nonholonomic.enclosed(part.system.nonholonomic, matrices, theory.zero_power, PRECISION, even)
-    found = enclosed_verdict_with_cyclic(matrices, there.law.bounded, cyclic, PRECISION)
+    found = displaced(enclosed_verdict_with_cyclic(matrices, there.law.bounded, cyclic, PRECISION), part.system.basis)
     return off_the_leaf(found) if part.system.leaf else found
 
 
@@ -274,7 +299,9 @@ class Prepared:
 
     def at(self, there: Balance) -> LinearSystem:
         """The system with what is known of energy and momenta at parameter values."""
-        driven = tuple(i for i in self.system.cyclic if self.coordinates[i] in there.driven)
+        driven = self.system.driven
+        if self.system.basis is None:
+            driven = tuple(i for i in self.system.cyclic if self.coordinates[i] in there.driven)
         return replace(self.system, conservative=there.law.bounded, driven=driven)
 
 
@@ -283,9 +310,12 @@ def prepared_parts(
 ) -> tuple[Prepared, ...]:
     """Every subsystem, ready to be judged."""
     elimination = elimination_of(scene)
-    spin = None if scene.system.constraints else free_spin(scene.system)
+    spin = None if scene.system.constraints else free_spin(scene.system, still=True)
+    lagrangian = linear.constrained is None or linear.constrained.holonomic
     prepared = tuple(
-        _prepared(scene, part, elimination, signs, balance, _turned(scene, part, spin, equilibrium))
+        _prepared(
+            scene, part, elimination, signs, balance, _turned(scene, part, spin, equilibrium), equilibrium, lagrangian
+        )
         for part in linear.subsystems
     )
     if scene.system.linear is not None and scene.system.linear.of_first_order:
@@ -299,7 +329,7 @@ def prepared_parts(
             )
             for part in prepared
         )
-    if linear.constrained is None or linear.constrained.holonomic:
+    if lagrangian:
         leaf = 0 if linear.constrained is None else linear.constrained.leaf
         return tuple(replace(part, system=replace(part.system, leaf=leaf)) for part in prepared) if leaf else prepared
     about, free = linear.constrained, equilibrium.satisfied
@@ -334,26 +364,73 @@ def _prepared(
     signs: Signs,
     balance: Balance,
     turned: Sequence[Polynomial],
+    equilibrium: Equilibrium,
+    lagrangian: bool,
 ) -> Prepared:
     matrices, factor = _polynomial(scene, part, elimination, signs)
-    rows = [tuple(tuple(x for x in row) for row in matrix.polynomials) for matrix in matrices]
-    idle = tuple(
+    rows = [[list(row) for row in matrix.polynomials] for matrix in matrices]
+    cyclic = tuple(
         i
         for i, name in enumerate(part.coordinates)
         if name in balance.ignorable and all(x.is_zero() for matrix in (rows[3], rows[4]) for x in matrix[i])
     )
+    driven = tuple(i for i in cyclic if part.coordinates[i] in balance.driven)
+    names, basis = part.coordinates, None
+    hidden = _displaced(scene, part, balance, signs, cyclic, equilibrium) if lagrangian else None
+    if hidden is not None:
+        found, basis = hidden
+        inner = basis.through(scene.ring, elimination)
+        changed = [inner.congruent(scene.ring, matrix) for matrix in rows]
+        count = len(found.directions)
+        if all(x.is_zero() for matrix in changed[3:] for row in matrix[:count] for x in row):
+            rows, cyclic, driven, names = changed, tuple(range(count)), found.driven, basis.names
+        else:
+            basis = None
     turned = [elimination(x) for x in turned]
     ring, known = in_parameters(scene.ring, [*rows, [turned]], signs)
     if isinstance(ring, ParameterRing):
-        rows = [tuple(tuple(ring.project(x) for x in row) for row in matrix) for matrix in rows]
+        rows = [[[ring.project(x) for x in row] for row in matrix] for matrix in rows]
         turned = [ring.project(x) for x in turned]
-    mass, damping, gyroscopic, stiffness, circulatory = rows
-    driven = tuple(i for i in idle if part.coordinates[i] in balance.driven)
+    mass, damping, gyroscopic, stiffness, circulatory = (tuple(map(tuple, matrix)) for matrix in rows)
     bounded = balance.law.bounded
     system = LinearSystem(
-        mass, damping, gyroscopic, stiffness, circulatory, bounded, idle, tuple(turned), driven, part.coordinates
+        mass, damping, gyroscopic, stiffness, circulatory, bounded, cyclic, tuple(turned), driven, names, basis=basis
     )
     return Prepared(part.coordinates, matrices, factor, ring, known, system)
+
+
+def _displaced(
+    scene: Scene, part: Subsystem, balance: Balance, signs: Signs, cyclic: Sequence[int], equilibrium: Equilibrium
+) -> tuple[Displacements, Basis] | None:
+    """Displacements that change no equation, and coordinates made of them; None where cyclic coordinates are all.
+
+    They are looked for where K + N is singular besides the cyclic coordinates, or forces act on several of these.
+    """
+    others = [i for i in range(len(part.coordinates)) if i not in cyclic]
+    stiff = [[part.K.polynomials[i][j] + part.N.polynomials[i][j] for j in others] for i in others]
+    acting = [(part.D, part.N)[k].polynomials[i] for i in cyclic for k in (0, 1)]
+    free = sum(all(x.is_zero() for x in (*d, *n)) for d, n in zip(acting[::2], acting[1::2], strict=True))
+    whole = len(cyclic) < 2 or free == len(cyclic)
+    if scene.system.linear is not None or (whole and _somewhere_regular(scene, stiff)):
+        return None
+    found = balance.displacements(part.coordinates)
+    if len(found.directions) < len(cyclic) or (len(found.directions) == len(cyclic) and found.constant <= free):
+        return None
+    images = equilibrium.determined(scene)
+    chosen = basis_of(scene.ring, found, signs)
+    return None if chosen is None else (found, chosen.through(scene.ring, lambda x: scene.ring.substitute(x, images)))
+
+
+def _somewhere_regular(scene: Scene, rows: Sequence[Sequence[Polynomial]]) -> bool:
+    """Whether a matrix is shown to be regular for some parameters: at numbers of no meaning."""
+    numbers = {name: arb(fmpq(101 + 37 * k, 89 + 14 * k)) for k, name in enumerate(scene.ring.names())}
+    with ctx.workprec(PRECISION):
+        try:
+            entries = [scene.ring.evaluate(x, numbers) for row in rows for x in row]
+            found = arb_mat(len(rows), len(rows), entries).det()
+        except Failure:
+            return False
+        return bool(found.is_finite() and not found.contains(0))
 
 
 class ExactVerdicts:

@@ -44,6 +44,8 @@ class Because(Enum):
     COASTING = auto()
     DRIFT = auto()
     DRIFT_AT_GIVEN_MOMENTA = auto()
+    DISPLACEMENTS = auto()  # (how coordinates move together, each a text)
+    OTHER_ANGLES = auto()  # (body, axes, angles)
     PARTLY_CYCLIC = auto()
     CONSTANT_MOMENTA = auto()
     # of what is open

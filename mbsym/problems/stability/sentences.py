@@ -99,6 +99,14 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
         "This is about the other coordinates at the given momenta of the cyclic ones: momenta that differ a little "
         "stay different, the motion then tends to a steady one near by, and the cyclic coordinates may drift away."
     ),
+    Because.DISPLACEMENTS: (
+        "No equation of motion changes when coordinates move together as {}: along such displacements there are cyclic "
+        "coordinates."
+    ).format,
+    Because.OTHER_ANGLES: (
+        "Judged in other angles of body {}, about axes {} by {}, in which the same motion is steady: coordinates are "
+        "these angles here."
+    ).format,
     Because.PARTLY_CYCLIC: "A part of the coordinates is cyclic.",
     Because.CONSTANT_MOMENTA: ("The momenta of cyclic coordinates are constant, so their velocities stay near theirs."),
     Because.SEE_CASES: "It depends on the parameters; see the cases.",

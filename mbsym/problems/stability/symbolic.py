@@ -71,9 +71,24 @@ from mbsym.problems.stability.requirements import (
     differs,
     unwritten,
 )
-from mbsym.problems.stability.routh import ignoring_cyclic, momenta_are_constant, only_momenta
+from mbsym.problems.stability.routh import (
+    ENERGY_BESIDES,
+    besides_cyclic,
+    ignoring_cyclic,
+    momenta_are_constant,
+    only_momenta,
+)
 from mbsym.problems.stability.theorems import Fact, Ground, applying
-from mbsym.problems.stability.verdict import Verdict, coasting, concluded, depends, drifting, off_the_leaf, undecided
+from mbsym.problems.stability.verdict import (
+    Verdict,
+    coasting,
+    concluded,
+    depends,
+    displaced,
+    drifting,
+    off_the_leaf,
+    undecided,
+)
 
 #: More damped coordinates have too many principal minors.
 MOST_DAMPED = 4
@@ -136,10 +151,19 @@ def analyse(system: LinearSystem, signs: Signs, point: Mapping[int, Fraction] | 
         found = _analyse(system, signs)
     except TooLargeError as error:
         found = _left_out(system, signs, str(error))
-    if system.leaf:
-        cases = tuple(replace(case, verdict=off_the_leaf(case.verdict)) for case in found.cases)
-        found = replace(found, cases=cases, verdict=off_the_leaf(found.verdict))
+    if system.leaf or system.basis is not None:
+        found = replace(
+            found,
+            cases=tuple(replace(case, verdict=_told(system, case.verdict)) for case in found.cases),
+            verdict=_told(system, found.verdict),
+        )
     return found if point is None else replace(found, at_point=verdict_at(system, point))
+
+
+def _told(system: LinearSystem, verdict: Verdict) -> Verdict:
+    """What the coordinates of the matrices mean for the verdict on the motion."""
+    verdict = displaced(verdict, system.basis)
+    return off_the_leaf(verdict) if system.leaf else verdict
 
 
 def _left_out(system: LinearSystem, signs: Signs, reason: str) -> Theory:
@@ -222,7 +246,7 @@ def _analyse(system: LinearSystem, signs: Signs) -> Theory:
 
 def _turned_factor(system: LinearSystem, factors: tuple[Factor, ...]) -> int | None:
     """The position of the simple factor that a turned steady spin explains."""
-    if not system.turned:
+    if not system.turned or system.turned[1] == 0:
         return None
     top, bottom = system.turned
     for i, factor in enumerate(factors):
@@ -436,6 +460,8 @@ def _cases_of_roots(form: NonholonomicForm, found: Theory, known: Signs) -> tupl
             best = concluded({Fact.BOUNDED}, *nonholonomic.OPEN)
         return Case(found.requirements, (), best), *unstable
     wanted = found.requirements or tuple(replace(r, by_mass=True) for r in found.mass.requirements)
+    if not wanted:  # equations of first order whose roots are all zero: that they are so many is the requirement
+        wanted = (differs(_power_name(False, found.zero_power), found.characteristic[-1], known),)
     return Case(wanted, (), nonholonomic.all_left(form, zeros)), *unstable
 
 
@@ -456,6 +482,9 @@ def _cases_with_zero_roots(system: LinearSystem, found: Theory, known: Signs) ->
     """Cyclic coordinates: ignore them (Routh) or strike their roots; other zero roots are a border."""
     unstable = _unstable(found.requirements, known)
     if not system.cyclic:
+        standing = bool(system.turned) and system.turned[1] == 0  # in any direction of space: two zero roots
+        if standing and found.zero_power == 2 and found.variable == "lambda":
+            return (Case(found.requirements, (), _all_left(True)), *unstable), None
         return unstable, None
     if only_momenta(system):
         by_mass = tuple(replace(r, by_mass=True) for r in found.mass.requirements)
@@ -463,9 +492,25 @@ def _cases_with_zero_roots(system: LinearSystem, found: Theory, known: Signs) ->
     if momenta_are_constant(system):
         reduced = analyse(ignoring_cyclic(system), known)
         return tuple(replace(c, verdict=drifting(c.verdict)) for c in reduced.cases), reduced
+    lasting = _energy_besides(system, known)
     if found.zero_power == len(system.cyclic) and found.variable == "lambda":
-        return (Case(found.requirements, (), drifting(_all_left(False), constant_momenta=False)), *unstable), None
-    return unstable, None
+        energy = ENERGY_BESIDES if any(case.always for case in lasting) else frozenset()
+        verdict = drifting(concluded(energy | {Fact.ROOTS_LEFT}), constant_momenta=False)
+        return (Case(found.requirements, (), verdict), *lasting, *unstable), None
+    return (*lasting, *unstable), None
+
+
+def _energy_besides(system: LinearSystem, known: Signs) -> tuple[Case, ...]:
+    """Lagrange's theorem for the coordinates that are not cyclic, and all velocities, where D >= 0 is known."""
+    block = besides_cyclic(system)
+    if not system.conservative or not is_zero(system.N):
+        return ()
+    if Fact.DAMPING_SEMIDEFINITE not in _semidefinite(system, known):
+        return ()
+    wanted = definiteness(block or system.kinetic, known, "K" if block else "M").requirements
+    if not block:  # T is all of the energy
+        wanted = tuple(replace(r, by_mass=True) for r in wanted)
+    return (Case(wanted, (), drifting(concluded(ENERGY_BESIDES), constant_momenta=False)),)
 
 
 def _all_left(turned: bool) -> Verdict:

@@ -25,6 +25,7 @@ from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from enum import Enum, auto
 
+from mbsym.problems.displacements import Basis
 from mbsym.problems.stability import sentences
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.theorems import LAGRANGE, MALKIN, ROUTH, Fact, Ground, applying, implied, reason_of
@@ -73,10 +74,11 @@ LAW = (
     Row(Word.STABLE_BUT_CYCLIC, Ground.IDLE, wanted=_DRIFT, allowed=_DRIFT),
     Row(Word.ASYMPTOTIC_BUT_CYCLIC, Ground.DECAYS, wanted=_DRIFT, allowed=_DRIFT),
     Row(Word.ASYMPTOTIC_BUT_STEADY, Ground.DECAYS, wanted=_FAMILY, allowed=_FAMILY),
+    Row(Word.ASYMPTOTIC_BUT_CYCLIC, Ground.DECAYS, wanted=_DRIFT | _FAMILY, allowed=_DRIFT | _FAMILY),  # on a leaf
     Row(Word.ASYMPTOTIC_BUT_TURNED, Ground.DECAYS, allowed=_SOUND),
     Row(Word.STABLE, Ground.ENERGY, allowed=frozenset()),
     Row(Word.STABLE, Ground.ENERGY, wanted=_FAMILY, allowed=_FAMILY),  # of a leaf, beside parts that decay
-    Row(Word.STABLE_BUT_CYCLIC, Ground.ENERGY, wanted=_DRIFT, allowed=_DRIFT),
+    Row(Word.STABLE_BUT_CYCLIC, Ground.ENERGY, wanted=_DRIFT, allowed=_DRIFT | _FAMILY),
     Row(Word.GYROSCOPIC, Ground.UNDAMPED, wanted=frozenset({Flaw.INDEFINITE})),
     Row(Word.CRITICAL),
 )
@@ -253,7 +255,16 @@ def drifting(verdict: Verdict, constant_momenta: bool = True) -> Verdict:
     row = row_of({*grounds}, flaws)
     names = verdict.theorems if row.ground is None else grounds[row.ground]
     reasons = (*(_BESIDE_ZERO_ROOTS.get(reason, reason) for reason in verdict.reasons), Reason(drift))
-    return Verdict(row.word, names, reasons, tuple(grounds.items()), flaws)
+    return Verdict(row.word, names, tuple(dict.fromkeys(reasons)), tuple(grounds.items()), flaws)
+
+
+def displaced(verdict: Verdict, basis: Basis | None) -> Verdict:
+    """The verdict, which says of a drift in which displacements of the user's coordinates it is."""
+    told = () if basis is None else basis.together
+    if not told or Flaw.CYCLIC not in verdict.flawed:
+        return verdict
+    reason = Reason(Because.DISPLACEMENTS, (", ".join(told),))
+    return replace(verdict, reasons=tuple(sorted((*verdict.reasons, reason), key=lambda reason: reason.rank)))
 
 
 #: How reasons read where cyclic coordinates have zero roots, and where momenta of theirs stay different.
