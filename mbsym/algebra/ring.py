@@ -891,6 +891,11 @@ class Ring(Algebra[Polynomial]):
         except DomainError:
             return None
 
+    def is_number(self, x: Polynomial) -> bool:
+        """Whether x holds nothing but sines, roots and functions of numbers."""
+        held = (self.generators[k] for k in occurring([x]))
+        return all(g.argument is not None and g.argument.is_constant() for g in held)
+
     def is_zero(self, x: Polynomial) -> bool | None:
         """True (proved zero), False (proved different from zero), or None where this ring cannot decide.
 

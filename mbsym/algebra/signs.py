@@ -528,11 +528,14 @@ class Signs:
     # -- witnesses ----------------------------------------------------------------------------------------------
 
     def _observed(self, p: Polynomial) -> SignSet:
-        return frozenset(_sign(p(*point)) for point in self._witnesses)
+        return frozenset(_sign(p(*point)) for point in self.witnesses)
 
     @cached_property
-    def _witnesses(self) -> tuple[tuple[Any, ...], ...]:
-        """Some rational points that satisfy the assumptions; the same ones every time."""
+    def witnesses(self) -> tuple[tuple[Any, ...], ...]:
+        """Some rational points that satisfy the assumptions, a value for each generator; the same ones every time.
+
+        They mean nothing where generators are no free parameters.
+        """
         random, found = Random(1), []
         bounds = [self._bounds(generator) for generator in range(self.context.nvars())]
         places = [[_between(lower, upper, share) for share in SHARES] for lower, upper in bounds]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.certainty import Certainty
@@ -46,17 +47,26 @@ def reduced(analysis: Analysis) -> Reduced:
     from mbsym.problems.reduction import Reduced, reduction
 
     _demand_motion(analysis)
-    scene = analysis.parameters_scene
+    scene, names = analysis.parameters_scene, analysis.system.coordinates
     found = expansion(scene, analysis.signs, analysis.system)
     equations = projected(scene, found)
     leaf = 0 if len(found.coordinates) == len(found.speeds) else _kept(analysis)
     if leaf:
         there, own = on_leaf(scene, found, equations)
-        if len(felt(there, own)) == len(there.speeds):
+        unfelt = len(there.speeds) - len(felt(there, own))
+        if not unfelt or unfelt <= _displacements(analysis, [names[i] for i in there.speeds]):
             found, equations = there, own
         else:  # coordinates that drop out, and their families, are judged by the roots of the whole
             leaf = 0
     return Reduced(found, equations, reduction(scene, found, equations, leaf))
+
+
+def _displacements(analysis: Analysis, speeds: Sequence[str]) -> int:
+    """Along how many displacements that the constraints allow no equation changes; ``speeds`` are independent."""
+    from mbsym.problems.constrained_balance import ConstrainedBalance
+
+    balance = ConstrainedBalance(analysis.scene, analysis.optional("energy"), analysis.signs, {})
+    return len(balance.displacements(speeds).directions)
 
 
 def _kept(analysis: Analysis) -> int:

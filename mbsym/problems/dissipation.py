@@ -53,6 +53,7 @@ from mbsym.model.loads import (
     Load,
 )
 from mbsym.model.system import INERTIAL, rational, velocity_name
+from mbsym.problems.displacements import Displacements, displacements
 from mbsym.problems.energy import Energy
 from mbsym.problems.exact_linearity import Excess, excess
 
@@ -152,6 +153,28 @@ class Balance:
         Where all of Q_i is linear it shows in D and N; the momentum is constant if these have no entries.
         """
         return tuple(name for name in self.ignorable if not self._linear(name))
+
+    def displacements(self, coordinates: Sequence[str]) -> Displacements:
+        """Displacements along some coordinates that change no equation; none where there are no closed formulas."""
+        return self._displacements(coordinates)
+
+    def _displacements(
+        self, coordinates: Sequence[str], rows: Sequence[tuple[Polynomial, Sequence[Polynomial]]] = ()
+    ) -> Displacements:
+        """``rows``: of every constraint g, and its partial derivatives by the velocities of ``coordinates``."""
+        none, system, ring = Displacements(tuple(coordinates)), self.scene.system, self.scene.ring
+        if self.energy is None or self.somewhere or self._forces is None:
+            return none
+        order = (*coordinates, *(name for name in system.coordinates if name not in coordinates))
+        try:
+            forces = [
+                ring.reduce(ring.derivative(self.energy.force_function.polynomial, name) + self._forces[name])
+                for name in order
+            ]
+            moving = (*system.coordinates, *system.velocities)
+            return displacements(ring, coordinates, self.energy.kinetic_energy.polynomial, forces, moving, rows)
+        except Failure:
+            return none
 
     def _unseen(self, name: str) -> bool:
         """Whether Q does not depend on a coordinate."""

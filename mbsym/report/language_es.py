@@ -262,6 +262,7 @@ WORDS = {
     str(Word.UNDECIDED): "sin decidir",
     str(Word.DEPENDS): "depende de los parámetros",
     str(Word.UNSTABLE): "inestable",
+    str(Word.UNSTABLE_BUT_BORDERS): "inestable salvo casos frontera",
     LAGRANGE: "teorema de Lagrange-Dirichlet",
     ROUTH: "teorema de Routh",
     KELVIN_CHETAEV: "teoremas de Kelvin-Chetaev",
@@ -302,6 +303,7 @@ WORDS = {
     "proved": "demostrado",
     "verified numerically": "verificado numéricamente",
     "undecided": "sin decidir",
+    "singular": "singular",
     "exact": "exacto",
     "FAILED": "DISCREPANCIA",
     "positive": "positivo",
@@ -324,6 +326,9 @@ WORDS = {
     "perturbed motion": "movimiento perturbado",
     "first integrals": "integrales primeras",
     "identical polynomials": "polinomios idénticos",
+    "identical polynomials where the conditions of problem 4 hold": (
+        "polinomios idénticos donde se cumplen las condiciones del problema 4"
+    ),
     "random parameters": "parámetros aleatorios",
     "regular": "regular",
     "holds": "se cumple",

@@ -368,6 +368,7 @@ WORDS = {
     str(Word.UNDECIDED): "не решено",
     str(Word.DEPENDS): "зависит от параметров",
     str(Word.UNSTABLE): "неустойчиво",
+    str(Word.UNSTABLE_BUT_BORDERS): "неустойчиво, кроме граничных случаев",
     LAGRANGE: "теорема Лагранжа-Дирихле",
     ROUTH: "теорема Рауса",
     KELVIN_CHETAEV: "теоремы Томсона-Тэта-Четаева",
@@ -412,6 +413,7 @@ WORDS = {
     "proved": "доказано",
     "verified numerically": "проверено численно",
     "undecided": "не решено",
+    "singular": "вырождена",
     "exact": "точно",
     "FAILED": "РАСХОЖДЕНИЕ",
     "positive": "положительный",
@@ -434,6 +436,9 @@ WORDS = {
     "perturbed motion": "возмущённое движение",
     "first integrals": "первые интегралы",
     "identical polynomials": "тождественные многочлены",
+    "identical polynomials where the conditions of problem 4 hold": (
+        "тождественные многочлены при выполнении условий задачи 4"
+    ),
     "random parameters": "случайные параметры",
     "regular": "невырождена",
     "holds": "верно",

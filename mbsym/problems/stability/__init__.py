@@ -10,8 +10,10 @@ is made primitive (a factor of known sign is removed) and factored; the conditio
 * otherwise: all roots to the left of the imaginary axis (Lienard-Chipart).
 
 Every condition has its logical place.  Where p > 0 is listed and p < 0, a root has a positive real part: p >= 0 is
-necessary for stability.  That p is not 0 either is necessary for asymptotic stability (second kind), but of the first
-kind it is only this method that needs it, as it needs roots that do not coincide: there the motion may be stable.
+necessary for stability.  That p is not 0 either is necessary for exponential stability, all roots to the left (second
+kind): at p = 0 terms of higher order may make the motion stable, asymptotically even.  Of the first kind it is only
+this method that needs it, as it needs roots that do not coincide: there the motion may be stable.  In potential systems
+coinciding roots do no harm: their discriminants are listed, and needed for nothing.
 K > 0 is sufficient where the energy does not grow.
 
 "Necessary conditions hold" is not "stable": the verdict is one of asymptotically stable; stable (the theorem is named);
@@ -54,6 +56,7 @@ from mbsym.problems.stability.problem import (
     ExactVerdicts,
     Stability,
     SubsystemStability,
+    because,
     parameter_values,
     stability,
 )
@@ -62,6 +65,7 @@ __all__ = [
     "ExactVerdicts",
     "Stability",
     "SubsystemStability",
+    "because",
     "parameter_values",
     "stability",
 ]

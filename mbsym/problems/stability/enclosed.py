@@ -51,7 +51,7 @@ def enclosed_verdict_with_cyclic(
 
 
 def _ignoring_cyclic(parts: Sequence[Rows], cyclic: Sequence[int]) -> list[Rows] | None:
-    """Routh's reduction of ``routh.ignoring_cyclic`` with M_cc^-1 in balls; None where a momentum is not constant."""
+    """Routh's reduction with M_cc^-1 in balls; None where a momentum is not constant."""
     m, d, g, _, n = parts
     others = [i for i in range(len(m)) if i not in cyclic]
     acted_on = not all(_no([rows[i] for i in cyclic]) for rows in (d, n))

@@ -16,7 +16,13 @@ from mbsym.algebra.roots import RootCount, counted, rational
 from mbsym.problems.stability import linear_theory, nonholonomic
 from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.reasons import Because, Reason
-from mbsym.problems.stability.routh import ignoring_cyclic, momenta_are_constant, only_momenta
+from mbsym.problems.stability.routh import (
+    ENERGY_BESIDES,
+    besides_cyclic,
+    ignoring_cyclic,
+    momenta_are_constant,
+    only_momenta,
+)
 from mbsym.problems.stability.state_matrix import state_matrix
 from mbsym.problems.stability.theorems import Fact, Ground, implied
 from mbsym.problems.stability.verdict import (
@@ -25,6 +31,7 @@ from mbsym.problems.stability.verdict import (
     bounded,
     coasting,
     concluded,
+    displaced,
     drifting,
     exactly,
     off_the_leaf,
@@ -64,7 +71,8 @@ def verdict_over(system: LinearSystem, at: ExactPoint) -> PointVerdict:
     found = _verdict_over(system, at)
     if system.exact and found.roots is not None:
         found = replace(found, verdict=_of_linear_equations(system, at, found.verdict))
-    return replace(found, verdict=off_the_leaf(found.verdict)) if system.leaf else found
+    verdict = displaced(found.verdict, system.basis)
+    return replace(found, verdict=off_the_leaf(verdict) if system.leaf else verdict)
 
 
 def _verdict_over(system: LinearSystem, at: ExactPoint) -> PointVerdict:
@@ -83,14 +91,18 @@ def _verdict_over(system: LinearSystem, at: ExactPoint) -> PointVerdict:
         if system.turned and not roots.right and not (_no(d) and _no(n)):
             verdict = _judge_turned(polynomial, [at.value(x) for x in system.turned], verdict)
         return PointVerdict(verdict, polynomial, roots)
+    energy = _energy_besides(system, at, d, n)
     if roots.left + len(system.cyclic) == 2 * system.size:
-        return PointVerdict(drifting(concluded({Fact.ROOTS_LEFT}), constant_momenta=False), polynomial, roots)
+        found = concluded(energy | {Fact.ROOTS_LEFT})
+        return PointVerdict(drifting(found, constant_momenta=False), polynomial, roots)
     there = _settled(system, at)  # a damper of coefficient 0 changes no momentum
     if only_momenta(there):
         return PointVerdict(coasting(), polynomial, roots)
     if momenta_are_constant(there):
         reduced = verdict_over(ignoring_cyclic(there), at)
         return PointVerdict(drifting(reduced.verdict), polynomial, roots)
+    if energy:
+        return PointVerdict(drifting(concluded(energy), constant_momenta=False), polynomial, roots)
     return PointVerdict(undecided(Because.CYCLIC_ZERO_ROOTS), polynomial, roots)
 
 
@@ -107,6 +119,19 @@ def _of_linear_equations(system: LinearSystem, at: ExactPoint, found: Verdict) -
     shifts = evaluated(system.shifts, at) if system.shifts else None
     facts = frozenset[Fact]() if system.nonholonomic is not None else _facts(m, d, g, k, n, system.conservative)
     return exactly(linear_theory.decided(found, a, shifts, facts))
+
+
+def _energy_besides(system: LinearSystem, at: ExactPoint, d: Numbers, n: Numbers) -> frozenset[Fact]:
+    """What Lagrange's theorem needs for the other coordinates and all velocities, cyclic ones not counted; or nothing.
+
+    V has a strict minimum in the others, T in the velocities, whatever acts on the cyclic coordinates.
+    """
+    block = besides_cyclic(system)
+    if not system.conservative or not _no(n) or inertia(d)[2]:
+        return frozenset()
+    if block and inertia(evaluated(block, at))[1:] != (0, 0):
+        return frozenset()
+    return ENERGY_BESIDES
 
 
 def _settled(system: LinearSystem, at: ExactPoint) -> LinearSystem:

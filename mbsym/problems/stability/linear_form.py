@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from mbsym.algebra.characteristic import Matrix, Polynomial
+from mbsym.problems.displacements import Basis
 from mbsym.problems.stability.theorems import Fact
 
 
@@ -42,7 +43,8 @@ class LinearSystem:
     the squared rate of a steady spin that may be turned in space; () where there is none.  ``ValueError`` for wrong
     shapes and for a pattern of zeros that no (row-scaled) symmetric or skew matrix has.  ``names`` of the coordinates
     are for sentences.  ``nonholonomic``: the five matrices are no more than the split of two, and say nothing about
-    energy.  ``leaf``: they are those of disturbances that keep so many relations, which others change.
+    energy.  ``leaf``: they are those of disturbances that keep so many relations, which others change.  ``basis``:
+    the coordinates are not those of the description but combinations of them.
 
     ``exact``: the equations of motion are these linear ones, without terms of higher order.  ``shifts`` are then the
     directions along which everything may be shifted, for all parameters alike: rows v with (K + N) v = 0.
@@ -60,6 +62,7 @@ class LinearSystem:
     names: tuple[str, ...] = ()
     nonholonomic: NonholonomicForm | None = None
     leaf: int = 0
+    basis: Basis | None = None
     exact: bool = False
     shifts: Matrix = ()
 

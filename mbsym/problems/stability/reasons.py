@@ -49,10 +49,13 @@ class Because(Enum):
     COASTING = auto()
     DRIFT = auto()
     DRIFT_AT_GIVEN_MOMENTA = auto()
+    DISPLACEMENTS = auto()  # (how coordinates move together, each a text)
+    OTHER_ANGLES = auto()  # (body, axes, angles)
     PARTLY_CYCLIC = auto()
     CONSTANT_MOMENTA = auto()
     # of what is open
     SEE_CASES = auto()
+    BORDERS_APART = auto()
     CONDITIONS_UNWRITTEN = auto()
     BORDER = auto()
     NEAR_BORDER = auto()

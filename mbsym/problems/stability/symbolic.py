@@ -4,7 +4,9 @@ M, D, K symmetric, G, N skew.  The roots of det(lambda^2 M + lambda (D + G) + K 
 approximation goes; the theorems below go further.  Nothing is claimed on a border.
 
 * D = N = 0 (the determinant is even): roots in mu = lambda^2 real, negative and simple, by the signs of the
-  coefficients and the discriminant (from degree 4 on all subdiscriminants).  **Necessary** for stability.
+  coefficients and the discriminant (from degree 4 on all subdiscriminants).  **Necessary** for stability, but for the
+  case of equality.  With G = 0, too, by the coefficients alone: the roots are real and semisimple anyway, and the
+  discriminants are listed as what nobody needs.
 * K > 0 besides: stable, by Lagrange-Dirichlet (G = 0) or Routh (G != 0), if the nonlinear system has its energy
   integral.  Without K > 0 the motion is **gyroscopically stabilised only**: any complete dissipation destroys it
   (Kelvin-Chetaev), and the nonlinear system is not decided.  det K < 0: unstable (Kelvin-Chetaev).
@@ -23,7 +25,7 @@ all five matrices: neither the roots nor the signs of leading minors change.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
@@ -46,6 +48,7 @@ from mbsym.algebra.failures import NoClosedForm, TooLargeError
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.signs import MOST_TERMS, Condition, Signs, conditions
 from mbsym.problems.stability import nonholonomic
+from mbsym.problems.stability.covering import alone, cells_of
 from mbsym.problems.stability.exact import PointVerdict, verdict_at
 from mbsym.problems.stability.linear_form import (
     CONSERVATIVE,
@@ -73,7 +76,13 @@ from mbsym.problems.stability.requirements import (
     holds_always,
     unwritten,
 )
-from mbsym.problems.stability.routh import ignoring_cyclic, momenta_are_constant, only_momenta
+from mbsym.problems.stability.routh import (
+    ENERGY_BESIDES,
+    besides_cyclic,
+    ignoring_cyclic,
+    momenta_are_constant,
+    only_momenta,
+)
 from mbsym.problems.stability.theorems import Fact, Ground, applying, implied
 from mbsym.problems.stability.verdict import (
     Verdict,
@@ -81,6 +90,7 @@ from mbsym.problems.stability.verdict import (
     coasting,
     concluded,
     depends,
+    displaced,
     drifting,
     exactly,
     off_the_leaf,
@@ -89,8 +99,6 @@ from mbsym.problems.stability.verdict import (
 
 #: More damped coordinates have too many principal minors.
 MOST_DAMPED = 4
-#: Of more inequalities it is not asked whether two of them exclude each other.
-MOST_COMPARED = 6
 
 
 @dataclass(frozen=True)
@@ -127,6 +135,14 @@ class Theory:
         return self.kind == CONSERVATIVE
 
     @property
+    def polynomials(self) -> Iterator[Polynomial]:
+        """What its conditions and cases are about."""
+        for case in self.cases:
+            yield from case.polynomials
+        for r in self.requirements:
+            yield from r.polynomials
+
+    @property
     def conditions(self) -> tuple[Condition, ...]:
         """What remains of ``requirements``, each once."""
         return conditions(r.condition for r in self.requirements)
@@ -142,9 +158,6 @@ def analyse(system: LinearSystem, signs: Signs, point: Mapping[int, Fraction] | 
         found = _analyse(system, signs)
     except TooLargeError as error:
         found = _left_out(system, signs, str(error))
-    if system.leaf:
-        cases = tuple(replace(case, verdict=off_the_leaf(case.verdict)) for case in found.cases)
-        found = replace(found, cases=cases, verdict=off_the_leaf(found.verdict))
     if system.exact:
         null = null_rows(add(system.K, system.N), signs.normalised) if found.zero_power else ()
         calm = len(null) == found.zero_power  # the zero roots have no Jordan blocks
@@ -154,7 +167,19 @@ def analyse(system: LinearSystem, signs: Signs, point: Mapping[int, Fraction] | 
         if verdict.word.open and not occurring(x for matrix in system.matrices for row in matrix for x in row):
             verdict = verdict_at(system, {}).verdict
         found = replace(found, cases=cases, verdict=verdict)
+    if system.leaf or system.basis is not None:
+        found = replace(
+            found,
+            cases=tuple(replace(case, verdict=_told(system, case.verdict)) for case in found.cases),
+            verdict=_told(system, found.verdict),
+        )
     return found if point is None else replace(found, at_point=verdict_at(system, point))
+
+
+def _told(system: LinearSystem, verdict: Verdict) -> Verdict:
+    """What the coordinates of the matrices mean for the verdict on the motion."""
+    verdict = displaced(verdict, system.basis)
+    return off_the_leaf(verdict) if system.leaf else verdict
 
 
 def _left_out(system: LinearSystem, signs: Signs, reason: str) -> Theory:
@@ -239,7 +264,7 @@ def _analyse(system: LinearSystem, signs: Signs) -> Theory:
 
 def _turned_factor(system: LinearSystem, factors: tuple[Factor, ...]) -> int | None:
     """The position of the simple factor that a turned steady spin explains."""
-    if not system.turned:
+    if not system.turned or system.turned[1] == 0:
         return None
     top, bottom = system.turned
     for i, factor in enumerate(factors):
@@ -279,9 +304,7 @@ def _requirements(
             remarks.append(f"The conditions{suffix} are not written out ({error}); at a point they are exact.")
             requirements.append(unwritten(p[0]))
             continue
-        place = Place.NECESSARY if even else Place.ASYMPTOTIC
-        strict = place if not even else Place.FIRST if is_potential(system) else Place.METHOD
-        reduced = [_required(known, label, suffix, value, p, (place, strict)) for label, value in wanted]
+        reduced = [_required(known, label, suffix, value, p, _places(system, label, even)) for label, value in wanted]
         left_out = ", ".join(one.label for one in reduced if one.unwritten)
         if left_out:
             remarks.append(f"Not written out, but in the coefficients, because of their length: {left_out}.")
@@ -295,6 +318,29 @@ def _requirements(
             "(equal frequencies) does no harm."
         )
     return tuple(requirements), remarks
+
+
+def _is_symmetric(system: LinearSystem) -> bool:
+    """Whether it is a pencil of two symmetric matrices, one of them positive definite.
+
+    Its roots in lambda^2 are real and semisimple: no discriminant is negative, and none that vanishes does any harm.
+    """
+    return is_potential(system) and system.nonholonomic is None
+
+
+def _places(system: LinearSystem, label: str, even: bool) -> tuple[Place, Place]:
+    """What p > 0 is needed for, and what p != 0.
+
+    Where M x'' + (K + N) x = 0, x = x0 + x1 t solves it where (K + N) x0 = (K + N) x1 = 0, which is so with x1 != 0
+    where a coefficient vanishes while no root in lambda^2 is positive: then the last of them vanishes, too.  With other
+    forces a zero root may be semisimple, as roots that coincide may be whatever the forces are.
+    """
+    if not even:
+        return Place.EXPONENTIAL, Place.EXPONENTIAL
+    if _is_symmetric(system) and not label.startswith("v"):
+        return Place.HARMLESS, Place.HARMLESS
+    grows = is_zero(system.D) and is_zero(system.G) and system.nonholonomic is None
+    return Place.NECESSARY, Place.FIRST if grows and label.startswith("v") else Place.METHOD
 
 
 def _required(
@@ -365,7 +411,8 @@ def _simple(system: LinearSystem, factors: tuple[Factor, ...], known: Signs, rem
                 simple = _is_semisimple(system, left)
                 if not simple:
                     never = left.coefficients[0] * 0
-                    requirements.append(differs(f"multiplicity of factor {i + 1}", never, known))
+                    blocks = differs(f"multiplicity of factor {i + 1}", never, known)
+                    requirements.append(replace(blocks, place=Place.FIRST, strict=Place.FIRST))
                 how = "simple elementary divisors" if simple else "Jordan blocks: its roots are never semisimple"
                 remarks.append(f"Factor {i + 1} occurs {left.multiplicity} times, with {how}.")
         except TooLargeError as error:
@@ -393,8 +440,11 @@ def _cases(system: LinearSystem, found: Theory, known: Signs) -> tuple[Case, ...
         if not is_zero(system.N) or found.dissipation.word is not Definite.POSITIVE:
             held = _semidefinite(system, known) if is_zero(system.N) and not found.turned else facts
             minimum = held | {Fact.STIFFNESS_POSITIVE}
-            lasting = [Case(stiff, (), concluded(minimum))] if Ground.ENERGY in applying(minimum) else []
-            return Case(wanted, (), _all_left(found.turned)), *lasting, *unstable
+            if Ground.ENERGY in applying(minimum):
+                # With D >= 0 and N = 0 roots are all to the left only where K > 0 (Kelvin-Chetaev).
+                decaying = concluded(minimum | {Fact.ROOTS_LEFT})
+                return Case(wanted, (), decaying), Case(stiff, (), concluded(minimum)), *unstable
+            return Case(wanted, (), _all_left(found.turned)), *unstable
     negative = against(stiff, known)
     minimum = facts | {Fact.STIFFNESS_POSITIVE}
     if found.dissipation is not None:
@@ -493,6 +543,9 @@ def _cases_with_zero_roots(system: LinearSystem, found: Theory, known: Signs) ->
     """Cyclic coordinates: ignore them (Routh) or strike their roots; other zero roots are a border."""
     unstable = _unstable(found.requirements, known)
     if not system.cyclic:
+        standing = bool(system.turned) and system.turned[1] == 0  # in any direction of space: two zero roots
+        if standing and found.zero_power == 2 and found.variable == "lambda":
+            return (Case(found.requirements, (), _all_left(True)), *unstable), None
         null = null_rows(add(system.K, system.N), known.normalised)
         if len(null) != found.zero_power:  # Jordan blocks
             return unstable, None
@@ -504,9 +557,25 @@ def _cases_with_zero_roots(system: LinearSystem, found: Theory, known: Signs) ->
     if momenta_are_constant(system):
         reduced = analyse(ignoring_cyclic(system), known)
         return tuple(replace(c, verdict=drifting(c.verdict)) for c in reduced.cases), reduced
+    lasting = _energy_besides(system, known)
     if found.zero_power == len(system.cyclic) and found.variable == "lambda":
-        return (Case(found.requirements, (), drifting(_all_left(False), constant_momenta=False)), *unstable), None
-    return unstable, None
+        energy = ENERGY_BESIDES if any(case.always for case in lasting) else frozenset()
+        verdict = drifting(concluded(energy | {Fact.ROOTS_LEFT}), constant_momenta=False)
+        return (Case(found.requirements, (), verdict), *lasting, *unstable), None
+    return (*lasting, *unstable), None
+
+
+def _energy_besides(system: LinearSystem, known: Signs) -> tuple[Case, ...]:
+    """Lagrange's theorem for the coordinates that are not cyclic, and all velocities, where D >= 0 is known."""
+    block = besides_cyclic(system)
+    if not system.conservative or not is_zero(system.N):
+        return ()
+    if Fact.DAMPING_SEMIDEFINITE not in _semidefinite(system, known):
+        return ()
+    wanted = definiteness(block or system.kinetic, known, "K" if block else "M").requirements
+    if not block:  # T is all of the energy
+        wanted = tuple(replace(r, by_mass=True) for r in wanted)
+    return (Case(wanted, (), drifting(concluded(ENERGY_BESIDES), constant_momenta=False)),)
 
 
 def _all_left(turned: bool) -> Verdict:
@@ -521,35 +590,17 @@ def _conservative(minimum: frozenset[Fact]) -> Verdict:
 
 
 def _first_certain(cases: Sequence[Case], known: Signs) -> Verdict:
-    """The first case proved to hold while all before it are refuted."""
-    for case in cases:
-        if case.always or (not case.all_of and _one_holds(case.any_of, known)):
-            return case.verdict
-        if not case.never and not _contradict(case.all_of, known):
-            possible = (r for other in cases if not other.never for r in (*other.all_of, *other.any_of))
-            return undecided(Because.CONDITIONS_UNWRITTEN) if any(r.unwritten for r in possible) else depends()
-    return undecided(Because.BORDER)
-
-
-def _contradict(wanted: Sequence[Requirement], known: Signs) -> bool:
-    """Whether two inequalities exclude each other: 2 m k - c^2 > 0 and c^2 - 4 m k > 0, whose sum is -2 m k."""
-    return any(
-        known.assuming([(p, ">")]).sign(q) in ("negative", "nonpositive", "zero")
-        for p, q in combinations(_short_inequalities(wanted), 2)
-    )
-
-
-def _one_holds(choice: Sequence[Requirement], known: Signs) -> bool:
-    """Whether of two inequalities one holds wherever the other does not."""
-    plain = [r for r in choice if not r.condition.nonzero]
-    return any(
-        known.assuming([(-p, ">=")]).sign(q) == "positive" for p, q in combinations(_short_inequalities(plain), 2)
-    )
-
-
-def _short_inequalities(wanted: Sequence[Requirement]) -> list[Polynomial]:
-    found = [r.condition.polynomial for r in wanted if r.condition.kind == "inequality"]
-    return [p for p in found if len(p) <= MOST_TERMS][:MOST_COMPARED]
+    """The verdict of the first case, if it always holds; else what all cases have in common that can hold."""
+    possible = [case for case in cases if not case.never]
+    if not possible:
+        return undecided(Because.BORDER)
+    if possible[0].always:
+        return possible[0].verdict
+    cells = cells_of(possible)
+    if cells is None:
+        unwritten = any(r.unwritten for case in possible for r in (*case.all_of, *case.any_of))
+        return undecided(Because.CONDITIONS_UNWRITTEN) if unwritten else depends()
+    return alone(cells, known)
 
 
 def _unstable(requirements: Sequence[Requirement], known: Signs) -> tuple[Case, ...]:

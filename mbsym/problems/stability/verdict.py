@@ -22,10 +22,11 @@ and never gives a stronger verdict than any part has.  Why each ground carries o
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Set
+from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from enum import Enum, auto
 
+from mbsym.problems.displacements import Basis
 from mbsym.problems.stability import sentences
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.theorems import (
@@ -52,6 +53,7 @@ class Flaw(Enum):
     OPEN = auto()  # no theorem applies
     DEPENDS = auto()  # it depends on the parameters
     UNSTABLE = auto()
+    INSIDE = auto()  # unstable but for border cases
     SINGULAR = auto()  # the mass matrix is singular: nothing that is computed with it means anything
 
 
@@ -76,17 +78,19 @@ _FAMILY = frozenset({Flaw.STEADY})
 LAW = (
     Row(Word.UNDECIDED, wanted=frozenset({Flaw.SINGULAR})),
     Row(Word.UNSTABLE, wanted=frozenset({Flaw.UNSTABLE})),
+    Row(Word.UNSTABLE_BUT_BORDERS, wanted=frozenset({Flaw.INSIDE})),
     Row(Word.DEPENDS, wanted=frozenset({Flaw.DEPENDS})),
     Row(Word.UNDECIDED, wanted=frozenset({Flaw.OPEN})),
     Row(Word.ASYMPTOTIC, Ground.DECAYS, allowed=frozenset()),
     Row(Word.STABLE_BUT_CYCLIC, Ground.IDLE, wanted=_DRIFT, allowed=_DRIFT),
     Row(Word.ASYMPTOTIC_BUT_CYCLIC, Ground.DECAYS, wanted=_DRIFT, allowed=_DRIFT),
     Row(Word.ASYMPTOTIC_BUT_STEADY, Ground.DECAYS, wanted=_FAMILY, allowed=_FAMILY),
+    Row(Word.ASYMPTOTIC_BUT_CYCLIC, Ground.DECAYS, wanted=_DRIFT | _FAMILY, allowed=_DRIFT | _FAMILY),  # on a leaf
     Row(Word.ASYMPTOTIC_BUT_TURNED, Ground.DECAYS, allowed=_SOUND),
     Row(Word.STABLE, Ground.ENERGY, allowed=frozenset()),
     Row(Word.STABLE, Ground.ENERGY, wanted=_FAMILY, allowed=_FAMILY),  # of a leaf, beside parts that decay
     Row(Word.STABLE, Ground.LINEAR, allowed=_DRIFT | _FAMILY),  # what may drift by itself stays near, too
-    Row(Word.STABLE_BUT_CYCLIC, Ground.ENERGY, wanted=_DRIFT, allowed=_DRIFT),
+    Row(Word.STABLE_BUT_CYCLIC, Ground.ENERGY, wanted=_DRIFT, allowed=_DRIFT | _FAMILY),
     Row(Word.STABLE_BUT_CYCLIC, Ground.SHIFTED, wanted=_DRIFT, allowed=_DRIFT | _FAMILY),
     Row(Word.GYROSCOPIC, Ground.UNDAMPED, wanted=frozenset({Flaw.INDEFINITE})),
     Row(Word.CRITICAL),
@@ -105,6 +109,7 @@ PLAIN: Mapping[Word, tuple[Set[Ground], Set[Flaw]]] = {
     Word.UNDECIDED: (set(), {Flaw.OPEN}),
     Word.DEPENDS: (set(), {Flaw.DEPENDS}),
     Word.UNSTABLE: (set(), {Flaw.UNSTABLE}),
+    Word.UNSTABLE_BUT_BORDERS: (set(), {Flaw.INSIDE}),
 }
 
 
@@ -199,6 +204,27 @@ def depends() -> Verdict:
     return Verdict(Word.DEPENDS, (), (Reason(Because.SEE_CASES),))
 
 
+def unstable_inside(unstable: Verdict) -> Verdict:
+    """``unstable`` for all parameters but some without inner points, at which it is left open."""
+    return Verdict(Word.UNSTABLE_BUT_BORDERS, unstable.theorems, (*unstable.reasons, Reason(Because.BORDERS_APART)))
+
+
+def weakest(verdicts: Sequence[Verdict]) -> Verdict:
+    """What is true of one system at all parameters, each of which has one of these verdicts."""
+    if len({(one.word, one.theorems, one.reasons, one.grounds, one.flaws) for one in verdicts}) == 1:
+        return verdicts[0]
+    kept = set.intersection(*({*one.laid} for one in verdicts))
+    grounds = {ground: tuple(sorted({name for x in verdicts for name in x.laid[ground]})) for ground in kept}
+    flaws = frozenset[Flaw]().union(*(one.flawed for one in verdicts))
+    row = row_of(kept, flaws)
+    names = () if row.ground is None else grounds[row.ground]
+    alike = [one for one in verdicts if one.word == row.word]
+    if row.ground is None and row.word in (Word.UNSTABLE, Word.UNSTABLE_BUT_BORDERS):
+        names = tuple(sorted({name for one in alike for name in one.theorems}))
+    reasons = {_uncounted(reason) for one in alike for reason in one.reasons}
+    return Verdict(row.word, names, tuple(sorted(reasons, key=lambda x: x.rank)), tuple(grounds.items()), flaws)
+
+
 def concluded(shown: Set[Fact], *reasons: Reason, why_not: Because = Because.BORDER) -> Verdict:
     """What the theorems whose hypotheses are all ``shown`` give, or what may be said without any.
 
@@ -250,7 +276,7 @@ def exactly(verdict: Verdict, calm: bool = False) -> Verdict:
 
     ``calm``: those along cyclic coordinates are, too.
     """
-    if not {Ground.DECAYS, Ground.ENERGY, Ground.LINEAR} & {*verdict.laid}:
+    if not {Ground.DECAYS, Ground.ENERGY, Ground.LINEAR, Ground.SHIFTED} & {*verdict.laid}:
         return verdict
     grounds = {Ground.SHIFTED: (LINEAR,), **verdict.laid}
     if calm or Flaw.CYCLIC not in verdict.flawed:
@@ -275,7 +301,16 @@ def drifting(verdict: Verdict, constant_momenta: bool = True) -> Verdict:
     row = row_of({*grounds}, flaws)
     names = verdict.theorems if row.ground is None else grounds[row.ground]
     reasons = (*(_BESIDE_ZERO_ROOTS.get(reason, reason) for reason in verdict.reasons), Reason(drift))
-    return Verdict(row.word, names, reasons, tuple(grounds.items()), flaws)
+    return Verdict(row.word, names, tuple(dict.fromkeys(reasons)), tuple(grounds.items()), flaws)
+
+
+def displaced(verdict: Verdict, basis: Basis | None) -> Verdict:
+    """The verdict, which says of a drift in which displacements of the user's coordinates it is."""
+    told = () if basis is None else basis.together
+    if not told or Flaw.CYCLIC not in verdict.flawed:
+        return verdict
+    reason = Reason(Because.DISPLACEMENTS, (", ".join(told),))
+    return replace(verdict, reasons=tuple(sorted((*verdict.reasons, reason), key=lambda reason: reason.rank)))
 
 
 #: How reasons read where cyclic coordinates have zero roots, and where momenta of theirs stay different.
@@ -341,7 +376,7 @@ def combine(verdicts: Iterable[Verdict], one_energy: bool = False) -> Verdict:
         names = grounds[row.ground]
     else:  # those of the parts that have the flaw which decides
         names = tuple(sorted({name for part in parts if row.wanted <= part.flawed for name in part.theorems}))
-        names = names if row.word == Word.UNSTABLE else ()
+        names = names if row.word in (Word.UNSTABLE, Word.UNSTABLE_BUT_BORDERS) else ()
     return Verdict(row.word, names, _reasons(parts, row), tuple(grounds.items()), flaws)
 
 
