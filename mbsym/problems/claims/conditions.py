@@ -107,10 +107,9 @@ def _necessary(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimResu
         return _told(result, UNDECIDED, said(Said.NEVER_STABLE, told))
     if claim.relation == "!=":
         return _apart(derived, regions, claim, result, tried, for_exponential)
-    need = next((one for one in needs if one.but_borders), exponential)
-    if need is not None:
-        inside = (said(Said.UNSTABLE_INSIDE),) if need.but_borders else ()
-        return _told(result, BORDERS, need.because, *inside, *for_exponential)
+    partly = next((one for one in needs if one.but_borders), exponential)
+    if partly is not None:
+        return _told(result, BORDERS, partly.because, said(Said.UNSTABLE_INSIDE), *for_exponential)
     return _told(result, UNDECIDED, said(Said.NOT_PROVED_NECESSARY), *for_exponential, _tried(tried, Said.NONE_STABLE))
 
 
@@ -308,7 +307,7 @@ def _sufficient(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimRes
 def _with_equality(derived: Derived, claim: Claim) -> Remark:
     """What is known where both sides are equal: nothing in general, perhaps something at the given values."""
     given = derived.trials.given
-    if given is not None and given.special:
+    if given is not None and claim.right is not None:
         symbols, sides = Symbols.of(derived), [claim.equals, claim.right]
         try:
             lower = symbols.lowering(derived.trials.numbers, given.values, symbols.occurring(sides))

@@ -64,7 +64,7 @@ _SENTENCES: dict[Said, str | Callable[..., str]] = {
     Said.FOLLOWS: "it follows from {}".format,
     Said.UNSTABLE_WITHOUT: "without it the motion is unstable",
     Said.UNSTABLE_BEYOND: "without it, but for the case of equality, the motion is unstable",
-    Said.UNSTABLE_INSIDE: "without it, but where another condition is an equality, the motion is unstable",
+    Said.UNSTABLE_INSIDE: "without it, but where a condition of problem 6 is an equality, the motion is unstable",
     Said.FOR_EXPONENTIAL: lambda whose, note: (
         f"it is necessary for exponential stability{f' of {whose}' if whose else ''} (all roots to the left){note}"
     ),
