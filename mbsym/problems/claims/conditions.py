@@ -86,9 +86,9 @@ def _necessary(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimResu
     verdict = derived.stability.verdict
     never = verdict.word in (Word.UNSTABLE, Word.UNSTABLE_BUT_BORDERS)
     needs = [] if never else [_need(region, claim) for region in regions]
-    for need in needs:
-        if need.everywhere:
-            return _told(result, EXACT, need.because, said(Said.UNSTABLE_WITHOUT))
+    for one in needs:
+        if one.everywhere:
+            return _told(result, EXACT, one.because, said(Said.UNSTABLE_WITHOUT))
     tried = _refuting(derived, claim)
     example = tried.found
     exponential = next((one for one in needs if one.exponential is not None), None)

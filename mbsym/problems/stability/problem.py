@@ -346,7 +346,7 @@ def prepared_parts(
             )
             for part in prepared
         )
-    if lagrangian:
+    if linear.constrained is None or linear.constrained.holonomic:
         leaf = 0 if linear.constrained is None else linear.constrained.leaf
         return tuple(replace(part, system=replace(part.system, leaf=leaf)) for part in prepared) if leaf else prepared
     about, free = linear.constrained, equilibrium.satisfied

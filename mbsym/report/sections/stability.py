@@ -140,8 +140,8 @@ def lines(found: Stability, analysis: Analysis) -> Iterator[str]:
                 shown.show(item)
         for item in items:
             yield f"  {_condition(item, shown)}"
-    judged = [x for part in found.subsystems for x in (part.theory, *part.theory.cases)]
-    for one in dict.fromkeys(reason for x in judged for reason in x.verdict.reasons if reason.code in _OF_COORDINATES):
+    verdicts = [x for part in found.subsystems for x in (part.theory.verdict, *(y.verdict for y in part.theory.cases))]
+    for one in dict.fromkeys(reason for x in verdicts for reason in x.reasons if reason.code in _OF_COORDINATES):
         yield _clause(sentence(one))
     if len(found.subsystems) > 1:
         yield ALONE
