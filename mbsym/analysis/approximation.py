@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.certainty import Certainty
@@ -14,7 +15,7 @@ from mbsym.expressions.tree import Call, Expression, Name, children
 from mbsym.formulas.formula import Column, column
 from mbsym.mechanics import newton_euler
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.motion import turning
+from mbsym.mechanics.motion import is_steady, turning
 from mbsym.mechanics.rotation_orders import rotation_orders
 from mbsym.mechanics.variables import expressions
 from mbsym.problems import linearisation
@@ -46,17 +47,26 @@ def reduced(analysis: Analysis) -> Reduced:
     from mbsym.problems.reduction import Reduced, reduction
 
     _demand_motion(analysis)
-    scene = analysis.parameters_scene
+    scene, names = analysis.parameters_scene, analysis.system.coordinates
     found = expansion(scene, analysis.signs, analysis.system)
     equations = projected(scene, found)
     leaf = 0 if len(found.coordinates) == len(found.speeds) else _kept(analysis)
     if leaf:
         there, own = on_leaf(scene, found, equations)
-        if len(felt(there, own)) == len(there.speeds):
+        unfelt = len(there.speeds) - len(felt(there, own))
+        if not unfelt or unfelt <= _displacements(analysis, [names[i] for i in there.speeds]):
             found, equations = there, own
         else:  # coordinates that drop out, and their families, are judged by the roots of the whole
             leaf = 0
     return Reduced(found, equations, reduction(scene, found, equations, leaf))
+
+
+def _displacements(analysis: Analysis, speeds: Sequence[str]) -> int:
+    """Along how many displacements that the constraints allow no equation changes; ``speeds`` are independent."""
+    from mbsym.problems.constrained_balance import ConstrainedBalance
+
+    balance = ConstrainedBalance(analysis.scene, analysis.optional("energy"), analysis.signs, {})
+    return len(balance.displacements(speeds).directions)
 
 
 def _kept(analysis: Analysis) -> int:
@@ -187,6 +197,10 @@ def _growing(analysis: Analysis) -> tuple[str, ...]:
         return suspects
     entries = [x.polynomial for x in equations.forcing]
     entries += [x for row in equations.mass_matrix.polynomials for x in row]
+    if not system.constraints and all(
+        is_steady(analysis.scene, x) for x in entries
+    ):  # they know q - v t alone: deviations do not know the time
+        return ()
     return tuple(name for name in suspects if any(_unbounded(analysis.ring, x, name) for x in entries))
 
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
+from mbsym.algebra.failures import Failure
 from mbsym.analysis import constrained, given
 from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.mechanics.rest import given_values, missing_values
+from mbsym.mechanics.rotation_orders import rotation_orders
 from mbsym.problems import dissipation, energy, equations, equilibrium, stability
 from mbsym.problems.dissipation import Balance
 from mbsym.problems.energy import Energy
@@ -50,7 +52,37 @@ def equations_of(analysis: Analysis) -> Equations:
 
 
 def stability_of(analysis: Analysis) -> Stability:
-    """The verdicts of problem 6; open ones are looked at further."""
+    """The verdicts of problem 6; open ones are looked at further, in other angles where those given do not serve."""
+    try:
+        found = _judged(analysis)
+    except Unavailable as failure:
+        other = in_other_angles(analysis) if failure.failure.code in ("time-dependent", "not-steady") else None
+        if other is None:
+            raise
+        return other
+    return (in_other_angles(analysis) if found.verdict.coordinates_singular else None) or found
+
+
+def in_other_angles(analysis: Analysis) -> Stability | None:
+    """The verdict on a body's steady spin in a rotation sequence in which that is steady and regular; None without one.
+
+    The unperturbed motion is the same: stability is a property of it, not of angles.
+    """
+    for other in rotation_orders(analysis.system) if analysis.suggests else ():
+        there = type(analysis)(other.system, (), analysis.terms, suggests=False)
+        there.__dict__["ring"] = analysis.ring
+        try:
+            with there.strictly():
+                found = there.stability
+        except Failure:
+            continue
+        if not found.verdict.coordinates_singular:
+            axes = ", ".join(map(str, other.axes))
+            return stability.because(found, Because.OTHER_ANGLES, other.body, axes, ", ".join(other.angles))
+    return None
+
+
+def _judged(analysis: Analysis) -> Stability:
     scene, linear = analysis.parameters_scene, analysis.judgeable
     found = stability.stability(scene, analysis.balance, linear, analysis.equilibrium, analysis.signs)
     values = None if found.numerical is None else stability.parameter_values(scene, analysis.equilibrium)

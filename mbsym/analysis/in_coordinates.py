@@ -8,9 +8,10 @@ stability, asymptotic stability and instability are the same for both.  The theo
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from mbsym.algebra.matrices import determinant
+from mbsym.analysis.deriving import in_other_angles
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import relations, unperturbed_with
@@ -18,6 +19,7 @@ from mbsym.mechanics.variables import ring_environment
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
+    from mbsym.model.system import System
 
 
 def analysis(source: Analysis) -> Analysis:
@@ -36,6 +38,22 @@ def analysis(source: Analysis) -> Analysis:
             reason = "on the given motion the angles are singular: the speeds do not determine their rates there"
             hint = "choose other axes of 'rotation'; those of unit vectors may be any"
             raise Unavailable("motion", NoResult(reason, hint, "singular angles", "singular-angles"))
+    return _same(source, system)
+
+
+def told(source: Analysis, name: str) -> Any:
+    """A result there; of angles that are singular on the motion the verdict may be had in others."""
+    try:
+        return getattr(source.in_coordinates, name)
+    except Unavailable as failure:
+        singular = name == "stability" and failure.failure.code == "singular-angles"
+        found = in_other_angles(_same(source, source.system.without_speeds)) if singular else None
+        if found is None:
+            raise
+        return found
+
+
+def _same(source: Analysis, system: System) -> Analysis:
     there = type(source)(system, source.problems, source.terms, source.suggests, source.angles)
-    there.__dict__["ring"] = ring
+    there.__dict__["ring"] = source.ring
     return there

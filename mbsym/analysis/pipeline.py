@@ -100,7 +100,7 @@ KNOW_CONSTRAINTS = frozenset(
         *("scene", "held_scene", "parameters_scene", "signs", "kinematics", "energy", "equations", "constraints"),
         *("tied_in_coordinates", "first_order", "small_parameters"),
         *("claims", "checks", "reduced", "residuals", "equilibrium", "first_approximation", "linearisation"),
-        *("judgeable", "balance", "stability", "integrals", "reactions"),
+        *("judgeable", "balance", "stability", "trials", "integrals", "reactions"),
         *(f"check: {name}" for name in ("kinematics", "energy", "equations of motion", *constrained.CHECKS)),
         f"check: {constrained.REACTIONS}",
         *("check: equilibrium", "check: perturbed motion"),
@@ -235,7 +235,9 @@ class Analysis(Stages):
         if self.system.constraints and name not in KNOW_CONSTRAINTS:
             compute = self._without_constraints
         elif self.system.speeds and name in IN_COORDINATES:
-            compute = lambda: getattr(self.in_coordinates, name)  # noqa: E731
+            from mbsym.analysis import in_coordinates
+
+            compute = lambda: in_coordinates.told(self, name)  # noqa: E731
         elif self.system.speeds and name not in KNOW_SPEEDS:
             compute = _without_speeds
         elif self.system.linear is not None and name not in given.KNOWN:

@@ -24,7 +24,7 @@ from mbsym.mechanics.motion import relations
 from mbsym.problems.stability.enclosed import enclosed_verdict_with_cyclic
 from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.problem import ExactVerdicts
-from mbsym.problems.stability.verdict import Verdict, combine, off_the_leaf
+from mbsym.problems.stability.verdict import Verdict, combine, displaced, off_the_leaf
 
 #: Working precision, in bits: boxes are wide.
 BITS = 64
@@ -65,7 +65,7 @@ class IrrationalSection:
     def _judged(self, part: LinearSystem, box: Box, bounded: bool) -> Verdict:
         matrices = self._matrices(part, box)
         cyclic = () if part.driven else part.cyclic
-        found = enclosed_verdict_with_cyclic(matrices, bounded, cyclic, BITS)
+        found = displaced(enclosed_verdict_with_cyclic(matrices, bounded, cyclic, BITS, part.exact), part.basis)
         return off_the_leaf(found) if part.leaf else found
 
     def _matrices(self, part: LinearSystem, box: Box) -> list[list[list[Any]]]:
@@ -75,12 +75,13 @@ class IrrationalSection:
         with ctx.workprec(BITS):
             ranges = {x.name: between(box.x0, box.x1, BITS), y.name: between(box.y0, box.y1, BITS)}
             values = _Values(self._scene, self._solved, numbers | ranges)
-            at = [self._linear.coordinates.index(name) for name in part.names]
-            evaluate = self._scene.ring.evaluate
-            return [
-                [[evaluate(matrix.polynomials[i][j], values) for j in at] for i in at]
-                for matrix in self._linear.matrices
-            ]
+            basis, evaluate = part.basis, self._scene.ring.evaluate
+            names = part.names if basis is None else basis.coordinates
+            at = [self._linear.coordinates.index(name) for name in names]
+            blocks = [[[matrix.polynomials[i][j] for j in at] for i in at] for matrix in self._linear.matrices]
+            if basis is not None:
+                blocks = [basis.congruent(self._scene.ring, block) for block in blocks]
+            return [[[evaluate(x, values) for x in row] for row in block] for block in blocks]
 
     def at(self, x: Rational, y: Rational) -> Verdict:
         """The verdict at a point, by the route that problem 6 takes at the numbers of a description."""

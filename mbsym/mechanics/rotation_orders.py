@@ -1,8 +1,9 @@
 """Other rotation sequences of a spinning body, in which the same steady motion may have a steady first approximation.
 
 A body that turns steadily about one axis of its joint, its other angles being zero, stands the same way whatever the
-order of the turns.  The deviations do not: small angles that follow the spin turn with it, those that come before it
-stay behind, and with a body that is not symmetric the coefficients then vary with time.
+order of the turns, and about whichever axes the others are.  The deviations do not: small angles that follow the spin
+turn with it, those that come before it stay behind, and with a body that is not symmetric the coefficients then vary
+with time; with two turns about one axis the angles are singular there.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from dataclasses import dataclass, replace
 from itertools import permutations
 
 from mbsym.expressions.angles import angle_name
-from mbsym.expressions.tree import ZERO, names
+from mbsym.expressions.tree import ZERO, Expression, names
 from mbsym.mechanics.motion import motion_values
 from mbsym.mechanics.variables import expressions
 from mbsym.model.system import Body, Rotation, System, velocity_name
@@ -31,20 +32,31 @@ class Reordered:
 def rotation_orders(system: System) -> Iterator[Reordered]:
     """The other sequences of every joint that spins about one axis, those first in which the spin comes first.
 
-    The joint's angles must be coordinates that occur nowhere else, at rest at zero but for the one that spins.
+    The joint's angles must be coordinates that occur nowhere else, in no constraint either, at rest at zero but for the
+    one that spins.
     """
     for body in system.bodies:
         spin = _spin(system, body)
         if spin is None:
             continue
-        turns = tuple(zip(body.rotation.axes, body.rotation.angles, strict=True))
-        orders = [order for order in permutations(turns) if order != turns]
-        for order in sorted(orders, key=lambda order: [angle_name(angle) for _, angle in order].index(spin)):
+        for order in _orders(body, spin):
             axes = tuple(axis for axis, _ in order)
             turned = replace(body, rotation=Rotation(axes, tuple(angle for _, angle in order)))
             bodies = tuple(turned if other is body else other for other in system.bodies)
             angles = tuple(str(angle_name(angle)) for _, angle in order)
             yield Reordered(replace(system, bodies=bodies), body.name, axes, angles)
+
+
+def _orders(body: Body, spin: str) -> list[tuple[tuple[int, Expression], ...]]:
+    """The turns in other orders; about the three different axes where one of them occurs twice."""
+    turns = given = tuple(zip(body.rotation.axes, body.rotation.angles, strict=True))
+    if len({axis for axis, _ in turns}) < len(turns) == 3:
+        (first,) = (turn for turn in turns if angle_name(turn[1]) == spin)
+        others = [angle for _, angle in turns if angle_name(angle) != spin]
+        left = [axis for axis in (1, 2, 3) if axis != first[0]]
+        turns = (first, *zip(left, others, strict=True))
+    found = [order for order in permutations(turns) if order != given]
+    return sorted(found, key=lambda order: [angle_name(angle) for _, angle in order].index(spin))
 
 
 def _spin(system: System, body: Body) -> str | None:
@@ -54,9 +66,11 @@ def _spin(system: System, body: Body) -> str | None:
         return None
     own = {name for name in angles if name is not None}
     hidden = own | {velocity_name(name) for name in own}
-    elsewhere = [*(other for other in system.bodies if other is not body), *system.loads]
-    place = (body.connection_point, body.mass_centre, body.inertia)
-    if any(hidden & names(x) for part in (*elsewhere, *place) if part is not None for x in expressions(part)):
+    bodies = (replace(other, rotation=Rotation((), ())) if other is body else other for other in system.bodies)
+    elsewhere = (*bodies, *system.loads, *system.constraints)
+    if any(hidden & names(x) for part in elsewhere for x in expressions(part)):
+        return None
+    if any(own & {*load.coordinates} for load in system.loads):  # a spring on an angle is one of this sequence
         return None
     motion = motion_values(system)
     spinning = [name for name in own if motion[name][1] != ZERO]

@@ -30,15 +30,18 @@ class Spin:
     rate: Expression
 
 
-def free_spin(system: System) -> Spin | None:
-    """The spin of a system that is the same in every direction of space, or None where there is none."""
+def free_spin(system: System, still: bool = False) -> Spin | None:
+    """The spin of a system that is the same in every direction of space, or None where there is none.
+
+    With ``still`` one of rate 0, too: a despun platform that carries rotors stands in any direction.
+    """
     roots = [body for body in system.bodies if body.attached_to == INERTIAL]
     angles = _attitude(roots[0]) if len(roots) == 1 else None
     if angles is None or not _same_in_every_direction(system, roots[0], angles):
         return None
     motion = motion_values(system)
     first, second, third = angles
-    if motion[first][1] == ZERO or any(motion[name][1] != ZERO for name in (second, third)):
+    if (motion[first][1] == ZERO and not still) or any(motion[name][1] != ZERO for name in (second, third)):
         return None
     return Spin(first, (second, third), motion[first][1])
 

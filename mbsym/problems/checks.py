@@ -39,6 +39,8 @@ from mbsym.problems.kinematics import BodyKinematics, Kinematics
 from mbsym.problems.linearisation import Linearisation
 
 EXACT, NUMERICAL, UNDECIDED, FAILED = "exact", Certainty.VERIFIED, Certainty.UNDECIDED, "FAILED"
+#: Of the mass matrix: no route is wrong, the described system is degenerate.
+SINGULAR = "singular"
 
 #: How many states; each is enough to catch a slip with probability close to one.
 STATES = 3
@@ -53,7 +55,7 @@ PRECISION = 256
 
 @dataclass(frozen=True)
 class Check:
-    """``first`` and ``second`` name the routes; ``outcome`` is exact, verified numerically, undecided or FAILED.
+    """``first`` and ``second`` name the routes; ``outcome``: exact, verified numerically, undecided, singular, FAILED.
 
     ``states``: at how many states they agree, where they are compared at states.
     """
@@ -72,6 +74,10 @@ class Check:
     @property
     def failed(self) -> bool:
         return self.outcome == FAILED
+
+    @property
+    def singular(self) -> bool:
+        return self.outcome == SINGULAR
 
 
 #: A label for the complaint, and two values that must be equal.
@@ -273,7 +279,9 @@ def check_mass_matrix(truth: Oracles, programs: Programs) -> Check:
         return Check("mass matrix", *routes, UNDECIDED, "enclosures too wide to tell whether M is regular")
     idle = [name for i, name in enumerate(names) if all(programs.program.vanishes(x) for x in programs.mass_matrix[i])]
     which = ", ".join(idle) if idle else f"some combination of {', '.join(names)}"
-    return Check("mass matrix", *routes, FAILED, f"M is singular: {which} carries no inertia")
+    return Check(
+        "mass matrix", *routes, SINGULAR, f"{which} carries no inertia: no equation determines its acceleration"
+    )
 
 
 def check_kinematics(truth: Oracles, kinematics: Kinematics) -> Check:

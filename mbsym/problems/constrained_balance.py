@@ -10,7 +10,7 @@ forces do not act on it.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -20,6 +20,7 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.mechanics.constraints.rows import Row, said_rows
 from mbsym.mechanics.motion import turning
+from mbsym.problems.displacements import Displacements
 from mbsym.problems.dissipation import Balance, EnergyLaw
 from mbsym.problems.reduction import Reduction
 
@@ -46,6 +47,24 @@ class ConstrainedBalance(Balance):
     def ignorable(self) -> tuple[str, ...]:
         """The cyclic coordinates that no constraint touches."""
         return tuple(name for name in self.absent if name not in self._touched)
+
+    def displacements(self, coordinates: Sequence[str]) -> Displacements:
+        """Displacements that the constraints allow, by independent coordinates; dependent ones go with these.
+
+        Where the constraints are integrable they lead from a leaf into itself: constraint forces do no work along them.
+        """
+        none, names = Displacements(tuple(coordinates)), self.scene.system.coordinates
+        if self._rows is None:
+            return none
+        independent = () if self.about is None else self.about.about
+        taken = (*coordinates, *(name for name in names if name not in {*coordinates, *independent}))
+        places = [names.index(name) for name in taken]
+        found = self._displacements(taken, [(row.velocity, [row.partials[i] for i in places]) for row in self._rows])
+        return replace(
+            found,
+            coordinates=tuple(coordinates),
+            directions=tuple(direction[: len(coordinates)] for direction in found.directions),
+        )
 
     @cached_property
     def absent(self) -> tuple[str, ...]:
@@ -116,6 +135,15 @@ class ConstrainedBalance(Balance):
             ]
             equations.append((ring.derivative(f, name), [*maps, *combined]))
         return _solvable(equations)
+
+    @property
+    def _velocity_rows(self) -> tuple[Polynomial, ...]:
+        return tuple(row.velocity for row in self._rows or ())
+
+    @cached_property
+    def exactly_linear(self) -> bool:
+        """Whether the open tree's equations and the rows are, and with them the equations of what is independent."""
+        return self._rows is not None and super().exactly_linear
 
     @property
     def ring(self) -> Ring:

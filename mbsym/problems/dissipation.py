@@ -53,7 +53,9 @@ from mbsym.model.loads import (
     Load,
 )
 from mbsym.model.system import INERTIAL, rational, velocity_name
+from mbsym.problems.displacements import Displacements, displacements
 from mbsym.problems.energy import Energy
+from mbsym.problems.exact_linearity import Excess, excess
 
 
 class EnergyLaw(Enum):
@@ -98,7 +100,7 @@ class Balance:
         }
         there = replace(self, fixed=exact)
         # What holds for all parameters holds there: no need to find it once more at every point.
-        kept: dict[str, Any] = {"ignorable": self.ignorable}
+        kept: dict[str, Any] = {"ignorable": self.ignorable, "_nonlinear": self._nonlinear}
         if not self.driven:
             kept["driven"] = ()
         if self.law.bounded:
@@ -117,6 +119,25 @@ class Balance:
         except Failure:
             return EnergyLaw.UNKNOWN
 
+    @cached_property
+    def exactly_linear(self) -> bool:
+        """Whether the equations of motion have no terms of higher order at all."""
+        try:
+            return self._nonlinear is not None and all(self._put(x).is_zero() for x in self._nonlinear)
+        except Failure:  # a formula has no value there
+            return False
+
+    @cached_property
+    def _nonlinear(self) -> Excess:
+        if self.energy is None or not self.scene.motions:
+            return None
+        return excess(self.scene, self.energy, self._velocity_rows)
+
+    @property
+    def _velocity_rows(self) -> tuple[Polynomial, ...]:
+        """Of constraints: J q' + j."""
+        return ()
+
     # --- cyclic coordinates ---
 
     @cached_property
@@ -132,6 +153,28 @@ class Balance:
         Where all of Q_i is linear it shows in D and N; the momentum is constant if these have no entries.
         """
         return tuple(name for name in self.ignorable if not self._linear(name))
+
+    def displacements(self, coordinates: Sequence[str]) -> Displacements:
+        """Displacements along some coordinates that change no equation; none where there are no closed formulas."""
+        return self._displacements(coordinates)
+
+    def _displacements(
+        self, coordinates: Sequence[str], rows: Sequence[tuple[Polynomial, Sequence[Polynomial]]] = ()
+    ) -> Displacements:
+        """``rows``: of every constraint g, and its partial derivatives by the velocities of ``coordinates``."""
+        none, system, ring = Displacements(tuple(coordinates)), self.scene.system, self.scene.ring
+        if self.energy is None or self.somewhere or self._forces is None:
+            return none
+        order = (*coordinates, *(name for name in system.coordinates if name not in coordinates))
+        try:
+            forces = [
+                ring.reduce(ring.derivative(self.energy.force_function.polynomial, name) + self._forces[name])
+                for name in order
+            ]
+            moving = (*system.coordinates, *system.velocities)
+            return displacements(ring, coordinates, self.energy.kinetic_energy.polynomial, forces, moving, rows)
+        except Failure:
+            return none
 
     def _unseen(self, name: str) -> bool:
         """Whether Q does not depend on a coordinate."""

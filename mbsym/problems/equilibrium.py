@@ -26,7 +26,7 @@ from mbsym.algebra.signs import Signs
 from mbsym.formulas.formula import Column, Formula, column
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.motion import determined, motion_values, relations, unperturbed_with, unsteady
+from mbsym.mechanics.motion import determined, motion_values, relations, steadied, unperturbed_with, unsteady
 from mbsym.model.system import System
 
 
@@ -64,7 +64,7 @@ def equilibrium(scene: Scene, residuals: Sequence[Polynomial], signs: Signs, on_
     """
     ring = scene.ring
     at = relations(scene) if on_motion else unperturbed_with(scene, relations(scene))
-    values = [ring.substitute(x, at) for x in residuals]
+    values = [steadied(scene, ring.substitute(x, at)) for x in residuals]
     varying = tuple(dict.fromkeys(name for x in values for name in unsteady(scene, x)))
     pending = [condition for x in values if (condition := essential(scene, x, signs)) is not None]
     conditions: list[Polynomial] = []

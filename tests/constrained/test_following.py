@@ -148,3 +148,51 @@ def test_imaginary_pairs_at_irrational_values(stiffness: tuple[str, str], even: 
         nothing = [[zero, zero], [zero, zero]]
         matrices = [[[one, zero], [zero, one]], nothing, nothing, [[a, zero], [zero, b]], nothing]
         assert enclosed(NonholonomicForm(), matrices, 0, 128, even).word is word
+
+
+TRAILER = """
+mbsym: 1
+name: Cart with a trailer that does not slip
+parameters: {m: {positive: true, value: 1}, l: {positive: true, value: 2}, v: {value: SPEED}}
+bodies:
+  - {name: cart, attached to: 0, connection point: [x, 0, 0], coordinates: [x], mass: m}
+  - {name: trailer, attached to: cart, rotation: {axes: [3], angles: [psi]}, mass: MASS, mass centre: [-l, 0, 0]}
+constraints:
+  - velocity: l*psi_dot = -x_dot*sin(psi)
+motion: {x: {rate: v}, psi: 0}
+"""
+
+
+@pytest.mark.parametrize("mass", ["0", "m/7"])
+@pytest.mark.parametrize("dependent", ["", "dependent: [psi]", "dependent: [x]"])
+@pytest.mark.parametrize(("speed", "word"), [("1", Word.ASYMPTOTIC_BUT_STEADY), ("-1", Word.UNSTABLE)])
+def test_the_angle_of_a_trailer_has_its_root(speed: str, word: Word, dependent: str, mass: str) -> None:
+    """No equation of the cart feels the trailer to first order, but l psi' = -v psi: pulled it follows, else it folds.
+
+    The cart runs at any speed from any place: two zero roots, a family of one dimension besides x.
+    """
+    found = described(TRAILER.replace("SPEED", speed).replace("MASS", mass) + dependent + "\n").stability
+    assert found.numerical is not None
+    assert found.numerical.word is word
+    told = {part.coordinates: [str(x) for x in part.characteristic] for part in found.subsystems}
+    assert told == {("x",): ["0", "0", "1"], ("psi",): ["v", "l"]}
+
+
+TURNTABLE = (Path(__file__).parents[2] / "systems" / "turntable-sphere.yaml").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("dependent", ["[alpha, beta]", "[x, y]", "[x, alpha]", "[y, gamma]"])
+def test_no_choice_of_dependent_velocities_loses_a_root(dependent: str) -> None:
+    """Routh's sphere on a turntable: its centre goes round at the rate J Omega/(J + m r^2), wherever it is.
+
+    In angles that turn with it the sphere, spinning at the rate s, turns about the others with the frequency s; place
+    and spin add zero roots: lambda^4 (lambda^2 + s^2) (lambda^2 + (J Omega/(J + m r^2))^2).
+    """
+    found = described(TURNTABLE.replace("dependent: [alpha, beta]", f"dependent: {dependent}")).stability
+    assert sum(len(part.characteristic) - 1 for part in found.subsystems) == 8
+    (part,) = (part for part in found.subsystems if part.coordinates != ("gamma",))
+    values = {"m": 1, "r": Fraction(1, 10), "J": Fraction(1, 250), "Omega": 2, "s": 3}
+    numbers = [Fraction(str(x.subs(values))) for x in part.characteristic]
+    rate = Fraction(4, 7)  # J/(J + m r^2) Omega = 2/7 Omega
+    scaled = [x / numbers[-1] for x in numbers]
+    assert scaled == [0, 0, 9 * rate**2, 0, 9 + rate**2, 0, 1]

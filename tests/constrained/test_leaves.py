@@ -204,11 +204,31 @@ motion: {x: {rate: v}, phi: {rate: -v/r}, theta: 0}
 """
 
 
-def test_coordinates_that_drop_out_are_judged_with_their_family() -> None:
-    """The wheel may be anywhere and run at any speed: not asymptotically stable, but for that."""
-    found = described(WHEEL.replace("c: positive}", "c: positive, v: real}"))
-    about = found.linearisation.constrained
-    assert about is not None
-    assert about.leaf == 0
-    assert set(about.idle) >= {"x", "phi"}
-    assert found.stability.verdict.word is Word.ASYMPTOTIC_BUT_STEADY
+@pytest.mark.parametrize(
+    "described_as",
+    [
+        WHEEL,
+        WHEEL + "dependent: [x]\n",
+        WHEEL + "dependent: [phi]\n",
+        # by hand: phi = -x/r, no constraint
+        WHEEL.replace("angles: [phi]", "angles: [-x/r]")
+        .replace("constraints:\n  - velocity: x_dot + r*phi_dot = 0\n", "")
+        .replace("phi: {rate: -v/r}, ", ""),
+    ],
+)
+def test_a_wheel_that_runs_on_is_judged_alike_in_every_description(described_as: str) -> None:
+    """The wheel may be anywhere and run at any speed: (2 m + J/r^2) x' + m l cos(theta) theta' is constant.
+
+    Without x the pendulum has  m l (l - m l/(2 m + J/r^2)) theta'' + c theta' + m g l theta = 0  near theta = 0: it
+    comes to rest, and the wheel drifts.
+    """
+    found = described(described_as.replace("c: positive}", "c: positive, v: real}"))
+    assert found.stability.verdict.word is Word.ASYMPTOTIC_BUT_CYCLIC
+    (part,) = found.stability.subsystems
+    coefficients = part.characteristic
+    assert [x.is_zero for x in coefficients] == [True, True, False, False, False]  # lambda^2 (. lambda^2 + . + .)
+
+
+def test_a_wheel_that_stands_is_judged_without_a_family_in_the_description() -> None:
+    found = described(WHEEL.replace("x: {rate: v}, phi: {rate: -v/r}, ", ""))
+    assert found.stability.verdict.word is Word.ASYMPTOTIC_BUT_CYCLIC

@@ -95,15 +95,24 @@ def on_leaf(scene: Scene, found: Expansion, equations: Projected) -> tuple[Expan
 def felt(found: Expansion, equations: Projected) -> tuple[int, ...]:
     """The independent coordinates on which the equations of the speeds depend, directly or through others.
 
-    The others (a place on the ground, the angle of a wheel) follow by quadratures and drop out.
+    And those whose rates depend on themselves, directly or through others (the angle of a light trailer behind its
+    car): they have roots of their own.  All others (a place on the ground, the angle of a wheel) follow by quadratures
+    and drop out.
     """
+    rows = [{m for m, x in enumerate(row) if not x.is_zero()} for row in equations.T]
     pending = {j for row in equations.C for j, x in enumerate(row) if not x.is_zero()}
-    known: set[int] = set()
+    pending |= {j for j in range(len(rows)) if j in _reached(rows, rows[j])}
+    return tuple(sorted(_reached(rows, pending)))
+
+
+def _reached(rows: Sequence[set[int]], start: set[int]) -> set[int]:
+    """Everything that some coordinates depend on, and these."""
+    known, pending = set(start), list(start)
     while pending:
-        j = pending.pop()
-        known.add(j)
-        pending |= {m for m, x in enumerate(equations.T[j]) if not x.is_zero()} - known
-    return tuple(sorted(known))
+        new = rows[pending.pop()] - known
+        known |= new
+        pending += new
+    return known
 
 
 def _cut(scene: Scene, forms: Sequence[Form], columns: Sequence[int]) -> Rows:

@@ -5,19 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
-from flint import arb, ctx, fmpq
+from flint import arb, arb_mat, ctx, fmpq
 
 from mbsym.algebra.base import Lowering
+from mbsym.algebra.characteristic import Matrix as Polynomials
 from mbsym.algebra.elimination import Elimination, eliminate
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.ring import ParameterRing, Polynomial, Ring
-from mbsym.algebra.signs import Signs
+from mbsym.algebra.signs import MOST_TERMS, Signs
 from mbsym.expressions.tree import names
 from mbsym.formulas.formula import Formula, Matrix
 from mbsym.formulas.notebook import Shown
@@ -26,19 +27,23 @@ from mbsym.mechanics.motion import dependent, relations
 from mbsym.mechanics.symmetry import Spin, free_spin
 from mbsym.mechanics.variables import expressions
 from mbsym.model.system import rational
+from mbsym.problems.displacements import Basis, Displacements
+from mbsym.problems.displacements import basis as basis_of
 from mbsym.problems.dissipation import Balance
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.knowledge import definition_in_parameters
 from mbsym.problems.linearisation import Linearisation, Subsystem, first_symbols
 from mbsym.problems.stability import nonholonomic
+from mbsym.problems.stability.covering import Cell, Lift, cells_of, everywhere, joined
 from mbsym.problems.stability.enclosed import enclosed_verdict_with_cyclic
 from mbsym.problems.stability.exact import verdict_at
-from mbsym.problems.stability.linear_form import LinearSystem, NonholonomicForm
-from mbsym.problems.stability.reasons import Because
+from mbsym.problems.stability.linear_form import LinearSystem, NonholonomicForm, add, null_rows
+from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.requirements import Requirement
 from mbsym.problems.stability.spectrum import Spectrum, from_characteristic, from_matrices
 from mbsym.problems.stability.symbolic import Theory, analyse
-from mbsym.problems.stability.verdict import Verdict, combine, off_the_leaf, undecided
+from mbsym.problems.stability.verdict import Verdict, combine, displaced, exactly, off_the_leaf, undecided
+from mbsym.problems.stability.word import Word
 
 if TYPE_CHECKING:
     from mbsym.problems.reduction import Reduction
@@ -114,8 +119,17 @@ class SubsystemStability(Shown):
                 yield wanted.label, self._formula(x), "!="
 
     def _formula(self, x: Polynomial) -> Formula:
-        whole = self.factor.ring
-        return Formula(whole, self.ring.lift(x) if isinstance(self.ring, ParameterRing) else whole.reduce(x))
+        return Formula(self.factor.ring, self.in_whole(x))
+
+    def in_whole(self, x: Polynomial) -> Polynomial:
+        """A polynomial of ``ring`` in the system's ring."""
+        return self.ring.lift(x) if isinstance(self.ring, ParameterRing) else self.factor.ring.reduce(x)
+
+    def cells(self, lift: Lift) -> tuple[Cell, ...]:
+        """Its cases as sets of parameters in another ring: one where the verdict does not depend on them."""
+        decided = self.theory.verdict.word is not Word.DEPENDS
+        found = None if decided else cells_of([case for case in self.theory.cases if not case.never], lift)
+        return everywhere(self.theory.verdict) if found is None else found
 
 
 @dataclass(frozen=True, repr=False)
@@ -134,6 +148,20 @@ class Stability(Shown):
     def terms(self) -> int:
         """Terms of the characteristic polynomials."""
         return sum(x.terms for part in self.subsystems for x in part.characteristic)
+
+
+def because(found: Stability, code: Because, *data: object) -> Stability:
+    """The same with a reason more in every verdict."""
+    reason = Reason(code, data)
+
+    def more(verdict: Verdict) -> Verdict:
+        return replace(verdict, reasons=tuple(sorted((*verdict.reasons, reason), key=lambda one: one.rank)))
+
+    parts = tuple(
+        replace(part, theory=replace(part.theory, verdict=more(part.theory.verdict))) for part in found.subsystems
+    )
+    numerical = None if found.numerical is None else more(found.numerical)
+    return replace(found, subsystems=parts, verdict=more(found.verdict), numerical=numerical)
 
 
 def stability(
@@ -162,7 +190,26 @@ def stability(
         )
         numerical = combine(there, balance.at(values).law.bounded)
     verdict = combine((part.theory.verdict for part in judged), balance.law.bounded)
+    if verdict.word is Word.DEPENDS and len(judged) > 1:
+        verdict = _whole(scene.ring, judged, signs, balance.law.bounded)
     return Stability(judged, verdict, numerical, spectra)
+
+
+def _whole(ring: Ring, parts: Sequence[SubsystemStability], signs: Signs, one_energy: bool) -> Verdict:
+    """The verdict on parts some of which depend on the parameters: their cases are intersected."""
+    minors = [(part, r.polynomial) for part in parts for r in part.theory.mass.requirements]
+    every = [part.in_whole(x) for part in parts for case in part.theory.cases for x in case.polynomials]
+    every += [part.in_whole(x) for part, x in minors]
+    small, known = in_parameters(ring, [[every]], signs)
+
+    def lifted(part: SubsystemStability, x: Polynomial) -> Polynomial:
+        whole = part.in_whole(x)
+        return small.project(whole) if isinstance(small, ParameterRing) else whole
+
+    masses = (lifted(part, x) for part, x in minors if len(x) <= MOST_TERMS)
+    known = known.assuming((x, ">") for x in masses if not x.is_constant())
+    cells = [part.cells(partial(lifted, part)) for part in parts]
+    return joined(cells, known, one_energy)
 
 
 def _spectrum(
@@ -184,11 +231,21 @@ def _spectrum(
 
 
 def matrices_at(
-    scene: Scene, linear: Linearisation, coordinates: Sequence[str], values: Mapping[str, Fraction]
+    scene: Scene,
+    linear: Linearisation,
+    coordinates: Sequence[str],
+    values: Mapping[str, Fraction],
+    basis: Basis | None = None,
 ) -> list[list[list[Any]]]:
-    """The blocks of M, D, G, K, N that belong to some coordinates, as enclosures at parameter values."""
+    """The blocks of M, D, G, K, N that belong to some coordinates, or to a basis, as enclosures at parameter values.
+
+    What vanishes identically is exactly 0.
+    """
     at = [linear.coordinates.index(name) for name in coordinates]
-    return [_balls(scene, [[matrix.polynomials[i][j] for j in at] for i in at], values) for matrix in linear.matrices]
+    blocks = [[[matrix.polynomials[i][j] for j in at] for i in at] for matrix in linear.matrices]
+    if basis is not None:
+        blocks = [basis.congruent(scene.ring, block) for block in blocks]
+    return [_balls(scene, block, values) for block in blocks]
 
 
 def _balls(scene: Scene, rows: Sequence[Sequence[Polynomial]], values: Mapping[str, Fraction]) -> list[list[Any]]:
@@ -208,13 +265,15 @@ def _enclosed(
 ) -> Verdict:
     """The verdict on a subsystem at values where its matrices hold irrational numbers (sqrt(3), a sine)."""
     there = balance.at(values)
-    constant = not any(name in there.driven for name in part.coordinates)  # the momenta of cyclic coordinates
-    cyclic = part.system.cyclic if constant else ()
-    matrices = matrices_at(scene, linear, part.coordinates, values)
+    cyclic = () if part.at(there).driven else part.system.cyclic
+    matrices = matrices_at(scene, linear, part.coordinates, values, part.system.basis)
     if part.system.nonholonomic is not None:
         even = theory.variable == "lambda^2"
-        return nonholonomic.enclosed(part.system.nonholonomic, matrices, theory.zero_power, PRECISION, even)
-    found = enclosed_verdict_with_cyclic(matrices, there.law.bounded, cyclic, PRECISION)
+        form, power, exact = part.system.nonholonomic, theory.zero_power, there.exactly_linear
+        found = nonholonomic.enclosed(form, matrices, power, PRECISION, even, exact)
+        return exactly(found) if exact else found
+    found = enclosed_verdict_with_cyclic(matrices, there.law.bounded, cyclic, PRECISION, there.exactly_linear)
+    found = displaced(found, part.system.basis)
     return off_the_leaf(found) if part.system.leaf else found
 
 
@@ -228,7 +287,10 @@ def _judge(scene: Scene, made: Prepared, values: Mapping[str, Fraction] | None, 
 
 @dataclass(frozen=True)
 class Prepared:
-    """A subsystem ready to be judged: matrices times ``factor``, and as polynomials of ``ring`` in ``system``."""
+    """A subsystem ready to be judged: matrices times ``factor``, and as polynomials of ``ring`` in ``system``.
+
+    ``drifts``: a drift along directions on which nothing depends is told apart, as that of cyclic coordinates is.
+    """
 
     coordinates: tuple[str, ...]
     matrices: tuple[Matrix, Matrix, Matrix, Matrix, Matrix]
@@ -236,6 +298,16 @@ class Prepared:
     ring: Ring
     known: Signs
     system: LinearSystem
+    drifts: bool = True
+
+    @cached_property
+    def _shifts(self) -> Polynomials:
+        rows = add(self.system.K, self.system.N)
+        return null_rows(rows, self.known.normalised) if self.drifts else ()
+
+    def exactly(self, exact: bool) -> LinearSystem:
+        """The system, as one without terms of higher order if ``exact``."""
+        return replace(self.system, exact=exact, shifts=self._shifts if exact else ())
 
     @cached_property
     def theory(self) -> Theory:
@@ -244,8 +316,10 @@ class Prepared:
 
     def at(self, there: Balance) -> LinearSystem:
         """The system with what is known of energy and momenta at parameter values."""
-        driven = tuple(i for i in self.system.cyclic if self.coordinates[i] in there.driven)
-        return replace(self.system, conservative=there.law.bounded, driven=driven)
+        driven = self.system.driven
+        if self.system.basis is None:
+            driven = tuple(i for i in self.system.cyclic if self.coordinates[i] in there.driven)
+        return replace(self.exactly(there.exactly_linear), conservative=there.law.bounded, driven=driven)
 
 
 def prepared_parts(
@@ -253,9 +327,12 @@ def prepared_parts(
 ) -> tuple[Prepared, ...]:
     """Every subsystem, ready to be judged."""
     elimination = elimination_of(scene)
-    spin = None if scene.system.constraints else free_spin(scene.system)
+    spin = None if scene.system.constraints else free_spin(scene.system, still=True)
+    lagrangian = linear.constrained is None or linear.constrained.holonomic
     prepared = tuple(
-        _prepared(scene, part, elimination, signs, balance, _turned(scene, part, spin, equilibrium))
+        _prepared(
+            scene, part, elimination, signs, balance, _turned(scene, part, spin, equilibrium), equilibrium, lagrangian
+        )
         for part in linear.subsystems
     )
     if scene.system.linear is not None and scene.system.linear.of_first_order:
@@ -304,26 +381,74 @@ def _prepared(
     signs: Signs,
     balance: Balance,
     turned: Sequence[Polynomial],
+    equilibrium: Equilibrium,
+    lagrangian: bool,
 ) -> Prepared:
     matrices, factor = _polynomial(scene, part, elimination, signs)
-    rows = [tuple(tuple(x for x in row) for row in matrix.polynomials) for matrix in matrices]
-    idle = tuple(
+    rows = [[list(row) for row in matrix.polynomials] for matrix in matrices]
+    cyclic = tuple(
         i
         for i, name in enumerate(part.coordinates)
         if name in balance.ignorable and all(x.is_zero() for matrix in (rows[3], rows[4]) for x in matrix[i])
     )
+    driven = tuple(i for i in cyclic if part.coordinates[i] in balance.driven)
+    names, basis = part.coordinates, None
+    hidden = _displaced(scene, part, balance, signs, cyclic, equilibrium) if lagrangian else None
+    if hidden is not None:
+        found, basis = hidden
+        inner = basis.through(scene.ring, elimination)
+        changed = [inner.congruent(scene.ring, matrix) for matrix in rows]
+        count = len(found.directions)
+        if all(x.is_zero() for matrix in changed[3:] for row in matrix[:count] for x in row):
+            rows, cyclic, driven, names = changed, tuple(range(count)), found.driven, basis.names
+        else:
+            basis = None
     turned = [elimination(x) for x in turned]
     ring, known = in_parameters(scene.ring, [*rows, [turned]], signs)
     if isinstance(ring, ParameterRing):
-        rows = [tuple(tuple(ring.project(x) for x in row) for row in matrix) for matrix in rows]
+        rows = [[[ring.project(x) for x in row] for row in matrix] for matrix in rows]
         turned = [ring.project(x) for x in turned]
-    mass, damping, gyroscopic, stiffness, circulatory = rows
-    driven = tuple(i for i in idle if part.coordinates[i] in balance.driven)
+    mass, damping, gyroscopic, stiffness, circulatory = (tuple(map(tuple, matrix)) for matrix in rows)
     bounded = balance.law.bounded
     system = LinearSystem(
-        mass, damping, gyroscopic, stiffness, circulatory, bounded, idle, tuple(turned), driven, part.coordinates
+        mass, damping, gyroscopic, stiffness, circulatory, bounded, cyclic, tuple(turned), driven, names, basis=basis
     )
-    return Prepared(part.coordinates, matrices, factor, ring, known, system)
+    made = Prepared(part.coordinates, matrices, factor, ring, known, system, scene.system.linear is None)
+    return replace(made, system=made.exactly(balance.exactly_linear))
+
+
+def _displaced(
+    scene: Scene, part: Subsystem, balance: Balance, signs: Signs, cyclic: Sequence[int], equilibrium: Equilibrium
+) -> tuple[Displacements, Basis] | None:
+    """Displacements that change no equation, and coordinates made of them; None where cyclic coordinates are all.
+
+    They are looked for where K + N is singular besides the cyclic coordinates, or forces act on several of these.
+    """
+    others = [i for i in range(len(part.coordinates)) if i not in cyclic]
+    stiff = [[part.K.polynomials[i][j] + part.N.polynomials[i][j] for j in others] for i in others]
+    acting = [(part.D, part.N)[k].polynomials[i] for i in cyclic for k in (0, 1)]
+    free = sum(all(x.is_zero() for x in (*d, *n)) for d, n in zip(acting[::2], acting[1::2], strict=True))
+    whole = len(cyclic) < 2 or free == len(cyclic)
+    if scene.system.linear is not None or (whole and _somewhere_regular(scene, stiff)):
+        return None
+    found = balance.displacements(part.coordinates)
+    if len(found.directions) < len(cyclic) or (len(found.directions) == len(cyclic) and found.constant <= free):
+        return None
+    images = equilibrium.determined(scene)
+    chosen = basis_of(scene.ring, found, signs)
+    return None if chosen is None else (found, chosen.through(scene.ring, lambda x: scene.ring.substitute(x, images)))
+
+
+def _somewhere_regular(scene: Scene, rows: Sequence[Sequence[Polynomial]]) -> bool:
+    """Whether a matrix is shown to be regular for some parameters: at numbers of no meaning."""
+    numbers = {name: arb(fmpq(101 + 37 * k, 89 + 14 * k)) for k, name in enumerate(scene.ring.names())}
+    with ctx.workprec(PRECISION):
+        try:
+            entries = [scene.ring.evaluate(x, numbers) for row in rows for x in row]
+            found = arb_mat(len(rows), len(rows), entries).det()
+        except Failure:
+            return False
+        return bool(found.is_finite() and not found.contains(0))
 
 
 class ExactVerdicts:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from mbsym.algebra.characteristic import Matrix, Polynomial, determinant
 from mbsym.problems.stability.linear_form import LinearSystem, is_zero
+from mbsym.problems.stability.theorems import Fact
 
 
 def only_momenta(system: LinearSystem) -> bool:
@@ -13,9 +14,10 @@ def only_momenta(system: LinearSystem) -> bool:
 
 
 def ignoring_cyclic(system: LinearSystem) -> LinearSystem:
-    """Routh's reduction, D and N without cyclic rows: cyclic velocities expressed by their constant momenta.
+    """Routh's reduction: cyclic velocities expressed by their momenta, where these are constant.
 
-    With c the cyclic and r the other coordinates, M_cc q_c' + M_cr q_r' + G_cr q_r = const gives::
+    With c the cyclic coordinates of ``with_constant_momenta`` and r the others,
+    M_cc q_c' + M_cr q_r' + G_cr q_r = const gives::
 
         M_R = M_rr - M_rc W M_cr,   G_R = G_rr - M_rc W G_cr - G_rc W M_cr,   K_R = K_rr - G_rc W G_cr,   W = M_cc^-1
 
@@ -24,7 +26,7 @@ def ignoring_cyclic(system: LinearSystem) -> LinearSystem:
     """
     if not momenta_are_constant(system):
         raise ValueError("Routh's reduction needs cyclic coordinates without D and N and no G between them, and others")
-    cyclic = system.cyclic
+    cyclic = with_constant_momenta(system)
     rest = [i for i in range(system.size) if i not in cyclic]
     block = [[system.M[i][j] for j in cyclic] for i in cyclic]
     scale, inverse = determinant(block), adjugate(block)
@@ -48,22 +50,53 @@ def ignoring_cyclic(system: LinearSystem) -> LinearSystem:
         )
 
     m, g = system.M, system.G
+    stiffness = schur(system.K, (g, g))  # with G between them an ignored coordinate makes another one felt
     return LinearSystem(
         schur(m, (m, m)),
         schur(system.D),
         schur(g, (m, g), (g, m)),
-        schur(system.K, (g, g)),
+        stiffness,
         schur(system.N),
         system.conservative,
+        cyclic=tuple(k for k, i in enumerate(rest) if i in system.cyclic and all(x == 0 for x in stiffness[k])),
+        driven=tuple(k for k, i in enumerate(rest) if i in system.driven),
         turned=system.turned,
         names=tuple(system.name(i) for i in rest),
+        exact=system.exact,
     )
 
 
+def with_constant_momenta(system: LinearSystem) -> tuple[int, ...]:
+    """The cyclic coordinates on which nothing acts; () where G is between them."""
+    found = tuple(
+        i
+        for i in system.cyclic
+        if i not in system.driven and all(x == 0 for matrix in (system.D, system.N) for x in matrix[i])
+    )
+    return () if any(system.G[i][j] != 0 for i in found for j in found) else found
+
+
 def momenta_are_constant(system: LinearSystem) -> bool:
-    between = any(system.G[i][j] != 0 for i in system.cyclic for j in system.cyclic)
-    acted_on = any(x != 0 for matrix in (system.D, system.N) for i in system.cyclic for x in matrix[i])
-    return not acted_on and not between and not system.driven and 0 < len(system.cyclic) < system.size
+    """Whether there are such coordinates, and others."""
+    return 0 < len(with_constant_momenta(system)) < system.size
+
+
+#: What Lagrange's theorem needs where K is that of ``besides_cyclic``.
+ENERGY_BESIDES = frozenset(
+    {
+        Fact.MASS_POSITIVE,
+        Fact.POTENTIAL,
+        Fact.STIFFNESS_POSITIVE,
+        Fact.DAMPING_SEMIDEFINITE,
+        Fact.ENERGY_NEVER_GROWS,
+    }
+)
+
+
+def besides_cyclic(system: LinearSystem) -> Matrix:
+    """K of the coordinates that are not cyclic."""
+    rest = [i for i in range(system.size) if i not in system.cyclic]
+    return tuple(tuple(system.K[i][j] for j in rest) for i in rest)
 
 
 def adjugate(block: Matrix) -> Matrix:

@@ -22,16 +22,17 @@ PLAIN = ("coordinate", "velocity", "parameter")
 MOST_ROOTS = 6
 
 
-def kernel(ring: Ring, columns: Sequence[Polynomial]) -> list[dict[int, Polynomial]]:
-    """A basis of the c with  sum_k c_k columns_k = 0, as polynomials in the parameters, primitive.
+def kernel(ring: Ring, *lists: Sequence[Polynomial]) -> list[dict[int, Polynomial]]:
+    """A basis of the c with  sum_k c_k columns_k = 0 for every list, as polynomials in the parameters, primitive.
 
     Coefficients of equal monomials in everything but parameters are compared: where formulas have other normal forms
     than these the basis may lack some.  Free are the last columns.  Raises NoClosedForm beyond the bounds.
     """
-    rows: dict[Key, dict[int, Polynomial]] = {}
-    for k, column in enumerate(_cleared(ring, columns)):
-        for key, c in coefficients(ring, column).items():
-            rows.setdefault(key, {})[k] = c
+    rows: dict[tuple[int, Key], dict[int, Polynomial]] = {}
+    for number, columns in enumerate(lists):
+        for k, column in enumerate(_cleared(ring, columns)):
+            for key, c in coefficients(ring, column).items():
+                rows.setdefault((number, key), {})[k] = c
     pivots: dict[int, dict[int, Polynomial]] = {}
     for row in sorted(rows.values(), key=lambda row: (len(row), sum(len(x) for x in row.values()))):
         for k in [k for k in row if k in pivots]:
@@ -44,7 +45,7 @@ def kernel(ring: Ring, columns: Sequence[Polynomial]) -> list[dict[int, Polynomi
             if k in other:
                 pivots[place] = _combined(ring, other, row, k)
         pivots[k] = row
-    return [_vector(ring, pivots, k) for k in range(len(columns)) if k not in pivots]
+    return [_vector(ring, pivots, k) for k in range(len(lists[0])) if k not in pivots]
 
 
 def coefficients(ring: Ring, x: Polynomial) -> dict[Key, Polynomial]:

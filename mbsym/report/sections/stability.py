@@ -12,8 +12,9 @@ from mbsym.mechanics.variables import expressions
 from mbsym.model.system import System
 from mbsym.problems.stability import Stability
 from mbsym.problems.stability.problem import SubsystemStability
+from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.requirements import Method
-from mbsym.problems.stability.sentences import with_theorem
+from mbsym.problems.stability.sentences import sentence, with_theorem
 from mbsym.problems.stability.spectrum import RootNumbers, Spectrum, numbers
 from mbsym.problems.stability.symbolic import Theory
 from mbsym.problems.stability.verdict import Verdict
@@ -27,6 +28,9 @@ if TYPE_CHECKING:
 #: A theorem on a subsystem of the first approximation says nothing of its coordinates where others run away: the
 #: nonlinear equations couple them.
 ALONE = "(each of these while the others keep to the unperturbed motion)"
+
+#: What the coordinates of a verdict are; it is told beside every verdict.
+_OF_COORDINATES = (Because.DISPLACEMENTS, Because.OTHER_ANGLES)
 
 #: More eigenvalues of a subsystem are left to the files.
 MOST_ROOTS = 10
@@ -127,7 +131,7 @@ def lines(found: Stability, analysis: Analysis) -> Iterator[str]:
         # Of a motion that is proved to be stable, conditions of something stronger would be misread.
         items = [] if part.theory.verdict.stable else list(statements(part.ring, part.theory.requirements))
         verdict = _verdict(part.theory.verdict)
-        if part.theory.verdict.word is Word.DEPENDS and items:
+        if part.theory.verdict.word in (Word.DEPENDS, Word.UNSTABLE_BUT_BORDERS) and items:
             verdict += f"; {_heading(part.theory)}:"
         yield f"{', '.join(part.coordinates)}: {verdict}"
         shown = Shown()
@@ -136,6 +140,9 @@ def lines(found: Stability, analysis: Analysis) -> Iterator[str]:
                 shown.show(item)
         for item in items:
             yield f"  {_condition(item, shown)}"
+    verdicts = [x for part in found.subsystems for x in (part.theory.verdict, *(y.verdict for y in part.theory.cases))]
+    for one in dict.fromkeys(reason for x in verdicts for reason in x.reasons if reason.code in _OF_COORDINATES):
+        yield _clause(sentence(one))
     if len(found.subsystems) > 1:
         yield ALONE
         yield f"whole system: {_verdict(found.verdict)}"

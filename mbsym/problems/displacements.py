@@ -1,0 +1,199 @@
+"""Displacements that change no equation of motion: directions c, constant in the coordinates, with
+
+    sum c_i dT/dq_i = 0    and    sum c_i d(dU/dq_j + Q_j)/dq_i = 0    for every j;
+
+under constraints with rows g = J q' + j besides  J c = 0  and  sum c_i dg/dq_i = 0:  then the constraints allow them.
+
+A cyclic coordinate is one of them, along its own axis; in other coordinates the same is a sum of several (two masses on
+a ring: both move alike).  Taken as coordinates, by a constant linear change q = P y, they are cyclic in the usual
+sense, so that verdicts do not depend on the coordinates of a description.  By Lagrange's equations the momentum along c
+
+    p = sum c_i dT/dq'_i,    p' = sum c_i (dU/dq_i + Q_i),
+
+is constant if that sum vanishes: Noether.
+
+Coefficients are solved for over the field of the parameters, by comparing those of equal monomials: every direction is
+one, some may be missing where formulas have other normal forms.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+from mbsym.algebra.matrices import determinant
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.signs import Signs
+from mbsym.formulas.formula import Formula
+
+#: Formulas with more terms together are not looked at.
+MOST_TERMS = 40_000
+#: So many choices of coordinates that directions take the place of are tried.
+MOST_CHOICES = 200
+
+Direction = tuple[Polynomial, ...]
+
+
+@dataclass(frozen=True)
+class Displacements:
+    """``directions`` by ``coordinates``, of which the first ``constant`` ones have constant momenta.
+
+    ``driven``: numbers of those on which forces of higher order act.
+    """
+
+    coordinates: tuple[str, ...]
+    directions: tuple[Direction, ...] = ()
+    constant: int = 0
+    driven: tuple[int, ...] = ()
+
+
+def displacements(
+    ring: Ring,
+    coordinates: Sequence[str],
+    kinetic: Polynomial,
+    forces: Sequence[Polynomial],
+    moving: Sequence[str],
+    rows: Sequence[tuple[Polynomial, Sequence[Polynomial]]] = (),
+) -> Displacements:
+    """All directions along ``coordinates`` as above; ``forces`` are dU/dq_j + Q_j of every coordinate, these first.
+
+    ``moving`` are all coordinates and velocities, ``rows`` pairs of g and of the partials J along ``coordinates``.
+    Raises NoClosedForm beyond the bounds.
+    """
+    from mbsym.problems.symmetries.kernel import kernel  # most systems have no zero roots to be explained
+
+    none = Displacements(tuple(coordinates))
+    if len(kinetic) + sum(map(len, forces)) > MOST_TERMS:
+        return none
+    lists = [[ring.derivative(x, name) for name in coordinates] for x in (kinetic, *forces, *(g for g, _ in rows))]
+    lists += [list(partials) for _, partials in rows]
+    free = [_whole(ring, found, len(coordinates)) for found in kernel(ring, *lists)]
+    if not free:
+        return none
+    works = [_along(ring, c, forces) for c in free]
+    constant = [
+        tuple(
+            ring.reduce(sum((w * free[k][i] for k, w in weights.items()), ring.zero)) for i in range(len(coordinates))
+        )
+        for weights in kernel(ring, works)
+    ]
+    others = _completing(ring, constant, free)
+    driven = [
+        k
+        for k, c in enumerate(others, start=len(constant))
+        if not _is_linear(ring, _along(ring, c, forces), coordinates, moving)
+    ]
+    return Displacements(tuple(coordinates), (*constant, *others), len(constant), tuple(driven))
+
+
+def _whole(ring: Ring, found: dict[int, Polynomial], size: int) -> Direction:
+    return tuple(found.get(i, ring.zero) for i in range(size))
+
+
+def _along(ring: Ring, direction: Direction, forces: Sequence[Polynomial]) -> Polynomial:
+    return ring.reduce(sum((ring.times(c, x) for c, x in zip(direction, forces, strict=False)), ring.zero))
+
+
+def _completing(ring: Ring, basis: Sequence[Direction], directions: Sequence[Direction]) -> list[Direction]:
+    """Those of the directions that enlarge what a basis spans."""
+    from mbsym.problems.symmetries.kernel import kernel
+
+    found: list[Direction] = []
+    for c in directions:
+        columns = [*basis, *found, c]
+        if not kernel(ring, *([x[i] for x in columns] for i in range(len(c)))):
+            found.append(c)
+    return found
+
+
+def _is_linear(ring: Ring, x: Polynomial, coordinates: Sequence[str], moving: Sequence[str]) -> bool:
+    """Whether a force is a linear form in coordinates and velocities: then it shows in D and N."""
+    slopes = [ring.derivative(x, name) for name in coordinates]
+    slopes += [ring.velocity_derivative(x, name) for name in coordinates]
+    return not any(ring.dependencies(slope, moving) for slope in slopes)
+
+
+# --- as coordinates ---
+
+
+@dataclass(frozen=True)
+class Basis:
+    """q = P y in some ``coordinates``: ``columns`` of P, polynomials in parameters; the first are directions.
+
+    ``names`` tell what the y are in the user's coordinates, ``directions`` how these move together.
+    """
+
+    coordinates: tuple[str, ...]
+    columns: tuple[Direction, ...]
+    names: tuple[str, ...]
+    directions: tuple[str, ...]
+
+    @property
+    def together(self) -> tuple[str, ...]:
+        """The directions along which more than one coordinate moves."""
+        return tuple(x for x in self.directions if x not in self.coordinates)
+
+    def congruent(self, ring: Ring, rows: Sequence[Sequence[Polynomial]]) -> list[list[Polynomial]]:
+        """P^T A P."""
+        size = range(len(rows))
+        turned = [[_dot(ring, row, column) for column in self.columns] for row in rows]
+        return [[_dot(ring, column, [turned[k][j] for k in size]) for j in size] for column in self.columns]
+
+    def through(self, ring: Ring, image: Callable[[Polynomial], Polynomial]) -> Basis:
+        """The same in other symbols; a common denominator of a column is left out."""
+        return replace(self, columns=tuple(_cleared(ring, [image(x) for x in column]) for column in self.columns))
+
+
+def _dot(ring: Ring, u: Sequence[Polynomial], v: Sequence[Polynomial]) -> Polynomial:
+    return ring.reduce(sum((ring.times(a, b) for a, b in zip(u, v, strict=True)), ring.zero))
+
+
+def _cleared(ring: Ring, column: Sequence[Polynomial]) -> Direction:
+    for bottom, exponent in (x for entry in column for x in ring.fraction(entry)[1]):
+        column = [ring.reduce(ring.times(x, ring.power(bottom, exponent))) for x in column]
+    return tuple(ring.fraction(x)[0] for x in column)
+
+
+def basis(ring: Ring, found: Displacements, signs: Signs) -> Basis | None:
+    """Directions and coordinates that together tell all positions; None where no choice is known to do so."""
+    size = len(found.coordinates)
+    for tried, places in enumerate(combinations(range(size), len(found.directions))):
+        if tried == MOST_CHOICES:
+            return None
+        regular = determinant(ring, [[c[i] for i in places] for c in found.directions])
+        if signs.sign(regular) in ("positive", "negative"):
+            break
+    else:
+        return None
+    others = [i for i in range(size) if i not in places]
+    units = [tuple(ring.one if i == k else ring.zero for i in range(size)) for k in others]
+    told = tuple(_displacement(ring, c, found.coordinates) for c in found.directions)
+    kept = tuple(_left(ring, found, places, i) for i in others)
+    return Basis(found.coordinates, (*found.directions, *units), (*told, *kept), told)
+
+
+def _left(ring: Ring, found: Displacements, places: Sequence[int], i: int) -> str:
+    """What is left of a coordinate without the displacements, but for a factor: ``b - a``."""
+    name = found.coordinates[i]
+    moving = [c for c in found.directions if not c[i].is_zero()]
+    if not moving:
+        return name
+    if len(found.directions) > 1:
+        return f"{name} without the displacements"
+    (c,), (place,) = moving, places
+
+    def times(factor: Polynomial, of: str) -> str:
+        text = str(Formula(ring, factor))
+        return of if text == "1" else f"{text}*{of}" if len(factor) == 1 else f"({text})*{of}"
+
+    return f"{times(c[place], name)} - {times(c[i], found.coordinates[place])}".replace(" - -", " + ")
+
+
+def _displacement(ring: Ring, direction: Direction, coordinates: Sequence[str]) -> str:
+    """``a``, or ``(a, b) = (r, -1)``: how coordinates move together."""
+    moved = [(name, c) for name, c in zip(coordinates, direction, strict=True) if not c.is_zero()]
+    if len(moved) == 1:
+        return moved[0][0]
+    rates = ", ".join(str(Formula(ring, c)) for _, c in moved)
+    return f"({', '.join(name for name, _ in moved)}) = ({rates})"
