@@ -9,15 +9,15 @@ times smaller at least; two runs that come down to the same settings are never c
 two thousandth of the whole, so that short events are not stepped over twice.  Where the run is as fine as any method,
 a short one is compared with an extrapolation in 160 bits at places that lie unevenly.
 
-The better run may be given so many seconds: one that shows on the way that it would take longer is given up.
+The better run may be given so much counted work (``mbsym.numerics.prices``): one that shows on the way that it would
+cost more is given up.  No clock is looked at: whether there is an estimate, and which, is the same on every machine.
 
 Where the two part, both may be wrong from there on: the estimate is a lower bound then, and says so.
 """
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from math import inf
@@ -30,6 +30,7 @@ from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.kernels.llvm import SCALARS, available
 from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Method, Setting, Unusable
 from mbsym.numerics.methods.table import METHODS
+from mbsym.numerics.prices import Meter, Working
 from mbsym.numerics.reference import BITS, solved_at
 from mbsym.numerics.simulate import Trajectory
 from mbsym.numerics.sizes import AFFORDABLE, sizes_of_scene
@@ -49,10 +50,10 @@ SHORTER = 0.5
 #: Nothing new is compiled for a right-hand side with more operations.
 LONG = 20_000
 
-#: Places at which a run is held against an extrapolation, its tolerance, and the seconds that it may take.
-PLACES, PRECISELY, SECONDS = 150, 1e-22, 2.0
+#: Places at which a run is held against an extrapolation, its tolerance, and what that may cost.
+PLACES, PRECISELY, PRECISE_COST = 150, 1e-22, 2.0
 
-#: A run with a deadline is not given up before this part of its time; then, if it would take so many times as long.
+#: A run with a limit is not given up before this part of it; then, if it would cost so many times as much.
 EARLY, FAR_TOO_LONG = 0.2, 1.5
 
 #: A relative tolerance below this many roundings is not taken by the methods themselves.
@@ -127,30 +128,30 @@ def estimated(
     method: Method,
     scalar: str,
     completed: Callable[[Method], Method] = lambda method: method,
-    seconds: float = inf,
+    limit: float = inf,
 ) -> ErrorEstimate | NoEstimate:
     """The error of a run of ``method``, whose setting and times ``found`` holds, by a better one.
 
     ``completed`` makes of another method one that integrates the same coordinates and shows whole states.  All better
-    runs together may take about so many ``seconds``, what is compiled for them not counted.
+    runs together, and the run beside them, may cost about as much as ``limit`` (``mbsym.numerics.prices``).
     """
     if not found.whole:
         return NoEstimate(Lacking.NOT_WHOLE)
-    why, left = Lacking.FINEST, seconds
+    why, left = Lacking.FINEST, limit
     try:
         for better, kind, setting in _candidates(dynamics, found, method, scalar, completed):
-            clock = _Clock(left, float(found.times[-1]), better.traits.name == "dop853")
+            budget = _Budget(dynamics, left, float(found.times[-1]), better.traits.name == "dop853")
             try:
-                comparison = _compared(dynamics, found, (method, scalar), (better, kind, setting), clock)
+                comparison = _compared(dynamics, found, (method, scalar), (better, kind, setting), budget)
             except Unusable:
                 continue
-            except _OutOfTime:
-                why, left = Lacking.CUT, left - clock.spent
+            except _TooDear:
+                why, left = Lacking.CUT, left - budget.spent
                 continue
             except Ended as ended:
                 if ended.breakdown.kind != STEP_LIMIT:
                     return NoEstimate(Lacking.BREAKS_DOWN)
-                why, left = Lacking.TOO_LONG if why is Lacking.FINEST else why, left - clock.spent
+                why, left = Lacking.TOO_LONG if why is Lacking.FINEST else why, left - budget.spent
                 continue
             return ErrorEstimate(Against(better.traits.name, kind, setting), comparison, _rounding(scalar))
         if why is Lacking.FINEST:
@@ -160,30 +161,33 @@ def estimated(
     return NoEstimate(why)
 
 
-class _OutOfTime(Exception):
-    """A better run takes longer than it may."""
+class _TooDear(Exception):
+    """A better run costs more than it may."""
 
 
-class _Clock:
-    """``reached`` raises _OutOfTime when the ``seconds`` are over; of a run with ``even`` steps, which stability rules
-    where a run is stiff, when they will be long before the ``end``."""
+class _Budget:
+    """``reached`` raises _TooDear when the ``limit`` is spent; of a run with ``even`` steps, which stability rules
+    where a run is stiff, when it will be long before the ``end``."""
 
-    def __init__(self, seconds: float, end: float, even: bool) -> None:
-        self.seconds, self.end, self.even, self.begun = seconds, end, even, time.perf_counter()
+    def __init__(self, dynamics: Dynamics, limit: float, end: float, even: bool) -> None:
+        self.limit, self.end, self.even = limit, end, even
+        self.meter = Meter(dynamics, looked_at=True)
 
     @property
     def spent(self) -> float:
-        return time.perf_counter() - self.begun
+        return self.meter.spent
 
-    def start(self) -> None:
-        self.begun = time.perf_counter()
+    def start(self, runs: Sequence[tuple[Working, str, str]]) -> None:
+        self.meter.start(runs)
 
     def reached(self, t: float) -> None:
+        if self.limit == inf:
+            return
         spent = self.spent
-        slow = spent * self.end > FAR_TOO_LONG * self.seconds * t
-        hopeless = self.even and slow and spent > EARLY * self.seconds
-        if t < self.end and (spent > self.seconds or hopeless):
-            raise _OutOfTime
+        slow = spent * self.end > FAR_TOO_LONG * self.limit * t
+        hopeless = self.even and slow and spent > EARLY * self.limit
+        if t < self.end and (spent > self.limit or hopeless):
+            raise _TooDear
 
 
 def _compared(
@@ -191,21 +195,21 @@ def _compared(
     found: Trajectory,
     own: tuple[Method, str],
     better: tuple[Method, str, Setting],
-    clock: _Clock,
+    budget: _Budget,
 ) -> Comparison:
     """The run once more, step by step beside the better one."""
     method, scalar = own
     other, kind, setting = better
     with np.errstate(all="ignore"):
         runs = method.start(dynamics, found.setting, scalar), other.start(dynamics, setting, kind)
-        clock.start()
+        budget.start(((runs[0], method.traits.name, scalar), (runs[1], other.traits.name, kind)))
         return compared(
             *runs,
             float(found.times[-1]),
             (*dynamics.system.coordinates, *dynamics.system.velocities),
             lambda times, states: sizes_of_scene(dynamics, times, states),
             (found.times, found.states),
-            watch=clock.reached,
+            watch=budget.reached,
         )
 
 
@@ -220,7 +224,7 @@ def _precisely(dynamics: Dynamics, found: Trajectory, method: Method, scalar: st
     try:
         states = np.column_stack([own.state, own.fill(places[1:])])
         states[:, np.searchsorted(places, found.times[rows])] = found.states[:, rows]
-        truth = solved_at(dynamics, places, PRECISELY, SECONDS)
+        truth = solved_at(dynamics, places, PRECISELY, PRECISE_COST)
     except Breakdown as ended:
         return NoEstimate(Lacking.FINEST if ended.kind == STEP_LIMIT else Lacking.BREAKS_DOWN)
     names = (*dynamics.system.coordinates, *dynamics.system.velocities)

@@ -19,6 +19,7 @@ from flint import arb, ctx, fmpq
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.precise import precise
 from mbsym.numerics.methods.interface import BLOW_UP, STEP_LIMIT, Breakdown
+from mbsym.numerics.prices import precise_cost
 
 #: Bits of the arithmetic, and how many columns the extrapolation has (order 2 * COLUMNS).
 BITS = 160
@@ -51,13 +52,13 @@ class Reference:
 class Extrapolation:
     """A solution under way: ``state`` at ``time``, which is a double, so that others can start there."""
 
-    def __init__(self, dynamics: Dynamics, tolerance: float, columns: int, deadline: float) -> None:
+    def __init__(self, dynamics: Dynamics, tolerance: float, columns: int, limit: float) -> None:
         self.f = precise(dynamics.right_hand_side, BITS)
         self.time = 0.0
         self.state = [arb(fmpq(x.numerator, x.denominator)) for x in dynamics.scenario.state]
         self.tolerance = tolerance
         self.columns = columns
-        self.deadline = deadline
+        self.dynamics, self.limit, self.evaluations = dynamics, limit, 0
         self.step_size = 1e-3
         self.scale = [max(abs(float(x)), 1e-3) for x in dynamics.scenario.state]
 
@@ -83,10 +84,15 @@ class Extrapolation:
                 self.scale = [max(s, abs(float(x))) for s, x in zip(self.scale, new, strict=True)]
             if not self.step_size > 1e-12 * max(1.0, self.time):
                 raise Breakdown(BLOW_UP, "the reference solution cannot go on", self.time, self.floats())
-            if time.perf_counter() > self.deadline:
+            if self.spent > self.limit:
                 raise Breakdown(STEP_LIMIT, "out of time", self.time, self.floats())
             if accepted:
                 return
+
+    @property
+    def spent(self) -> float:
+        """What it has cost so far (``mbsym.numerics.prices``)."""
+        return precise_cost(self.dynamics, self.evaluations)
 
     def floats(self) -> Any:
         return np.array([float(x) for x in self.state])
@@ -108,6 +114,7 @@ class Extrapolation:
         return best, worst
 
     def _slope(self, t: arb, x: Sequence[arb]) -> list[arb]:
+        self.evaluations += 1
         return self.f([t, *x])
 
     def _midpoints(self, size: arb, n: int, slope: Sequence[arb]) -> list[arb]:
@@ -121,13 +128,13 @@ class Extrapolation:
         return now
 
 
-def solved_at(dynamics: Dynamics, times: Any, tolerance: float, seconds: float) -> Any:
+def solved_at(dynamics: Dynamics, times: Any, tolerance: float, limit: float) -> Any:
     """The states (2n, m) at increasing times from 0, in the most digits that NumPy has.
 
-    Raises Breakdown where there is no solution, or after so many seconds (kind STEP_LIMIT).
+    Raises Breakdown where there is no solution, or where it costs more than ``limit`` (kind STEP_LIMIT).
     """
     with ctx.workprec(BITS):
-        run = Extrapolation(dynamics, tolerance, FEW_COLUMNS, time.perf_counter() + seconds)
+        run = Extrapolation(dynamics, tolerance, FEW_COLUMNS, limit)
         states = [in_doubles(run.state)]
         for t in times[1:]:
             run.advance(float(t))
@@ -153,13 +160,14 @@ def reference(
     """The solution at ``times`` (the first is 0) with a local error of ``tolerance`` per step, and its own error.
 
     ``scale`` says what each component is measured by; by default its largest absolute value at the times.
-    Raises Breakdown where the solution does not exist up to the end, or after ``budget`` seconds.
+    Raises Breakdown where the solution does not exist up to the end, or where one of its two runs costs more than ``budget``
+    (``mbsym.numerics.prices``).
     """
     started = time.perf_counter()
     runs = []
     with ctx.workprec(BITS):
         for columns, local in ((COLUMNS, tolerance), (COLUMNS - 3, tolerance * 1e3)):
-            run = Extrapolation(dynamics, local, columns, started + budget)
+            run = Extrapolation(dynamics, local, columns, budget)
             states = [list(run.state)]
             for t in times[1:]:
                 run.advance(float(t))

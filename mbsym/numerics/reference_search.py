@@ -16,6 +16,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -165,7 +166,7 @@ def _extrapolated(search: _Search) -> Reference:
 
 def _knots(search: _Search) -> tuple[list[float], list[list[arb]]]:
     """The steps of the first extrapolation."""
-    run = Extrapolation(search.dynamics, FINE, COLUMNS, search.deadline)
+    run = Extrapolation(search.dynamics, FINE, COLUMNS, inf)
     times, states = [0.0], [list(run.state)]
     while run.time < search.end:
         run.step(search.end)
@@ -178,7 +179,7 @@ def _knots(search: _Search) -> tuple[list[float], list[list[arb]]]:
 def _second(search: _Search, times: list[float], states: list[list[arb]]) -> Any:
     """Largest |x_i - y_i| of an extrapolation with fewer columns, larger errors, and so with other steps."""
     search = search.next()
-    run = Extrapolation(search.dynamics, ROUGH, COLUMNS - 3, search.deadline)
+    run = Extrapolation(search.dynamics, ROUGH, COLUMNS - 3, inf)
     worst = np.zeros(len(states[0]))
     for place in sorted({*range(EVERY, len(times), EVERY), len(times) - 1}):
         run.advance(times[place])

@@ -13,18 +13,19 @@ import numpy as np
 from mbsym.numerics.breakdowns import least_pivot
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import Breakdown, Method
+from mbsym.numerics.prices import cost
 from mbsym.numerics.simulate import Trajectory, simulate
 
 #: Steps whose ends are looked at one by one, and places in what is left of the interval.
 MOST, PLACES = 4_000, 4_000
 
-#: Runs that took longer than this many seconds are not run again.
+#: Runs that cost more than this (``mbsym.numerics.prices``) are not run again.
 LONG = 2.0
 
 
 def between_rows(dynamics: Dynamics, found: Trajectory, method: Method, scalar: str) -> Trajectory:
     """The trajectory with more rows, where its steps are many beside its rows; else as it is."""
-    if not found.whole or found.seconds > LONG or 2 * found.work.steps < found.samples:
+    if not found.whole or cost(dynamics, found.method, scalar, found.work) > LONG or 2 * found.work.steps < found.samples:
         return found
     end, run = float(found.times[-1]), method.start(dynamics, found.setting, scalar)
     places = [0.0]
@@ -47,11 +48,11 @@ def nearest_to_singular(
 ) -> tuple[float, float]:
     """(ratio, t) of ``least_pivot`` over rows and ends of steps, which crowd where M is nearly singular.
 
-    ``dense`` is what ``between_rows`` made of ``found``.  Rows alone are looked at where a run took long, ended early,
+    ``dense`` is what ``between_rows`` made of ``found``.  Rows alone are looked at where a run was dear, ended early,
     or has more than ``MOST`` steps, beyond those.
     """
     lowest = least_pivot(dynamics, dense)
-    if dense is not found or not found.whole or found.seconds > LONG:
+    if dense is not found or not found.whole or cost(dynamics, found.method, scalar, found.work) > LONG:
         return lowest
     end, run = float(found.times[-1]), method.start(dynamics, found.setting, scalar)
     times, states = [float(run.time)], [np.array(run.state)]

@@ -29,6 +29,7 @@ from mbsym.numerics.linearised import LinearisedDynamics
 from mbsym.numerics.methods.interface import Method, Unusable
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.models import Model, scenario_of
+from mbsym.numerics.prices import cost
 from mbsym.numerics.reduced import reduced
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.sizes import kinetic_between
@@ -47,11 +48,11 @@ if TYPE_CHECKING:
     from mbsym.numerics.closing import Closed
     from mbsym.numerics.constrained import Drift
 
-#: The error of a run shorter than this many seconds is estimated without being asked for.
+#: The error of a run that costs less (``mbsym.numerics.prices``) is estimated without being asked for.
 SOON_DONE = 2.0
 
-#: That estimate may take so many seconds, or so many times as long as the run.
-LEAST_SECONDS, AT_MOST = 5.0, 4.0
+#: That estimate may cost so much, or so many times as much as the run.
+LEAST, AT_MOST = 5.0, 4.0
 
 #: What ``simulate`` is doing, for whoever watches.
 COMPILING, INTEGRATING, ESTIMATING, CERTIFYING = "compiling", "integrating", "estimating", "certifying"
@@ -111,9 +112,10 @@ def simulate(
         found, dense = replace(found, least_pivot=pivot), replace(dense, least_pivot=pivot)
         both = energies(dynamics, dense, held)
         kept = kept_integrals(dynamics, found, integrals, held, dense)
-        if found.whole and (request.estimate or (request.estimate is None and found.seconds < SOON_DONE)):
-            seconds = inf if request.estimate else max(LEAST_SECONDS, AT_MOST * found.seconds)
-            error = estimated(dynamics, found, chosen.method, request.arithmetic, chosen.completed, seconds)
+        own = cost(dynamics, found.method, request.arithmetic, found.work)
+        if found.whole and (request.estimate or (request.estimate is None and own < SOON_DONE)):
+            limit = inf if request.estimate else max(LEAST, AT_MOST * own)
+            error = estimated(dynamics, found, chosen.method, request.arithmetic, chosen.completed, limit)
     if both[0].standing is Standing.PROVED and contradicted(error, both[0].change):
         error = NoEstimate(Lacking.CONTRADICTED)
     certificate = None

@@ -1,0 +1,92 @@
+"""What a run costs, by its counted work alone: the same on every machine and under every load.
+
+    cost = evaluations (call + operations * operation) + steps * step + Jacobians * jacobian
+
+The prices are fixed.  They are about the seconds that each takes on a usual machine that does nothing else, so a cost
+reads as seconds; yet no clock is looked at.  Whatever decides by cost decides the same everywhere: budgets of error
+estimates and references, which method is the cheapest.  ``operations`` are those of one right-hand side.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64
+from mbsym.numerics.methods.interface import Work
+
+#: A call of a compiled right-hand side, and one of its operations.
+CALL, OPERATION = 15e-9, 6e-10
+
+#: Arithmetic beside float64.
+DEARER = {FLOAT64: 1.0, FLOAT32: 0.8, EXTENDED: 10.0}
+
+#: A coefficient of a Taylor series beside an operation of the right-hand side.
+COEFFICIENT = 6.0
+
+#: An evaluation, with its share of the linear algebra, by methods that are not compiled.
+INTERPRETED = {"lsoda": 13e-6, "radau": 5e-5, "bdf": 7e-5, "scipy-rk45": 2e-5, "scipy-dop853": 2e-5}
+
+#: A Jacobian of an implicit method, with all that is done between two of them, in a run that began with another.
+JACOBIAN = 1e-2
+
+#: A step that is made from outside of machine code, and looked at; one where switches or narrow loads are looked for.
+LOOKED_AT, SEARCHED = 6e-5, 6e-4
+
+#: A number of the state in one row.
+NUMBER = 2e-9
+
+#: An operation in numbers of 160 bits, and a call.
+PRECISE, PRECISE_CALL = 2.5e-7, 1e-6
+
+
+class Working(Protocol):
+    """A run that counts its work."""
+
+    work: Work
+
+
+def cost(dynamics: Dynamics, method: str, scalar: str, work: Work, looked_at: bool = False) -> float:
+    """What ``work`` of the ``method`` costs; ``looked_at`` where every step was."""
+    steps = work.steps + work.rejected
+    step = LOOKED_AT if looked_at else 0.0
+    if not dynamics.features.none:
+        step = max(step, SEARCHED)
+    if method in INTERPRETED:
+        return work.evaluations * (INTERPRETED[method] + _operations(dynamics) * OPERATION) + steps * step
+    operations = _operations(dynamics) * (COEFFICIENT if method == "taylor" else 1.0)
+    whole = work.evaluations * (CALL + operations * OPERATION) * DEARER[scalar]
+    if method.startswith("midpoint"):  # its Jacobians are compiled: one is about as many right-hand sides as the state
+        return whole * (1 + len(dynamics.scenario.state) * work.jacobians / max(1, work.evaluations)) + steps * step
+    return whole + work.jacobians * JACOBIAN + steps * step
+
+
+def precise_cost(dynamics: Dynamics, evaluations: int) -> float:
+    """What evaluations in balls of 160 bits cost."""
+    return evaluations * (PRECISE_CALL + _operations(dynamics) * PRECISE)
+
+
+class Meter:
+    """What runs have cost since it began: ``spent``."""
+
+    def __init__(self, dynamics: Dynamics, looked_at: bool = False) -> None:
+        self._dynamics, self._looked_at = dynamics, looked_at
+        self._runs: list[tuple[Working, str, str]] = []
+        self._before = 0.0
+
+    def start(self, runs: Sequence[tuple[Working, str, str]]) -> None:
+        """Counts (run, method, arithmetic) from here on."""
+        self._runs = list(runs)
+        self._before = 0.0
+        self._before = self.spent
+
+    @property
+    def spent(self) -> float:
+        """The cost so far."""
+        whole = sum(cost(self._dynamics, name, scalar, run.work, self._looked_at) for run, name, scalar in self._runs)
+        return whole - self._before
+
+
+def _operations(dynamics: Dynamics) -> int:
+    return max(1, dynamics.right_hand_side.operations)
