@@ -9,7 +9,7 @@ from mbsym.numerics.model_choice import PART, Tried
 from mbsym.numerics.pilot import USUAL_SLOPE, Bench, Trial, finest
 from mbsym.numerics.plan import Accuracy, Alternative
 
-#: How the cost of a method grows with its accuracy: seconds ~ error**(-1/order).
+#: How the cost of a method grows with its accuracy: cost ~ error**(-1/order).
 ORDERS = {"dop853": 8, "rk45": 5, "taylor": 16}
 USUAL_ORDER = 5
 
@@ -33,7 +33,7 @@ def _other(
     price = model.operations / max(1, taken.operations)
     name = "" if model.model == taken.model else model.model.label
     options: list[tuple[float, str, bool]] = [
-        (trial.seconds * price, trial.label, not name) for trial in bench.trials if trial.ratio <= wanted
+        (trial.cost * price, trial.label, not name) for trial in bench.trials if trial.ratio <= wanted
     ]
     judged = _judged(found, max(found.ratio / wanted, 1e-9), bench.spacing)
     if judged is not None and not _tried_in_vain(bench, found, judged[2], wanted):
@@ -43,8 +43,9 @@ def _other(
         if found.scalar == FLOAT64 and EXTENDED in found.method.traits.scalars:
             why += "; extended arithmetic is needed"
         return Alternative(target * factor, why=why, model=name)
-    seconds, label, measured = min(options)
-    return Alternative(target * factor, label, seconds, measured, name)
+    cost, label, measured = min(options)
+    times = cost / found.cost
+    return Alternative(target * factor, label, found.seconds * times, measured, name, times=times)
 
 
 def _model(tried: Sequence[Tried], factor: float) -> Tried:
@@ -59,7 +60,7 @@ def _tried_in_vain(bench: Bench, found: Trial, fineness: float, wanted: float) -
 
 
 def _judged(found: Trial, worse: float, spacing: float) -> tuple[float, str, float] | None:
-    """(seconds, label, tolerance or step) of the same method with an error ``worse`` times smaller.
+    """(cost, label, tolerance or step) of the same method with an error ``worse`` times smaller.
 
     None beyond its arithmetic.  A step is no longer than the ``spacing`` of the rows.
     """
@@ -67,9 +68,9 @@ def _judged(found: Trial, worse: float, spacing: float) -> tuple[float, str, flo
     if found.setting.step is not None:
         order = traits.order or USUAL_ORDER
         growth = max(worse ** (1 / order), found.fineness / spacing)
-        return found.seconds * growth, f"{traits.name} h={found.fineness / growth:.1g}", found.fineness / growth
+        return found.cost * growth, f"{traits.name} h={found.fineness / growth:.1g}", found.fineness / growth
     tolerance = min(found.fineness * worse ** (-1 / USUAL_SLOPE), COARSEST)
     if tolerance < finest(found.method, found.scalar):
         return None
     growth = worse ** (1 / ORDERS.get(traits.name, USUAL_ORDER))
-    return found.seconds * growth, f"{traits.name} {tolerance:.0e}", tolerance
+    return found.cost * growth, f"{traits.name} {tolerance:.0e}", tolerance

@@ -3,12 +3,11 @@
 An explicit method must take steps shorter than about ``STABLE`` / |Re lambda| for every eigenvalue lambda of the
 Jacobian whose motion dies out (Hairer & Wanner, Solving Ordinary Differential Equations II, IV.2), however smooth the
 solution is.  Where that bound asks for few steps, the compiled explicit method of high order is taken without further
-ado; where it asks for many, a short stretch is integrated both ways and the quicker one is taken.
+ado; where it asks for many, a short stretch is integrated both ways and the one of less counted work is taken.
 """
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, replace
 
 from mbsym.numerics.dynamics import Dynamics
@@ -16,6 +15,7 @@ from mbsym.numerics.kernels.interface import FLOAT64
 from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Method, Setting, Unusable
 from mbsym.numerics.methods.landing import Landing
 from mbsym.numerics.methods.table import METHODS
+from mbsym.numerics.prices import cost
 from mbsym.numerics.switching import STABLE, STIFF, Switching, rates
 
 #: So many steps of a compiled explicit method are soon done: no need to look for anything better.
@@ -24,8 +24,8 @@ FEW_STEPS = 100_000
 #: So many steps are taken for other reasons anyway.
 OF_NO_ACCOUNT = 100
 
-#: Steps of the trial of the explicit method, and seconds of the trial of each implicit one.
-TRIAL_STEPS, TRIAL_SECONDS = 2_000, 0.3
+#: Steps of the trial of the explicit method, and what the trial of each implicit one may cost.
+TRIAL_STEPS, TRIAL_COST = 2_000, 0.3
 
 #: Preferred explicit methods, implicit ones to try on stiff systems, and the one that a run changes to on its way.
 EXPLICIT, IMPLICIT, ALONG = ("dop853", "scipy-dop853", "rk45"), ("radau", "lsoda"), "radau"
@@ -36,8 +36,8 @@ class Choice:
     """A method and why.
 
     ``decay`` is the fastest rate at which a motion dies out and ``frequency`` the greatest angular frequency, both from
-    the Jacobian at the initial state; ``measured`` says what trials took, if there were any.  They count processor
-    time, so that what else runs decides nothing.
+    the Jacobian at the initial state; ``measured`` says what trials came to, if there were any.  They count work
+    (``mbsym.numerics.prices``), so that neither the machine nor what else runs decides anything.
     """
 
     method: Method
@@ -86,38 +86,42 @@ def _at_first(dynamics: Dynamics, tolerance: float, time_: float, scalar: str) -
     best, least = explicit, _predicted(dynamics, explicit, setting, time_, steps)
     first = least
     for name in IMPLICIT[: 1 if dynamics.correction is not None else None]:
-        seconds = _trial(dynamics, METHODS[name], setting, time_) if name in METHODS else None
-        if seconds is not None and seconds < least:
-            best, least = METHODS[name], seconds
+        found = _trial(dynamics, METHODS[name], setting, time_) if name in METHODS else None
+        if found is not None and found < least:
+            best, least = METHODS[name], found
     if best is explicit:
         why = f"motions die out at rates up to {decay:.3g}, yet explicit steps are quicker here"
-        return Choice(best, why, decay, frequency, f"about {first:.2g} s by a short trial")
+        return Choice(best, why, decay, frequency, f"about {first:.2g} s by the counted work of a short trial")
     why = f"stiff: motions die out at rates up to {decay:.3g}, which would cost an explicit method {steps:.2g} steps"
-    return Choice(best, why, decay, frequency, f"about {least:.2g} s instead of {first:.2g} s, by short trials")
+    return Choice(
+        best,
+        why,
+        decay,
+        frequency,
+        f"about {least:.2g} s instead of {first:.2g} s, by the counted work of short trials",
+    )
 
 
 def _predicted(dynamics: Dynamics, method: Method, setting: Setting, time_: float, steps: float) -> float:
-    """Seconds of so many steps, judged by a trial of a few."""
-    started, run = 0.0, None
+    """What so many steps cost, judged by a trial of a few."""
+    run = None
     try:
         run = method.start(dynamics, replace(setting, step_limit=TRIAL_STEPS))
-        started = time.process_time()
         run.advance(time_)
     except (Breakdown, Unusable):
         pass
     if run is None or not run.work.steps:
         return float("inf")
-    spent = time.process_time() - started
+    spent = cost(dynamics, method.traits.name, FLOAT64, run.work)
     return spent / run.work.steps * max(steps, run.work.steps)
 
 
 def _trial(dynamics: Dynamics, method: Method, setting: Setting, time_: float) -> float | None:
-    """Seconds for the whole time, judged by as much as a short trial gets done; None where it fails."""
+    """What the whole time costs, judged by as much as a short trial gets done; None where it fails."""
     try:
         run = method.start(dynamics, replace(setting, step_limit=50_000))
-        started = time.process_time()
         reached = time_ / 4096
-        while time.process_time() - started < TRIAL_SECONDS:
+        while cost(dynamics, method.traits.name, FLOAT64, run.work) < TRIAL_COST:
             run.advance(reached)
             if reached >= time_:
                 break
@@ -128,4 +132,4 @@ def _trial(dynamics: Dynamics, method: Method, setting: Setting, time_: float) -
         if found.kind != STEP_LIMIT or found.time <= 0:
             return None
         reached = found.time
-    return (time.process_time() - started) * time_ / reached
+    return cost(dynamics, method.traits.name, FLOAT64, run.work) * time_ / reached

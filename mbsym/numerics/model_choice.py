@@ -19,11 +19,13 @@ from mbsym.algebra.failures import Failure
 from mbsym.model.loads import EXACT
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels import arrays
+from mbsym.numerics.kernels.interface import FLOAT64
 from mbsym.numerics.methods.interface import Breakdown, Method, Setting
 from mbsym.numerics.methods.kept import compiled_kernel
 from mbsym.numerics.model_error import ModelEstimate, confirmed, model_error
 from mbsym.numerics.models import Model, droppable, faithful, modelled, orders, scenario_of
 from mbsym.numerics.parametrised import Parametrised
+from mbsym.numerics.prices import cost
 from mbsym.numerics.rows import Rows, rows
 from mbsym.numerics.scenario import Scenario
 
@@ -39,7 +41,7 @@ SAVES = 0.9
 #: Parameters are looked at where the equations have at most so many operations; and at most so many of them.
 LONG, MOST = 3_000, 40
 
-#: The rerun is cheap where a run takes fewer seconds.
+#: The rerun is cheap where a run costs less (``mbsym.numerics.prices``).
 CHEAP = 3.0
 
 
@@ -169,7 +171,7 @@ class _Truth:
             self._asked = True
             try:
                 coarse = rows(scene.method, scene.rich, replace(scene.setting, tolerance=1e-4), scene.times)
-                if coarse.seconds < CHEAP / 10:
+                if cost(scene.rich, scene.method.traits.name, FLOAT64, coarse.work) < CHEAP / 10:
                     self._found = rows(scene.method, scene.rich, scene.setting, scene.times)
             except Breakdown:
                 pass

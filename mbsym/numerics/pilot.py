@@ -20,6 +20,7 @@ from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64
 from mbsym.numerics.methods.interface import Breakdown, Method, Setting, Unusable, Work
 from mbsym.numerics.methods.kept import compiled_kernel
+from mbsym.numerics.prices import NUMBER, cost
 from mbsym.numerics.rows import rows
 
 #: Where a setting is aimed at, and the least that is still called fit, as parts of the goal.
@@ -31,11 +32,8 @@ USUAL_SLOPE = 0.9
 #: Tries for each method.
 TRIES = 5
 
-#: Times of runs that differ by less than this factor are alike: clocks say no more.
+#: Costs of runs that differ by less than this factor are alike: prices say no more.
 ALIKE = 1.1
-
-#: Runs shorter than this are timed several times, and the least counts.
-SHORT, REPEATS = 0.05, 3
 
 #: The finest tolerances that the compiled methods take: some roundings; and that SciPy's do.
 FINEST = {FLOAT32: 5e-7, FLOAT64: 1e-15, EXTENDED: 5e-19}
@@ -50,7 +48,11 @@ def finest(method: Method, scalar: str) -> float:
 
 @dataclass(frozen=True)
 class Trial:
-    """One setting and what came of it: ``errors`` (k,) relative to the scales, ``seconds`` of the processor."""
+    """One setting and what came of it: ``errors`` (k,) relative to the scales.
+
+    ``cost`` is that of its counted work (``mbsym.numerics.prices``), by which settings are chosen; ``seconds`` of the
+    processor are told, and decide nothing.
+    """
 
     method: Method
     scalar: str
@@ -59,6 +61,7 @@ class Trial:
     errors: Any
     seconds: float
     work: Work
+    cost: float
     states: Any = None
 
     @property
@@ -115,17 +118,15 @@ class Bench:
         # Steps of one length end at every row: between rows there is nothing to compare.
         times = self._rows if method.traits.fixed else self.times
         found = rows(complete, self.dynamics, setting, times, scalar)
-        seconds = found.seconds
-        if often:
-            timed = self.shown
-            seconds = rows(complete, self.dynamics, setting, timed, scalar).seconds
-            for _ in range(REPEATS - 1 if seconds < SHORT else 0):
-                seconds = min(seconds, rows(complete, self.dynamics, setting, timed, scalar).seconds)
+        priced = found
+        if often:  # the rows that are asked for, and no others
+            priced = rows(complete, self.dynamics, setting, self.shown, scalar)
+        whole = cost(self.dynamics, method.traits.name, scalar, priced.work) + NUMBER * priced.states.size
         quantities = self.quantities(found.states, times)
         ratio, errors = self.compared(quantities, self.reference) if self.reference is not None else (inf, None)
         # What the reference itself is wrong by is added: a run that happens to be the reference has no smaller error.
         ratio += self.known
-        trial = Trial(method, scalar, setting, ratio, errors, seconds, found.work, quantities)
+        trial = Trial(method, scalar, setting, ratio, errors, priced.seconds, found.work, whole, quantities)
         if self.reference is not None:
             self.trials.append(replace(trial, states=None))
         return trial
@@ -157,7 +158,7 @@ class Bench:
 def searched(bench: Bench, method: Method, scalar: str, start: Setting, goal: float, limit: float) -> Trial | None:
     """The coarsest setting of a method, about, that is good enough; None where none is, or it costs over ``limit``.
 
-    ``limit`` are seconds; a method that is dearer before it is good enough is given up.
+    ``limit`` is a cost; a method that is dearer before it is good enough is given up.
     """
     setting, found, last = start, None, None
     slope = float(method.traits.order or 1) if start.step is not None else USUAL_SLOPE
@@ -169,7 +170,7 @@ def searched(bench: Bench, method: Method, scalar: str, start: Setting, goal: fl
             found = trial
         if trial.ratio <= goal and trial.ratio >= WASTEFUL * goal:
             return found
-        if trial.ratio > goal and trial.seconds > limit:
+        if trial.ratio > goal and trial.cost > limit:
             return found
         slope = _slope(last, trial, slope)
         last = trial
@@ -181,9 +182,9 @@ def searched(bench: Bench, method: Method, scalar: str, start: Setting, goal: fl
 
 
 def _preferred(one: Trial, other: Trial) -> bool:
-    """The clearly quicker; of two that take about the same time the coarser."""
-    if one.seconds > ALIKE * other.seconds or other.seconds > ALIKE * one.seconds:
-        return one.seconds < other.seconds
+    """The clearly cheaper; of two that cost about the same the coarser."""
+    if one.cost > ALIKE * other.cost or other.cost > ALIKE * one.cost:
+        return one.cost < other.cost
     return one.fineness > other.fineness
 
 
@@ -226,4 +227,4 @@ def _round(x: float) -> float:
 
 def best(trials: Sequence[Trial]) -> Trial | None:
     """The cheapest."""
-    return min(trials, key=lambda one: one.seconds, default=None)
+    return min(trials, key=lambda one: one.cost, default=None)

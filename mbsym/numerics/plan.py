@@ -131,6 +131,8 @@ class Bound:
 class Alternative:
     """What another accuracy would cost: the setting and seconds, ``measured`` or judged by the slope of those that are.
 
+    ``times`` is the ratio of its counted work to that of the plan, and ``seconds`` those of the plan so many times.
+
     ``model`` is its model where that is another; ``seconds`` None: out of reach, ``why``.
     """
 
@@ -140,6 +142,7 @@ class Alternative:
     measured: bool = False
     model: str = ""
     why: str = ""
+    times: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -147,7 +150,8 @@ class Plan:
     """Everything that is needed to repeat the run, and what it is worth.
 
     ``bounds`` has one entry for each quantity that an error was named for, else one for the worst; ``seconds`` is what
-    the integration took in the pilot, ``spent`` what choosing took.
+    the integration took in the pilot, ``spent`` what choosing took.  ``unshown`` says why the run's own error could not
+    be estimated: its accuracy is not shown then.
     """
 
     accuracy: Accuracy
@@ -164,6 +168,7 @@ class Plan:
     less: Alternative | None = None
     remarks: tuple[str, ...] = ()
     contradicted: bool = False
+    unshown: str = ""
 
     @property
     def bound(self) -> Bound:
@@ -172,5 +177,5 @@ class Plan:
 
     @property
     def reached(self) -> bool:
-        """Whether every quantity is within its error, and the run's own estimate has not said otherwise."""
-        return not self.contradicted and all(one.reached for one in self.bounds)
+        """Whether every quantity is within its error, and no estimate of the run's own is missing or says otherwise."""
+        return not self.contradicted and not self.unshown and all(one.reached for one in self.bounds)

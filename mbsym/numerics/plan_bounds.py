@@ -30,7 +30,7 @@ DOUBLED, RAISED = 2.0, 1.25
 #: The part of what the model leaves that the measured error may take, before it is doubled.
 GOAL = 0.8 / DOUBLED
 
-#: The other arithmetic is tried where the run takes fewer seconds.
+#: The other arithmetic is tried where the run costs less (``mbsym.numerics.prices``).
 CHEAP = 5.0
 
 
@@ -64,7 +64,7 @@ def shares_of(bench: Bench, found: Trial, stick: Yardstick, model: ModelChoice) 
     measured = DOUBLED * found.errors + known
     arithmetic, way = np.zeros_like(measured), None  # a part of the integration's share
     other = {FLOAT64: EXTENDED, FLOAT32: FLOAT64}.get(found.scalar)
-    cheap = found.seconds < CHEAP and other is not None
+    cheap = found.cost < CHEAP and other is not None
     if cheap and other in found.method.traits.scalars and available(str(other)):
         try:
             twin = bench.run(found.method, str(other), found.setting)

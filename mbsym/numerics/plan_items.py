@@ -177,11 +177,18 @@ def _cheapest_others(settled: Settled) -> tuple[Refused, ...]:
         if trial.scalar == FLOAT64 and (known is None or _rank(trial) < _rank(known)):
             best[name] = trial
     own = settled.found.method.traits.name
-    return tuple(Refused(trial.label, _worst(trial), trial.seconds) for name, trial in best.items() if name != own)
+    return tuple(
+        Refused(trial.label, _worst(trial), _priced(settled, trial)) for name, trial in best.items() if name != own
+    )
+
+
+def _priced(settled: Settled, trial: Trial) -> float:
+    """Seconds of a trial: those of what was taken, as many times as its counted work is more."""
+    return settled.found.seconds * trial.cost / settled.found.cost
 
 
 def _rank(trial: Trial) -> tuple[bool, float]:
-    return (trial.ratio > 1, trial.seconds if trial.ratio <= 1 else trial.ratio)
+    return (trial.ratio > 1, trial.cost if trial.ratio <= 1 else trial.ratio)
 
 
 def _worst(trial: Trial) -> float | None:
@@ -197,4 +204,4 @@ def _other_scalars(settled: Settled) -> Iterator[Refused]:
         if coarser and (known is None or _rank(trial) < _rank(known)):
             best[trial.scalar] = trial
     for scalar, trial in best.items():
-        yield Refused(scalar, _worst(trial), trial.seconds)
+        yield Refused(scalar, _worst(trial), _priced(settled, trial))

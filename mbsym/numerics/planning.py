@@ -44,7 +44,7 @@ GRID = 1_001
 #: The outline of the motion, from which sizes are taken.
 COARSE = 1e-6
 
-#: Another method is looked at while trying takes less than so many seconds, or so many times the best run.
+#: Another method is looked at while trying costs less than this, or so many times the best run.
 EFFORT, TIMES_BEST = 3.0, 20.0
 
 #: A plan whose bound comes out above the target is made again with a smaller goal, so many times.
@@ -110,7 +110,7 @@ def planned(
     bench.reference, bench.known = stick.quantities, stick.known
     for _ in range(REPEATS):
         found = _settled(
-            bench, model.taken.model, choice, goal, pins, stick.start, watch, len(times) >= GRID, stick.seconds
+            bench, model.taken.model, choice, goal, pins, stick.start, watch, len(times) >= GRID, stick.cost
         )
         shares = shares_of(bench, found, stick, model)
         bounds = bounds_of(scene, accuracy, shares)
@@ -216,7 +216,7 @@ def _settled(
 ) -> Trial:
     """The cheapest setting that is good enough, else the best that there is.
 
-    A method that takes more seconds than ``dearest`` without being good enough is given up.
+    A method that costs more than ``dearest`` without being good enough is given up.
 
     Raises Breakdown, Unusable.
     """
@@ -224,18 +224,19 @@ def _settled(
         name = pins.method or choice.method.traits.name
         return bench.run(METHODS[name], pins.scalar or FLOAT64, pins.setting, often=True)
     found: Trial | None = None
-    started = time.perf_counter()
+    begun = len(bench.trials)
     stiff = choice.method.traits.implicit
     for one in _allowed(bench, model, pins, stiff, many):
-        if found is not None and time.perf_counter() - started > max(EFFORT, TIMES_BEST * found.seconds):
+        spent = sum(trial.cost for trial in bench.trials[begun:])
+        if found is not None and spent > max(EFFORT, TIMES_BEST * found.cost):
             break
         watch(f"{one.method.traits.name}, {one.scalar}")
         if found is None and one.scalar == FLOAT32:
             break  # what float64 does not reach, fewer digits will not
-        limit = dearest if found is None else found.seconds
+        limit = dearest if found is None else found.cost
         setting = first_setting(one, first, found, float(bench.times[-1]), bench.spacing)
         trial = _searched(bench, one, setting, goal, limit)
-        if trial is not None and (found is None or trial.seconds < found.seconds):
+        if trial is not None and (found is None or trial.cost < found.cost):
             found = trial
     if found is None and pins.scalar is None:
         for one in in_more_digits():
@@ -246,7 +247,7 @@ def _settled(
         if not bench.trials:
             raise Unusable("no method comes to the end of this motion")
         least = min(trial.ratio for trial in bench.trials)
-        found = min((one for one in bench.trials if one.ratio <= 2 * least), key=lambda trial: trial.seconds)
+        found = min((one for one in bench.trials if one.ratio <= 2 * least), key=lambda trial: trial.cost)
     return found
 
 

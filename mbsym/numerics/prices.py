@@ -38,7 +38,7 @@ LOOKED_AT, SEARCHED = 6e-5, 6e-4
 NUMBER = 2e-9
 
 #: An operation in numbers of 160 bits, and a call.
-PRECISE, PRECISE_CALL = 2.5e-7, 1e-6
+PRECISE, PRECISE_CALL = 1.4e-7, 5e-6
 
 
 class Working(Protocol):

@@ -160,8 +160,8 @@ def reference(
     """The solution at ``times`` (the first is 0) with a local error of ``tolerance`` per step, and its own error.
 
     ``scale`` says what each component is measured by; by default its largest absolute value at the times.
-    Raises Breakdown where the solution does not exist up to the end, or where one of its two runs costs more than ``budget``
-    (``mbsym.numerics.prices``).
+    Raises Breakdown where the solution does not exist up to the end, or where one of its two runs costs more than
+    ``budget`` (``mbsym.numerics.prices``).
     """
     started = time.perf_counter()
     runs = []

@@ -31,12 +31,13 @@ from mbsym.numerics.methods.interface import (
 )
 from mbsym.numerics.methods.kept import compiled_kernel
 from mbsym.numerics.methods.passed import Passed, met_by, up_to
+from mbsym.numerics.prices import Meter
 
 if TYPE_CHECKING:
     from mbsym.numerics.streamed import Table
 
-#: Rows are filled in chunks of so many seconds, so that progress is seen and Ctrl-C keeps what there is; and not more
-#: of them at once.
+#: Rows are filled in chunks that cost about so much (``mbsym.numerics.prices``), so that progress is seen and Ctrl-C
+#: keeps what there is; and not more of them at once.
 CHUNK, MOST_AT_ONCE = 0.2, 1 << 16
 
 
@@ -251,7 +252,9 @@ def followed(
         finally:
             rows.keep(np.array([begin]), np.asarray(first)[:, None])
         started = time.perf_counter()
-        for more in chunks(run, times, bound_of(initial), done, most):
+        meter = Meter(dynamics)
+        meter.start(((run, method.traits.name, scalar),))
+        for more in chunks(run, times, bound_of(initial), meter, done, most):
             rows.keep(times[rows.count : rows.count + more.shape[1]], more)
             watch(float(times[rows.count - 1]))
     except Breakdown as trouble:
@@ -277,15 +280,15 @@ def _last_rows(dynamics: Dynamics, trouble: Breakdown, rows: Recorder, times: An
     return found
 
 
-def chunks(run: Run, times: Any, bound: float, done: int = 0, most: int = MOST_AT_ONCE) -> Iterator[Any]:
-    """The states (2n, m) at ``times`` from number ``done``, as many at once as take about ``CHUNK`` seconds.
+def chunks(run: Run, times: Any, bound: float, meter: Meter, done: int = 0, most: int = MOST_AT_ONCE) -> Iterator[Any]:
+    """The states (2n, m) at ``times`` from number ``done``, as many at once as cost about ``CHUNK``.
 
     Raises Breakdown, with the rows since the last chunk, where the run cannot go on or a row is beyond ``bound``.
     """
     count = 1
     while done < len(times):
         at = times[done : done + count]
-        started = time.perf_counter()
+        before = meter.spent
         try:
             rows = run.fill(at)
         except Breakdown as found:
@@ -294,7 +297,7 @@ def chunks(run: Run, times: Any, bound: float, done: int = 0, most: int = MOST_A
         _checked(rows, at, bound)
         yield rows
         done += len(at)
-        spent = time.perf_counter() - started
+        spent = meter.spent - before
         count = min(most, 4 * count) if spent < CHUNK / 4 else max(1, count // 2) if spent > CHUNK else count
 
 

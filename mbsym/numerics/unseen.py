@@ -25,7 +25,11 @@ LONG = 2.0
 
 def between_rows(dynamics: Dynamics, found: Trajectory, method: Method, scalar: str) -> Trajectory:
     """The trajectory with more rows, where its steps are many beside its rows; else as it is."""
-    if not found.whole or cost(dynamics, found.method, scalar, found.work) > LONG or 2 * found.work.steps < found.samples:
+    if (
+        not found.whole
+        or cost(dynamics, found.method, scalar, found.work) > LONG
+        or 2 * found.work.steps < found.samples
+    ):
         return found
     end, run = float(found.times[-1]), method.start(dynamics, found.setting, scalar)
     places = [0.0]

@@ -55,7 +55,7 @@ class Yardstick:
     method: str
     scalar: str
     setting: Setting
-    seconds: float
+    cost: float
     start: float
 
 
@@ -108,7 +108,7 @@ def _ruled(trial: Trial, longest: float, bench: Bench) -> float:
 
 def _taken(trial: Trial, known: float, start: float) -> Yardstick:
     name = trial.method.traits.name
-    return Yardstick(trial.states, known, name, trial.scalar, trial.setting, trial.seconds, float(f"{start:.1e}"))
+    return Yardstick(trial.states, known, name, trial.scalar, trial.setting, trial.cost, float(f"{start:.1e}"))
 
 
 def _roundings(scalar: str) -> float:

@@ -76,7 +76,9 @@ def plan_lines(plan: Plan, unit: str | None) -> Iterator[tuple[str, str]]:
         yield "", " + ".join(share_words(share) for share in bound.shares)
         if bound.proved is not None:
             yield "", proved_words(bound)
-    if not plan.reached:
+    if plan.unshown and not plan.contradicted and all(bound.reached for bound in plan.bounds):
+        yield "warning", f"the accuracy asked for is not shown: the error of this run is not estimated ({plan.unshown})"
+    elif not plan.reached:
         yield "warning", "the accuracy asked for is not reached"
     for item in plan.items:
         if item.kind in TITLES:
@@ -125,7 +127,7 @@ def share_words(share: Share) -> str:
 
 
 def item_words(item: Item, plan: Plan) -> str:
-    """``dop853, tolerance 3.3e-08, 91 µs: the cheapest here ...; rk45 3.3e-08: error 6.6e-07, 110 µs``."""
+    """``dop853, tolerance 3.3e-08, 91 µs: the cheapest here ...; rk45 3.3e-08: error 6.6e-07, about 110 µs``."""
     chosen = item.chosen
     if item.kind == METHOD:
         fineness = next(one for one in plan.items if one.kind == FINENESS)
@@ -136,11 +138,12 @@ def item_words(item: Item, plan: Plan) -> str:
 
 
 def refused_words(one: Refused, unit: str) -> str:
-    """``rk45 3.3e-08: error 6.6e-07, 110 µs``."""
+    """``rk45 3.3e-08: error 6.6e-07, about 110 µs``."""
     parts = [f"error {one.error:.1e}"] if one.error is not None else []
     parts += [one.why] if one.why else []
     if one.cost is not None:
-        parts.append(counted(round(one.cost), "operation", "operations") if unit == OPERATIONS else duration(one.cost))
+        about = f"about {duration(one.cost)}"  # by counted work
+        parts.append(counted(round(one.cost), "operation", "operations") if unit == OPERATIONS else about)
     return f"{one.word}: {', '.join(parts)}" if parts else one.word
 
 
@@ -150,7 +153,7 @@ def alternative_words(other: Alternative, plan: Plan) -> str:
     if other.seconds is None:
         return f"{other.target:.0e}: {other.why}"
     about = "" if other.measured else "about "
-    times = other.seconds / max(plan.seconds, 1e-9)
+    times = other.times
     same = "as much" if 0.95 < times < 1.05 else f"{times:.2g} times as much"
     return f"{other.target:.0e}: {about}{duration(other.seconds)}, {same} ({other.label}{model})"
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 from math import isfinite
 
 from mbsym.model.system import System
-from mbsym.numerics.accuracy import ErrorEstimate
+from mbsym.numerics.accuracy import ErrorEstimate, Lacking, NoEstimate
 from mbsym.numerics.choice import rates
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import Setting
@@ -29,6 +29,10 @@ PLANNING = "planning"
 
 #: A run that its estimate finds too coarse is repeated with so much finer a setting, so many times at most.
 FINER, REPEATS = {"tolerance": 0.1, "step": 0.5}, 2
+
+#: Without an estimate for these reasons nothing shows that a run keeps its accuracy.  As fine as any run (FINEST) is no
+#: such reason: its errors were measured for the plan.
+UNSHOWN = (Lacking.TOO_LONG, Lacking.CUT, Lacking.BREAKS_DOWN, Lacking.INTERRUPTED, Lacking.CONTRADICTED)
 
 
 def read_accuracy(system: System, given: float | Mapping[str, float]) -> Accuracy:
@@ -93,7 +97,8 @@ def simulate_accurately(
     tried: Callable[[str], None] = lambda text: None,
 ) -> Simulation:
     """The run of a plan.  Where its own estimate says that the accuracy is missed, a finer one, and a remark."""
-    request = replace(request, variables=COORDINATES)
+    # Who asks for an accuracy asks whether it is kept.
+    request = replace(request, variables=COORDINATES, estimate=request.estimate is not False)
     with stage(PLANNING):
         plan, settled = plan_for(scenario, request, accuracy, pins, tried)
     found = simulate(scenario, settled, watch, stage)
@@ -110,6 +115,8 @@ def simulate_accurately(
         plan = replace(plan, setting=finer, remarks=(*plan.remarks, missed))
         settled = replace(settled, tolerance=plan.setting.tolerance, step=plan.setting.step)
         found = simulate(scenario, settled, watch, stage)
+    if isinstance(found.error, NoEstimate) and found.error.why in UNSHOWN:
+        plan = replace(plan, unshown=found.error.why.value)
     plan = replace(plan, bounds=tuple(_proved(bound, found) for bound in _raised(plan, found)))
     return replace(found, plan=plan, chosen=replace(found.chosen, why="chosen for the accuracy asked for"))
 

@@ -139,7 +139,7 @@ def test_the_finest_run_is_judged_by_an_extrapolation(
     monkeypatch: pytest.MonkeyPatch, case: str, solution: Solution
 ) -> None:
     """No method has more digits; 160 bits have."""
-    monkeypatch.setattr("mbsym.numerics.accuracy.SECONDS", 30.0)
+    monkeypatch.setattr("mbsym.numerics.accuracy.PRECISE_COST", 30.0)
     run = mbsym.simulate(CASES / f"{case}.yaml", 3, arithmetic="extended", tolerance=1e-19)
     assert isinstance(run.error, ErrorEstimate)
     assert run.error.against.scalar == "160 bits"
@@ -150,7 +150,7 @@ def test_the_finest_run_is_judged_by_an_extrapolation(
 
 @needs_extended
 def test_the_finest_run_has_no_estimate_where_that_takes_too_long(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("mbsym.numerics.accuracy.SECONDS", 1e-3)
+    monkeypatch.setattr("mbsym.numerics.accuracy.PRECISE_COST", 1e-3)
     run = mbsym.simulate(CASES / "osc.yaml", 1, arithmetic="extended", tolerance=1e-19)
     assert run.error == NoEstimate(Lacking.FINEST)
     assert list(error_lines(run.error)) == [f"not estimated: {Lacking.FINEST.value}"]
@@ -163,7 +163,7 @@ def test_without_finer_arithmetic_a_clamped_tolerance_is_not_compared_with_itsel
     monkeypatch: pytest.MonkeyPatch, case: str, solution: Solution, tolerance: float
 ) -> None:
     """1e-16 and 1e-18 are one run in float64: their difference, 0, is no error."""
-    monkeypatch.setattr("mbsym.numerics.accuracy.SECONDS", 30.0)
+    monkeypatch.setattr("mbsym.numerics.accuracy.PRECISE_COST", 30.0)
     monkeypatch.setattr("mbsym.numerics.accuracy.available", lambda scalar: scalar != "extended")
     run = mbsym.simulate(CASES / f"{case}.yaml", 6, tolerance=tolerance)
     assert isinstance(run.error, ErrorEstimate)
@@ -311,7 +311,7 @@ initial: {x: 1}
 
 def test_an_estimate_that_nobody_asked_for_is_cut_and_told_so(monkeypatch: pytest.MonkeyPatch) -> None:
     """Asked for it gets its time: the budget, here none at all, is of others only."""
-    monkeypatch.setattr("mbsym.simulation.run.LEAST_SECONDS", 0.0)
+    monkeypatch.setattr("mbsym.simulation.run.LEAST", 0.0)
     monkeypatch.setattr("mbsym.simulation.run.AT_MOST", 0.0)
     system = mbsym.loads(STIFF.replace("c: 1e6", "c: 1e3"))
     run = mbsym.simulate(system, 1)

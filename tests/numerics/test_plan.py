@@ -299,15 +299,15 @@ def test_a_cost_table_turned_over_is_noticed(monkeypatch: pytest.MonkeyPatch) ->
 
     def turned(self: Any, *arguments: Any, **options: Any) -> Any:
         trial = original(self, *arguments, **options)
-        return replace(trial, seconds=1e-9 / trial.seconds)
+        return replace(trial, cost=1e-9 / trial.cost)
 
     monkeypatch.setattr(pilot.Bench, "run", turned)
     found = planned(given, Accuracy(1e-5), times)
     honest = METHODS[found.method]
     monkeypatch.undo()
     bench = pilot.Bench(planning.Dynamics(given), times, times, np.full(3, 1e-5), lambda method: method, np.ones(3))
-    taken = bench.run(honest, found.scalar, found.setting, often=True).seconds
-    best = bench.run(METHODS["dop853"], "float64", Setting(1e-7), often=True).seconds
+    taken = bench.run(honest, found.scalar, found.setting, often=True).cost
+    best = bench.run(METHODS["dop853"], "float64", Setting(1e-7), often=True).cost
     assert taken > 1.5 * best
 
 
