@@ -281,7 +281,8 @@ def prepared_parts(
     """Every subsystem, ready to be judged."""
     elimination = elimination_of(scene)
     spin = None if scene.system.constraints else free_spin(scene.system, still=True)
-    lagrangian = linear.constrained is None or linear.constrained.holonomic
+    about = linear.constrained
+    lagrangian = about is None or about.holonomic
     prepared = tuple(
         _prepared(
             scene, part, elimination, signs, balance, _turned(scene, part, spin, equilibrium), equilibrium, lagrangian
@@ -299,10 +300,10 @@ def prepared_parts(
             )
             for part in prepared
         )
-    if lagrangian:
-        leaf = 0 if linear.constrained is None else linear.constrained.leaf
+    if about is None or lagrangian:
+        leaf = 0 if about is None else about.leaf
         return tuple(replace(part, system=replace(part.system, leaf=leaf)) for part in prepared) if leaf else prepared
-    about, free = linear.constrained, equilibrium.satisfied
+    free = equilibrium.satisfied
     return tuple(
         replace(part, system=replace(part.system, cyclic=(), nonholonomic=_form(part, balance, about, signs, free)))
         for part in prepared

@@ -140,8 +140,9 @@ def lines(found: Stability, analysis: Analysis) -> Iterator[str]:
                 shown.show(item)
         for item in items:
             yield f"  {_condition(item, shown)}"
-    judged = [x for part in found.subsystems for x in (part.theory, *part.theory.cases)]
-    for one in dict.fromkeys(reason for x in judged for reason in x.verdict.reasons if reason.code in _OF_COORDINATES):
+    theories = [part.theory for part in found.subsystems]
+    judged = [verdict for x in theories for verdict in (x.verdict, *(case.verdict for case in x.cases))]
+    for one in dict.fromkeys(reason for x in judged for reason in x.reasons if reason.code in _OF_COORDINATES):
         yield _clause(sentence(one))
     if len(found.subsystems) > 1:
         yield ALONE
