@@ -362,7 +362,7 @@ def test_where_nothing_is_stable_a_necessary_condition_says_nothing() -> None:
         for result in analysis.claims:
             if result.claim.role == "necessary":
                 assert not result.holds, (name, result.title)  # never_hurwitz: at a = 0 < K the motion is stable
-                assert "it says nothing" in result.remark
+                assert result.refuted or "it says nothing" in result.remark
 
 
 # --- parts and wholes ---
