@@ -6,9 +6,12 @@ import hashlib
 from pathlib import Path
 
 from mbsym.batch.outcome import Row, Summary
-from mbsym_cli.files import write_whole
+from mbsym_cli.files import deliver
 
 FILENAME = "appendix.tex"
+
+#: Whose files those about a whole batch are, in the manifest of its folder.
+SUMMARY = "batch summary"
 
 
 def write_appendix(out: Path, name: str, summary: Summary) -> None:
@@ -29,7 +32,7 @@ def write_appendix(out: Path, name: str, summary: Summary) -> None:
     reason = unreadable(name, whole)
     if reason:
         raise Unreadable(f"{name}: {reason}")
-    write_whole(out / name, whole)
+    deliver(out, {name: whole}, SUMMARY, gone=())
 
 
 def _text(out: Path, row: Row) -> str:

@@ -21,13 +21,14 @@ from mbsym.batch.summary_json import FILENAME, summary_text
 from mbsym.batch.task import Asked, Budget
 from mbsym.expressions.counting import counted
 from mbsym.report.findings import github_annotations, json_lines, sarif
+from mbsym_cli.batch_appendix import SUMMARY
 from mbsym_cli.batch_folders import Found, chosen, found_in, share
 from mbsym_cli.batch_gone import forget_gone
 from mbsym_cli.batch_machine import memory_is_bounded
 from mbsym_cli.batch_store import FolderStore
 from mbsym_cli.batch_table import complaints, totals, watcher
 from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, printable
-from mbsym_cli.files import obstacle, write_whole
+from mbsym_cli.files import deliver, obstacle
 from mbsym_cli.options import SUFFIXES
 
 if TYPE_CHECKING:
@@ -173,7 +174,8 @@ def write_files(request: Request, summary: Summary) -> bool:
     Of one that cannot be, the reason is told, and none is left of an earlier batch, which would speak for this one.
     """
     writers: dict[str, Callable[[], object]] = {
-        name: partial(write_whole, request.out / name, text) for name, text in summary_files(request, summary).items()
+        name: partial(deliver, request.out, {name: text}, SUMMARY, ())
+        for name, text in summary_files(request, summary).items()
     }
     if request.appendix:
         from mbsym_cli.batch_appendix import FILENAME as APPENDIX
@@ -188,8 +190,9 @@ def write_files(request: Request, summary: Summary) -> bool:
         except OSError as error:
             whole = False
             print(f"{printable(request.out / name)} cannot be written: {error.strerror or error}", file=sys.stderr)
-            with suppress(OSError):
-                (request.out / name).unlink(missing_ok=True)
+            if not isinstance(error, FileExistsError):
+                with suppress(OSError):
+                    (request.out / name).unlink(missing_ok=True)
     return whole
 
 

@@ -41,6 +41,8 @@ def command(
         asked.complain(
             "--out", "same-file", f"{printable(out)} would replace what it is made of", "comments would be lost"
         )
+    else:
+        asked.unwritten("--out", out)
     if asked.refused(file):
         sys.exit(BAD_INPUT)
     robot = robot_text(file)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 import time
-from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,6 +18,7 @@ from mbsym_cli.simulation_inputs import read_held
 from mbsym_cli.study import leave, prevented
 
 if TYPE_CHECKING:
+    from mbsym.mechanics.rest import Value
     from mbsym.model.system import System
 
 
@@ -145,34 +145,40 @@ def _branches(
 
 def _values(
     file: Path, system: System, settings: tuple[str, ...], asked: Options, varied: str = ""
-) -> dict[str, Fraction]:
+) -> dict[str, Value]:
     """Exact numbers of the parameters but ``varied``; every complaint joins those of ``asked``."""
+    from mbsym.expressions.tree import names as names_in
     from mbsym.expressions.tree import substitute
-    from mbsym.mechanics.rest import given_values, missing_values
+    from mbsym.mechanics.rest import given_values, missing_values, rational_values
     from mbsym.model.system import rational
     from mbsym.numerics.scenario import Incomplete, Lack, scenario
 
     assigned = assignments(settings, system, asked)
     known = {item.name: item.value for item in system.parameters if item.value is not None} | dict(assigned.values)
-    overrides: dict[str, Fraction] = {}
+    overrides: dict[str, Value] = {}
     for name, expression in assigned.values.items():
         if name not in system.parameter_names:
             hint = "set parameters only"
             assigned.complain(name, "misplaced-name", "equilibria are what is looked for", asked, hint)
             continue
-        value = rational(substitute(expression, {k: v for k, v in known.items() if k != name}))
-        if value is None:
+        whole = substitute(expression, {k: v for k, v in known.items() if k != name})
+        value = rational(whole)
+        if value is not None:
+            overrides[name] = value
+        elif varied or names_in(whole):
             hint = f"write for example {name}=3/2"
             assigned.complain(name, "not-rational", "an exact rational number is needed", asked, hint)
         else:
-            overrides[name] = value
+            overrides[name] = whole
     try:
         scenario(system, {name: assigned.values[name] for name in overrides}, state=False)
     except Incomplete as error:
         of_settings = tuple(one for one in error.lack.contradictions if one.name in assigned.texts)
         contradictions(file, Lack((), of_settings), assigned, asked)
     values = given_values(system, overrides)
+    if varied:  # the equations are eliminated over QQ
+        values = dict(rational_values(values))
     names = [name for name in missing_values(system, values) if name not in assigned.texts and name != varied]
     if names:
-        asked.complaints.append(missing(file, names, "number"))
+        asked.complaints.append(missing(file, names, "rational number" if varied else "number"))
     return {name: value for name, value in values.items() if name != varied}

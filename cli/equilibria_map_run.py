@@ -59,7 +59,7 @@ def fitting(
 
     ``texts``: what --x, --y and --z said; ``refused``: options of maps of one motion that were given.
     """
-    from mbsym.mechanics.rest import given_values, missing_values
+    from mbsym.mechanics.rest import given_values, missing_values, rational_values
     from mbsym_cli.equilibria_branches import complain_of_sign, complain_unless_parameter
 
     if texts[1] is None and texts[0] is not None:
@@ -77,11 +77,11 @@ def fitting(
     for name in settings:
         complain_unless_parameter("--set", name, system, asked)
     chosen = {axis.name for axis in axes}
-    values = given_values(system, {name: x for name, x in settings.items() if name in system.parameter_names})
-    values = {name: x for name, x in values.items() if name not in chosen}
+    given = given_values(system, {name: x for name, x in settings.items() if name in system.parameter_names})
+    values = {name: x for name, x in rational_values(given).items() if name not in chosen}
     lacking = [name for name in missing_values(system, values) if name not in chosen]
     if lacking:
-        asked.complaints.append(missing(file, lacking, "number"))
+        asked.complaints.append(missing(file, lacking, "rational number"))
     return values
 
 

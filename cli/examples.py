@@ -19,7 +19,7 @@ from mbsym_cli.options import Options
 def command(names: tuple[str, ...], every: bool, out: Path) -> None:
     """List the systems that come with mbsym; with NAMEs, copy their descriptions.
 
-    A file that is there already is not replaced.
+    A file that is there already is not replaced without --force.
 
     \b
     Examples:
@@ -36,8 +36,7 @@ def command(names: tuple[str, ...], every: bool, out: Path) -> None:
     chosen = known if every else tuple(asked.word("NAME", name, known, "example") for name in names)
     targets = {name: out / f"{name}.yaml" for name in chosen if name is not None}
     for path in targets.values():
-        if path.exists():
-            asked.complain("NAME", "exists", f"{printable(path)} is there already", "name another folder with --out")
+        asked.unwritten("NAME", path)
     if asked.refused():
         sys.exit(BAD_INPUT)
     sys.exit(max([OK, *(_copy(name, path) for name, path in targets.items())]))

@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 from mbsym_cli.assignments import given_numbers
-from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OutPath, complain
+from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OutPath, complain, reason_of
 from mbsym_cli.extremes_run import measure, rank
 from mbsym_cli.files import folder_for, obstacle
 from mbsym_cli.options import Options
@@ -76,5 +76,5 @@ def _command(file: Path, folder: Path, settings: Sequence[str], sequences: bool,
     except Failure as error:
         complain(file, f"the equations have no program: {error}")
     except OSError as error:
-        complain(file, f"the results cannot be written: {error}")
+        complain(file, f"the results cannot be written: {reason_of(error)}")
     return FAILED

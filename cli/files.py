@@ -13,11 +13,13 @@ delivers into the folder next; until then names may be missing, but an old file 
 same set.  What step 1 left behind is removed by the next delivery.
 
 The manifest, ``.mbsym.json``, lists each set with the SHA-256 of its files.  Only files that it lists, and that still
-are what was written, are removed when a later set does without them.
+are what was written, are removed when a later set does without them.  A file that no manifest lists is somebody's own:
+it is not replaced unless ``--force`` was given.
 """
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import json
 import os
@@ -56,8 +58,22 @@ _RESERVED = {"con", "prn", "aux", "nul"} | {f"{port}{n}" for port in ("com", "lp
 #: Of a file: all of it, or parts that are made one after the other.
 Content = str | bytes | Iterable[str]
 
+#: What is said of a file that mbsym did not write.
+NOT_OURS = "it is there already and mbsym did not write it; --force replaces it"
+
 #: Command -> file -> SHA-256, one entry a set; a command has several where it was asked for some of its files only.
 Sets = list[tuple[str, dict[str, str]]]
+
+
+class Force:
+    """Whether what mbsym did not write is replaced, too (``--force``)."""
+
+    wanted = False
+
+
+def taken(path: Path) -> bool:
+    """Whether there is something in the place of a single file that is not to be replaced."""
+    return not Force.wanted and os.path.lexists(path)
 
 
 # --- one file ---------------------------------------------------------------------------------------------------------
@@ -91,7 +107,7 @@ def deliver(
 
     Of the files that ``command`` delivered there before and that are not in this set, those named in ``gone`` are
     removed (without ``gone``: all of them), unless somebody has changed them since.  Raises OSError where the set
-    cannot be written; then the old one is whole.
+    cannot be written, FileExistsError where it would replace what no set lists; then what was there is whole.
     """
     if any(not _is_plain(name) for name in files):
         raise ValueError(f"names of files are wanted, not {sorted(files)}")
@@ -112,6 +128,7 @@ def deliver(
                 for name, content in files.items():
                     staged.append(closing.enter_context(_staged(stage / name)))
                     digests[name] = _written(staged[-1], content)
+                _spare(folder, digests)
                 manifest = _manifest_text(_merged(read_manifest(folder), command, digests, gone))
                 staged.append(closing.enter_context(_staged(stage / MANIFEST)))
                 _written(staged[-1], manifest)
@@ -134,6 +151,20 @@ def deliver(
                 _install(folder)
             raise
     return [folder / name for name in files]
+
+
+def _spare(folder: Path, digests: Mapping[str, str]) -> None:
+    """Raises FileExistsError where a file would be replaced that mbsym did not write and that holds something else."""
+    if Force.wanted:
+        return
+    own = {name for _, files in read_manifest(folder) for name in files}
+    foreign = sorted(
+        name
+        for name, digest in digests.items()
+        if name not in own and os.path.lexists(folder / name) and digest_of(folder / name) != digest
+    )
+    if foreign:
+        raise FileExistsError(errno.EEXIST, NOT_OURS, str(folder / ", ".join(foreign)))
 
 
 def read_manifest(folder: Path) -> Sets:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from mbsym_cli.console import BAD_INPUT, FAILED, OK, OutPath, complain, read_description, status
+from mbsym_cli.options import Options
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -38,7 +39,9 @@ def command(file: Path, out: Path | None, quiet: bool) -> None:
       mbsym groups systems/spring-pendulum.yaml --out spring-in-groups.yaml
     """
     system = read_description(file, unconstrained="groups")
-    if system is None:
+    asked = Options()
+    asked.unwritten("--out", out)
+    if asked.refused(file) or system is None:
         sys.exit(BAD_INPUT)
     from mbsym.algebra.failures import Failure
     from mbsym.analysis import Analysis
@@ -138,6 +141,6 @@ def _written(file: Path, out: Path, analysis: Analysis, found: Groups) -> int:
     try:
         write_whole(out, text)
     except OSError as error:
-        complain(out, f"cannot be written: {error}")
+        complain(out, f"cannot be written: {error.strerror or error}")
         return FAILED
     return OK

@@ -91,6 +91,16 @@ def characters(line: str, column: int) -> int:
     return len(line.encode("utf-16-le", "surrogatepass")[: 2 * column].decode("utf-16-le", "ignore"))
 
 
+def placed(text: str, position: types.Position) -> tuple[int, int]:
+    """(line, column in characters) of a position.  Beyond the end of a line it is that end, beyond the last line the
+    end of the text."""
+    lines = text.split("\n")
+    if position.line >= len(lines):
+        return len(lines) - 1, len(lines[-1])
+    line = max(position.line, 0)
+    return line, characters(lines[line], max(position.character, 0))
+
+
 def server() -> Server:
     """A server with everything that it can do."""
     made = Server()
@@ -111,8 +121,7 @@ def server() -> Server:
     def complete(parameters: types.CompletionParams) -> list[types.CompletionItem]:
         uri, position = parameters.text_document.uri, parameters.position
         text = made.workspace.get_text_document(uri).source
-        lines = text.split("\n")
-        column = characters(lines[position.line], position.character) if position.line < len(lines) else 0
+        line, column = placed(text, position)
         seen = made.seen.get(uri)
         return [
             types.CompletionItem(
@@ -122,19 +131,16 @@ def server() -> Server:
                 insert_text=one.insert or one.label,
                 sort_text=f"{number:05}",
             )
-            for number, one in enumerate(suggestions(text, position.line, column, seen.system if seen else None))
+            for number, one in enumerate(suggestions(text, line, column, seen.system if seen else None))
         ]
 
     @made.feature(types.TEXT_DOCUMENT_HOVER)
     def hover(parameters: types.HoverParams) -> types.Hover | None:
         uri, position = parameters.text_document.uri, parameters.position
         text = made.workspace.get_text_document(uri).source
-        lines = text.split("\n")
-        if position.line >= len(lines):
-            return None
+        line, column = placed(text, position)
         seen = made.seen.get(uri)
-        column = characters(lines[position.line], position.character)
-        told = explanation(text, position.line, column, seen.analysis if seen else None)
+        told = explanation(text, line, column, seen.analysis if seen else None)
         return None if told is None else types.Hover(types.MarkupContent(types.MarkupKind.Markdown, told))
 
     return made

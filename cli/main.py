@@ -70,6 +70,8 @@ class LazyGroup(click.Group):
         command: click.Command = importlib.import_module(f"mbsym_cli.{COMMANDS[name].module}").command
         command.short_help = COMMANDS[name].does
         if not any(option.name == "debug" for option in command.params):
+            if name == "new" or any(option.name == "out" for option in command.params):
+                command.params.append(_force())
             command.params.append(_debug())
         return command
 
@@ -118,8 +120,9 @@ class LazyGroup(click.Group):
     def invoke(self, context: click.Context) -> Any:
         """Ctrl-C, wherever it comes, ends with the code that shells count the signal as; a mistake of ours with 1."""
         from mbsym_cli.console import FAILED, INTERRUPTED, OK, Debugging, defect, listening, reason_of, trace
+        from mbsym_cli.files import Force
 
-        Debugging.wanted = False
+        Debugging.wanted = Force.wanted = False
         try:
             with listening() as defects:
                 try:
@@ -139,6 +142,18 @@ class LazyGroup(click.Group):
             print("interrupted; what has been written is whole", file=sys.stderr)
             sys.exit(INTERRUPTED)
         sys.exit(FAILED)
+
+
+def _force() -> click.Option:
+    """``--force``, of every command that writes files."""
+
+    def want(context: click.Context, _: click.Parameter, value: bool) -> None:
+        from mbsym_cli.files import Force
+
+        Force.wanted = Force.wanted or value
+
+    told = "Replace files that mbsym did not write, too."
+    return click.Option(["--force"], is_flag=True, expose_value=False, callback=want, help=told)
 
 
 def _debug() -> click.Option:

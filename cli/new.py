@@ -29,7 +29,7 @@ def command(name: str, like: str | None) -> None:
     """Write NAME.yaml, a commented description that runs as it is.
 
     Asks for the bodies and their joints; with --like, or where nobody can answer, it takes a shipped system.  A file
-    that is there already is not replaced.
+    that is there already is not replaced without --force.
 
     \b
     Examples:
@@ -43,8 +43,8 @@ def command(name: str, like: str | None) -> None:
     path = Path(name if name.endswith((".yaml", ".yml")) else f"{name}.yaml")
     if not path.stem.strip() or path.is_dir():
         asked.complain("NAME", "bad-name", f"no file can be called {printable(name)}")
-    elif path.exists():
-        asked.complain("NAME", "exists", f"{printable(path)} is there already", "choose another name")
+    else:
+        asked.unwritten("NAME", path)
     if like is None and not _answers():
         like = "pendulum"
     example = None if like is None else example_like(like)

@@ -83,9 +83,9 @@ def _numbers(
     file: Path, system: System, given: dict[str, Fraction], varied: str, asked: Options
 ) -> dict[str, Fraction]:
     """The numbers of all parameters but the varied one; what has none is one of the complaints."""
-    from mbsym.mechanics.rest import given_values, missing_values
+    from mbsym.mechanics.rest import given_values, missing_values, rational_values
 
-    values = given_values(system, given)
+    values = rational_values(given_values(system, given))
     names = [name for name in missing_values(system, values) if name != varied]
     if names:
         asked.complaints.append(missing(file, names, "rational number"))

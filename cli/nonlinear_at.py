@@ -41,7 +41,7 @@ def at_values(file: Path, system: System, numbers: Mapping[str, Fraction], as_js
     from mbsym.algebra.failures import Failure
     from mbsym.analysis import Analysis
     from mbsym.analysis.stages import Unavailable
-    from mbsym.mechanics.rest import given_values, missing_values
+    from mbsym.mechanics.rest import given_values, missing_values, rational_values
     from mbsym.report.sections.normal_forms import lines
     from mbsym_cli.lacking import missing
 
@@ -61,7 +61,7 @@ def at_values(file: Path, system: System, numbers: Mapping[str, Fraction], as_js
     except KeyboardInterrupt:
         complain(file, "interrupted")
         return INTERRUPTED
-    known = given_values(system, numbers)
+    known = rational_values(given_values(system, numbers))
     lacking = [name for name in missing_values(system, known) if name not in solved]
     if found.at_values is None and lacking and found.in_symbols is None:
         print(missing(file, lacking, "rational number"), file=sys.stderr)

@@ -16,6 +16,7 @@ from mbsym.expressions.safe import quoted as ascii_safe
 from mbsym.problems import NUMBERS, ranges
 from mbsym.source import render_option
 from mbsym_cli.console import printable
+from mbsym_cli.files import taken
 
 #: The text of an option has at most so many characters.
 MAX_LENGTH = 2_000
@@ -73,6 +74,11 @@ class Options:
             named_here = ", ".join(map(str, files))
             self.complain(named_here, "no-descriptions", f"there are no descriptions here{passed}", hint)
         return list(found.values())
+
+    def unwritten(self, option: str, path: Path | None) -> None:
+        """Complains of a file to be written that is there already."""
+        if path is not None and taken(path):
+            self.complain(option, "exists", f"{printable(path)} is there already", "another name, or --force")
 
     def time(self, text: str | None) -> float | None:
         """``--time``, without which nothing can be simulated."""

@@ -8,7 +8,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mbsym_cli.console import FAILED, OK, complain, console, status
+from mbsym_cli.console import FAILED, OK, complain, console, reason_of, status
 from mbsym_cli.files import deliver
 from mbsym_cli.options import Options
 
@@ -75,7 +75,9 @@ def drawn(asked: Drawing, found: Oscillating) -> int:
         reason = NO_NUMBERS
     except ZeroDivisionError:
         reason = DIVIDED
-    except (Failure, ValueError, OverflowError, OSError) as error:
+    except OSError as error:
+        reason = reason_of(error)
+    except (Failure, ValueError, OverflowError) as error:
         reason = str(error)
     if reason:
         complain(asked.file, f"no figures: {reason}")

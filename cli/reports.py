@@ -189,6 +189,9 @@ def _complaints(analysis: Analysis, path: Path, files: list[Rendered], request: 
     failed = [check for check in analysis.checks if check.failed]
     for check in failed:
         complain(path, f"SELF-CHECK FAILED: {check.name}: {check.detail}")
+    for check in analysis.checks:
+        if check.singular:
+            complain(path, f"the mass matrix is singular: {check.detail}")
     for error in {described(error): error for error in analysis.defects}.values():
         defect(error, path)
     return bool(defects or open_claims or failed or analysis.defects)

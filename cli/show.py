@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from mbsym.report.claims import ClaimLine
     from mbsym.report.summary import Line, Summary
 
-_COLOURS = {"exact": "green", "verified numerically": "green", "undecided": "yellow", "FAILED": "bold red"}
+_COLOURS = {"exact": "green", "verified numerically": "green", "FAILED": "bold red"}
+_COLOURS |= {"undecided": "yellow", "singular": "yellow"}
 _CLAIM_COLOURS = {"held": "green", "refuted": "bold red", "undecided": "yellow"}
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 from mbsym.expressions.safe import quoted as ascii_safe
-from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, complain, printable, status
+from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, complain, printable, reason_of, status
 from mbsym_cli.files import room_beside
 from mbsym_cli.options import Options
 from mbsym_cli.progress import progress
@@ -74,7 +74,7 @@ def run(file: Path, folder: Path, given: Scenario, wanted: Asked, options: Optio
         complain(file, f"error[no-program]: there is no program for these equations: {error}")
         complain(file, "nothing was written.")
     except OSError as error:
-        complain(file, f"the results cannot be written: {error}")
+        complain(file, f"the results cannot be written: {reason_of(error)}")
     except MemoryError:
         complain(file, "out of memory; ask for fewer --samples")
     return FAILED

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import NoReturn, TypeVar
 
-from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OK, complain
+from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OK, complain, reason_of
 from mbsym_cli.files import obstacle
 from mbsym_cli.options import Options
 
@@ -60,5 +60,5 @@ def attempted(
     except Failure as error:
         complain(file, f"error[no-program]: there is no program for {equations}: {error}")
     except OSError as error:
-        complain(file, f"the {results} cannot be written: {error}")
+        complain(file, f"the {results} cannot be written: {reason_of(error)}")
     return None

@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from mbsym.expressions.constants import out_of_range
 from mbsym.expressions.parser import ascii_safe, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.source import render_option
@@ -135,6 +136,8 @@ def _formula(text: str, names: set[str], complaints: Options) -> Expression | No
         if isinstance(node, Name) and node.name not in {*names, *CONSTANTS} and node.span is not None:
             hint = did_you_mean(node.name, [*names, *MEASURES]) or f"{', '.join(MEASURES)}, or a formula"
             found.error("unknown-name", f"unknown name {ascii_safe(node.name)}", node.span, hint)
+    if value is not None and (why := out_of_range(value)):
+        found.error("no-number", f"nothing can be computed with this number: {why}", Span(1, 1, max(1, len(text))))
     complaints.complaints += [render_option(one, text, "--measure") for one in found.sorted()]
     return None if found.errors else value
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import click
 
 from mbsym_cli.assignments import given_numbers
-from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OutPath, complain
+from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OutPath, complain, reason_of
 from mbsym_cli.files import folder_for, obstacle
 from mbsym_cli.options import Options
 from mbsym_cli.simulation_inputs import read_held
@@ -102,5 +102,5 @@ def _command(
     try:
         return run(file, folder, given, [METHODS[name] for name in names], request)
     except OSError as error:
-        complain(file, f"the results cannot be written: {error}")
+        complain(file, f"the results cannot be written: {reason_of(error)}")
     return FAILED

@@ -11,7 +11,7 @@ import click
 
 from mbsym_cli.assignments import assignments, contradictions, given_numbers
 from mbsym_cli.console import BAD_INPUT, FAILED, OK, OutPath, complain, printable, read_description
-from mbsym_cli.files import folder_for, write_whole
+from mbsym_cli.files import deliver, folder_for, obstacle, write_whole
 from mbsym_cli.options import Options
 from mbsym_cli.progress import progress
 from mbsym_cli.study import attempted, leave
@@ -62,12 +62,11 @@ def command(
       mbsym view systems/double-pendulum.yaml --time 10 --modes
       mbsym view systems/satellite.yaml -o satellite.html
     """
-    there = out or folder_for(file, None) / "view.html"
-    leave(file, lambda: _command(file, there, end, (modes, equilibria), settings, quiet))
+    leave(file, lambda: _command(file, out, end, (modes, equilibria), settings, quiet))
 
 
 def _command(
-    file: Path, out: Path, end: str | None, further: tuple[bool, bool], settings: tuple[str, ...], quiet: bool
+    file: Path, out: Path | None, end: str | None, further: tuple[bool, bool], settings: tuple[str, ...], quiet: bool
 ) -> int:
     """Reads everything, complains about everything, then computes and writes."""
     from mbsym.numerics.scenario import Incomplete
@@ -80,22 +79,31 @@ def _command(
         overrides = given_numbers(file, system, settings, asked)[1]
     elif system is not None:
         overrides = _without_run(file, system, settings, asked)
+    asked.unwritten("--out", out)
     if asked.refused(None if system is None else file) or system is None:
         return BAD_INPUT
+    reason = "" if out is not None else obstacle(folder_for(file, None))
+    if reason:
+        complain(file, f"the page cannot be written: {reason}")
+        return FAILED
     wanted = Wanted(system, overrides, time, *further)
     made = attempted(file, lambda: _made(file, wanted, quiet), {Incomplete: "cannot be drawn"})
     if made is None:
         return FAILED
     text, said = made
+    there = out or folder_for(file, None) / "view.html"
     try:
-        write_whole(out, text)
+        if out is None:
+            deliver(there.parent, {there.name: text}, "view")
+        else:
+            write_whole(out, text)
     except OSError as error:
-        complain(out, f"cannot be written: {error.strerror}")
+        complain(there, f"cannot be written: {error.strerror}")
         return FAILED
     if not quiet:
         for line in said:
             click.echo(printable(line))
-        click.echo(f"{printable(out)}: {len(text) / 1e6:.1f} MB, opens in a browser without network")
+        click.echo(f"{printable(there)}: {len(text) / 1e6:.1f} MB, opens in a browser without network")
     return OK
 
 

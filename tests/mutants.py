@@ -1,14 +1,20 @@
 """Mutated descriptions, the same ones in every run: numbers, names, texts, lines, characters.
 
 ``mutant(text, chance)`` changes anything, and mostly gives a description with errors; ``variant(text, chance)`` changes
-numbers, names and texts for people so that most of what comes out is still a description, of another system.
+numbers, names and texts for people so that most of what comes out is still a description, of another system;
+``grafted(text, chance)`` changes the tree of keys and values.
 """
 
 from __future__ import annotations
 
+import copy
+import json
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from random import Random
+from typing import Any
+
+import yaml
 
 #: Numbers that formulas, printers or integers may stumble over.
 NUMBERS = (
@@ -145,6 +151,81 @@ def _repeated(text: str, chance: Random) -> str:
     start = chance.randrange(len(text))
     piece = text[start : start + chance.randint(1, 60)]
     return text[:start] + piece * chance.choice([2, 20, 200]) + text[start:]
+
+
+#: What is spliced around a formula, and what is put in the place of one.
+_AROUND = ("sqrt({})", "exp({})", "log({})", "tan({})", "atan({})", "cos({})", "abs({})", "({})**2", "1/({})", "-({})",
+           "({})*({})", "({}) - ({})", "{}/(1 + t)", "sign({})", "({})**(1/2)")  # fmt: skip
+_ODD = ("0", "-1", "pi/2", "sqrt(2)", "1/3", "exp(1)", "t", "-0", "1e30", "cos(3*pi/2)", "sqrt(2)**2 - 2", "log(2)")
+_CONSTRAINTS: tuple[dict[str, Any], ...] = (
+    {"coincide": [{"body": "{0}", "point": ["1", "0", "0"]}, {"body": "{1}", "point": ["0", "1", "0"]}]},
+    {"distance": [{"body": "{0}", "point": ["1", "0", "0"]}, {"body": "{1}"}], "length": "2"},
+    {"relation": "{2} - {3}**2 = 0"},
+    {"velocity": "{2}_dot - {3}*{2}_dot = 0"},
+    {"velocity": "{2}_dot = 0"},
+)
+
+
+def grafted(text: str, chance: Random) -> str:
+    """One or two changes of the tree of a YAML description: keys and items gone, exchanged or doubled, functions around
+    formulas, odd values, a further body, a constraint."""
+    try:
+        tree = yaml.load(text, Loader=yaml.BaseLoader)
+    except yaml.YAMLError:
+        return text
+    if not isinstance(tree, dict):
+        return text
+    for _ in range(chance.randint(1, 2)):
+        _graft(tree, chance)
+    written: str = yaml.safe_dump(tree, sort_keys=False, allow_unicode=True)
+    return written
+
+
+def _graft(tree: dict[str, Any], chance: Random) -> None:
+    places = list(_places(tree))
+    leaves = [(at, key) for at, key in places if isinstance(at[key], str) and key != "mbsym"]
+    (at, key), (other, there) = chance.choice(places), chance.choice(places)
+    (leaf, name), (second, one) = chance.choice(leaves), chance.choice(leaves)
+    bodies = tree.get("bodies")
+    match chance.randrange(10):
+        case 0:
+            del at[key]
+        case 1:
+            at[key], other[there] = copy.deepcopy(other[there]), copy.deepcopy(at[key])
+        case 2:
+            leaf[name], second[one] = second[one], leaf[name]
+        case 3 | 4 | 5:
+            leaf[name] = chance.choice(_AROUND).replace("{}", leaf[name])
+        case 6:
+            leaf[name] = chance.choice(_ODD)
+        case 7:
+            at[key] = chance.choice([[], {}, ""])
+        case 8 if isinstance(bodies, list) and bodies and isinstance(bodies[-1], dict):
+            extra = json.loads(re.sub(r'"angles": \[[^]]*\]', '"angles": ["extra_q"]', json.dumps(bodies[-1])))
+            extra |= {"name": "extra", "attached to": bodies[-1].get("name", "0")}
+            extra.pop("coordinates", None)
+            if isinstance(extra.get("rotation"), dict):
+                extra["rotation"]["axes"] = ["3"]
+            bodies.append(extra)
+        case 9 if isinstance(bodies, list):
+            called = [str(one.get("name", "0")) for one in bodies if isinstance(one, dict)] or ["0"]
+            moving = tree["motion"] if isinstance(tree.get("motion"), dict) and tree["motion"] else {"x": ""}
+            words = [chance.choice(called), chance.choice([*called, "0"]), *(chance.choice(list(moving)) for _ in "12")]
+            added = json.dumps(chance.choice(_CONSTRAINTS))
+            for number, word in enumerate(words):
+                added = added.replace(f"{{{number}}}", word)
+            tree.setdefault("constraints", [])
+            if isinstance(tree["constraints"], list):
+                tree["constraints"].append(json.loads(added))
+
+
+def _places(tree: Any) -> Iterator[tuple[Any, Any]]:
+    """(container, key or index) of everything below the first level's version."""
+    items = list(tree.items()) if isinstance(tree, dict) else list(enumerate(tree)) if isinstance(tree, list) else []
+    for key, value in items:
+        if key != "mbsym":
+            yield tree, key
+            yield from _places(value)
 
 
 _VARIATIONS: tuple[Callable[[str, Random], str], ...] = (

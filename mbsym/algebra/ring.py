@@ -367,7 +367,7 @@ class Ring(Algebra[Polynomial]):
         step = turns / several
         angle = self.generator("parameter", "pi") * fmpq(step.numerator, step.denominator)
         known = self._adjoined("sine", angle) is not None
-        s, c = self.sin_cos_of(angle)
+        s, c = self._own_angle(angle)
         if not known and step.numerator == 1:
             self._relate_cosine(c, step.denominator)
         return self.multiple_angle(s, c, several)
@@ -426,12 +426,17 @@ class Ring(Algebra[Polynomial]):
         return root
 
     def sin_cos_of(self, argument: Polynomial) -> tuple[Polynomial, Polynomial]:
+        """sin and cos of whatever stands under them; what is a multiple of pi after all (w x at x = pi/w) is known."""
+        form = None if argument.is_zero() else self._foreseen(argument)
+        return self._own_angle(argument) if form is None else self.sin_cos(form)
+
+    def _own_angle(self, argument: Polynomial) -> tuple[Polynomial, Polynomial]:
         """An angle of its own, such as ``Omega*t`` or ``7/10``: two adjoined generators with the chain rule."""
         if argument.is_zero():
             return self.zero, self.one
         constant = self.constant_value(argument)
         if constant is not None and constant < 0:
-            s, c = self.sin_cos_of(-argument)
+            s, c = self._own_angle(-argument)
             return -s, c
         if constant is None and (parts := self._arc_tangents(argument)):
             return self._with_arc_tangents(argument, parts)
@@ -885,6 +890,11 @@ class Ring(Algebra[Polynomial]):
             return x / y
         except DomainError:
             return None
+
+    def is_number(self, x: Polynomial) -> bool:
+        """Whether x holds nothing but sines, roots and functions of numbers."""
+        held = (self.generators[k] for k in occurring([x]))
+        return all(g.argument is not None and g.argument.is_constant() for g in held)
 
     def is_zero(self, x: Polynomial) -> bool | None:
         """True (proved zero), False (proved different from zero), or None where this ring cannot decide.

@@ -12,7 +12,7 @@ from cheap to dear:
 * **value**: p holds nothing but numbers, such as sqrt(3) - 1, and its enclosure excludes zero;
 * **terms**: p = sum of terms, each with a known sign ("all coefficients of one sign");
 * **assumptions**: p = sum c_i m_i a_i + rest, with assumptions a_i, numbers c_i and monomials m_i of known sign;
-* **square**: p = A x^2 + B x + C with B^2 - 4 A C < 0 has the sign of A;
+* **square**: p = A x^2 + B x + C with B^2 - 4 A C < 0 has the sign of A, and so on within the discriminant;
 * **bounds**: a < x, x < b or both are used up by x = a + u, x = b - u, x = (a + b u)/(1 + u) with u > 0, and the
   question is asked again for the numerator.
 
@@ -27,7 +27,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache, cached_property
-from operator import sub
+from operator import le, sub
 from random import Random
 from typing import Any
 
@@ -70,6 +70,10 @@ WITNESSES, ATTEMPTS = 24, 200
 _NUMBER_BITS = 256
 #: Where they are sought between the bounds; signs change near the ends rather than in the middle.
 SHARES = tuple(fmpq(k, 64) for k in (1, 2, 8, 20, 32, 44, 56, 62, 63))
+#: Assumptions of more terms are not divided by what is asked about.
+MOST_DIVIDED = 12
+#: Squares that are completed within one another.
+SQUARES = 2
 #: Steps of the search for a combination of assumptions, per question: as asked, and after a change of variables.
 MOST_STEPS, MOST_STEPS_CHANGED = 60, 8
 
@@ -195,6 +199,7 @@ class Signs:
                 normal, flip = _normal(factor)
                 direction *= flip
                 kept.append(normal)
+        nonzero = self._apart(nonzero)
         if not kept:
             return self._decided(direction > 0, tuple(nonzero))
         if direction < 0:
@@ -215,8 +220,28 @@ class Signs:
         p = self.normalised(p)
         if p == 0:
             return self._decided(False)
-        factors = tuple(_normal(f)[0] for f, _ in _factored(p)[1] if 0 in self._possible(f, -1))
-        return self._decided(True, factors)
+        factors = [_normal(f)[0] for f, _ in _factored(p)[1] if 0 in self._possible(f, -1)]
+        return self._decided(True, tuple(self._apart(factors)))
+
+    def _apart(self, nonzero: list[Polynomial]) -> list[Polynomial]:
+        """Those of the factors that may vanish where the others do not.
+
+        A sum of squares such as (p - 2 A c w)^2 + A^2 w^2 (1 - c^2) is positive where 1 - c^2 is.
+        """
+        kept = list(nonzero)
+        for factor in sorted(nonzero, key=len, reverse=True):
+            others = [x for x in kept if x is not factor and len(x) <= MOST_TERMS]
+            facts = [(x, ">") if -1 not in self._possible(x, -1) else (-x, ">") for x in others if self._one_sided(x)]
+            try:
+                if facts and len(factor) <= MOST_TERMS and self.assuming(facts).never_zero(factor):
+                    kept = [x for x in kept if x is not factor]
+            except ContradictionError:  # the others cannot all differ from zero: that is for them to say
+                continue
+        return kept
+
+    def _one_sided(self, p: Polynomial) -> bool:
+        signs = self._possible(p, -1)
+        return -1 not in signs or 1 not in signs
 
     def assuming(self, more: Iterable[tuple[Polynomial, str]]) -> Signs:
         """The same knowledge with further assumptions."""
@@ -405,10 +430,40 @@ class Signs:
             ratio = p.leading_coefficient() / polynomial.leading_coefficient()
             if p == polynomial * ratio:
                 result &= _product(allowed, frozenset({_sign(ratio)}))
+            if len(result) > 1:
+                result &= self._by_quotient(p, polynomial, allowed)
         for target in (1, -1):
             if len(result) > 1:
                 steps = iter(range(MOST_STEPS if after < 0 else MOST_STEPS_CHANGED))
                 result &= self._combination(p, target, 3 if after < 0 else 2, steps)
+        return result
+
+    def _by_quotient(self, p: Polynomial, known: Polynomial, allowed: SignSet) -> SignSet:
+        """known = q p + r, so that q p has the sign of known - r: from a c - b^2 > 0 and c > 0 follows a > 0."""
+        if p.is_constant() or len(known) > MOST_DIVIDED or not all(map(le, p.degrees(), known.degrees())):
+            return ANY
+        quotient, remainder = divmod(known, p)
+        if quotient == 0:
+            return ANY
+        factor = self._told(quotient)
+        product = _sum(allowed, frozenset(-s for s in self._told(remainder)))
+        if len(factor) != 1 or 0 in factor or product == ANY:
+            return ANY
+        return _product(product, factor)
+
+    def _told(self, p: Polynomial) -> SignSet:
+        """Signs by factors, of each by its terms or as it is assumed."""
+        if p == 0:
+            return ZERO
+        unit, powers = _factored(p)
+        result = frozenset({_sign(unit)})
+        for factor, exponent in powers:
+            signs = self._by_terms(factor)
+            for polynomial, allowed in self._known:
+                ratio = factor.leading_coefficient() / polynomial.leading_coefficient()
+                if factor == polynomial * ratio:
+                    signs &= _product(allowed, frozenset({_sign(ratio)}))
+            result = _product(result, _power(signs, exponent))
         return result
 
     def _combination(self, p: Polynomial, target: int, depth: int, steps: Iterator[int]) -> SignSet:
@@ -439,38 +494,48 @@ class Signs:
                     return _sum(part, found)
         return ANY
 
-    def _by_square(self, p: Polynomial) -> SignSet:
-        """A x^2 + B x + C: negative discriminant means the sign of A, a nonpositive one with A > 0 means >= 0."""
+    def _by_square(self, p: Polynomial, depth: int = SQUARES) -> SignSet:
+        """A x^2 + B x + C: negative discriminant means the sign of A, a nonpositive one with A > 0 means >= 0.
+
+        The discriminant of a sum of several squares is minus such a sum in fewer generators.
+        """
+        result = ANY
         for generator, degree in enumerate(p.degrees()):
-            if degree != 2:
+            if degree != 2 or len(result) == 1:
                 continue
             c, b, a = coefficients_in(p, generator)
-            discriminant = self._plain(b * b - 4 * a * c)
-            leading = self._plain(a)
+            discriminant = self._plain(b * b - 4 * a * c, depth)
+            leading = self._plain(a, depth)
             if discriminant == frozenset({-1}):
-                return leading - ZERO or ANY
-            if 1 not in discriminant and len(leading) == 1 and 0 not in leading:
-                return leading | ZERO
-        return ANY
+                result &= leading - ZERO or ANY
+            elif 1 not in discriminant and len(leading) == 1 and 0 not in leading:
+                result &= leading | ZERO
+        return result
 
-    def _plain(self, p: Polynomial) -> SignSet:
-        """Signs by factors and terms only."""
+    def _plain(self, p: Polynomial, depth: int) -> SignSet:
+        """Signs by factors and terms, and so many squares within."""
         if p == 0:
             return ZERO
         unit, powers = _factored(p)
         result = frozenset({_sign(unit)})
         for factor, exponent in powers:
-            result = _product(result, _power(self._by_terms(factor), exponent))
+            signs = self._by_terms(factor)
+            if depth and len(signs) > 1 and len(factor) <= MOST_TERMS:
+                signs &= self._by_square(factor, depth - 1)
+            result = _product(result, _power(signs, exponent))
         return result
 
     # -- witnesses ----------------------------------------------------------------------------------------------
 
     def _observed(self, p: Polynomial) -> SignSet:
-        return frozenset(_sign(p(*point)) for point in self._witnesses)
+        return frozenset(_sign(p(*point)) for point in self.witnesses)
 
     @cached_property
-    def _witnesses(self) -> tuple[tuple[Any, ...], ...]:
-        """Some rational points that satisfy the assumptions; the same ones every time."""
+    def witnesses(self) -> tuple[tuple[Any, ...], ...]:
+        """Some rational points that satisfy the assumptions, a value for each generator; the same ones every time.
+
+        They mean nothing where generators are no free parameters.
+        """
         random, found = Random(1), []
         bounds = [self._bounds(generator) for generator in range(self.context.nvars())]
         places = [[_between(lower, upper, share) for share in SHARES] for lower, upper in bounds]
@@ -561,7 +626,20 @@ class Signs:
             if _is_bound(polynomial, generator, relation):
                 constant, slope = (c.leading_coefficient() if c != 0 else fmpq(0) for c in _ends(polynomial, generator))
                 (below if slope > 0 else above).append((-constant / slope, relation == ">"))
-        return max(below, default=None), min(above, key=lambda bound: (bound[0], not bound[1]), default=None)
+        least = max(below, default=None)
+        most = min(above, key=lambda bound: (bound[0], not bound[1]), default=None)
+        return self._strictly(generator, least), self._strictly(generator, most)
+
+    def _strictly(self, generator: int, bound: tuple[Any, bool] | None) -> tuple[Any, bool] | None:
+        """A bound, strict if an assumption excludes equality: 1 - c^2 > 0 excludes c = 1."""
+        if bound is None or bound[1]:
+            return bound
+        excluded = any(
+            0 not in RELATIONS[relation] and p.degrees()[generator] and _at(p, generator, bound[0]) == 0
+            for p, relation in self.assumptions
+            if p != 0 and len(p) <= MOST_TERMS
+        )
+        return bound[0], excluded
 
 
 def conditions(requirements: Iterable[Condition]) -> tuple[Condition, ...]:

@@ -24,6 +24,8 @@ from typing import Any
 
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.generators import occurring
+from mbsym.algebra.ring import Ring
 
 Polynomial = Any  # a flint.fmpq_mpoly
 
@@ -152,6 +154,30 @@ def split(
         except NoClosedForm:
             work.unfinished += 1
     return Split(tuple(work.done), tuple(work.generic), work.unfinished)
+
+
+def vanishes_with(ring: Ring, x: Polynomial, equations: Sequence[Polynomial]) -> bool | None:
+    """Whether x is zero wherever all ``equations`` between parameters hold; None where that is not found out.
+
+    What other generators hold (roots, functions of parameters) is not solved for; a branch on which a numerator is left
+    is a witness only if every equation was solved there for something.
+    """
+    numerator, _ = ring.fraction(x)
+    if numerator.is_zero():
+        return True
+    if any(ring.quotient(numerator, p) is not None for p in equations):
+        return True
+    present = [(k, ring.generators[k]) for k in occurring((numerator, *equations))]
+    hidden = {k for _, g in present if g.argument is not None for k in occurring([g.argument])}
+    unknowns = [k for k, g in present if g.kind == "parameter" and k not in hidden and g.name not in ring.angles]
+    found = split(equations, unknowns)
+    if found.unfinished or not all(ring.is_number(p) and ring.is_zero(p) is False for p in found.generic):
+        return None
+    left = [bool(ring.reduce(branch.numerator(numerator))) for branch in found.branches]
+    if not any(left):
+        return True
+    solved = [one for one, branch in zip(left, found.branches, strict=True) if not branch.remaining]
+    return False if any(solved) else None
 
 
 def _step(work: _Work, branch: Branch, equations: Sequence[Polynomial]) -> list[tuple[Branch, tuple[Polynomial, ...]]]:

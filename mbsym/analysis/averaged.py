@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -26,8 +26,11 @@ def fast_phases(system: System) -> tuple[str, ...]:
     return tuple(item.name for item in system.prescribed if isinstance(item.rate, Name) and item.rate.name in declared)
 
 
-def averaging_of(analysis: Analysis, phase: str, small: Sequence[str] = ()) -> Averaged:
-    """The effective potential of an analysis whose ``phase`` is fast; ``small``: what it shakes, found where left out.
+def averaging_of(analysis: Analysis, phase: str, amplitudes: Sequence[str] | Mapping[str, int] = ()) -> Averaged:
+    """The effective potential of an analysis whose ``phase`` is fast.
+
+    ``amplitudes``: the parameters that set how strongly the phase acts, with their powers of eps (1 where only names
+    are given); found where they are left out and plain.
 
     Raises NoClosedForm with the reason where there is none.
     """
@@ -39,11 +42,12 @@ def averaging_of(analysis: Analysis, phase: str, small: Sequence[str] = ()) -> A
     rate = next(item.rate for item in system.prescribed if item.name == phase)
     assert isinstance(rate, Name)
     _refuse_company(system, phase, rate.name)
-    chosen = tuple(small) or averaging.small_parameters(analysis.scene, analysis.energy, phase, rate.name)
-    if not chosen:
-        raise NoClosedForm(f"which parameters are small is not plain: name what {phase} shakes")
-    _refuse_ties(system, (rate.name, *chosen))
-    return averaging.averaged(analysis.scene, analysis.energy, phase, rate.name, chosen)
+    told = amplitudes if isinstance(amplitudes, Mapping) else dict.fromkeys(amplitudes, 1)
+    if rate.name in told:
+        raise NoClosedForm(f"{rate.name} is the rate of {phase}, and of order eps^-1")
+    orders = dict(told) or averaging.orders_of(analysis.scene, analysis.energy, phase, rate.name)
+    _refuse_ties(system, phase, (rate.name, *orders))
+    return averaging.averaged(analysis.scene, analysis.energy, phase, rate.name, orders)
 
 
 def _refuse_company(system: System, phase: str, rate: str) -> None:
@@ -53,8 +57,12 @@ def _refuse_company(system: System, phase: str, rate: str) -> None:
             raise NoClosedForm(f"{item.name} is as fast as {phase}: both have a rate with {rate}")
 
 
-def _refuse_ties(system: System, scaled: Sequence[str]) -> None:
-    """Raises NoClosedForm where a relation ties what is small or large: powers of eps would be hidden in it."""
+def _refuse_ties(system: System, phase: str, scaled: Sequence[str]) -> None:
+    """Raises NoClosedForm where what is small or large is tied to others: powers of eps would be hidden in that."""
+    for item in system.prescribed:
+        tied = [name for name in scaled if name in names(item.rate)]
+        if tied and item.name != phase:
+            raise NoClosedForm(f"{tied[0]} takes part in the rate of {item.name}: what is small or large must be free")
     for relation in system.relations:
         tied = [name for name in scaled if name == relation.name or name in names(relation.value)]
         if tied:
@@ -65,8 +73,8 @@ def _refuse_ties(system: System, scaled: Sequence[str]) -> None:
 
 
 def averaged_system(system: System, found: Averaged) -> System:
-    """The description without the shaking and with the vibrational potential as a load; claims are left out."""
-    at_rest = {name: number(0) for name in found.small}
+    """The description without the amplitudes and with the vibrational potential as a load; claims are left out."""
+    at_rest = {name: number(0) for name, _ in found.orders}
     base = replace(system, parameters=(), initial=(), claims=(), abbreviations=(), prescribed=())
     still: System = put(base, at_rest, folded)
     kept = tuple(item for item in system.prescribed if item.name != found.phase)
@@ -76,7 +84,8 @@ def averaged_system(system: System, found: Averaged) -> System:
     return replace(
         still,
         name=f"{system.name}, averaged over {found.phase}",
-        description=f"Its effective potential holds what the fast {found.phase} does on average.  {system.description}",
+        description=f"Its effective potential holds what the fast {found.phase} does on average "
+        f"({found.scaling}).  {system.description}",
         parameters=system.parameters,
         initial=system.initial,
         prescribed=kept,

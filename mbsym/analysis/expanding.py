@@ -123,8 +123,8 @@ def expansion(analysis: Analysis, order: int, values: Mapping[str, Fraction] | N
         return replace(plain, missing="a denominator of the expansion vanishes on the motion")
     if steady_found.fast.bounded:
         raise NoClosedForm(
-            f"no slow manifold: of the roots that would belong to {', '.join(fast)} one stays bounded as {small.name} "
-            "tends to 0, so that not all of these variables are fast",
+            f"not all of {', '.join(fast)} are fast: of the roots that would belong to them one stays bounded as "
+            f"{small.name} tends to 0; of a slow manifold over more variables nothing is said",
             remedy=slow.DECLARE,
         )
     plain = replace(plain, manifold=replace(found, steady=steady_found))

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.formulas.formula import Formula
@@ -16,7 +18,7 @@ from mbsym.problems.stability.word import Word
 if TYPE_CHECKING:
     from mbsym.algebra.signs import Signs
     from mbsym.analysis.pipeline import Analysis
-    from mbsym.problems.normal_forms import InSymbols, NormalForms
+    from mbsym.problems.normal_forms import InSymbols, Judged, NormalForms
 
 
 def normal_forms_of(analysis: Analysis) -> NormalForms:
@@ -45,6 +47,27 @@ def normal_forms_of(analysis: Analysis) -> NormalForms:
     return replace(result, first=first, everywhere=None if judged is None else decided(judged.verdict.word))
 
 
+def judge(analysis: Analysis) -> Callable[[Mapping[str, Any]], Judged | None]:
+    """What terms of higher order decide at rational values of all parameters; None where they could not be had.
+
+    The expansions are made once for all of them.
+    """
+    from mbsym.problems.normal_forms import problem
+
+    scene, equilibrium = analysis.parameters_scene, analysis.equilibrium
+    made: list[Callable[[Mapping[str, Any]], Judged]] = []
+
+    def at(values: Mapping[str, Any]) -> Judged | None:
+        try:
+            if not made:
+                made.append(problem.judge(scene, analysis.system, equilibrium, *ignorable(analysis)))
+            return made[0](values)
+        except (Failure, *NOT_THERE):
+            return None
+
+    return at
+
+
 def _told_by_signs(found: InSymbols, signs: Signs) -> InSymbols:
     """With what may vanish at all for parameters of their signs."""
     from mbsym.problems.normal_forms import Vanishing
@@ -63,7 +86,7 @@ def _told_by_signs(found: InSymbols, signs: Signs) -> InSymbols:
 
 def decided(word: Word) -> Word | None:
     """A verdict that needs nothing more; None for others."""
-    return None if word.open or word is Word.DEPENDS else word
+    return None if word.open or word in (Word.DEPENDS, Word.UNSTABLE_BUT_BORDERS) else word
 
 
 def ignorable(analysis: Analysis) -> tuple[bool, frozenset[str]]:

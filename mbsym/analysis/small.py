@@ -26,7 +26,7 @@ OSCILLATION_ORDER = 2
 
 @dataclass(frozen=True, repr=False)
 class Averaging(Shown):
-    """The effective potential for one fast phase; ``failure``: why there is none.
+    """The effective potential for one fast phase, before it is measured; ``failure``: why there is none.
 
     ``analysis`` is that of the averaged description, for problem 6.
     """
@@ -114,6 +114,6 @@ def _averaging(analysis: Analysis, phase: str) -> Averaging:
         if broken is not None:
             raise NoClosedForm(broken.reason)
     except Failure as reason:
-        return Averaging(phase, failure=str(reason))
+        return Averaging(phase, failure=f"{reason}; {reason.remedy}" if reason.remedy else str(reason))
     averaged: System = averaged_system(analysis.system, found)
     return Averaging(phase, found, Whole(averaged, (6,)))

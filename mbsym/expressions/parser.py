@@ -22,6 +22,7 @@ from fractions import Fraction
 from math import ceil
 
 from mbsym.expressions.angles import linear_form
+from mbsym.expressions.constants import meaningless
 from mbsym.expressions.place import Complaint, Complaints, Span
 from mbsym.expressions.safe import quoted
 from mbsym.expressions.table import Table
@@ -164,7 +165,8 @@ def parse_expression(
     bounds: Bounds = WRITTEN,
     tables: Mapping[str, Table] = NO_TABLES,
 ) -> Expression | None:
-    """The tree of an expression, or None with at least one complaint.
+    """The tree of an expression, or None with at least one complaint; of one that holds a number that is none, log(0),
+    both the tree, for its names count, and the complaint.
 
     ``span_of(start, end)`` turns offsets in ``text`` into places of the file.  Names are not looked up here: which
     names a place allows is the reader's business; where it allows none (``named`` is false) no hint speaks of any.
@@ -182,7 +184,25 @@ def parse_expression(
         tree = parser.whole()
     except _Refused:
         return None
+    if complaints.error_count == errors_before and (nothing := meaningless(tree)) is not None:
+        node, why = nothing
+        complaints.error("no-number", f"this is no real number: {why}", node.span, _no_number_hint(node))
+        return tree
     return tree if complaints.error_count == errors_before else None
+
+
+def _no_number_hint(node: Expression) -> str | None:
+    """What is usually meant: a limit has a name, and a sign was lost."""
+    match node:
+        case Operation("/"):
+            return "its divisor is zero to 600 digits: leave the fraction out, or let a parameter stand for the divisor"
+        case Call("log"):
+            return "a logarithm is that of a positive number"
+        case Call("sqrt") | Operation("**"):
+            return "a root is that of a positive number or zero"
+        case Call("tan"):
+            return "an angle of pi/2 is described by its cosine, 0, not by its tangent"
+    return None
 
 
 def names_apart(text: str, span_of: SpanOf, refused: Sequence[Complaint]) -> list[Name]:

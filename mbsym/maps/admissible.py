@@ -51,6 +51,11 @@ class Admissibility:
     broken: tuple[Demand, ...]
     left_out: tuple[str, ...]
 
+    @property
+    def known(self) -> tuple[tuple[Polynomial, str], ...]:
+        """(polynomial, relation to 0) of what holds wherever a verdict is given."""
+        return tuple((one.condition.polynomial, one.relation) for one in self.demands)
+
 
 def admissibility(analysis: Analysis, section: Section) -> Admissibility:
     """Everything that points of the section have to keep."""

@@ -14,8 +14,11 @@ is read off is constant there:
 * what Routh's reduction gives, by the same polynomials of the reduced matrices.
 
 Common roots of two factors h(lambda^2) make no difference on open sets, but on curves: their resultant is among the
-boundaries, so that the verdict on it is looked at.  Without D, G and N all roots in lambda^2 are real and semisimple
-whether they coincide or not, and discriminants and resultants are left out.  Subdiscriminants are not needed besides.
+boundaries, so that the verdict on it is looked at.  With complete dissipation in the whole section (with its edges) and
+N = 0 no root crosses the axis but at zero, and there are as many to the right as K has negative eigenvalues
+(Kelvin-Chetaev): Hurwitz's minors bound nothing, and without G those to the right are real, so that where roots meet
+does not matter.  Without D, G and N all roots in lambda^2 are real and semisimple whether they coincide or not, and
+discriminants and resultants are left out.  Subdiscriminants are not needed besides.
 """
 
 from __future__ import annotations
@@ -23,6 +26,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
+
+from flint import fmpq
 
 from mbsym.algebra.characteristic import (
     Coefficients,
@@ -33,10 +38,12 @@ from mbsym.algebra.characteristic import (
     discriminant,
     factor_in_lambda,
     hurwitz_minors,
+    leading_minors,
     resultant,
 )
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import TooLargeError
+from mbsym.algebra.signs import Signs
 from mbsym.maps.constant import Constant
 from mbsym.maps.section import Section
 from mbsym.problems.stability.linear_form import LinearSystem, add, is_potential, is_zero
@@ -93,15 +100,18 @@ class Boundaries:
     vanishing: tuple[Condition, ...]
 
 
-def boundaries(section: Section, further: Sequence[Condition] = ()) -> Boundaries:
+def boundaries(
+    section: Section, further: Sequence[Condition] = (), known: Sequence[tuple[Polynomial, str]] = ()
+) -> Boundaries:
     """All boundary polynomials of a section, those of ``further`` conditions (admissibility) included.
 
+    ``known``: (polynomial, relation to 0) of what holds wherever a verdict is given.
     Raises TooLargeError where a determinant is beyond its budget.
     """
     found = list(further)
     found += [Condition(Origin.UNDEFINED, x) for x in section.undefined]
     for number, part in enumerate(section.parts):
-        found += conditions_of(part, number, section=section)
+        found += conditions_of(part, number, section=section, known=known)
     if section.constant is not None:
         found = [replace(x, polynomial=norm_of_factors(section, x.polynomial)) for x in found]
     factors: list[Polynomial] = []
@@ -136,9 +146,13 @@ def norm_of_factors(section: Section, p: Polynomial) -> Polynomial:
 
 
 def conditions_of(
-    system: LinearSystem, part: int, reduced: bool = False, section: Section | None = None
+    system: LinearSystem,
+    part: int,
+    reduced: bool = False,
+    section: Section | None = None,
+    known: Sequence[tuple[Polynomial, str]] = (),
 ) -> Iterator[Condition]:
-    """The boundary polynomials of one subsystem; ``section`` is asked only where it has a constant."""
+    """The boundary polynomials of one subsystem of a ``section``; ``known`` as in ``boundaries``."""
     constant = None if section is None else section.constant
 
     def told(origin: Origin, polynomial: Polynomial, about: str = "") -> Condition:
@@ -156,7 +170,11 @@ def conditions_of(
     for origin, matrix in zip(origins, (system.D, system.G, system.N), strict=True):
         if not is_zero(matrix):
             yield told(origin, _common([x for row in matrix for x in row], section))
-    yield from _of_roots(system, part, reduced) if constant is None else _of_roots_over(system, part, reduced, constant)
+    left_out = () if section is None else _needless(system, section, known)
+    if constant is None:
+        yield from _of_roots(system, part, reduced, left_out)
+    else:
+        yield from _of_roots_over(system, part, reduced, constant)
     if not system.cyclic or reduced:
         return
     acting = [x for matrix in (system.D, system.N) for i in system.cyclic for x in matrix[i]]
@@ -164,11 +182,28 @@ def conditions_of(
     if any(x != 0 for x in acting):
         yield told(Origin.CYCLIC, _common(acting, section))
     if momenta_are_constant(system):
-        yield from conditions_of(ignoring_cyclic(system), part, True, section)
+        yield from conditions_of(ignoring_cyclic(system), part, True, section, known)
 
 
-def _of_roots(system: LinearSystem, part: int, reduced: bool) -> Iterator[Condition]:
-    """Where roots may cross the imaginary axis, or meet on it."""
+def _needless(system: LinearSystem, section: Section, known: Sequence[tuple[Polynomial, str]]) -> tuple[Origin, ...]:
+    """What bounds nothing because N = 0 and D > 0 wherever a verdict is given, which Sylvester's minors show.
+
+    The section with its edges: what is only nonnegative vanishes on one.
+    """
+    if section.constant is not None or system.nonholonomic is not None or not is_zero(system.N) or is_zero(system.D):
+        return ()
+    context, assumptions = section.context, []
+    for axis, x in zip(section.axes, section.context.gens(), strict=True):
+        low, high = (context.constant(fmpq(end.numerator, end.denominator)) for end in (axis.low, axis.high))
+        assumptions += [(x - low, ">="), (high - x, ">=")]
+    signs = Signs(context, ("real",) * context.nvars(), (*assumptions, *known))
+    if any(signs.sign(minor) != "positive" for minor in leading_minors(system.D)):
+        return ()
+    return (Origin.HURWITZ, Origin.MEETING) if is_zero(system.G) else (Origin.HURWITZ,)
+
+
+def _of_roots(system: LinearSystem, part: int, reduced: bool, left_out: Sequence[Origin] = ()) -> Iterator[Condition]:
+    """Where roots may cross the imaginary axis, or meet on it, but for origins ``left_out``."""
 
     def told(origin: Origin, polynomial: Polynomial, about: str) -> Condition:
         return Condition(origin, polynomial, part, about, reduced)
@@ -190,8 +225,10 @@ def _of_roots(system: LinearSystem, part: int, reduced: bool) -> Iterator[Condit
         if len(p) <= 2:
             continue
         if any(c != 0 for c in p[1::2]):
-            yield told(Origin.HURWITZ, hurwitz_minors(p)[len(p) - 3], about)
-            yield told(Origin.MEETING, discriminant(p), about)
+            if Origin.HURWITZ not in left_out:
+                yield told(Origin.HURWITZ, hurwitz_minors(p)[len(p) - 3], about)
+            if Origin.MEETING not in left_out:
+                yield told(Origin.MEETING, discriminant(p), about)
             continue
         h = p[::2]
         if not potential:

@@ -114,7 +114,7 @@ def box_map(
     found, method = Boundaries((), (), ()), Method.ENCLOSURES
     try:
         if functions is None:
-            found = boundaries(there, [*(one.condition for one in kept.demands), *asked(there)])
+            found = boundaries(there, [*(one.condition for one in kept.demands), *asked(there)], kept.known)
             method = Method.BOUNDARIES
     except TooLargeError as error:
         if there.constant is not None or of is not Of.STABILITY:

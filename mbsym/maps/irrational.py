@@ -65,7 +65,7 @@ class IrrationalSection:
     def _judged(self, part: LinearSystem, box: Box, bounded: bool) -> Verdict:
         matrices = self._matrices(part, box)
         cyclic = () if part.driven else part.cyclic
-        found = displaced(enclosed_verdict_with_cyclic(matrices, bounded, cyclic, BITS), part.basis)
+        found = displaced(enclosed_verdict_with_cyclic(matrices, bounded, cyclic, BITS, part.exact), part.basis)
         return off_the_leaf(found) if part.leaf else found
 
     def _matrices(self, part: LinearSystem, box: Box) -> list[list[list[Any]]]:

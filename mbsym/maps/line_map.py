@@ -42,7 +42,7 @@ def line_map(
     if kept.broken:
         raise Unfit([Complaint(Fault.OUTSIDE, "", one.condition.about) for one in kept.broken])
     watch("boundaries", 0, 1)
-    found = boundaries(there, [*(one.condition for one in kept.demands), *asked(there)])
+    found = boundaries(there, [*(one.condition for one in kept.demands), *asked(there)], kept.known)
     context = fmpq_mpoly_ctx.get((axis.name,), Ordering.lex)
     factors = [x if there.constant is None else x.project_to_context(context) for x in found.factors]
     line = decompose_line(factors, *ends(axis))

@@ -54,7 +54,7 @@ def plane_map(
     if kept.broken:
         raise Unfit([Complaint(Fault.OUTSIDE, "", one.condition.about) for one in kept.broken])
     watch("boundaries", 0, 1)
-    found = boundaries(there, [*(one.condition for one in kept.demands), *asked(there)])
+    found = boundaries(there, [*(one.condition for one in kept.demands), *asked(there)], kept.known)
     return with_borders(mapped(there, kept, found, of, watch), SoftBorders(analysis, there), watch)
 
 

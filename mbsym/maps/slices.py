@@ -144,7 +144,7 @@ def stack(
     if kept.broken:
         raise Unfit([Complaint(Fault.OUTSIDE, "", one.condition.about) for one in kept.broken])
     watch("boundaries", 0, 1)
-    found = boundaries(there, [*(one.condition for one in kept.demands), *asked(there)])
+    found = boundaries(there, [*(one.condition for one in kept.demands), *asked(there)], kept.known)
     line = critical_levels(found.factors, box_of(axes), *ends(axes[2]), progress=watch)
     if len(line.zeros) > MOST_LEVELS:
         raise TooLargeError(
@@ -214,7 +214,7 @@ class _Slicing:
         flat = [p if p == 0 else norm_of_factors(cut, p) for p in flat]
         if all(p != 0 for p in flat):
             return Boundaries(tuple(flat), self.boundaries.conditions, self.boundaries.vanishing)
-        own = boundaries(cut, [*(one.condition for one in kept.demands), *asked(cut)])
+        own = boundaries(cut, [*(one.condition for one in kept.demands), *asked(cut)], kept.known)
         here = [p if p != 0 else cut.context.constant(1) for p in flat]
         further = [
             (p, conditions)

@@ -32,7 +32,7 @@ from mbsym.problems.stability.linear_form import LinearSystem, add
 from mbsym.problems.stability.nonholonomic import to_the_right
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.theorems import Fact
-from mbsym.problems.stability.verdict import Verdict, combine, concluded
+from mbsym.problems.stability.verdict import Verdict, combine, concluded, exactly
 from mbsym.problems.stability.word import Word
 
 Proved = TypeVar("Proved")
@@ -193,7 +193,8 @@ class ByEnclosures:
         else:
             parts, one_energy = self._section.judged([sign(a) for a, _ in ranges])
         pairs = zip(parts, self._polynomials, strict=True)
-        return combine((_enclosed(part, polynomial, box) for part, polynomial in pairs), one_energy)
+        found = (_enclosed(part, polynomial, box) for part, polynomial in pairs)
+        return combine((exactly(x) if part.exact else x for x, part in zip(found, parts, strict=True)), one_energy)
 
 
 def _characteristic(part: LinearSystem) -> tuple[Polynomial, ...]:
@@ -213,8 +214,9 @@ def _enclosed(part: LinearSystem, polynomial: Sequence[Polynomial], box: Box) ->
             return concluded({Fact.ROOTS_LEFT})
     matrices = [[[_ball(entry, box) for entry in row] for row in matrix] for matrix in part.matrices]
     if part.nonholonomic is not None:
-        return nonholonomic.enclosed(part.nonholonomic, matrices, zero_power, BITS)
-    return enclosed_verdict_with_cyclic(matrices, part.conservative, part.cyclic if not part.driven else (), BITS)
+        return nonholonomic.enclosed(part.nonholonomic, matrices, zero_power, BITS, exact=part.exact)
+    cyclic = part.cyclic if not part.driven else ()
+    return enclosed_verdict_with_cyclic(matrices, part.conservative, cyclic, BITS, part.exact)
 
 
 def _ball(entry: Polynomial, box: Box) -> Any:

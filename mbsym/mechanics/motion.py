@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from weakref import WeakKeyDictionary
 
+from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.tree import ZERO, Expression, divide, number
 from mbsym.mechanics.kinematics import Scene
@@ -130,6 +131,34 @@ def determined(scene: Scene, solved: Iterable[tuple[str, Polynomial]]) -> dict[i
     conditions = {ring.index("parameter", name): value for name, value in solved}
     images = {k: ring.substitute(image, dict(conditions)) for k, image in relations(scene).items()}
     return images | conditions
+
+
+def steadied(scene: Scene, x: Polynomial) -> Polynomial:
+    """x on the unperturbed motion, without what runs there if it does not vary: k (q - v t) where q' = v.
+
+    What has no rate on the motion has the value of t = 0 (a prescribed quantity that starts nowhere starts at 0).
+    Angles stay as they are.
+    """
+    ring: Ring = scene.ring
+    running = {*turning(scene), *(item.name for item in scene.system.prescribed), "t"}
+    varying = unsteady(scene, x)
+    if not varying or not running.issuperset(varying) or {*varying} & {*ring.angles} or not is_steady(scene, x):
+        return x
+    values = motion_values(scene.system)
+    images = {ring.index("time", "t"): ring.zero}
+    for name in turning(scene):
+        images |= _standing(scene, "coordinate", name, values[name][0])
+    for item in scene.system.prescribed:
+        images |= _standing(scene, "prescribed", item.name, item.initial or ZERO)
+    return ring.substitute(x, images)
+
+
+def is_steady(scene: Scene, x: Polynomial) -> bool:
+    """Whether x does not vary along the unperturbed motion; also of what deviates from it, if it is kept."""
+    try:
+        return scene.ring.is_zero(rate_on_motion(scene, x)) is True
+    except Failure:
+        return False
 
 
 def unsteady(scene: Scene, x: Polynomial) -> tuple[str, ...]:

@@ -26,14 +26,26 @@ from mbsym.model.driven import held
 from mbsym.model.substitution import put
 from mbsym.model.system import System, acceleration_name, rational, velocity_name
 
+#: The number of a parameter: a rational one, or an expression without names (pi/6, sqrt(2)), taken exactly as well.
+Value = Fraction | Expression
 
-def given_values(system: System, overrides: Mapping[str, Fraction]) -> dict[str, Fraction]:
+
+def given_values(system: System, overrides: Mapping[str, Value]) -> dict[str, Value]:
     """The numbers of a description's parameters, replaced by ``overrides``; relations are not used here."""
-    given = {p.name: value for p in system.parameters if (value := rational(p.value)) is not None}
+    given: dict[str, Value] = {}
+    for one in system.parameters:
+        if one.value is not None:
+            exact = rational(one.value)
+            given[one.name] = one.value if exact is None else exact
     return given | dict(overrides)
 
 
-def missing_values(system: System, values: Mapping[str, Fraction]) -> tuple[str, ...]:
+def rational_values(values: Mapping[str, Value]) -> dict[str, Fraction]:
+    """Those that are rational: what is eliminated over QQ takes no others."""
+    return {name: value for name, value in values.items() if isinstance(value, Fraction)}
+
+
+def missing_values(system: System, values: Mapping[str, Value]) -> tuple[str, ...]:
     """The parameters whose numbers the steady motions need, but which have none; in the order of declaration."""
     dependent = {item.name: item.value for item in system.relations}
     rates = tuple(entry.rate for entry in system.motion)
@@ -49,14 +61,16 @@ def missing_values(system: System, values: Mapping[str, Fraction]) -> tuple[str,
     return tuple(x for x in system.parameter_names if x in needed and x not in values and x not in dependent)
 
 
-def at_numbers(system: System, values: Mapping[str, Fraction]) -> System:
+def at_numbers(system: System, values: Mapping[str, Value]) -> System:
     """The system with numbers in place of its parameters; a relation decides about its own left side.
 
     Of the unperturbed motion only the rates stay.  Raises KeyError where a number is missing.
     """
     dependent = {item.name: item.value for item in system.relations}
     numbers: dict[str, Expression] = {
-        name: number(values[name]) for name in system.parameter_names if name in values and name not in dependent
+        name: number(value) if isinstance(value, Fraction) else value
+        for name, value in values.items()
+        if name in system.parameter_names and name not in dependent
     }
     pending = dict(dependent)
     while pending:

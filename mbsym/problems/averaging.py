@@ -1,19 +1,29 @@
-"""Averaging over a fast prescribed phase: the effective potential of shaken systems.
+"""Averaging over a fast prescribed phase: the effective potential of systems that are shaken or driven fast.
 
-With a phase phi' = nu prescribed, nu large, and lengths h that it shakes small, h = O(1/nu), write h -> eps h,
-nu -> nu/eps.  The Hamiltonian of  L = 1/2 q'.M q' + A1.q' + A0 + U  is
+With a phase phi' = nu prescribed, nu = O(1/eps), every parameter that sets how strongly the phase acts has an order
+eps^k of its own: lengths h that are shaken k = 1, amplitudes v of forces of zero mean k = -1 (the force is as large as
+nu; v nu^2 has k = 1).  All else is O(1).  The Lagrangian is
 
-    H(q, p, phi) = 1/2 (p - A1).M^-1 (p - A1) - A0 - U = H_0(q, p, phi) + O(eps)
+    L = 1/2 q'.M q' + A1.q' + A0 + U_0 + U_1,      U_0 = O(1),  U_1 = O(1/eps),  <U_1> = 0
 
-and by the averaging theorem the motion is within O(eps), over times of order 1, of that of <H_0>.  Where M of H_0 does
-not hold the phase this is a system of the same M with the potential energy
+and Q_1 = O(1/eps), <Q_1> = 0, are applied forces without a force function, which hold no velocities.  By parts,
+U_1 = d/dt W - (dW/dq).q' + O(1) of zero mean, W = (1/nu) integral U_1 dphi, so that with
 
-    V(q) = 1/2 <a.M^-1 a> - <A0> - <U>,      a = A1 - <A1>   (only terms of order eps^0 count)
+    g = dW/dq + (1/nu) integral Q_1 dphi,      a = A1 - <A1> - g,      P = p - g
 
-in the velocities  Q' = M^-1 (p - <A1>);  the motion about it is  q = Q - (1/nu) M^-1 integral a dphi + ...  What the
-shaking adds to <A1>.q' must be a total derivative (as in one coordinate it always is).  What A1, A0 and U are without
-h and nu (other prescribed motions) stays as it is, and must not hold the phase.  For Kapitza's pendulum, theta from the
-hanging position, V = -m g l cos(theta) + m h^2 nu^2 sin(theta)^2/4: upright it is stable where h^2 nu^2 > 2 g l.
+the motion is within O(eps), over times of order 1, of that of the same M with the potential energy
+
+    V(q) = 1/2 <a.M^-1 a> - <A0> - <U_0>      (only terms of order eps^0 count)
+
+in the velocities  Q' = M^-1 (P - <A1>);  the motion about it is  q = Q - (1/nu) M^-1 integral a dphi + ...  M of order
+eps^0 must not hold the phase.  Where Q_1 is no gradient the mean force  sum_j <(dg_i/dq_j - dg_j/dq_i) (M^-1 a)_j>
+is left; it has to be of a potential, like the means of forces of order 1, and is taken into V.  What the shaking adds
+to <A1>.q' must be a total derivative (as in one coordinate it always is).  What A1, A0 and U are without the amplitudes
+(other prescribed motions) stays as it is, and must not hold the phase.  Terms of order eps^-2 displace the motion by
+O(1) within one turn of the phase: then nothing is small, and it is refused.
+
+For Kapitza's pendulum, theta from the hanging position, V = -m g l cos(theta) + m h^2 nu^2 sin(theta)^2/4: upright it
+is stable where h^2 nu^2 > 2 g l.  For a Paul trap, U = -v cos(phi) x^2/2: V = v^2 x^2/(4 m nu^2).
 
 Other loads may depend on velocities linearly, without the phase.
 
@@ -33,8 +43,10 @@ Example:
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import combinations
+from math import comb
 from typing import Any
 
 from flint import fmpq
@@ -52,45 +64,72 @@ from mbsym.problems.energy import Energy
 
 @dataclass(frozen=True, repr=False)
 class Averaged(Shown):
-    """V = ``potential``, but for constants; ``vibrational``: what of it the shaking adds.
+    """V = ``potential``, but for constants; ``vibrational``: what of it the phase adds.
 
-    ``phase`` and ``rate`` are fast, ``small`` small.
+    ``rate`` is of order eps^-1; ``orders``: the powers of eps of the amplitudes; all else is of order 1.
 
     ``swings`` are M^-1 a by coordinate, in q and the phase: the velocities of the oscillation about Q are -M^-1 a.
     """
 
     phase: str
     rate: str
-    small: tuple[str, ...]
+    orders: tuple[tuple[str, int], ...]
     vibrational: Formula
     potential: Formula
     swings: tuple[Formula, ...]
 
+    @property
+    def small(self) -> tuple[str, ...]:
+        """The amplitudes that tend to zero with eps."""
+        return tuple(name for name, power in self.orders if power > 0)
+
+    @property
+    def scaling(self) -> str:
+        """Of which order everything is taken: the result holds for that only."""
+        every = ((self.rate, -1), *self.orders)
+        return ", ".join(f"{name} of order eps^{power}" for name, power in every) + ", all else of order 1"
+
 
 @dataclass(frozen=True)
 class Order:
-    """Powers of eps in terms of the ring: + for small parameters, - for the rate."""
+    """Powers of eps in terms of the ring: ``amplitudes`` by their places, and -1 for the rate."""
 
     ring: Ring
-    small: tuple[int, ...]
+    amplitudes: Mapping[int, int]
     rate: int
     phase: tuple[int, ...]  # its sine, its cosine and itself
 
     def leading(self, p: Polynomial, what: str) -> Polynomial:
         """The terms of order eps^0.  Raises NoClosedForm where p grows as eps tends to 0, or hides what matters."""
-        self._is_plain(p, what)
-        kept = {}
+        grown, kept = self.split(p, what)
+        if grown != 0:
+            raise NoClosedForm(f"{what} grows with the rate of the phase: more has to be small than was told")
+        return kept
+
+    def split(self, p: Polynomial, what: str) -> tuple[Polynomial, Polynomial]:
+        """The terms of order eps^-1 and eps^0.  Raises NoClosedForm where p has larger ones, or hides what matters."""
+        self.refuse_hidden(p, what)
+        found: tuple[dict[Any, Any], dict[Any, Any]] = {}, {}
         for monomial, c in p.to_dict().items():
-            power = sum(monomial[k] for k in self.small) - monomial[self.rate]
-            if power < 0:
-                raise NoClosedForm(f"{what} grows with the rate of the phase: more has to be small than was told")
-            if power == 0:
-                kept[monomial] = c
-        return self.ring.context.from_dict(kept)
+            power = sum(k * monomial[at] for at, k in self.amplitudes.items()) - monomial[self.rate]
+            if power < -1:
+                raise NoClosedForm(
+                    f"{what} grows with the rate of the phase as its square: it would move the system by much within "
+                    "one turn of the phase, and the averages mean nothing"
+                )
+            if power <= 0:
+                found[power + 1][monomial] = c
+        grown, kept = found
+        return self.ring.context.from_dict(grown), self.ring.context.from_dict(kept)
 
     def unshaken(self, p: Polynomial) -> Polynomial:
-        """The terms in which neither the rate nor anything small stands."""
-        kept = {m: c for m, c in p.to_dict().items() if not (m[self.rate] or any(m[k] for k in self.small))}
+        """The terms in which neither the rate nor an amplitude stands."""
+        kept = {m: c for m, c in p.to_dict().items() if not (m[self.rate] or any(m[k] for k in self.amplitudes))}
+        return self.ring.context.from_dict(kept)
+
+    def unscaled(self, p: Polynomial) -> Polynomial:
+        """The terms in which no amplitude stands."""
+        kept = {m: c for m, c in p.to_dict().items() if not any(m[k] for k in self.amplitudes)}
         return self.ring.context.from_dict(kept)
 
     def holds_phase(self, p: Polynomial) -> bool:
@@ -111,9 +150,26 @@ class Order:
             total[key] = total.get(key, fmpq(0)) + c * fmpq(_odd(a) * _odd(b), _even(a + b))
         return self.ring.context.from_dict({key: c for key, c in total.items() if c})
 
-    def _is_plain(self, p: Polynomial, what: str) -> None:
-        """Raises NoClosedForm where what is small, large or averaged stands in a denominator, root or function."""
-        watched = {*self.small, self.rate, *self.phase}
+    def integral(self, p: Polynomial) -> Polynomial:
+        """The antiderivative of zero mean of p, whose own mean over the phase is zero."""
+        ring = self.ring
+        sine, cosine, itself = self.phase
+        s, c = (ring.context.gen(k) for k in (sine, cosine))
+        ((unit, factor),) = ring.derivative(s, ring.generators[itself].name).to_dict().items()  # sin(factor phi)
+        assert unit[cosine] == 1
+        total = ring.zero
+        for monomial, coefficient in p.to_dict().items():
+            a, b = monomial[sine], monomial[cosine]
+            rest = tuple(0 if k in (sine, cosine) else e for k, e in enumerate(monomial))
+            for n, weight in _harmonics(a, b):
+                multiple_sine, multiple_cosine = ring.multiple_angle(s, c, n)
+                wave = -multiple_cosine if a % 2 else multiple_sine
+                total += ring.times(ring.context.from_dict({rest: coefficient * weight / (n * factor)}), wave)
+        return ring.reduce(total)
+
+    def refuse_hidden(self, p: Polynomial, what: str) -> None:
+        """Raises NoClosedForm where what is scaled or averaged stands in a denominator, root or function."""
+        watched = {*self.amplitudes, self.rate, *self.phase}
         inside = [k for k in occurring([p]) if k not in watched]
         seen: set[int] = set()
         while inside:
@@ -145,33 +201,48 @@ def _even(n: int) -> int:
     return found
 
 
-def averaged(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str, small: Sequence[str]) -> Averaged:
+def _harmonics(a: int, b: int) -> Iterator[tuple[int, fmpq]]:
+    """s^a c^b = constant + sum of weight cos(n u), of weight sin(n u) where a is odd: (n, weight), n > 0.
+
+    By (z - 1/z)^a (z + 1/z)^b = (2i)^a 2^b s^a c^b.
+    """
+    for n in range((a + b) % 2 or 2, a + b + 1, 2):
+        drop = (a + b - n) // 2  # so many factors give 1/z
+        count = sum((-1) ** j * comb(a, j) * comb(b, drop - j) for j in range(min(a, drop) + 1))
+        if count:
+            yield n, fmpq((-1) ** (a // 2) * 2 * count, 2 ** (a + b))
+
+
+def averaged(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str, orders: Mapping[str, int]) -> Averaged:
     """V, exactly.  Raises NoClosedForm where the system is none of those described above; the reason says why."""
     ring, names = scene.ring, scene.system.coordinates
-    _refuse_without_waves(ring, phase)
-    order = Order(
-        ring,
-        tuple(ring.index("parameter", name) for name in small),
-        ring.index("parameter", rate),
-        (ring.index("sine", phase), ring.index("cosine", phase), ring.index("prescribed", phase)),
-    )
+    order = _order(ring, phase, rate, orders)
+    moving = without_constants(ring, names)
     mass = [[order.leading(x, "the mass matrix") for x in row] for row in energy.A2.polynomials]
     if any(order.holds_phase(x) for row in mass for x in row):
         raise NoClosedForm(f"the mass matrix depends on {phase}")
     linear = [order.leading(x.polynomial, "T") for x in energy.A1]
     rest = order.leading(energy.A0.polynomial, "T")
-    force = order.leading(energy.force_function.polynomial, "U")
-    _other_loads(scene, order)
-    for what, parts in (("T", [*linear, rest]), ("U", [force])):
-        if any(order.holds_phase(order.unshaken(x)) for x in parts):
-            raise NoClosedForm(f"{what} depends on {phase} also where {', '.join(small)} = 0")
+    grown, force = order.split(energy.force_function.polynomial, "U")
+    pushes, steady = _other_loads(scene, order)
+    whole_force, whole_rest = (moving(x.polynomial) for x in (energy.force_function, energy.A0))
+    for what, parts in (("T", [*(x.polynomial for x in energy.A1), whole_rest]), ("U", [whole_force])):
+        if any(order.holds_phase(order.unscaled(x)) for x in parts):
+            told = ", ".join(orders)
+            raise NoClosedForm(f"{what} depends on {phase} also where {told} = 0", remedy=_REMEDY)
+    if not ring.vanishes(moving(order.mean(grown, "U"))):
+        raise NoClosedForm(f"the mean of U over {phase} grows with the rate of the phase")
     means = [order.mean(x, "T") for x in linear]
     added = [mean - order.unshaken(x) for mean, x in zip(means, linear, strict=True)]
     for i, a in enumerate(names):
         for j, b in enumerate(names[:i]):
             if not ring.is_zero(ring.derivative(added[i], b) - ring.derivative(added[j], a)):
                 raise NoClosedForm("gyroscopic terms are left: what the shaking adds to <A1> is no gradient")
-    swings = [ring.reduce(x - mean) for x, mean in zip(linear, means, strict=True)]
+    slow = ring.reciprocal(ring.generator("parameter", rate))
+    wave = order.integral(moving(grown))
+    driven = {name: ring.times(order.integral(push), slow) for name, push in pushes.items()}
+    kicks = [ring.times(ring.derivative(wave, name), slow) + driven[name] for name in names]
+    swings = [ring.reduce(x - mean - g) for x, mean, g in zip(linear, means, kicks, strict=True)]
     vibrational = ring.number(0)
     for i, x in enumerate(swings):
         for j, y in enumerate(swings):
@@ -184,24 +255,58 @@ def averaged(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str, sm
         sum((ring.times(_cofactor(ring, mass, i, j), y) for j, y in enumerate(swings)), ring.zero)
         for i in range(len(names))
     ]
-    whole = ring.reduce(divided - order.mean(rest, "T"))
+    turned = [ring.reduce(ring.times(x, inverse)) for x in turned]
+    for a in names:
+        for b, turn in zip(names, turned, strict=True):
+            curl = ring.reduce(ring.derivative(driven[b], a) - ring.derivative(driven[a], b))
+            steady[a] -= order.mean(ring.reduce(ring.times(curl, turn)), f"the force on {a}")
+    whole = ring.reduce(divided - order.mean(rest, "T") - _force_function(ring, steady))
     mean_force = ring.reduce(order.mean(force, "U"))
     vibrational_alone = whole + order.unshaken(rest) - mean_force + order.unshaken(force)
-    moving = without_constants(ring, names)
     return Averaged(
         phase,
         rate,
-        tuple(small),
+        tuple(orders.items()),
         Formula(ring, moving(ring.reduce(vibrational_alone))),
         Formula(ring, moving(ring.reduce(whole - mean_force))),
-        tuple(Formula(ring, ring.reduce(ring.times(x, inverse))) for x in turned),
+        tuple(Formula(ring, x) for x in turned),
     )
 
 
-def _refuse_without_waves(ring: Ring, phase: str) -> None:
-    """Raises NoClosedForm where no sine or cosine of the phase occurs: nothing is shaken by it."""
+_REMEDY = "give the amplitude of what the phase does a parameter of its own, or name its order: mbsym average --order"
+
+
+def _order(ring: Ring, phase: str, rate: str, orders: Mapping[str, int]) -> Order:
+    """Raises NoClosedForm where no sine or cosine of the phase occurs: nothing oscillates with it."""
     if not all(ring.has(kind, phase) for kind in ("sine", "cosine", "prescribed")):
         raise NoClosedForm(f"no sine or cosine of {phase} occurs: nothing oscillates with it")
+    return Order(
+        ring,
+        {ring.index("parameter", name): power for name, power in orders.items()},
+        ring.index("parameter", rate),
+        (ring.index("sine", phase), ring.index("cosine", phase), ring.index("prescribed", phase)),
+    )
+
+
+def _force_function(ring: Ring, forces: Mapping[str, Polynomial]) -> Polynomial:
+    """U with dU/dq = the mean forces that the amplitudes add, polynomials in the coordinates, along rays from q = 0.
+
+    Raises NoClosedForm where there is none.
+    """
+    places = [ring.index("coordinate", name) for name in forces]
+    total = ring.zero
+    for name, force in forces.items():
+        terms = {m: c / (sum(int(m[k]) for k in places) + 1) for m, c in force.to_dict().items()}
+        total += ring.times(ring.generator("coordinate", name), ring.context.from_dict(terms))
+    for name, force in forces.items():
+        if any(not ring.vanishes(ring.velocity_derivative(force, other)) for other in forces):
+            raise NoClosedForm(f"the force on {name} holds products of what is small and the rate of the phase")
+        if not ring.is_zero(ring.derivative(total, name) - force):
+            raise NoClosedForm(
+                f"a mean force on {name} is left that is not seen to be of a potential",
+                remedy="write it as a potential",
+            )
+    return ring.reduce(total)
 
 
 def _cofactor(ring: Ring, matrix: Sequence[Sequence[Polynomial]], i: int, j: int) -> Polynomial:
@@ -224,43 +329,122 @@ def without_constants(ring: Ring, names: Sequence[str]) -> Callable[[Polynomial]
     return moving
 
 
-def _other_loads(scene: Scene[Polynomial], order: Order) -> None:
-    """Raises NoClosedForm for loads that average in another way."""
-    ring, system = scene.ring, scene.system
-    for name, found in generalized_forces(scene).items():
-        force = order.leading(found, f"the force on {name}")
-        if order.holds_phase(force):
-            raise NoClosedForm(f"the force on {name} depends on {order.ring.generators[order.phase[2]].name}")
-        if not ring.is_zero(force - order.unshaken(force)):
-            raise NoClosedForm(f"the force on {name} holds products of what is small and the rate of the phase")
-        for a in system.coordinates:
-            slope = ring.velocity_derivative(force, a)
-            if any(not ring.vanishes(ring.velocity_derivative(slope, b)) for b in system.coordinates):
-                raise NoClosedForm(f"the force on {name} is not linear in the velocities")
+def _other_loads(scene: Scene[Polynomial], order: Order) -> tuple[dict[str, Polynomial], dict[str, Polynomial]]:
+    """Forces without a force function: those of order 1/eps, and what the amplitudes add to the mean of the others.
 
-
-def small_parameters(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str) -> tuple[str, ...]:
-    """Parameters without which nothing depends on the phase and the mass matrix stays what it is: one, or none.
-
-    Raises NoClosedForm where no sine or cosine of the phase occurs.
+    Raises NoClosedForm for what averages in another way.
     """
-    ring = scene.ring
-    _refuse_without_waves(ring, phase)
-    sine, cosine, itself = (ring.index(kind, phase) for kind in ("sine", "cosine", "prescribed"))
-    formulas = [energy.A0.polynomial, energy.force_function.polynomial, *(x.polynomial for x in energy.A1)]
-    formulas += [x for row in energy.A2.polynomials for x in row]
-    found = []
-    for parameter in scene.system.parameters:
-        if parameter.name == rate or not ring.has("parameter", parameter.name):
+    ring, system = scene.ring, scene.system
+    phase = ring.generators[order.phase[2]].name
+    pushes, steady = {}, {}
+    for name, found in generalized_forces(scene).items():
+        what = f"the force on {name}"
+        grown, force = order.split(found, what)
+        try:
+            slopes = {a: [ring.velocity_derivative(x, a) for x in (grown, force)] for a in system.coordinates}
+            bends = [ring.velocity_derivative(x, b) for _, x in slopes.values() for b in system.coordinates]
+        except NoClosedForm as jump:
+            raise NoClosedForm(f"{what} is not linear in the velocities") from jump
+        if any(not ring.vanishes(x) for x, _ in slopes.values()):
+            raise NoClosedForm(f"{what} holds velocities and grows with the rate of the phase")
+        if any(order.holds_phase(x) for _, x in slopes.values()):
+            raise NoClosedForm(f"{what} depends on {phase} and on velocities: its mean is no potential")
+        if any(not ring.vanishes(x) for x in bends):
+            raise NoClosedForm(f"{what} is not linear in the velocities")
+        if order.holds_phase(order.unscaled(found)):
+            raise NoClosedForm(f"{what} depends on {phase} by itself", remedy=_REMEDY)
+        if not ring.is_zero(order.mean(grown, what)):
+            raise NoClosedForm(f"the mean of {what} over {phase} grows with the rate of the phase")
+        pushes[name], steady[name] = grown, ring.reduce(order.mean(force, what) - order.unshaken(force))
+    return pushes, steady
+
+
+def orders_of(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str) -> dict[str, int]:
+    """The powers of eps of the amplitudes, where they are plain.  Raises NoClosedForm where they have to be told.
+
+    Order 1 has the only parameter without which T does not depend on the phase and there is a mass matrix still.
+    The loads that are left depend on the phase by parameters of their own, each term by one: where the mean of what
+    holds one vanishes, its order makes that O(1/eps), as large as it can be with a mean motion; else O(1).
+    """
+    ring, names = scene.ring, scene.system.coordinates
+    order = _order(ring, phase, rate, {})
+    kinetic = [energy.A0.polynomial, *(x.polynomial for x in energy.A1)]
+    kinetic += [x for row in energy.A2.polynomials for x in row]
+    moving = without_constants(ring, names)
+    loads = {"U": moving(energy.force_function.polynomial)}
+    loads |= {f"the force on {name}": x for name, x in generalized_forces(scene).items()}
+    for what, p in (*(("T", x) for x in kinetic), *loads.items()):
+        order.refuse_hidden(p, what)
+    parameters = {x.name: ring.index("parameter", x.name) for x in scene.system.parameters if x.name != rate}
+    orders = {}
+    waves = [m for p in kinetic for m in p.to_dict() if any(m[k] for k in order.phase)]
+    if waves:
+        mass = [x for row in energy.A2.polynomials for x in row]
+        killing = {name: k for name, k in parameters.items() if all(m[k] for m in waves)}
+        found = [name for name, k in killing.items() if not any(p.degrees()[k] > 0 for p in mass)]
+        found = found or [name for name, k in killing.items() if _has_mass_without(ring, energy, k)]
+        if len(found) != 1:
+            raise NoClosedForm(f"which parameters are small is not plain: name what {phase} shakes")
+        orders[found[0]] = 1
+    shaken = [parameters[name] for name in orders]
+    means = {what: order.mean(p, what) for what, p in loads.items()}
+    left = [
+        (m, what) for what, p in loads.items() for m in (p - means[what]).to_dict() if not any(m[k] for k in shaken)
+    ]
+    if not (waves or left):
+        raise NoClosedForm(f"{phase} moves nothing and acts in no load: nothing oscillates with it")
+    if not left:
+        return orders
+    hidden = _hidden(ring, (*kinetic, *loads.values()))
+    free = {n: k for n, k in parameters.items() if k not in hidden and not any(p.degrees()[k] > 0 for p in kinetic)}
+    slow = [m for p in means.values() for m in p.to_dict()]
+    pure = {n for n, k in free.items() if not any(m[k] for m in slow)}
+    own = [n for n, k in free.items() if any(m[k] for m, _ in left)]
+    for few in sorted(_choices(own), key=lambda some: (not pure.issuperset(some), len(some))):
+        if not all(sum(m[free[n]] > 0 for n in few) == 1 for m, _ in left):
             continue
-        k = ring.index("parameter", parameter.name)
-        kills = all(
-            monomial[k] > 0
-            for p in formulas
-            for monomial in p.to_dict()
-            if monomial[sine] or monomial[cosine] or monomial[itself]
-        )
-        stays = not any(p.degrees()[k] > 0 for row in energy.A2.polynomials for p in row)
-        if kills and stays:
-            found.append(parameter.name)
-    return tuple(found) if len(found) == 1 else ()
+        powers = [_power(free[n], order.rate, [m for m, _ in left], n in pure, slow) for n in few]
+        if None not in powers:
+            return orders | {n: power for n, power in zip(few, powers, strict=True) if power is not None}
+    raise NoClosedForm(f"of which order what {phase} does in the loads is, is not plain", remedy=_REMEDY)
+
+
+def _has_mass_without(ring: Ring, energy: Energy, at: int) -> bool:
+    """Whether the mass matrix is regular where the parameter in the place ``at`` is zero."""
+    rows = energy.A2.polynomials
+    if at in _hidden(ring, [x for row in rows for x in row]):
+        return False
+    without = [
+        [ring.context.from_dict({m: c for m, c in x.to_dict().items() if not m[at]}) for x in row] for row in rows
+    ]
+    return not ring.vanishes(determinant(ring, without))
+
+
+def _choices(names: Sequence[str]) -> Iterator[tuple[str, ...]]:
+    """Up to three of up to eight names."""
+    for size in (1, 2, 3):
+        yield from combinations(names[:8], size)
+
+
+def _power(
+    at: int, rate: int, waves: Sequence[tuple[int, ...]], pure: bool, slow: Sequence[tuple[int, ...]]
+) -> int | None:
+    """Of eps, for the amplitude in the place ``at``; None where no power fits."""
+    mine = [m for m in waves if m[at]] if pure else [m for m in slow if m[at]]
+    exponents, rates = {int(m[at]) for m in mine}, max(int(m[rate]) for m in mine)
+    if pure:
+        return rates - 1 if exponents == {1} else None
+    return 0 if not rates else rates if exponents == {1} else None
+
+
+def _hidden(ring: Ring, formulas: Sequence[Polynomial]) -> set[int]:
+    """What stands in denominators, roots and functions."""
+    found: set[int] = set()
+    ahead = [ring.generators[k].argument for k in occurring(formulas)]
+    while ahead:
+        argument = ahead.pop()
+        if argument is not None:
+            new = set(occurring([argument])) - found
+            found |= new
+            ahead += [ring.generators[k].argument for k in new]
+    return found

@@ -25,6 +25,7 @@ from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NotRational, SingularPoint
 from mbsym.algebra.ring import Ring
+from mbsym.algebra.splitting import vanishes_with
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.newton_euler import residuals
@@ -38,6 +39,8 @@ from mbsym.problems.kinematics import BodyKinematics, Kinematics
 from mbsym.problems.linearisation import Linearisation
 
 EXACT, NUMERICAL, UNDECIDED, FAILED = "exact", Certainty.VERIFIED, Certainty.UNDECIDED, "FAILED"
+#: Of the mass matrix: no route is wrong, the described system is degenerate.
+SINGULAR = "singular"
 
 #: How many states; each is enough to catch a slip with probability close to one.
 STATES = 3
@@ -52,7 +55,7 @@ PRECISION = 256
 
 @dataclass(frozen=True)
 class Check:
-    """``first`` and ``second`` name the routes; ``outcome`` is exact, verified numerically, undecided or FAILED.
+    """``first`` and ``second`` name the routes; ``outcome``: exact, verified numerically, undecided, singular, FAILED.
 
     ``states``: at how many states they agree, where they are compared at states.
     """
@@ -64,9 +67,17 @@ class Check:
     detail: str = ""
     states: int | None = None
 
+    def __post_init__(self) -> None:
+        if self.failed and not self.detail:
+            object.__setattr__(self, "detail", "the two routes differ")
+
     @property
     def failed(self) -> bool:
         return self.outcome == FAILED
+
+    @property
+    def singular(self) -> bool:
+        return self.outcome == SINGULAR
 
 
 #: A label for the complaint, and two values that must be equal.
@@ -268,7 +279,9 @@ def check_mass_matrix(truth: Oracles, programs: Programs) -> Check:
         return Check("mass matrix", *routes, UNDECIDED, "enclosures too wide to tell whether M is regular")
     idle = [name for i, name in enumerate(names) if all(programs.program.vanishes(x) for x in programs.mass_matrix[i])]
     which = ", ".join(idle) if idle else f"some combination of {', '.join(names)}"
-    return Check("mass matrix", *routes, FAILED, f"M is singular: {which} carries no inertia")
+    return Check(
+        "mass matrix", *routes, SINGULAR, f"{which} carries no inertia: no equation determines its acceleration"
+    )
 
 
 def check_kinematics(truth: Oracles, kinematics: Kinematics) -> Check:
@@ -373,6 +386,26 @@ def check_residuals(ring: Ring, first: Sequence[Formula], second: Sequence[Formu
         "the residuals differ" if outcome == FAILED else HOW_EQUAL[outcome],
     )
 
+
+def check_identities(
+    ring: Ring, name: str, routes: tuple[str, str], entries: Mapping[str, Any], conditions: Sequence[Any] = ()
+) -> Check:
+    """Every entry (label -> polynomial) is zero: identically, or where the ``conditions`` of problem 4 hold."""
+    open_entries, needed = [], False
+    for label, x in entries.items():
+        zero = ring.is_zero(x)
+        if not zero and conditions:
+            zero, needed = vanishes_with(ring, x, conditions), True
+        if zero is False:
+            return Check(name, *routes, FAILED, f"{label} differs by {_short(ring.fraction(ring.reduce(x))[0])}")
+        if zero is None:
+            open_entries.append(label)
+    if open_entries:
+        return Check(name, *routes, UNDECIDED, f"open whether they agree in {', '.join(open_entries)}")
+    return Check(name, *routes, EXACT, WHERE_IT_EXISTS if needed else HOW_EQUAL[EXACT])
+
+
+WHERE_IT_EXISTS = "identical polynomials where the conditions of problem 4 hold"
 
 HOW_EQUAL = {
     EXACT: "identical polynomials",

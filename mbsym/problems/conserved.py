@@ -21,12 +21,14 @@ from mbsym.mechanics.symmetry import is_free_about_the_origin
 from mbsym.problems import equations as lagrange
 from mbsym.problems import integrals as first_integrals
 from mbsym.problems.energy import Energy
-from mbsym.problems.integrals import ENERGY, Integral
+from mbsym.problems.integrals import ENERGIES, Integral
 from mbsym.problems.stability.bundle import Element, NumberField, definite_combination
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.theorems import Fact
 from mbsym.problems.stability.verdict import Verdict, concluded, drifting
 
+#: How the name of a sum of squares of components of a momentum begins.
+SQUARE = "square of the "
 #: Momenta of more terms than this are not squared.
 MOST_TERMS = 80
 #: Coordinates of systems whose integrals are looked for.
@@ -118,11 +120,11 @@ def of_integrals(scene: Scene, known: Sequence[Integral], left_out: Sequence[str
                 axes = " and ".join(item.of for item in chosen)
                 try:
                     square = sum((ring.times(x, x) for item in chosen if (x := item.formula.polynomial)), ring.zero)
-                    found.append((f"square of the {kind} across ({axes})", ring.reduce(square)))
+                    found.append((f"{SQUARE}{kind} across ({axes})", ring.reduce(square)))
                 except Failure:
                     continue
     seen = [(name, x) for name, x in found if not ring.dependencies(x, hidden)]
-    if len(seen) < 2 or not any(item.kind == ENERGY for item in proved):
+    if len(seen) < 2 or not any(item.kind in ENERGIES for item in proved):
         return None
     kept = tuple(name for name in system.coordinates if name not in left_out)
     return Conserved(ring, tuple(name for name, _ in seen), tuple(x for _, x in seen), kept, system.coordinates)

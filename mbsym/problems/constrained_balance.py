@@ -137,6 +137,15 @@ class ConstrainedBalance(Balance):
         return _solvable(equations)
 
     @property
+    def _velocity_rows(self) -> tuple[Polynomial, ...]:
+        return tuple(row.velocity for row in self._rows or ())
+
+    @cached_property
+    def exactly_linear(self) -> bool:
+        """Whether the open tree's equations and the rows are, and with them the equations of what is independent."""
+        return self._rows is not None and super().exactly_linear
+
+    @property
     def ring(self) -> Ring:
         return self.scene.ring
 

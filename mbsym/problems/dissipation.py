@@ -55,6 +55,7 @@ from mbsym.model.loads import (
 from mbsym.model.system import INERTIAL, rational, velocity_name
 from mbsym.problems.displacements import Displacements, displacements
 from mbsym.problems.energy import Energy
+from mbsym.problems.exact_linearity import Excess, excess
 
 
 class EnergyLaw(Enum):
@@ -99,7 +100,7 @@ class Balance:
         }
         there = replace(self, fixed=exact)
         # What holds for all parameters holds there: no need to find it once more at every point.
-        kept: dict[str, Any] = {"ignorable": self.ignorable}
+        kept: dict[str, Any] = {"ignorable": self.ignorable, "_nonlinear": self._nonlinear}
         if not self.driven:
             kept["driven"] = ()
         if self.law.bounded:
@@ -117,6 +118,25 @@ class Balance:
             return _together([self._formulas(), *(self._pair(x) for x in self._others)])
         except Failure:
             return EnergyLaw.UNKNOWN
+
+    @cached_property
+    def exactly_linear(self) -> bool:
+        """Whether the equations of motion have no terms of higher order at all."""
+        try:
+            return self._nonlinear is not None and all(self._put(x).is_zero() for x in self._nonlinear)
+        except Failure:  # a formula has no value there
+            return False
+
+    @cached_property
+    def _nonlinear(self) -> Excess:
+        if self.energy is None or not self.scene.motions:
+            return None
+        return excess(self.scene, self.energy, self._velocity_rows)
+
+    @property
+    def _velocity_rows(self) -> tuple[Polynomial, ...]:
+        """Of constraints: J q' + j."""
+        return ()
 
     # --- cyclic coordinates ---
 

@@ -27,14 +27,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from fractions import Fraction
 
 from flint import fmpq_poly
 
 from mbsym.algebra.polynomial_systems import AlgebraicPoint, Family, Limits, solve
 from mbsym.mechanics.charts import charts, with_cyclic_last_angles
 from mbsym.mechanics.constraints.refusal import refuse_constraints
-from mbsym.mechanics.rest import Rest, at_numbers, rest
+from mbsym.mechanics.rest import Rest, Value, at_numbers, rest
 from mbsym.model.system import System
 from mbsym.problems.rest_listing import Solution, groups
 from mbsym.problems.rest_oriented import orientations
@@ -66,7 +65,7 @@ __all__ = [
 
 
 def equilibria(
-    system: System, values: Mapping[str, Fraction], within: float = WITHIN, limits: Limits | None = None
+    system: System, values: Mapping[str, Value], within: float = WITHIN, limits: Limits | None = None
 ) -> Equilibria:
     """All relative equilibria of a system at parameter values.
 

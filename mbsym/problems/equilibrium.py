@@ -26,7 +26,7 @@ from mbsym.algebra.signs import Signs
 from mbsym.formulas.formula import Column, Formula, column
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.motion import determined, motion_values, relations, unperturbed_with, unsteady
+from mbsym.mechanics.motion import determined, motion_values, relations, steadied, unperturbed_with, unsteady
 from mbsym.model.system import System
 
 
@@ -64,7 +64,7 @@ def equilibrium(scene: Scene, residuals: Sequence[Polynomial], signs: Signs, on_
     """
     ring = scene.ring
     at = relations(scene) if on_motion else unperturbed_with(scene, relations(scene))
-    values = [ring.substitute(x, at) for x in residuals]
+    values = [steadied(scene, ring.substitute(x, at)) for x in residuals]
     varying = tuple(dict.fromkeys(name for x in values for name in unsteady(scene, x)))
     pending = [condition for x in values if (condition := essential(scene, x, signs)) is not None]
     conditions: list[Polynomial] = []
@@ -73,7 +73,8 @@ def equilibrium(scene: Scene, residuals: Sequence[Polynomial], signs: Signs, on_
     while pending:
         condition = min(pending, key=len)
         pending.remove(condition)
-        if condition.is_constant() or signs.never_zero(condition):
+        a_number = ring.is_number(condition) and ring.is_zero(condition) is False
+        if a_number or signs.never_zero(condition):
             impossible.append(condition)
             continue
         conditions.append(condition)
@@ -96,6 +97,13 @@ def equilibrium(scene: Scene, residuals: Sequence[Polynomial], signs: Signs, on_
         impossible=column(ring, impossible),
         unsteady=varying,
     )
+
+
+def unsolved(scene: Scene, found: Equilibrium) -> list[Polynomial]:
+    """The conditions of problem 4 that were not solved for a parameter, what was solved for put in."""
+    ring, at = scene.ring, found.determined(scene)
+    values = (ring.substitute(x.polynomial, dict(at)) for x in found.conditions)
+    return [ring.fraction(x)[0] for x in values if ring.is_zero(x) is not True]
 
 
 def essential(scene: Scene, x: Polynomial, signs: Signs) -> Polynomial | None:

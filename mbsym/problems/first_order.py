@@ -30,8 +30,9 @@ from mbsym.mechanics.motion import motion_values, rate_on_motion, turning, unper
 from mbsym.mechanics.quaternions import of_turns, rates
 from mbsym.mechanics.speeds import SpeedForm, Variable
 from mbsym.mechanics.variables import ring_environment
-from mbsym.problems.checks import EXACT, FAILED, UNDECIDED, Check
-from mbsym.problems.equilibrium import Equilibrium
+from mbsym.model.system import velocity_name
+from mbsym.problems.checks import Check, check_identities
+from mbsym.problems.equilibrium import Equilibrium, unsolved
 from mbsym.problems.linearisation import Linearisation
 from mbsym.problems.speeds import SpeedEquations
 
@@ -113,13 +114,13 @@ def check(
     upper = [[ring.one if j == len(names) + i else ring.zero for j in range(2 * len(names))] for i in n]
     whole = [*upper, *solved(ring, mass, below)]
     left, right = product(ring, found.A.polynomials, rows), product(ring, rows, whole)
-    known = [
-        ring.is_zero(ring.reduce(a - b - rate))
-        for one, other, moved in zip(left, right, moving, strict=True)
-        for a, b, rate in zip(one, other, moved, strict=True)
-    ]
-    outcome = FAILED if False in known else UNDECIDED if None in known else EXACT
-    return Check("first approximation in speeds", *routes, outcome, "" if outcome != EXACT else "identical polynomials")
+    states = [*names, *(velocity_name(name) for name in names)]
+    differences = {
+        f"the row of {x.name} by {by}": ring.reduce(a - b - rate)
+        for x, one, other, moved in zip(variables, left, right, moving, strict=True)
+        for by, a, b, rate in zip(states, one, other, moved, strict=True)
+    }
+    return check_identities(ring, "first approximation in speeds", routes, differences, unsolved(plain, at))
 
 
 def _variables(form: SpeedForm, equations: SpeedEquations) -> list[Variable]:

@@ -2,9 +2,9 @@
 
     D = (C + C^T)/2,  G = (C - C^T)/2,  K = (S + S^T)/2,  N = (S - S^T)/2
 
-The equations count as a first approximation: what they were linearised from nobody has told, so nothing is presumed of
-its energy or of its cyclic coordinates.  Asymptotic stability and instability carry over to it (Lyapunov's first
-method).
+The equations are the ones that are given, exactly linear, and decided as such (``stability.linear_theory``).  What they
+may have been linearised from nobody has told: asymptotic stability and instability carry over to it (Lyapunov's first
+method), stability does not.  No coordinate counts as cyclic.
 """
 
 from __future__ import annotations
@@ -51,7 +51,11 @@ def by_matrices(scene: Scene[Polynomial], inputs: tuple[str, ...]) -> Linearisat
 
 
 class OpenBalance(Balance):
-    """Of a first approximation alone nothing is known of the energy, or of coordinates that no force depends on."""
+    """Given equations are exactly linear; no coordinate is cyclic, and what energy they have the matrices show."""
+
+    @property
+    def exactly_linear(self) -> bool:
+        return True
 
     @property
     def law(self) -> EnergyLaw:

@@ -5,6 +5,8 @@ Found are
 
 * the generalised energy  H = T_2 - T_0 - U,  with  dH/dt = sum q'_i E_i  if L does not contain the time and the other
   loads do no work;
+* where these forces are the gradient of a function W(q) that has a closed form, T_2 - T_0 - U - W; of one coordinate
+  every force that depends on it alone is: m(x) x'' + m'(x) x'^2/2 = Q(x) has an energy;
 * a cyclic momentum  p_i = dT/dq'_i,  with  dp_i/dt = E_i,  for every coordinate that L and Q_i do not contain;
 * components of the linear and angular momentum in inertial axes that are conserved but are no combination of the
   above: candidates are tried at exact rational states, and proved through multipliers, dI/dt = sum mu_i E_i with
@@ -34,6 +36,7 @@ from typing import Any
 
 from flint import arb, arb_mat, ctx, fmpq_mat
 
+from mbsym.algebra.antiderivative import potential
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Failure, NotRational
@@ -53,6 +56,10 @@ from mbsym.problems.equations import Equations, convective_rate
 
 #: T_2 - T_0 - U.  The energy T - U is the same where nothing moves as prescribed.
 ENERGY = "generalised energy"
+
+#: T_2 - T_0 - U - W, where the forces without a force function have one after all: Q = dW/dq.
+WITH_FORCES = "energy with the potential of the forces"
+ENERGIES = (ENERGY, WITH_FORCES)
 
 #: Working precision of balls, in bits.
 PRECISION = 256
@@ -94,7 +101,9 @@ def integrals(scene: Scene, energy: Energy, equations: Equations, programs: Prog
     """All first integrals of the kinds above (scene over the ring); ``programs`` is used to rule candidates out."""
     found = [*_generalised_energy(scene, energy, equations), *_cyclic_momenta(scene, energy, equations)]
     conserved = _constant_momenta(scene.system, scene.ring, programs)
-    found += _momenta(scene, equations, conserved, [item.formula.polynomial for item in found if item.kind != ENERGY])
+    found += _momenta(
+        scene, equations, conserved, [item.formula.polynomial for item in found if item.kind not in ENERGIES]
+    )
     return tuple(found)
 
 
@@ -147,8 +156,33 @@ def _generalised_energy(scene: Scene, energy: Energy, equations: Equations) -> I
     multiplied = ring.zero
     for i, speed in enumerate(speeds):
         multiplied = multiplied + speed * residual(scene, equations, i)
-    if ring.is_zero(total_rate(scene, integral) - multiplied):
+    power = ring.reduce(total_rate(scene, integral) - multiplied)
+    if ring.is_zero(power):
         yield Integral(ENERGY, ENERGY, "time", Formula(ring, integral), Certainty.PROVED)
+        return
+    work = _work(scene, power)
+    if work is None:
+        return
+    integral = ring.reduce(integral - work)
+    if ring.is_zero(total_rate(scene, integral) - multiplied):
+        yield Integral(WITH_FORCES, WITH_FORCES, "time", Formula(ring, integral), Certainty.PROVED)
+
+
+def _work(scene: Scene, power: Polynomial) -> Polynomial | None:
+    """W(q) with dW/dt = ``power``: what the forces without a force function have done; None where there is none.
+
+    Of one coordinate there is always one where the force depends on it alone, if only in closed form or not.
+    """
+    ring, coordinates = scene.ring, scene.system.coordinates
+    try:
+        field = [ring.velocity_derivative(power, name) for name in coordinates]
+        running = (*scene.system.velocities, *(item.name for item in scene.system.prescribed), "t")
+        speeds = [ring.generator("velocity", name) for name in coordinates]
+        if any(ring.dependencies(x, running) for x in field) or not ring.is_zero(power - ring.dot(speeds, field)):
+            return None
+        return potential(ring, field, coordinates)
+    except Failure:
+        return None
 
 
 def _cyclic_momenta(scene: Scene, energy: Energy, equations: Equations) -> Iterator[Integral]:

@@ -44,7 +44,7 @@ from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.energy import kinetic_energy
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import force_function
-from mbsym.mechanics.motion import motion_values, rate_on_motion, relations, turning, unperturbed, unsteady
+from mbsym.mechanics.motion import motion_values, rate_on_motion, relations, steadied, turning, unperturbed, unsteady
 from mbsym.mechanics.newton_euler import applied_forces
 from mbsym.model.system import System, acceleration_name, velocity_name
 from mbsym.problems.equations import Equations
@@ -229,7 +229,7 @@ def assemble(
     """
     ring = scene.ring
     images = relations(scene) if equilibrium is None else equilibrium.determined(scene)
-    M, C, S, B = (matrix.map(lambda x: ring.substitute(x, images)) for matrix in whole)
+    M, C, S, B = (matrix.map(lambda x: steadied(scene, ring.substitute(x, images))) for matrix in whole)
     scale = None
     if scene.system.time_scale is not None:
         scale = Formula(ring, ring.substitute(scene.lower(scene.system.time_scale), images))

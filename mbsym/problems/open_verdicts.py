@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
+from typing import Any
 
 from mbsym.algebra.failures import NOT_THERE
 from mbsym.expressions.angles import LinearForm, linear_form
@@ -23,6 +24,7 @@ from mbsym.problems.rest_candidates import candidate_at
 from mbsym.problems.rest_place import exact_rates
 from mbsym.problems.rest_verdict import linear_at_rest
 from mbsym.problems.stability import Stability, parameter_values
+from mbsym.problems.stability.verdict import Verdict
 
 #: Larger systems are not derived again at their numbers.
 MOST_COORDINATES = 8
@@ -30,25 +32,32 @@ MOST_COORDINATES = 8
 
 def decided(found: Stability, scene: Scene, equilibrium: Equilibrium) -> Stability:
     """``found`` with its verdict at the values decided where that is possible; values have to be rational."""
-    verdict, system = found.numerical, scene.system
-    if verdict is None or not verdict.word.open or len(system.coordinates) > MOST_COORDINATES:
+    if found.numerical is None or not found.numerical.word.open:
         return found
     values = parameter_values(scene, equilibrium)
-    if values is None or not all(isinstance(x, Fraction) for x in values.values()):
-        return found
+    return found if values is None else replace(found, numerical=decided_at(found.numerical, scene, values))
+
+
+def decided_at(verdict: Verdict, scene: Scene, values: Mapping[str, Any]) -> Verdict:
+    """The verdict at values of all parameters, decided where it is open and that is possible."""
+    system = scene.system
+    if not verdict.word.open or len(system.coordinates) > MOST_COORDINATES or system.linear is not None:
+        return verdict
+    if system.constraints or not all(isinstance(x, Fraction) for x in values.values()):
+        return verdict  # what looks further at open verdicts knows the open tree alone
     try:
         there = rest(at_numbers(system, values))
         forms = _motion(system, there, values)
         if forms is None:
-            return found
+            return verdict
         candidate = candidate_at(there, forms)
         if not all(candidate.vanishes(x) for x in there.at_rest):
-            return found
+            return verdict
         place = candidate.place(there, exact_rates(there))
         again = linear_at_rest(there).verdict(place)
-        return found if again.word.open else replace(found, numerical=again)
+        return verdict if again.word.open else again
     except NOT_THERE:
-        return found
+        return verdict
 
 
 def _motion(system: System, there: Rest, values: Mapping[str, Fraction]) -> dict[str, LinearForm] | None:

@@ -31,7 +31,7 @@ from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import Failure
 from mbsym.expressions.tree import ZERO, number
 from mbsym.mechanics.charts import Joint, charts, moment_components
-from mbsym.mechanics.rest import at_numbers, rest
+from mbsym.mechanics.rest import Value, at_numbers, rest
 from mbsym.model.system import MotionEntry, System
 from mbsym.problems.rest_cosines import Choice, Cosines
 
@@ -82,7 +82,7 @@ class PermanentRotations:
         return any(x != "0" for x in self.quadratic)
 
 
-def permanent_rotations(system: System, values: Mapping[str, Fraction]) -> PermanentRotations | None:
+def permanent_rotations(system: System, values: Mapping[str, Value]) -> PermanentRotations | None:
     """The permanent rotations of a single body with three angles at numbers, whatever rates the description gives.
 
     None where the system is not one: other coordinates, prescribed motions, no cyclic first angle, or moments that are

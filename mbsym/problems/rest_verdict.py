@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import combinations
@@ -25,7 +25,7 @@ from mbsym.problems.stability.bundle import Element, NumberField
 from mbsym.problems.stability.degenerate import Extremum, in_one_coordinate, of_fourth_order
 from mbsym.problems.stability.enclosed import blocks, enclosed_verdict_with_cyclic
 from mbsym.problems.stability.exact import verdict_at
-from mbsym.problems.stability.linear_form import LinearSystem
+from mbsym.problems.stability.linear_form import LinearSystem, add, null_rows
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.theorems import Fact
 from mbsym.problems.stability.verdict import Verdict, combine, concluded, drifting, undecided
@@ -50,6 +50,8 @@ class LinearAtRest:
     found: Rest
     energy: Energy | None
     ignorable: tuple[str, ...]
+    #: The equations of motion have no terms of higher order.
+    exact: bool = False
 
     def verdict(self, place: Place) -> Verdict:
         """By the first approximation, and where that leaves it open by the integrals of the motion."""
@@ -135,10 +137,10 @@ class LinearAtRest:
                 parts = [[[exact[m][i][j][0] for j in indices] for i in indices] for m in range(5)]
                 names = tuple(self.found.system.coordinates[i] for i in indices)
                 rate = self._rate(place) if {*self.tilts} <= {*indices} else None
-                verdicts.append(_rational_verdict(parts, self.conservative, cyclic, rate, names))
+                verdicts.append(_rational_verdict(parts, self.conservative, cyclic, rate, names, self.exact))
             else:
                 parts = [[[values[m][i][j] for j in indices] for i in indices] for m in range(5)]
-                verdicts.append(enclosed_verdict_with_cyclic(parts, self.conservative, cyclic, PRECISION))
+                verdicts.append(enclosed_verdict_with_cyclic(parts, self.conservative, cyclic, PRECISION, self.exact))
         return combine(verdicts, self.conservative)
 
     def _rate(self, place: Place) -> fmpq | None:
@@ -173,7 +175,9 @@ def linear_at_rest(found: Rest) -> LinearAtRest:
     spin = free_spin(found.system)
     tilts = () if spin is None else tuple(names.index(name) for name in spin.tilts)
     rate = None if spin is None else rates[ring.index("velocity", spin.coordinate)]
-    return LinearAtRest(parts, law, cyclic, varying, tilts, rate, found, known, tuple(names[i] for i in cyclic))
+    ignorable = tuple(names[i] for i in cyclic)
+    exact = balance.exactly_linear
+    return LinearAtRest(parts, law, cyclic, varying, tilts, rate, found, known, ignorable, exact)
 
 
 def has_energy(found: Rest) -> bool:
@@ -212,9 +216,16 @@ def _rational_verdict(
     cyclic: tuple[int, ...],
     spin: fmpq | None,
     names: tuple[str, ...],
+    exact: bool,
 ) -> Verdict:
-    """By exact counting of roots; ``spin`` is the rate of a steady spin that may be turned in space."""
+    """By exact counting of roots; ``spin`` is the rate of a steady spin that may be turned in space.
+
+    ``exact``: there are no terms of higher order; where positions are a line of equilibria that is not made use of,
+    as nobody knows here whether they are for all parameters.
+    """
     turned = () if spin is None else (_CONSTANTS.constant(1), _CONSTANTS.constant(spin * spin))
     made = [tuple(tuple(_CONSTANTS.constant(x) for x in row) for row in rows_) for rows_ in parts]
     system = LinearSystem(made[0], made[1], made[2], made[3], made[4], conservative, cyclic, turned, names=names)
+    if exact and not null_rows(add(system.K, system.N), lambda x: x):
+        system = replace(system, exact=True)
     return verdict_at(system, {}).verdict

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from mbsym.problems.checks import EXACT, FAILED, NUMERICAL, UNDECIDED, Check
+from mbsym.problems.checks import EXACT, FAILED, NUMERICAL, SINGULAR, UNDECIDED, Check
 from mbsym.report.claims import HELD, OPEN, REFUTED, claim_line
 
 if TYPE_CHECKING:
@@ -66,13 +66,13 @@ def _self_check(checks: Sequence[Check]) -> str:
         return "FAILED: " + ", ".join(check.name for check in checks if check.failed)
     if set(outcomes) == {EXACT}:
         return "all exact"
-    words = (EXACT, NUMERICAL, UNDECIDED)
+    words = (EXACT, NUMERICAL, UNDECIDED, SINGULAR)
     return ", ".join(f"{outcomes.count(word)} {word}" for word in words if word in outcomes)
 
 
 def _worst(checks: Sequence[Check]) -> str:
     outcomes = {check.outcome for check in checks}
-    return next((word for word in (FAILED, UNDECIDED, NUMERICAL, EXACT) if word in outcomes), "")
+    return next((word for word in (FAILED, SINGULAR, UNDECIDED, NUMERICAL, EXACT) if word in outcomes), "")
 
 
 def _claims(words: Sequence[str]) -> str:

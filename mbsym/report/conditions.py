@@ -34,7 +34,7 @@ class Statement:
     @property
     def remark(self) -> str:
         """What is to be said of its place where it is not that of the others."""
-        return self.place.value if self.place in (Place.METHOD, Place.FIRST) else ""
+        return self.place.value if self.place in (Place.METHOD, Place.FIRST, Place.HARMLESS) else ""
 
 
 @dataclass(frozen=True)

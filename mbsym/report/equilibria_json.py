@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any
 
+from mbsym.expressions.tree import text
+from mbsym.mechanics.rest import Value
 from mbsym.model.quantities import units_by_name
 from mbsym.model.system import System
 from mbsym.problems.equilibria import CoordinateValue, Equilibria, RelativeEquilibrium
@@ -20,7 +22,7 @@ FORMAT = 1
 
 def equilibria_json(
     system: System,
-    values: Mapping[str, Fraction],
+    values: Mapping[str, Value],
     found: Equilibria,
     permanent: PermanentRotations | None = None,
 ) -> str:
@@ -30,7 +32,7 @@ def equilibria_json(
         "version": version(),
         "system": system.name,
         **({"units": units} if (units := units_by_name(system)) else {}),
-        "values": {name: str(value) for name, value in values.items()},
+        "values": {name: str(x) if isinstance(x, Fraction) else text(x) for name, x in values.items()},
         "turning": dict(found.turning),
         "complete": found.complete,
         "remarks": list(found.remarks),

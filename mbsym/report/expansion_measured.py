@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
@@ -12,18 +13,48 @@ from mbsym.algebra.failures import Failure
 if TYPE_CHECKING:
     from mbsym.analysis.expanding import Expansion
     from mbsym.analysis.oscillating import Oscillating
-    from mbsym.analysis.small import SmallParameters
+    from mbsym.analysis.small import Averaging, SmallParameters
     from mbsym.model.system import System
+    from mbsym.problems.averaging import Averaged
     from mbsym.simulation.averaged import Measured as MeasuredAverage
     from mbsym.simulation.expanded import Measured
     from mbsym.simulation.oscillating import MeasuredOrders
 
 NO_NUMBERS = "the description does not give all numbers and an initial state"
 DIVIDED = "a denominator vanishes at the given numbers"
+#: How far below the expected order a measured one may be.
+SLACK = 0.25
+#: A distance from the averaged motion, as a part of its size, that has to shrink as expected at once.
+FAR = 0.5
 
 _FLOWS: WeakKeyDictionary[SmallParameters, Measured | str] = WeakKeyDictionary()
 _WAVES: WeakKeyDictionary[SmallParameters, MeasuredOrders | str] = WeakKeyDictionary()
-_AVERAGES: WeakKeyDictionary[SmallParameters, dict[str, MeasuredAverage | str]] = WeakKeyDictionary()
+_AVERAGES: WeakKeyDictionary[SmallParameters, tuple[JudgedAverage, ...]] = WeakKeyDictionary()
+
+
+@dataclass(frozen=True)
+class JudgedAverage:
+    """An effective potential with what was measured of it; ``withdrawn``: the measurement contradicts it."""
+
+    one: Averaging
+    measured: MeasuredAverage | str
+    withdrawn: bool
+
+    @property
+    def found(self) -> Averaged | None:
+        """The result, where there is one that stands."""
+        return None if self.withdrawn else self.one.found
+
+
+def contradicts(told: MeasuredAverage | str) -> bool:
+    """Whether the distances do not shrink as they would by the averaging theorem: the result must not be told then."""
+    from mbsym.simulation.averaged import NOISE
+
+    if isinstance(told, str) or not told.orders:
+        return False
+    slow = told.distances[-1] > NOISE and told.orders[-1] < told.expected - SLACK
+    far = told.distances[0] >= FAR and abs(told.orders[0] - told.expected) > 2 * SLACK
+    return slow or far
 
 
 def flow_measured(found: SmallParameters, system: System) -> Measured | str:
@@ -76,23 +107,30 @@ def orders_or_why(
         return str(reason)
 
 
-def average_measured(found: SmallParameters, phase: str, system: System) -> MeasuredAverage | str:
+def averages(found: SmallParameters, system: System) -> tuple[JudgedAverage, ...]:
+    """All effective potentials, each held against the motion itself: what any output shows of them."""
+    if found not in _AVERAGES:
+        _AVERAGES[found] = tuple(_judged(found, system))
+    return _AVERAGES[found]
+
+
+def _judged(found: SmallParameters, system: System) -> Iterator[JudgedAverage]:
+    for one in found.averaged:
+        told: MeasuredAverage | str = ""
+        if one.found is not None and one.analysis is not None:
+            told = average_or_why(system, one.analysis.system, one.found)
+        yield JudgedAverage(one, told, contradicts(told))
+
+
+def average_or_why(
+    system: System, averaged: System, found: Averaged, time: float | None = None
+) -> MeasuredAverage | str:
     """The distance of the motion from the averaged one; why it was not measured."""
-    kept = _AVERAGES.setdefault(found, {})
-    if phase not in kept:
-        kept[phase] = _average(found, phase, system)
-    return kept[phase]
-
-
-def _average(found: SmallParameters, phase: str, system: System) -> MeasuredAverage | str:
     from mbsym.numerics.scenario import Incomplete
     from mbsym.simulation.averaged import measured
 
-    one = next(one for one in found.averaged if one.phase == phase)
-    assert one.found is not None
-    assert one.analysis is not None
     try:
-        return measured(system, one.analysis.system, one.found)
+        return measured(system, averaged, found, time)
     except Incomplete:
         return NO_NUMBERS
     except ZeroDivisionError:

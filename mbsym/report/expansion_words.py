@@ -15,6 +15,7 @@ from mbsym.problems.small_parameter.result import Outcome
 from mbsym.problems.stability import Stability
 from mbsym.problems.stability.word import Word
 from mbsym.report.conditions import statements
+from mbsym.report.expansion_measured import SLACK, JudgedAverage
 from mbsym.report.said import Said
 
 if TYPE_CHECKING:
@@ -30,11 +31,14 @@ NOTHING = (
     "expanded."
 )
 
-
-#: How far below the expected order a measured one may be.
-SLACK = 0.25
 TOO_SLOW = (
     "It shrinks more slowly than expected: the parameter is too large there, the time too long, or something is wrong."
+)
+#: Of an effective potential that the program's own measurement contradicts.
+WITHDRAWN = (
+    "The result of averaging over [[phase]] is withdrawn: over a time of [[time]] the largest distance of the motion "
+    "from the averaged one, as a part of its size, is [[distances]] at the given values, and with epsilon a half and a "
+    "quarter of it; it changes like the power [[orders]] of epsilon instead of 1."
 )
 
 
@@ -207,23 +211,40 @@ def of_measured(small: str, told: Measured | str, write: Medium) -> Iterator[Sai
             yield TOO_SLOW, {}
 
 
-def of_averaging(one: Averaging, told: MeasuredAverage | str, write: Medium) -> Iterator[Said]:
-    """The effective potential, what problem 6 says with it, and the error that was measured."""
+def of_averaging(told: JudgedAverage, write: Medium) -> Iterator[Said]:
+    """The effective potential, what problem 6 says with it, and the error that was measured.
+
+    Of one that the measurement contradicts nothing is said but that.
+    """
+    one = told.one
     phase = write.names([one.phase])
     if one.found is None:
         yield "Averaging over [[phase]] gives nothing: [[why]].", {"phase": phase, "why": write.word(one.failure)}
         return
-    values: dict[str, object] = {"phase": phase, "rate": write.names([one.found.rate])}
     yield (
-        "Averaged over the phase [[phase]] with the rate [[rate]], taken as of order 1/epsilon, and [[lengths]] as of "
-        "order epsilon: for times of order 1 the motion stays within order epsilon of one in the effective potential "
-        "below (averaging theorem).",
-        values | {"lengths": write.names(one.found.small)},
+        "Averaged over the phase [[phase]]. Its rate [[rate]] is taken as of order 1/epsilon, and what is not named "
+        "here as of order 1.",
+        {"phase": phase, "rate": write.names([one.found.rate])},
     )
-    yield "What the shaking adds: [[formula]].", {"formula": write.formula(one.found.vibrational)}
+    for power in sorted({power for _, power in one.found.orders}):
+        names = [name for name, k in one.found.orders if k == power]
+        yield (
+            "Taken as of the order of the power [[power]] of epsilon: [[names]].",
+            {"power": power, "names": write.names(names)},
+        )
+    if told.withdrawn:
+        assert not isinstance(told.measured, str)
+        yield WITHDRAWN, {"phase": phase} | _measures(told.measured)
+        return
+    yield (
+        "For times of order 1 the motion stays within order epsilon of one in the effective potential below (averaging "
+        "theorem).",
+        {},
+    )
+    yield "What the fast phase adds: [[formula]].", {"formula": write.formula(one.found.vibrational)}
     yield "Effective potential: [[formula]].", {"formula": write.formula(one.found.potential)}
     yield from _of_averaged_motion(one, write)
-    yield from _of_measured_average(told, write)
+    yield from _of_measured_average(told.measured, write)
 
 
 def _of_averaged_motion(one: Averaging, write: Medium) -> Iterator[Said]:
@@ -266,19 +287,21 @@ def _of_measured_average(told: MeasuredAverage | str, write: Medium) -> Iterator
     if isinstance(told, str):
         yield "The distance to the averaged motion was not measured: [[why]].", {"why": write.word(told)}
         return
-    values: dict[str, object] = {
-        "time": f"{told.time:.4g}",
-        "distances": ", ".join(f"{x:.2g}" for x in told.distances),
-        "orders": ", ".join(f"{x:.1f}" for x in told.orders),
-    }
+    values = _measures(told)
     yield (
         "Measured over a time of [[time]]: the largest distance of the motion from the averaged one, as a part of its "
         "size, is [[distances]] at the given values, and with epsilon a half and a quarter of it.",
         values,
     )
     yield "It shrinks like the power [[orders]] of epsilon; 1 is expected where epsilon is small enough.", values
-    if too_slow(told.orders, told.expected):
-        yield TOO_SLOW, {}
+
+
+def _measures(told: MeasuredAverage) -> dict[str, object]:
+    return {
+        "time": f"{told.time:.4g}",
+        "distances": ", ".join(f"{x:.2g}" for x in told.distances),
+        "orders": ", ".join(f"{x:.1f}" for x in told.orders),
+    }
 
 
 def of_none(found: SmallParameters, write: Medium) -> Iterator[Said]:

@@ -14,10 +14,12 @@ from mbsym.analysis.small import SmallParameters
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.names import injective
 from mbsym.formulas.straight_line import listing
+from mbsym.model.system import System
 from mbsym.problems.invariant_sets import InvariantSets, StationarySet
 from mbsym.problems.normal_forms import Focus, InSymbols, NormalForms
 from mbsym.problems.polynomial_integrals import Polynomials
 from mbsym.report import oscillation_words
+from mbsym.report.expansion_measured import averages
 from mbsym.report.expansion_words import coefficients
 from mbsym.report.functions import Functions
 from mbsym.report.integrals_words import level_title, title
@@ -54,7 +56,7 @@ def formula_functions(analysis: Analysis, problems: Sequence[int], writer: Funct
         if stage.failure is not None:
             found.append(FormulaFunction(number, name, missing=stage.failure.reason))
             continue
-        told = list(FORMULAS[number](stage.value))
+        told = list(FORMULAS[number](stage.value, analysis.system))
         if not told:
             continue
         try:
@@ -145,22 +147,23 @@ def _of_normal_forms(found: NormalForms) -> Iterator[Told]:
         yield f"coefficient for the amplitude of {symbols.amplitude_of}", symbols.coefficient
 
 
-def _of_small_parameters(found: SmallParameters) -> Iterator[Told]:
+def _of_small_parameters(found: SmallParameters, system: System) -> Iterator[Told]:
     if found.slow is not None:
         for one in coefficients(found.slow):
             yield f"{one.variable}{chr(39) if one.rate else ''}, order {one.order}", one.formula
     if found.oscillation is not None:
         for one in oscillation_words.coefficients(found.oscillation):
             yield f"periodic solution: {one.variable}{chr(39) if one.rate else ''}, order {one.order}", one.formula
-    for each in found.averaged:
+    for each in averages(found, system):
         if each.found is not None:
-            yield f"effective potential, averaged over {each.phase}", each.found.potential
-            yield f"what the shaking adds, averaged over {each.phase}", each.found.vibrational
+            over = f"averaged over {each.found.phase} ({each.found.scaling})"
+            yield f"effective potential, {over}", each.found.potential
+            yield f"what the fast phase adds, {over}", each.found.vibrational
 
 
-FORMULAS: Mapping[int, Callable[[Any], Iterable[Told]]] = {
-    9: _of_polynomials,
-    10: _of_invariant_sets,
-    11: _of_normal_forms,
+FORMULAS: Mapping[int, Callable[[Any, System], Iterable[Told]]] = {
+    9: lambda found, _: _of_polynomials(found),
+    10: lambda found, _: _of_invariant_sets(found),
+    11: lambda found, _: _of_normal_forms(found),
     12: _of_small_parameters,
 }

@@ -339,7 +339,13 @@ def _separated(items: Sequence[str]) -> list[str]:
 def _grade(word: str) -> str:
     """good, bad or open: how a verdict or an outcome is coloured; the word itself says it."""
     good = {word.value for word in Word if word.stable} | {EXACT, NUMERICAL, HELD}
-    return "good" if word in good else "bad" if word in (Word.UNSTABLE, FAILED, REFUTED) else "open"
+    return (
+        "good"
+        if word in good
+        else "bad"
+        if word in (Word.UNSTABLE, Word.UNSTABLE_BUT_BORDERS, FAILED, REFUTED)
+        else "open"
+    )
 
 
 def _motion(analysis: Analysis, names: MathNames) -> Markup:

@@ -2,7 +2,16 @@
 
 # ruff: noqa: E501
 
-from mbsym.problems.stability.theorems import CHETAEV, CONVERSE, KELVIN_CHETAEV, LAGRANGE, LYAPUNOV, MALKIN, ROUTH
+from mbsym.problems.stability.theorems import (
+    CHETAEV,
+    CONVERSE,
+    KELVIN_CHETAEV,
+    LAGRANGE,
+    LINEAR,
+    LYAPUNOV,
+    MALKIN,
+    ROUTH,
+)
 from mbsym.problems.stability.word import Word
 
 SENTENCES = {
@@ -16,7 +25,7 @@ SENTENCES = {
     "The first integrals of problem 7 in coordinates and momenta:": "Las integrales primeras del problema 7 en coordenadas y momentos:",
     "They are in involution: all Poisson brackets $\\{F_i, F_j\\} = \\frac{\\partial F_i}{\\partial q} \\cdot \\frac{\\partial F_j}{\\partial p} - \\frac{\\partial F_i}{\\partial p} \\cdot \\frac{\\partial F_j}{\\partial q}$ are zero.": "Están en involución: todos los corchetes de Poisson $\\{F_i, F_j\\} = \\frac{\\partial F_i}{\\partial q} \\cdot \\frac{\\partial F_j}{\\partial p} - \\frac{\\partial F_i}{\\partial p} \\cdot \\frac{\\partial F_j}{\\partial q}$ son nulos.",
     "Poisson brackets $\\{F_i, F_j\\} = \\frac{\\partial F_i}{\\partial q} \\cdot \\frac{\\partial F_j}{\\partial p} - \\frac{\\partial F_i}{\\partial p} \\cdot \\frac{\\partial F_j}{\\partial q}$; those that are not written are zero, or follow by a change of sign.": "Corchetes de Poisson $\\{F_i, F_j\\} = \\frac{\\partial F_i}{\\partial q} \\cdot \\frac{\\partial F_j}{\\partial p} - \\frac{\\partial F_i}{\\partial p} \\cdot \\frac{\\partial F_j}{\\partial q}$; los que no se escriben son nulos o se siguen con un cambio de signo.",
-    "The system is given by the matrices of its linear equations $M \\ddot q + (D + G)\\, \\dot q + (K + N)\\, q = [[right]]$, which are taken for a first approximation: what they were linearised from is not told, so that nothing is presumed of its energy.": "El sistema está dado por las matrices de sus ecuaciones lineales $M \\ddot q + (D + G)\\, \\dot q + (K + N)\\, q = [[right]]$, que se toman como primera aproximación: no se dice qué se ha linealizado, y nada se supone de su energía.",
+    "The system is given by the matrices of its linear equations $M \\ddot q + (D + G)\\, \\dot q + (K + N)\\, q = [[right]]$; what is said of stability is about these equations, which are exactly linear.": "El sistema está dado por las matrices de sus ecuaciones lineales $M \\ddot q + (D + G)\\, \\dot q + (K + N)\\, q = [[right]]$; lo que se dice de la estabilidad se refiere a estas ecuaciones, exactamente lineales.",
     "The matrix $[[matrix]]$ is read from the file": "La matriz $[[matrix]]$ se ha leído del archivo",
     "Given by its matrices; degrees of freedom: [[freedom]].": "Dado por sus matrices; grados de libertad: [[freedom]].",
     "In speeds and positions: $\\dot x = A x$ with the deviations $x$ of $([[names]])$ from $([[values]])$.": "En cuasivelocidades y posiciones: $\\dot x = A x$ con las desviaciones $x$ de $([[names]])$ respecto de $([[values]])$.",
@@ -111,7 +120,7 @@ SENTENCES = {
     "Eigenvalues there, in physical time, of $[[names]]$": "Valores propios allí, en tiempo físico, de $[[names]]$",
     "On the theorems": "Sobre los teoremas",
     "Problem 7. First integrals": "Problema 7. Integrales primeras",
-    "None of the kinds that are looked for.": "Ninguna de las clases que se buscan.",
+    "None in closed form of the kinds that are looked for.": "Ninguna en forma cerrada de las clases que se buscan.",
     "What was found": "Lo que se obtuvo",
     "Bodies and frames: [[bodies]]; degrees of freedom: [[freedom]].": "Cuerpos y sistemas de referencia: [[bodies]]; grados de libertad: [[freedom]].",
     "Constraints": "Ligaduras",
@@ -168,7 +177,7 @@ SENTENCES = {
     "while the others keep to the unperturbed motion": "mientras las demás siguen el movimiento no perturbado",
     "Stability of the whole system": "Estabilidad de todo el sistema",
     "First integrals": "Integrales primeras",
-    "none of the kinds that are looked for": "ninguna de las clases que se buscan",
+    "none in closed form of the kinds that are looked for": "ninguna en forma cerrada de las clases que se buscan",
     "Claims: [[held]] hold, [[refuted]] do not, [[open]] undecided.": "Afirmaciones publicadas: [[held]] se cumplen, [[refuted]] no, [[open]] sin decidir.",
     "Problem [[number]]: no result": "Problema [[number]]: sin resultado",
     "The system": "El sistema",
@@ -253,6 +262,7 @@ WORDS = {
     str(Word.UNDECIDED): "sin decidir",
     str(Word.DEPENDS): "depende de los parámetros",
     str(Word.UNSTABLE): "inestable",
+    str(Word.UNSTABLE_BUT_BORDERS): "inestable salvo casos frontera",
     LAGRANGE: "teorema de Lagrange-Dirichlet",
     ROUTH: "teorema de Routh",
     KELVIN_CHETAEV: "teoremas de Kelvin-Chetaev",
@@ -260,6 +270,7 @@ WORDS = {
     MALKIN: "teorema de Lyapunov-Malkin",
     CHETAEV: "combinación de integrales de Chetaev",
     CONVERSE: "recíproco del teorema de Lagrange-Dirichlet",
+    LINEAR: "teoría de las ecuaciones lineales",
     "conservative": "conservativo",
     "constrained in velocities": "con ligaduras en las velocidades",
     "gyroscopic conservative": "giroscópico conservativo",
@@ -292,6 +303,7 @@ WORDS = {
     "proved": "demostrado",
     "verified numerically": "verificado numéricamente",
     "undecided": "sin decidir",
+    "singular": "singular",
     "exact": "exacto",
     "FAILED": "DISCREPANCIA",
     "positive": "positivo",
@@ -314,6 +326,9 @@ WORDS = {
     "perturbed motion": "movimiento perturbado",
     "first integrals": "integrales primeras",
     "identical polynomials": "polinomios idénticos",
+    "identical polynomials where the conditions of problem 4 hold": (
+        "polinomios idénticos donde se cumplen las condiciones del problema 4"
+    ),
     "random parameters": "parámetros aleatorios",
     "regular": "regular",
     "holds": "se cumple",

@@ -2,7 +2,16 @@
 
 # ruff: noqa: E501 (Cyrillic letters look like Latin ones)
 
-from mbsym.problems.stability.theorems import CHETAEV, CONVERSE, KELVIN_CHETAEV, LAGRANGE, LYAPUNOV, MALKIN, ROUTH
+from mbsym.problems.stability.theorems import (
+    CHETAEV,
+    CONVERSE,
+    KELVIN_CHETAEV,
+    LAGRANGE,
+    LINEAR,
+    LYAPUNOV,
+    MALKIN,
+    ROUTH,
+)
 from mbsym.problems.stability.word import Word
 
 _ROUTES = "Эти результаты получены вторым, независимым путём и сравнены."
@@ -18,7 +27,7 @@ SENTENCES = {
     "The first integrals of problem 7 in coordinates and momenta:": "Первые интегралы задачи 7 в координатах и импульсах:",
     "They are in involution: all Poisson brackets $\\{F_i, F_j\\} = \\frac{\\partial F_i}{\\partial q} \\cdot \\frac{\\partial F_j}{\\partial p} - \\frac{\\partial F_i}{\\partial p} \\cdot \\frac{\\partial F_j}{\\partial q}$ are zero.": "Они находятся в инволюции: все скобки Пуассона $\\{F_i, F_j\\} = \\frac{\\partial F_i}{\\partial q} \\cdot \\frac{\\partial F_j}{\\partial p} - \\frac{\\partial F_i}{\\partial p} \\cdot \\frac{\\partial F_j}{\\partial q}$ равны нулю.",
     "Poisson brackets $\\{F_i, F_j\\} = \\frac{\\partial F_i}{\\partial q} \\cdot \\frac{\\partial F_j}{\\partial p} - \\frac{\\partial F_i}{\\partial p} \\cdot \\frac{\\partial F_j}{\\partial q}$; those that are not written are zero, or follow by a change of sign.": "Скобки Пуассона $\\{F_i, F_j\\} = \\frac{\\partial F_i}{\\partial q} \\cdot \\frac{\\partial F_j}{\\partial p} - \\frac{\\partial F_i}{\\partial p} \\cdot \\frac{\\partial F_j}{\\partial q}$; невыписанные равны нулю или отличаются знаком.",
-    "The system is given by the matrices of its linear equations $M \\ddot q + (D + G)\\, \\dot q + (K + N)\\, q = [[right]]$, which are taken for a first approximation: what they were linearised from is not told, so that nothing is presumed of its energy.": "Система задана матрицами своих линейных уравнений $M \\ddot q + (D + G)\\, \\dot q + (K + N)\\, q = [[right]]$; они считаются первым приближением: что именно линеаризовано, не сказано, и о его энергии ничего не предполагается.",
+    "The system is given by the matrices of its linear equations $M \\ddot q + (D + G)\\, \\dot q + (K + N)\\, q = [[right]]$; what is said of stability is about these equations, which are exactly linear.": "Система задана матрицами своих линейных уравнений $M \\ddot q + (D + G)\\, \\dot q + (K + N)\\, q = [[right]]$; сказанное об устойчивости относится к этим уравнениям, в точности линейным.",
     "The matrix $[[matrix]]$ is read from the file": "Матрица $[[matrix]]$ прочитана из файла",
     "Given by its matrices; degrees of freedom: [[freedom]].": "Задана матрицами; степеней свободы: [[freedom]].",
     "In speeds and positions: $\\dot x = A x$ with the deviations $x$ of $([[names]])$ from $([[values]])$.": "В квазискоростях и положениях: $\\dot x = A x$ для отклонений $x$ величин $([[names]])$ от $([[values]])$.",
@@ -151,7 +160,7 @@ SENTENCES = {
     "Eigenvalues there, in physical time, of $[[names]]$": "Собственные значения при них, в физическом времени, для $[[names]]$",
     "On the theorems": "О теоремах",
     "Problem 7. First integrals": "Задача 7. Первые интегралы",
-    "None of the kinds that are looked for.": "Интегралов тех видов, которые разыскиваются, нет.",
+    "None in closed form of the kinds that are looked for.": "Интегралов тех видов, которые разыскиваются, в замкнутом виде нет.",
     "What was found": "Что получено",
     "Bodies and frames: [[bodies]]; degrees of freedom: [[freedom]].": (
         "Тела и системы координат: [[bodies]]; степени свободы: [[freedom]]."
@@ -218,7 +227,7 @@ SENTENCES = {
     "while the others keep to the unperturbed motion": "пока остальные следуют невозмущённому движению",
     "Stability of the whole system": "Устойчивость всей системы",
     "First integrals": "Первые интегралы",
-    "none of the kinds that are looked for": "тех видов, которые разыскиваются, нет",
+    "none in closed form of the kinds that are looked for": "тех видов, которые разыскиваются, в замкнутом виде нет",
     "Claims: [[held]] hold, [[refuted]] do not, [[open]] undecided.": (
         "Утверждения публикаций: верны --- [[held]], неверны --- [[refuted]], не решено --- [[open]]."
     ),
@@ -359,6 +368,7 @@ WORDS = {
     str(Word.UNDECIDED): "не решено",
     str(Word.DEPENDS): "зависит от параметров",
     str(Word.UNSTABLE): "неустойчиво",
+    str(Word.UNSTABLE_BUT_BORDERS): "неустойчиво, кроме граничных случаев",
     LAGRANGE: "теорема Лагранжа-Дирихле",
     ROUTH: "теорема Рауса",
     KELVIN_CHETAEV: "теоремы Томсона-Тэта-Четаева",
@@ -366,6 +376,7 @@ WORDS = {
     MALKIN: "теорема Ляпунова-Малкина",
     CHETAEV: "метод связки интегралов Четаева",
     CONVERSE: "обращение теоремы Лагранжа-Дирихле",
+    LINEAR: "теория линейных уравнений",
     "conservative": "консервативная",
     "constrained in velocities": "со связями на скорости",
     "gyroscopic conservative": "гироскопическая консервативная",
@@ -402,6 +413,7 @@ WORDS = {
     "proved": "доказано",
     "verified numerically": "проверено численно",
     "undecided": "не решено",
+    "singular": "вырождена",
     "exact": "точно",
     "FAILED": "РАСХОЖДЕНИЕ",
     "positive": "положительный",
@@ -424,6 +436,9 @@ WORDS = {
     "perturbed motion": "возмущённое движение",
     "first integrals": "первые интегралы",
     "identical polynomials": "тождественные многочлены",
+    "identical polynomials where the conditions of problem 4 hold": (
+        "тождественные многочлены при выполнении условий задачи 4"
+    ),
     "random parameters": "случайные параметры",
     "regular": "невырождена",
     "holds": "верно",

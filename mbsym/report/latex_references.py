@@ -6,7 +6,16 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from mbsym.problems.stability import Stability
-from mbsym.problems.stability.theorems import CHETAEV, CONVERSE, KELVIN_CHETAEV, LAGRANGE, LYAPUNOV, MALKIN, ROUTH
+from mbsym.problems.stability.theorems import (
+    CHETAEV,
+    CONVERSE,
+    KELVIN_CHETAEV,
+    LAGRANGE,
+    LINEAR,
+    LYAPUNOV,
+    MALKIN,
+    ROUTH,
+)
 
 
 @dataclass(frozen=True)
@@ -38,6 +47,9 @@ _LITERATURE = {
         r"A. M. Lyapunov, \textit{The General Problem of the Stability of Motion}, Kharkov, 1892; "
         r"English translation by A. T. Fuller: Taylor \& Francis, London, 1992."
     ),
+    "gantmacher": (
+        r"F. R. Gantmacher, \textit{The Theory of Matrices}, vol. II, chapter XIV, Chelsea, New York, 1959."
+    ),
     "malkin": (
         r"I. G. Malkin, \textit{Theory of Stability of Motion}, Gostekhizdat, Moscow, 1952; "
         r"English translation: US Atomic Energy Commission, AEC-tr-3352."
@@ -55,6 +67,7 @@ _OF_THEOREM = {
     MALKIN: ("lyapunov", "malkin"),
     CHETAEV: ("chetaev",),
     CONVERSE: ("lyapunov", "chetaev"),
+    LINEAR: ("gantmacher",),
 }
 
 

@@ -24,7 +24,7 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.programs import Programs, generalized_energy, momenta, scene_without_accelerations
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import INERTIAL, acceleration_name
-from mbsym.problems.integrals import ENERGY, Integral, identifiers, whole_momenta
+from mbsym.problems.integrals import ENERGY, WITH_FORCES, Integral, identifiers, whole_momenta
 from mbsym.report import programs as open_trees
 
 if TYPE_CHECKING:
@@ -191,6 +191,10 @@ def first_integrals(analysis: Analysis, problems: Sequence[int]) -> Integrals:
             if item.kind == "cyclic momentum" and item.name != f"momentum of {item.of}":
                 carry = Carrier(analysis.ring, code.program, dict(code.environment))
                 lagrangian[key] = carry(item.formula.polynomial)
+    for item, key in zip(found, keys, strict=True):
+        if item.kind == WITH_FORCES:
+            carry = Carrier(analysis.ring, code.program, dict(code.environment))
+            lagrangian[key] = carry(item.formula.polynomial)
     if all(key in lagrangian for key in keys):
         return Integrals(tuple(named), code.program, tuple(lagrangian[key] for key in keys))
     scene, program = _scene(analysis)

@@ -10,7 +10,8 @@ from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula
 from mbsym.problems.small_parameter.harmonics import Harmonics
 from mbsym.problems.small_parameter.oscillation_result import Amplitude, Divisor
-from mbsym.report.expansion_words import SLACK, Coefficient, Medium, scaled
+from mbsym.report.expansion_measured import SLACK
+from mbsym.report.expansion_words import Coefficient, Medium, scaled
 from mbsym.report.said import Said
 
 if TYPE_CHECKING:

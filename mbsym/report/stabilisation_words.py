@@ -68,40 +68,41 @@ def _gyroscopic(part: Gyroscopic, write: Medium) -> Iterator[Said]:
             "Degree of instability of K for [[names]] (negative eigenvalues): [[degree]] (proved).",
             {**names, "degree": part.degree},
         )
-        yield from _what_it_means(part, part.degree)
+        yield from _what_it_means(part, part.degree, write)
         return
     for region in part.regions:
         yield (
             "Degree of instability of K for [[names]] where [[where]]: [[degree]] (proved).",
             {**names, "where": _where(region, write), "degree": region.degree},
         )
-        yield from _what_it_means(part, region.degree)
+        yield from _what_it_means(part, region.degree, write)
 
 
 def _where(region: Region, write: Medium) -> str:
     return ", ".join(write.condition(x, relation) for x, relation in region.signs)
 
 
-def _what_it_means(part: Gyroscopic, degree: int) -> Iterator[Said]:
+def _what_it_means(part: Gyroscopic, degree: int, write: Medium) -> Iterator[Said]:
     if degree == 0 or part.free:
         return
+    names: dict[str, object] = {"names": write.names(part.coordinates)}
     if degree % 2:
-        yield "It is odd: no gyroscopic forces make the motion stable (Kelvin-Chetaev).", {}
+        yield "It is odd: no gyroscopic forces among [[names]] make the motion stable (Kelvin-Chetaev).", names
         return
     if part.damped:
         yield "It is even, but where D is positive definite the motion is unstable all the same (Kelvin-Chetaev).", {}
         return
     if part.present:
         yield (
-            "It is even: the gyroscopic forces of the system stabilise the first approximation where the conditions of "
-            "problem 6 hold; complete dissipation, however small, destroys that (Kelvin-Chetaev).",
-            {},
+            "It is even: the gyroscopic forces among [[names]] stabilise their first approximation where the "
+            "conditions of problem 6 hold; complete dissipation, however small, destroys that (Kelvin-Chetaev).",
+            names,
         )
     else:
         yield (
-            "It is even: suitable gyroscopic forces would stabilise the first approximation, the system has none; "
-            "complete dissipation, however small, would destroy that (Kelvin-Chetaev).",
-            {},
+            "It is even: suitable gyroscopic forces among [[names]] would stabilise their first approximation, there "
+            "are none; complete dissipation, however small, would destroy that (Kelvin-Chetaev).",
+            names,
         )
 
 
@@ -136,8 +137,9 @@ def _energy(energy: EnergyFunction, write: Medium) -> Iterator[Said]:
         weights = ", ".join(map(str, energy.bundle))
         yield (
             "At the given values a combination of the integrals that V makes of the motion and of its derivatives, "
-            "with the weights [[weights]], is positive definite (proved): the linear equations are stable there.",
-            {"weights": weights},
+            "with the weights [[weights]], is positive definite (proved): the linear equations of [[names]] are stable "
+            "there.",
+            {**names, "weights": weights},
         )
 
 
@@ -175,19 +177,21 @@ def _dissipation(part: Dissipation, write: Medium) -> Iterator[Said]:
     if part.at_values is not None:
         yield (
             (
-                "At the given values D is felt by every motion but rest (proved)."
+                "At the given values D is felt by every motion of [[names]] but rest (proved)."
                 if part.at_values
-                else "At the given values D is not felt by every motion but rest (proved)."
+                else "At the given values D is not felt by every motion of [[names]] but rest (proved)."
             ),
-            {},
+            names,
         )
-    if not part.semidefinite:
-        yield "That D is positive semidefinite is not known.", {}
+    if part.semidefinite is False:
+        yield "D is not positive semidefinite for [[names]] (proved).", names
+    elif part.semidefinite is None:
+        yield "That D is positive semidefinite for [[names]] is not known.", names
     elif part.rank.full:
         yield (
-            "Where it is felt the linear equations are asymptotically stable if K is positive definite, and unstable "
-            "if K has a negative eigenvalue and is not singular.",
-            {},
+            "Where it is felt the linear equations of [[names]] are asymptotically stable if their K is positive "
+            "definite, and unstable if it has a negative eigenvalue and is not singular.",
+            names,
         )
 
 

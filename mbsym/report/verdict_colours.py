@@ -32,6 +32,7 @@ LOOKS: dict[str, Look] = {
     Word.UNDECIDED: Look("#c4c4c4"),
     Word.DEPENDS: Look("#c4c4c4", "x"),
     Word.UNSTABLE: Look("#cc6677"),
+    Word.UNSTABLE_BUT_BORDERS: Look("#cc6677", "x"),
 }
 
 #: Of unstable motions whose roots to the right are counted: pairs alone, real roots beside pairs.

@@ -25,6 +25,7 @@ from mbsym.report import oscillation_words
 from mbsym.report.canonical import forms_of
 from mbsym.report.conditions import Statement, provided, statements
 from mbsym.report.environment import rendered
+from mbsym.report.expansion_measured import averages
 from mbsym.report.expansion_words import coefficients
 from mbsym.report.first_order import first_order
 from mbsym.report.functions import prescribed_value
@@ -90,7 +91,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         normal_form_sentences=[filled(said) for said in higher_sentences(found[11], HIGHER)] if 11 in found else [],
         invariant_lines=list(invariant_sets.lines(found[10], analysis)) if 10 in found else [],
         small_parameter_lines=list(small_parameters.lines(found[12], analysis)) if 12 in found else [],
-        small_parameter_formulas=list(_of_small_parameters(found[12])) if 12 in found else [],
+        small_parameter_formulas=list(_of_small_parameters(found[12], analysis.system)) if 12 in found else [],
         forms=forms,
         reactions=(analysis.optional("reactions") or ()) if analysis.system.reactions and 3 in problems else (),
         parts=[f"wolfram/{PROBLEMS[number].attribute}.j2" for number in problems],
@@ -110,7 +111,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
     )
 
 
-def _of_small_parameters(found: SmallParameters) -> Iterator[tuple[str, str]]:
+def _of_small_parameters(found: SmallParameters, system: System) -> Iterator[tuple[str, str]]:
     """Definitions: coefficients as {variable, power, formula}, effective potentials by phase."""
     if found.slow is not None:
         listed_ones = list(coefficients(found.slow))
@@ -123,10 +124,9 @@ def _of_small_parameters(found: SmallParameters) -> Iterator[tuple[str, str]]:
             for x in oscillation_words.coefficients(found.oscillation)
         )
         yield "periodicSolution", listed(told)
-    averaged = [one for one in found.averaged if one.found is not None]
-    if averaged:
-        both = (f"{{{string(x.phase)}, {x.found.potential.wolfram()}}}" for x in averaged if x.found is not None)
-        yield "effectivePotentials", listed(both)
+    potentials = [one.found for one in averages(found, system) if one.found is not None]
+    if potentials:
+        yield "effectivePotentials", listed(f"{{{string(x.phase)}, {x.potential.wolfram()}}}" for x in potentials)
 
 
 def _rate(velocity: str, names: WolframNames) -> str:

@@ -11,9 +11,11 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import platform
 import stat
 import tempfile
 import threading
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
@@ -26,7 +28,12 @@ from mbsym.source.placed import MAX_TEXT
 MOST_BYTES = 4 * MAX_TEXT
 MOST_JOURNAL = 6 * MOST_BYTES
 
+#: What is written aside, until it is renamed: ``.mbsym-part-``, a digest of this machine and the file's name, the
+#: process, and what makes it unique.
 _PART = ".mbsym-part-"
+
+#: What lies aside for so many seconds is a stray, whoever is at work.
+_STALE = 3600.0
 
 
 class Conflict(Exception):
@@ -74,6 +81,7 @@ class Storage:
         self._before_path = self.path.with_name(f".{self.path.name}.mbsym-journal-before")
         self._lock = threading.RLock()
         self._found = self._leftover()
+        self._remove_strays()
 
     # --- the file -----------------------------------------------------------------------------------------------------
 
@@ -118,6 +126,7 @@ class Storage:
             target = Path(os.path.realpath(self.path))
             if target.exists() and not os.access(target, os.W_OK):
                 raise Unwritable("the file may not be written")
+            self._remove_strays()
             _replace(target, data, _mode(target), lambda: self._compare(digest, force))
             self._clear()
         return digest_of(data)
@@ -131,6 +140,16 @@ class Storage:
             raise Unwritable(f"what is there now cannot be read: {error}") from error
         if now.digest != digest:
             raise Conflict(now.digest, now.text)
+
+    def _remove_strays(self) -> None:
+        """What saves of this file left aside whose processes were killed."""
+        for target in {Path(os.path.realpath(self.path)), self.journal_path}:
+            own = _aside(target)
+            with suppress(OSError):
+                for path in target.parent.iterdir():
+                    if path.name.startswith(own) and _is_stray(path, path.name.removeprefix(own)):
+                        with suppress(OSError):
+                            path.unlink()
 
     # --- the journal --------------------------------------------------------------------------------------------------
 
@@ -212,7 +231,7 @@ def _read_journal(path: Path) -> Journal | None:
 def _replace(target: Path, data: bytes, mode: int, before: Callable[[], None] | None = None) -> None:
     """Written aside in the same folder, flushed, renamed; ``before`` is called last, and may raise."""
     try:
-        handle, aside = tempfile.mkstemp(prefix=_PART, dir=target.parent)
+        handle, aside = tempfile.mkstemp(prefix=f"{_aside(target)}{os.getpid()}-", dir=target.parent)
     except OSError as error:
         raise Unwritable(error.strerror or str(error)) from error
     try:
@@ -237,6 +256,26 @@ def _replace(target: Path, data: bytes, mode: int, before: Callable[[], None] | 
             os.fsync(folder)
         finally:
             os.close(folder)
+
+
+def _aside(target: Path) -> str:
+    """How names begin of what is written aside for a file by this machine."""
+    return f"{_PART}{digest_of(os.fsencode(f'{platform.node()}/{target.name}'))[:12]}-"
+
+
+def _is_stray(path: Path, rest: str) -> bool:
+    """Whether who wrote it aside is gone, or has had time enough; ``rest`` of its name begins with the process."""
+    process = rest.partition("-")[0]
+    if process == str(os.getpid()):
+        return False  # the lock is held by who is at work, and what fails clears up itself
+    if process.isdigit():
+        try:
+            os.kill(int(process), 0)
+        except ProcessLookupError:
+            return True
+        except (OSError, OverflowError):  # somebody else's, or no process at all
+            pass
+    return time.time() - path.lstat().st_mtime > _STALE
 
 
 def _owned_as(path: str, like: Path) -> None:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from flint import arb, fmpq
 
+from mbsym.algebra.failures import NoClosedForm
 from mbsym.expressions.tree import Expression, number
 from mbsym.model.system import System, velocity_name
 from mbsym.numerics.scenario import Scenario, scenario
@@ -22,6 +23,8 @@ from mbsym.simulation.run import simulate
 ROWS, PARTS = 400, (Fraction(1), Fraction(1, 2), Fraction(1, 4))
 #: Periods of the fast phase, at the given numbers, that are simulated unless a time is asked for.
 PERIODS = 60
+#: Distances that the errors of the integrations may make up.
+NOISE = 1e-6
 
 
 @dataclass(frozen=True)
@@ -51,7 +54,7 @@ def measured(
 ) -> Measured:
     """Both motions from the initial state of the description, over ``time``.
 
-    Raises Incomplete where numbers are missing.
+    Raises Incomplete where numbers are missing, NoClosedForm where a motion does not last, or both are the same.
     """
     given = scenario(system)
     values = dict(given.parameters)
@@ -60,16 +63,22 @@ def measured(
     distances = []
     for part in PARTS:
         watch(f"eps/{part.denominator}" if part != 1 else "eps")
-        scaled: dict[str, Expression] = {name: number(Fraction(values[name]) * part) for name in found.small}
+        scaled: dict[str, Expression] = {
+            name: number(Fraction(values[name]) * part**power) for name, power in found.orders
+        }
         scaled[found.rate] = number(Fraction(values[found.rate]) / part)
         own = scenario(system, scaled)
         exact = simulate(own, Request(time=time, samples=ROWS, estimate=False))
         start = _start(own, found)
         slow = simulate(scenario(averaged, {**scaled, **start}), Request(time=time, samples=ROWS, estimate=False))
         q, Q = np.asarray(exact.coordinates), np.asarray(slow.coordinates)
+        if q.shape != Q.shape or not (np.isfinite(q).all() and np.isfinite(Q).all()):
+            raise NoClosedForm("one of the motions ends before that time")
         size = np.abs(Q).max(axis=1, keepdims=True)
         size[size == 0] = 1.0
         distances.append(float(np.abs((q - Q) / size).max()))
+    if max(distances) < NOISE:
+        raise NoClosedForm("from this initial state both motions are the same, which tells nothing of others")
     return Measured(time, PARTS, tuple(distances))
 
 

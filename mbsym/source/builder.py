@@ -24,7 +24,7 @@ from mbsym.source.keys import SYSTEM, VERSION
 from mbsym.source.linear import declare_linear, read_linear
 from mbsym.source.loads import read_loads
 from mbsym.source.oscillation_symbols import enter_symbols, leave_symbols
-from mbsym.source.placed import Node
+from mbsym.source.placed import Node, Sequence
 from mbsym.source.reading import Fields, Reading
 from mbsym.source.scope import Allowed, Scope
 from mbsym.source.settings import (
@@ -148,7 +148,7 @@ def _constraints(fields: Fields, bodies: list[str], reading: Reading) -> tuple[t
         named = _coordinates(fields, "dependent", "a dependent coordinate or speed", reading, ("coordinate", "speed"))
     else:
         named = _coordinates(fields, "dependent", "a dependent coordinate", reading)
-    if dependent is not None and node is None:
+    if dependent is not None and (node is None or (isinstance(node, Sequence) and not node.items)):
         message = "nothing depends on anything: there are no 'constraints'"
         reading.error("idle-constraint", message, fields.key_span("dependent"), "leave 'dependent' out")
     return found, named

@@ -6,7 +6,10 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass, replace
 from fractions import Fraction
+from typing import Any
 
+from mbsym.expressions.constants import meaningless
+from mbsym.expressions.constants import value as value_of
 from mbsym.expressions.place import Span
 from mbsym.expressions.tree import (
     ONE,
@@ -262,6 +265,7 @@ def _rod_hint(moment: str, axis: int) -> str:
 
 def check_system(system: System, reading: Reading) -> None:
     """Relations must agree with the values that are given for both sides; assumptions should hold for them."""
+    _check_given(system, reading)
     _check_relation_values(system, reading)
     _check_assumption_values(system, reading)
     if not reading.errors:  # else a misspelt use would be complained about twice
@@ -299,6 +303,30 @@ def _occurring(value: object) -> Iterator[str]:
     elif is_dataclass(value):
         for one in fields(value):
             yield from _occurring(getattr(value, one.name))
+
+
+def _check_given(system: System, reading: Reading) -> None:
+    """With the given values of parameters, relations, initial values and limits are numbers, too."""
+    known: dict[str, Any] = {}
+    for parameter in system.parameters:
+        found = None if parameter.value is None else value_of(parameter.value)
+        if found is not None:
+            known[parameter.name] = found
+    for _ in system.relations:  # in whatever order they stand
+        for relation in system.relations:
+            found = value_of(relation.value, known) if relation.name not in known else None
+            if found is not None:
+                known[relation.name] = found
+    held = [relation.value for relation in system.relations]
+    held += [one for entry in (*system.initial, *system.start) for one in (entry.position, entry.velocity) if one]
+    held += [one for limit in system.limits for one in (limit.lower, limit.upper)]
+    held += [one.initial for one in system.prescribed if one.initial]
+    for expression in held:
+        if not names(expression) or not names(expression) <= known.keys():
+            continue  # without names it has been judged where it stands
+        if (nothing := meaningless(expression, known)) is not None:
+            node, why = nothing
+            reading.error("no-number", f"with the given values this is no real number: {why}", node.span)
 
 
 def _check_relation_values(system: System, reading: Reading) -> None:

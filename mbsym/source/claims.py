@@ -78,10 +78,12 @@ def read_claims(
     kinds = reading.scope.kinds
     momenta = [] if system.speeds else [name for name in momentum_names(system).values() if name not in kinds]
     kinds.update(dict.fromkeys(momenta, "momentum"))
+    reading.doubles = False
     for item in () if node is None else reading.items(node, "'claims'"):
         errors = reading.errors
         claims = _claims(item, bodies, system, reading, small)
         found += claims if reading.errors == errors else []
+    reading.doubles = True
     for name in momenta:
         del kinds[name]
     return tuple(found)

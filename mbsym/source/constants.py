@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from fractions import Fraction
 
+from mbsym.expressions.constants import sign_of
 from mbsym.expressions.parser import ascii_safe, decimal_comma, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import CONSTANTS, ZERO, Expression, names
@@ -63,6 +65,10 @@ def _parameter(entry: Entry, reading: Reading) -> Parameter:
         return Parameter(name, scalar.text.lower(), span=span)
     refused = Complaints()
     value = parse_expression(scalar.text, refused, scalar.place, named=False)
+    if value is not None and refused.errors:  # log(0)
+        for one in refused:
+            reading.error(one.code, one.message, one.span, one.hint)
+        return Parameter(name, span=span)
     if value is None or not names(value) <= set(CONSTANTS):
         close = did_you_mean(scalar.text.lower(), SIGNS) or decimal_comma(scalar.text)
         unit = next((one.hint for one in refused if one.hint and re.match("[-+.0-9]", scalar.text)), None)
@@ -70,6 +76,7 @@ def _parameter(entry: Entry, reading: Reading) -> Parameter:
         message = f"a parameter is described by a sign word or a number, not by {ascii_safe(scalar.text)}"
         reading.error("bad-word", message, scalar.span, hint)
         return Parameter(name, span=span)
+    reading.check_range(value, scalar)
     return Parameter(name, _sign_of(value), value, span=span)
 
 
@@ -116,8 +123,10 @@ def _sign(fields: Fields, reading: Reading) -> str | None:
 
 
 def _check_sign(parameter: Parameter, span: Span, reading: Reading) -> None:
-    value = rational(parameter.value)
-    if value is not None and not has_sign(value, parameter.sign):
+    if parameter.value is None:
+        return
+    found = sign_of(parameter.value)
+    if found is not None and not has_sign(Fraction(found), parameter.sign):
         reading.error("sign-contradiction", f"'{parameter.name}' is declared {parameter.sign}, its value is not", span)
 
 

@@ -12,9 +12,10 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
 
+from mbsym.expressions.constants import out_of_range, unsupported_power, value
 from mbsym.expressions.parser import NO_TABLES, ascii_safe, decimal_comma, names_apart, parse_expression
 from mbsym.expressions.place import Complaints, Span
-from mbsym.expressions.tree import ZERO, Expression
+from mbsym.expressions.tree import ZERO, Call, Expression, Name, names, walk
 from mbsym.model.system import Vector
 from mbsym.model.units import Declared
 from mbsym.source import placed
@@ -92,13 +93,14 @@ def _is_empty(node: Node) -> bool:
 class Reading:
     """The complaints and the declared names of one description; ``units`` are those that stand in records.
 
-    ``folder`` is where the description is, if it is a file.
+    ``folder`` is where the description is, if it is a file.  ``doubles``: numbers have to fit into such; not in claims.
     """
 
     complaints: Complaints
     scope: Scope
     units: list[Declared] = field(default_factory=list)
     folder: Path | None = None
+    doubles: bool = True
 
     def error(self, code: str, message: str, span: Span | None = None, hint: str | None = None) -> None:
         self.complaints.error(code, message, span, hint)
@@ -155,7 +157,24 @@ class Reading:
                 self.scope.check(one, allowed)
             return ZERO
         self.scope.check(tree, allowed)
+        if len(self.complaints.items) == before:
+            self.check_range(tree, scalar)
         return tree
+
+    def check_range(self, tree: Expression, scalar: Scalar) -> None:
+        """Complains of a number that no double holds, where it is computed with, or of a power that is not computed."""
+        if not self.doubles or isinstance(tree, Name):
+            return
+        exponent = unsupported_power(tree)
+        if exponent is not None:
+            message = f"the power {exponent}: only whole and half exponents are supported"
+            self.error("no-number", message, scalar.span, f"for 2**({exponent}) write exp(log(2)*{exponent})")
+        if names(tree) or any(isinstance(node, Call) and node.table for node in walk(tree)):
+            return
+        if value(tree) is None:
+            self.error("no-number", "what this number is cannot be told: too many digits cancel", scalar.span)
+        elif why := out_of_range(tree):
+            self.error("no-number", f"nothing can be computed with this number: {why}", scalar.span, "take other units")
 
     def vector(self, node: Node, allowed: Allowed) -> Vector:
         items = self.triple(node, allowed.what)

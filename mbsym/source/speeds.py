@@ -273,15 +273,21 @@ def _check_orientation(system: System, body: Body, draft: Draft, reading: Readin
     used = {name: place for name, place in _uses(system, body) if name in own}
     for name, place in used.items():
         message = f"the angle '{name}' stands in {place}: {what} cannot take its place"
-        hint = "leave 'orientation' out, or write the load as a force or torque"
-        hint += "" if whole or place != "a load" else ", or as a potential of the unit vectors"
+        hint = "leave 'orientation' out"
+        if place == _LOAD:
+            hint += ", or write the load as a force or torque"
+            hint += "" if whole else ", or as a potential of the unit vectors"
         reading.error("orientation", message, span, hint)
+
+
+#: Where an angle may stand: in a load on coordinates, and in one that is a force or torque on bodies already.
+_LOAD, _FORCE = "a load", "a load on bodies"
 
 
 def _uses(system: System, body: Body) -> list[tuple[str, str]]:
     """Names in other places than the angles of a body's joint, with these places."""
     loads = (replace(x, expression=x.written) if isinstance(x, ForceFunction) else x for x in system.loads)
-    found = [(name, "a load") for load in loads for name in _held(load)]
+    found = [(name, _FORCE if load.bodies else _LOAD) for load in loads for name in _held(load)]
     found += [(name, "a constraint") for one in system.constraints for name in _held(one)]
     found += [(name, "its connection point") for x in body.connection_point for name in names(x)]
     for other in system.bodies:

@@ -38,6 +38,18 @@ def signs(words: str, *assumptions: tuple[Any, str]) -> Signs:
     [
         ("positive positive real", (), x * y + x**2, "positive"),
         ("positive negative real", (), x * y, "negative"),
+        # Sylvester's pair from below: x z > y^2 and z > 0
+        ("real real positive", ((x * z - y**2, ">"),), x, "positive"),
+        ("real real negative", ((x * z - y**2, ">"),), x, "negative"),
+        ("real real positive", ((x * z - y**2, ">="),), x, "nonnegative"),
+        ("real real real", ((x * z - y**2, ">"), (z, ">")), x, "positive"),
+        ("real real real", ((1 - z**2, ">"), (1 + z, ">=")), 1 - z, "positive"),
+        ("positive real real", ((x - x * z**2, ">"), (1 - z, ">="), (1 + z, ">=")), 1 + z, "positive"),
+        # (x + y + z)^2/2 + (x^2 + y^2 + z^2)/2, and sums of three squares: one discriminant within the other
+        ("real real real", (), x**2 + y**2 + z**2 + x * y + y * z + z * x, "nonnegative"),
+        ("real real real", (), (x - y) ** 2 + (y - z) ** 2 + z**2, "nonnegative"),
+        ("real real real", (), x**2 + y**2 + z**2 + x * y + y * z + 1, "positive"),
+        ("real real real", (), -(x**2) - y**2 - z**2 - x * y - y * z - 1, "negative"),
         ("positive nonnegative real", (), x * y, "nonnegative"),
         ("positive real real", (), x * y, "unknown"),
         ("nonzero real real", (), x, "nonzero"),
@@ -100,6 +112,16 @@ def test_bad_knowledge_is_refused() -> None:
         signs("real real real", (ONE * -1, ">")).sign(x - y)
     with pytest.raises(ContradictionError):
         signs("real real real", (x - 2, ">"), (1 - x, ">")).sign(x - y)
+
+
+def test_a_sum_of_squares_is_positive_where_the_other_factors_are() -> None:
+    """Regular precession, c = cos, p = C (n + w c): K ~ (1 - c^2) ((p - 2 x c)^2 + x^2 (1 - c^2)), x = A w > 0."""
+    known = signs("positive real real", (1 - z, ">="), (1 + z, ">="))
+    found = known.condition((1 - z**2) * ((y - 2 * x * z) ** 2 + x**2 * (1 - z**2)))
+    assert found.kind == "nonzero"
+    assert sorted(map(str, found.nonzero)) == sorted(map(str, (z - 1, z + 1)))
+    vanishing = known.condition((1 - z**2) * ((y - 2 * x * z) ** 2 + x**2 * (2 - z) * (1 - z) * (z + 2) * (z - y) ** 2))
+    assert len(vanishing.nonzero) > 2 or vanishing.kind == "inequality"  # zero at y = z = 0, where the others are not
 
 
 def test_condition_drops_what_is_known() -> None:

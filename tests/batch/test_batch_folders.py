@@ -7,7 +7,9 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import jsonschema
@@ -19,7 +21,7 @@ from mbsym.batch.coordinator import Place
 from mbsym.batch.summary_json import schema
 from mbsym_cli.batch import command
 from mbsym_cli.batch_folders import chosen, found_in, share
-from mbsym_cli.files import write_whole
+from mbsym_cli.files import Content, deliver
 
 
 def places(*paths: Path, out: Path = Path("nowhere")) -> dict[str, str]:
@@ -202,12 +204,12 @@ def test_what_an_earlier_batch_said_does_not_speak_for_this_one(
     assert CliRunner().invoke(command, ["in", "-o", "out", *QUICK]).exit_code == 0
     before = {name: Path("out", name).read_bytes() for name in ("summary.json", "junit.xml", "index.html")}
 
-    def full(path: Path, content: str | bytes) -> None:
-        if path.name == "junit.xml":
+    def full(folder: Path, files: Mapping[str, Content], *more: Any) -> list[Path]:
+        if "junit.xml" in files:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-        write_whole(path, content)
+        return deliver(folder, files, *more)
 
-    monkeypatch.setattr("mbsym_cli.batch_run.write_whole", full)
+    monkeypatch.setattr("mbsym_cli.batch_run.deliver", full)
     folder_of(Path("in"), a=pendulum(), b=pendulum("B"))
     done = CliRunner().invoke(command, ["in", "-o", "out", *QUICK])
     assert done.exit_code == 1

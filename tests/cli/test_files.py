@@ -286,12 +286,15 @@ def test_a_manifest_cannot_name_files_elsewhere(tmp_path: Path) -> None:
     assert victim.read_text() == "mine"
 
 
-def test_links_are_replaced_not_followed(tmp_path: Path) -> None:
+def test_links_are_replaced_not_followed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     victim = tmp_path / "victim"
     victim.write_text("mine")
     out = tmp_path / "out"
     out.mkdir()
     (out / "model.c").symlink_to(victim)
+    with pytest.raises(FileExistsError):  # it is none of ours
+        deliver(out, contents("new"), "run")
+    monkeypatch.setattr(files.Force, "wanted", True)
     deliver(out, contents("new"), "run")
     assert victim.read_text() == "mine"
     assert not (out / "model.c").is_symlink()

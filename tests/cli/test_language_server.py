@@ -119,3 +119,19 @@ def test_other_yaml_is_left_alone(editor: Editor) -> None:
     document = {"uri": URI, "languageId": "yaml", "version": 1, "text": "services:\n  web: {image: x}\n"}
     editor.send("textDocument/didOpen", textDocument=document)
     assert editor.complaints() == []
+
+
+@pytest.mark.parametrize(("line", "character"), [(10**6, 0), (0, 10**6), (10**6, 10**6), (2**31 - 1, 2**31 - 1)])
+def test_a_position_out_of_range_is_the_nearest_one(editor: Editor, line: int, character: int) -> None:
+    """Protocol 3.17, Position: "if the character value is greater than the line length it defaults back to the line
+    length"; of lines it says nothing, and the end of the text is nearest.  A change out of range is taken, too."""
+    text = example_text("simple-pendulum")
+    document = {"uri": URI, "languageId": "yaml", "version": 1, "text": text}
+    editor.send("textDocument/didOpen", textDocument=document)
+    there = {"textDocument": {"uri": URI}, "position": {"line": line, "character": character}}
+    editor.ask("textDocument/hover", **there)
+    assert isinstance(editor.ask("textDocument/completion", **there), list)
+    place = {"line": max(line, 0), "character": max(character, 0)}
+    change = [{"range": {"start": place, "end": place}, "text": "\n# more"}]
+    editor.send("textDocument/didChange", textDocument={"uri": URI, "version": 2}, contentChanges=change)
+    assert isinstance(editor.ask("textDocument/completion", **there), list)

@@ -73,7 +73,7 @@ def test_what_is_proved_is_true_and_the_rest_is_white(tmp_path: Path) -> None:
     for tile in found.tiles:
         box = tile.box
         if tile.proved is not None:
-            assert tile.proved.word is (Word.CRITICAL if box.x0 > 0 and box.y0 > 0 else Word.UNSTABLE)
+            assert tile.proved.word is (Word.STABLE if box.x0 > 0 and box.y0 > 0 else Word.UNSTABLE)
             assert tile.proved.judged is not None
             assert tile.proved.judged.right == (box.x0 < 0) + (box.y0 < 0)
     assert found.check is not None
@@ -141,7 +141,7 @@ def test_ctrl_c_keeps_the_boxes_that_are_proved(tmp_path: Path) -> None:
     assert found.check is None
     assert 0 < found.subdivision.white < 1
     assert sum(tile.box.area for tile in found.tiles) == 4
-    assert any(one.word is Word.CRITICAL for one in found.strata)
+    assert any(one.word is Word.STABLE for one in found.strata)
 
 
 def test_enclosures_where_boundaries_are_too_large(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

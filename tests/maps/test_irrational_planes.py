@@ -63,7 +63,7 @@ def test_a_plane_with_a_square_root(tmp_path: Path) -> None:
         x, y = (Fraction(random.randint(-199, 199), 100) for _ in range(2))
         definite = sign_with_root(2 * x, y) > 0 and sign_with_root(x * x - 1, x * y) > 0
         word = stratum_at(found, x, y).word  # type: ignore[union-attr]
-        assert word is (Word.CRITICAL if definite else Word.UNSTABLE)
+        assert word is (Word.STABLE if definite else Word.UNSTABLE)
         seen.add(word)
     assert len(seen) == 2
     assert any(found.separates(one) for one in found.arcs)

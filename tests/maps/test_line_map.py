@@ -38,7 +38,7 @@ def test_rouths_critical_mass_ratio_is_an_exact_root() -> None:
     inner = [one for one in found.line.zeros if 0 < float(one.number) < 0.5]
     assert [one.number.polynomial for one in inner] == [fmpz_poly([1, -27, 27])]
     words = [one.word for one in found.regions]
-    assert words == [Word.GYROSCOPIC, Word.UNSTABLE]
+    assert words == [Word.STABLE, Word.UNSTABLE]
     assert found.regions[1].judged is not None
     assert (found.regions[1].judged.right, found.regions[1].judged.real_right) == (2, 0)
     border = found.corners[inner[0].id].judged
@@ -104,4 +104,4 @@ def test_the_files_of_a_line(tmp_path: Path) -> None:
     assert (tmp_path / "map.pdf").read_bytes().startswith(b"%PDF")
     assert r"\mu = 0.0385208965" in (tmp_path / "map.tex").read_text()
     rows = list(csv.DictReader((tmp_path / "located.csv").open()))
-    assert [row["verdict"] for row in rows] == [Word.GYROSCOPIC, Word.UNSTABLE]
+    assert [row["verdict"] for row in rows] == [Word.STABLE, Word.UNSTABLE]

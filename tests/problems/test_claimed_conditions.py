@@ -3,12 +3,14 @@
 Three families whose stability is elementary, with random polynomials of the parameters in them:
 
 * M = 1, potential energy (p x^2 + 2 q x y + r y^2)/2:  stable where p > 0 and p r - q^2 > 0, unstable where p, r or
-  p r - q^2 is negative;
-* x'' + d x' + k x = 0:  asymptotically stable where d > 0 and k > 0, unstable where one of them is negative, and
-  without damping stable where k > 0;
+  p r - q^2 is negative, and growing like t where K >= 0 is singular;
+* x'' + d x' + k x = 0:  asymptotically stable where d > 0 and k > 0, unstable where one of them is negative, stable
+  without damping where k > 0 and without a spring where d > 0, growing like t where both are 0;
 * a particle on a turntable, x'' - 2 w y' + (p - w^2) x = 0, y'' + 2 w x' + (r - w^2) y = 0: with K1 = p - w^2,
   K2 = r - w^2 and B = K1 + K2 + 4 w^2 the roots of mu^2 + B mu + K1 K2 are negative and simple where B, K1 K2 and
-  B^2 - 4 K1 K2 are positive; a minimum where K1 and K2 are.
+  B^2 - 4 K1 K2 are positive; a minimum where K1 and K2 are.  Double roots have one eigenvector, but for K1 = K2 = 0.
+
+All three are exactly linear, so that this is stability itself.
 """
 
 from __future__ import annotations
@@ -27,7 +29,7 @@ from mbsym.problems.claims import BORDERS, EXACT, FAILS, UNDECIDED, ClaimResult
 from mbsym.report.claims import claim_line
 
 CASES = Path(__file__).parents[1] / "cases" / "statements"
-STABLE, LINEAR, UNSTABLE, BORDER = "stable", "stable in the first approximation", "unstable", "border"
+STABLE, UNSTABLE, GROWS = "stable", "unstable", "growing like t"
 NEUTRAL = "stable, not asymptotically"
 RELATIONS: dict[str, Callable[[Fraction], bool]] = {
     ">": lambda x: x > 0,
@@ -49,13 +51,13 @@ class Family:
 
 def potential(p: Fraction, q: Fraction, r: Fraction, _: Fraction) -> str:
     minor = p * r - q * q
-    return STABLE if p > 0 and minor > 0 else UNSTABLE if p < 0 or r < 0 or minor < 0 else BORDER
+    return STABLE if p > 0 and minor > 0 else UNSTABLE if p < 0 or r < 0 or minor < 0 else GROWS
 
 
 def damped(d: Fraction, k: Fraction, _: Fraction, __: Fraction) -> str:
-    if d == 0 and k > 0:
+    if min(d, k) == 0 < max(d, k):
         return NEUTRAL
-    return STABLE if d > 0 and k > 0 else UNSTABLE if d < 0 or k < 0 else BORDER
+    return STABLE if d > 0 and k > 0 else UNSTABLE if d < 0 or k < 0 else GROWS
 
 
 def turntable(p: Fraction, _: Fraction, r: Fraction, w: Fraction) -> str:
@@ -64,7 +66,9 @@ def turntable(p: Fraction, _: Fraction, r: Fraction, w: Fraction) -> str:
     if first > 0 and second > 0:
         return STABLE
     gaps = (middle, last, middle * middle - 4 * last)
-    return LINEAR if min(gaps) > 0 else UNSTABLE if min(gaps) < 0 else BORDER
+    if first == second == 0:
+        return NEUTRAL
+    return NEUTRAL if min(gaps) > 0 else UNSTABLE if min(gaps) < 0 else GROWS
 
 
 HEAD = "mbsym: 1\nname: family\nparameters: {{a: {3}, b: {3}, w: positive}}\n"
@@ -191,15 +195,17 @@ def contradiction(
         if not one.role and any(same(one, other, points) for other in known):
             return ""
         if "without it the motion is unstable" in result.remark:
-            return next((f"not unstable at {p}" for p in points if not alone(p) and truth(p) != UNSTABLE), "")
-        stable = (STABLE, LINEAR)
+            return next(
+                (f"not unstable at {p}" for p in points if not alone(p) and truth(p) not in (UNSTABLE, GROWS)), ""
+            )
+        stable: tuple[str, ...] = (STABLE,)
         if result.outcome == EXACT and "asymptotic" not in result.remark:
             stable += (NEUTRAL,)
         wrong = (p for p in points if not alone(p) and truth(p) in stable)
         return next((f"not necessary at {p}" for p in wrong), "")
     if result.refuted and result.counterexample is not None:
         point = {name: Fraction(number) for name, number in result.counterexample.at}
-        expected = (UNSTABLE,) if one.role == "sufficient" else (STABLE, LINEAR, NEUTRAL)
+        expected = (UNSTABLE, GROWS) if one.role == "sufficient" else (STABLE, NEUTRAL)
         contradicted = holds(point) if one.role == "sufficient" else not alone(point)
         return "" if contradicted and truth(point) in expected else f"no counterexample: {point}"
     if result.refuted:
@@ -257,8 +263,9 @@ def test_foucault_needs_no_slow_turning() -> None:
     assert found["l*wz**2 < g", "necessary"].outcome == FAILS
     assert found["l*wz**2 > g", "necessary"].outcome == FAILS
     assert found["2*l*wz**2 < g", "necessary"].outcome == FAILS
-    # In the rotating frame K < 0 beyond it, and problem 6 knows no theorem: true or not, it is not proved.
-    assert found["l*wz**2 > g", "sufficient"].outcome == UNDECIDED
+    # In the rotating frame K < 0 beyond it; energy and momentum together prove it, as the motion is stable everywhere.
+    assert found["l*wz**2 > g", "sufficient"].outcome == EXACT
+    assert "Chetaev" in found["l*wz**2 > g", "sufficient"].remark
     # Without a role it is one of the conditions of problem 6: K > 0, Routh's theorem.
     assert found["l*wz**2 < g", ""].outcome == EXACT
     assert "sufficient" in found["l*wz**2 < g", ""].remark
@@ -269,7 +276,9 @@ def test_a_spin_with_a_damper_needs_the_greatest_moment() -> None:
     found = outcomes("claims_spin")
     assert found["C > 2*A", "necessary"].outcome == FAILS
     assert found["C < A", "necessary"].outcome == FAILS
-    assert found["C > A", "necessary"].outcome == EXACT
+    # Its border is open: that it is necessary for exponential stability says nothing of it.
+    assert found["C > A", "necessary"].outcome == BORDERS
+    assert "exponential stability" in found["C > A", "necessary"].remark
     assert "triangle inequalities" in found["C < 2*A", "necessary"].remark
 
 
@@ -291,3 +300,114 @@ def test_coinciding_frequencies_are_not_excluded() -> None:
     (result,) = outcomes("cg_claims").values()
     assert result.outcome == FAILS
     assert result.counterexample is not None
+
+
+# --- one measure at borders ---
+
+
+def test_at_a_border_where_the_motion_is_stable_a_strict_condition_is_not_called_exact() -> None:
+    """x'' = -a x - x^3 is stable at a = 0 (a strict minimum of x^4/4), the bead at g = R w^2 like it: V = m R^2 w^2
+    (1 - cos th)^2/2.  Without forces on velocities or with them, the same words."""
+    for name, strict, weak in (
+        ("strict_border", "a > 0", "a >= 0"),
+        ("necessary-at-border", "g > R*w**2", "g >= R*w**2"),
+        ("soft", "mu < 0", "mu <= 0"),
+    ):
+        found = outcomes(name)
+        assert found[strict, "necessary"].outcome == BORDERS, name
+        assert "with equality, too, the motion is stable" in found[strict, "necessary"].remark
+        assert found[strict, "necessary"].counterexample.at_equality
+        assert found[weak, "necessary"].outcome == EXACT, name
+        assert found[weak, "sufficient"].outcome == UNDECIDED, name  # of all parameters of the border
+        assert "at the given values: there the motion is stable" in found[weak, "sufficient"].remark
+    assert outcomes("strict_border")["a != 0", "necessary"].outcome == FAILS
+
+
+def test_no_root_to_the_left_does_not_mean_no_asymptotic_stability() -> None:
+    """x'' - mu x' + x^2 x' + x = 0 at mu = 0: asymptotically stable by LaSalle's principle."""
+    analysis = mbsym.load(CASES / "soft.yaml")
+    assert analysis.normal_forms.at_values.outcome == "asymptotically stable"
+    remark = analysis.claims[0].remark
+    assert "necessary for exponential stability (all roots to the left)" in remark
+    assert "asymptotic stability" not in remark
+
+
+def test_what_the_given_values_refute_is_refuted_by_them() -> None:
+    """k = w^2 = 1: the isotropic oscillator in turning axes keeps angular momentum; stable whatever w is."""
+    found = outcomes("foucault2")
+    assert found["w**2 != k", "necessary"].outcome == FAILS
+    assert dict(found["w**2 != k", "necessary"].counterexample.at) == {"k": "1", "w": "1"}
+    assert found["w**2 != k", ""].outcome == EXACT
+
+
+def test_systems_by_A_are_tried() -> None:
+    """Vyshnegradsky: p''' + b p'' + a p' + c d p = 0 is stable iff a b > c d."""
+    found = outcomes("gov_A")
+    assert {result.outcome for result in found.values()} == {FAILS}
+    for (_, role), result in found.items():
+        a, b, c, d = (Fraction(x) for _, x in result.counterexample.at)
+        assert (a * b > c * d) is (role == "necessary")
+    text = (CASES / "gov_A.yaml").read_text(encoding="utf-8").partition("claims:")[0]
+    right = "".join(f"  - {{claim: condition, that: a*b > c*d, as: {role}}}\n" for role in ("necessary", "sufficient"))
+    necessary, sufficient = mbsym.loads(text + "claims:\n" + right).claims
+    assert (necessary.holds, sufficient.outcome) == (True, EXACT)
+
+
+def test_where_nothing_is_stable_a_necessary_condition_says_nothing() -> None:
+    """V = a (x^2 - y^2)/2: for a != 0 a saddle (Earnshaw), for a = 0 nothing acts and the particle drifts."""
+    analysis = mbsym.load(CASES / "earnshaw.yaml")
+    assert analysis.stability.verdict.word == "unstable but for border cases"
+    for result in analysis.claims:
+        if result.claim.role == "necessary":
+            assert (result.outcome, result.holds) == (UNDECIDED, False), result.title
+            assert "it says nothing" in result.remark
+
+
+def test_where_borders_alone_are_stable_they_refute_and_nothing_else_is_told_of_them() -> None:
+    """D = diag(a, -a) has trace 0: a root has a positive real part but for a = 0, where K > 0, that is b^2 < 3, makes
+    these linear equations stable."""
+    found = outcomes("never_hurwitz")
+    assert mbsym.load(CASES / "never_hurwitz.yaml").stability.verdict.word == "unstable but for border cases"
+    for condition in ("a > 0", "b > 1", "b**2 > 3"):
+        assert found[condition, "necessary"].outcome == FAILS, condition
+        at = dict(found[condition, "necessary"].counterexample.at)
+        assert at["a"] == "0"
+        assert Fraction(at["b"]) ** 2 < 3
+    # True, as K is then indefinite or singular, but not shown: nothing is said of what makes the motion stable.
+    assert found["b**2 < 3", "necessary"].outcome == UNDECIDED
+    assert "stable nowhere else" in found["b**2 < 3", "necessary"].remark
+
+
+# --- parts and wholes ---
+
+
+def test_a_whole_that_is_stable_in_every_case_does_not_depend() -> None:
+    """Undamped parts with K > 0 beside one that friction damps where g != 0 (a != 0): one energy, which never grows."""
+    for name, theorem in (("two_parts", "Lagrange-Dirichlet, Routh"), ("whole_dep", "Lagrange-Dirichlet")):
+        found = mbsym.load(CASES / f"{name}.yaml").stability
+        assert (found.verdict.word, found.verdict.theorem) == ("stable", theorem)
+        assert found.numerical.word == "stable"
+    claims = outcomes("whole_dep")
+    for that in ("a > 0", "a >= 0", "g > 0"):
+        assert claims[that, "sufficient"].outcome == EXACT
+        assert "Lagrange-Dirichlet" in claims[that, "sufficient"].remark
+    assert claims["a > 0", "necessary"].outcome == claims["g > 0", "necessary"].outcome == FAILS
+
+
+def test_conditions_that_exclude_each_other_leave_nothing_stable() -> None:
+    """K = diag(a - 1, -a): one of them is negative for every a."""
+    text = (CASES / "earnshaw.yaml").read_text(encoding="utf-8").partition("claims:")[0]
+    text = text.replace("a*(x**2 - y**2)/2", "(a - 1)*x**2/2 - a*y**2/2")
+    found = mbsym.loads(text).stability
+    assert [part.theory.verdict.word for part in found.subsystems] == ["depends on the parameters"] * 2
+    assert found.verdict.word == "unstable"
+    assert mbsym.loads(text.replace("- a*y", "+ a*y")).stability.verdict.word == "depends on the parameters"
+
+
+def test_equal_frequencies_of_a_potential_system_do_no_harm() -> None:
+    """d = 0 is the round bowl; K > 0 iff k^2 > 5 d^2."""
+    analysis = mbsym.load(CASES / "bowl.yaml")
+    (part,) = analysis.stability.subsystems
+    places = {r.label: r.place.name for r in part.theory.requirements if not r.always}
+    assert places == {"v0": "NECESSARY", "discriminant": "HARMLESS"}
+    assert analysis.stability.numerical.word == "stable"

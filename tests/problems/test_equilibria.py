@@ -636,7 +636,7 @@ def test_relations_need_no_value() -> None:
     assert len(equilibria(a.system, numbers).equilibria) == 24
 
 
-@pytest.mark.parametrize("setting", ["m1=-1", "theta1=2", "m1", "m3=1", "m1=sqrt(2)"])
+@pytest.mark.parametrize("setting", ["m1=-1", "theta1=2", "m1", "m3=1", "m1=-sqrt(2)", "m1=theta1"])
 def test_wrong_settings_are_refused(setting: str) -> None:
     result = run(str(SHIPPED / "double-pendulum.yaml"), "--set", setting)
     assert result.exit_code == 2
@@ -808,3 +808,31 @@ def test_a_force_that_turns_with_a_twist_needs_it() -> None:
 
     assert degrees(found.equilibria) == {(0, -30), (0, -150), (180, 30), (180, 150)}
     assert degrees(found.singular) == {(60, -90), (-60, -90), (120, 90), (-120, 90)}
+
+
+IRRATIONAL = """
+mbsym: 1
+name: equilibria at pi/6
+parameters: {c: positive, x0: real, k: positive}
+relations: {c: k*sin(x0)}
+bodies:
+  - {name: p, mass: 1, connection point: [x, 0, 0], coordinates: [x]}
+loads:
+  - generalized force: {x: "c - k*sin(x)"}
+values: {x0: pi/6, k: 2}
+"""
+
+
+def test_irrational_values_are_taken_exactly(tmp_path: Path) -> None:
+    """k sin x = k sin x0: x0 and pi - x0, stable where cos x > 0."""
+    file = tmp_path / "x0.yaml"
+    file.write_text(IRRATIONAL, encoding="utf-8")
+    for options, places in (((), ("pi/6", "5*pi/6")), (("--set", "x0=pi/4"), ("pi/4", "3*pi/4"))):
+        found = json.loads(CliRunner().invoke(command, [str(file), "--json", *options]).stdout)
+        assert found["complete"]
+        told = [(one["coordinates"][0]["value"], one["stability"]["verdict"]) for one in found["equilibria"]]
+        assert told == [(places[0], "stable"), (places[1], "unstable")]
+    assert found["values"] == {"x0": "pi/4", "k": "2"}
+    refused = CliRunner().invoke(command, [str(file), "--vary", "k=1:2"])
+    assert refused.exit_code == 2
+    assert "no rational number for x0" in refused.stderr

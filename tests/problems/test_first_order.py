@@ -1,11 +1,13 @@
 """x' = A x in speeds and unit vectors: by hand, and against the matrices of the generalised coordinates."""
 
 import pytest
+from conftest import TESTS
 from test_speeds import GYROSTAT, POISSON, SPEEDS, expected, load
 
+import mbsym
 from mbsym.analysis import Unavailable
 from mbsym.formulas.formula import Matrix
-from mbsym.problems.checks import EXACT, FAILED
+from mbsym.problems.checks import EXACT, FAILED, WHERE_IT_EXISTS, Check
 
 CHECK = "first approximation in speeds"
 
@@ -72,3 +74,40 @@ def test_a_planted_mistake_is_found(tmp_path, monkeypatch):
     monkeypatch.setattr(SpeedForm, "rates", wrong)
     assert found.first_order is not None
     assert found.check(CHECK).outcome == FAILED
+
+
+CONDITIONED = TESTS / "cases" / "hostile" / "selfcheck-clebsch-poisson.yaml"
+
+
+def test_a_motion_that_exists_under_a_condition_is_checked_where_it_exists():
+    """Clebsch's body turns about gamma = (-sin 2, 0, cos 2) with p = -W sin 2, r = W cos 2; Euler's equation of q,
+
+        B q' + (A - C) r p = (A - C) N gamma3 gamma1,      leaves      (A - C) (N - W^2) sin 2 cos 2 = 0.
+
+    A T = T' + T A_q says that the chain rule holds along a solution, so it holds modulo that condition and not beyond:
+    A itself is right, and so is the second route; what was wrong is that they were compared where there is no motion.
+    """
+    found = mbsym.load(CONDITIONED)
+    assert [str(x) for x in found.equilibrium.conditions] == ["(N - W**2)*(A - C)"]
+    check = found.first_order and found.check(CHECK)
+    assert (check.outcome, check.detail) == (EXACT, WHERE_IT_EXISTS)
+    q = found.first_order.names.index("q")
+    row = found.first_order.A.rows[q]
+    assert [row[0], row[2]] == expected(found, ["(C - A)*N*cos(2)/B*(-1)", "(C - A)*N*(-1)*(-sin(2))/B"])
+
+
+def test_a_planted_mistake_is_found_where_a_motion_exists_under_a_condition(monkeypatch):
+    from mbsym.mechanics.speeds import SpeedForm
+
+    old = SpeedForm.rates.func
+    wrong = property(lambda self: {name: -x if name == "gamma2" else x for name, x in old(self).items()})
+    found = mbsym.load(CONDITIONED)
+    monkeypatch.setattr(SpeedForm, "rates", wrong)
+    assert found.first_order is not None
+    check = found.check(CHECK)
+    assert check.outcome == FAILED
+    assert check.detail.startswith("the row of gamma2 by ")
+
+
+def test_a_failure_always_says_something():
+    assert Check("some check", "one", "other", FAILED).detail == "the two routes differ"

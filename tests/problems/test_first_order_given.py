@@ -36,10 +36,10 @@ def _analysis(A="[[a, 1], [-1, b]]", a="-1", b="-1/2", coordinates="x, y"):
         ("1/2", "-1", Word.ASYMPTOTIC),
         ("1", "1/2", Word.UNSTABLE),
         ("2", "-3", Word.UNSTABLE),  # trace < 0, det < 0
-        ("1/2", "-1/2", Word.CRITICAL),  # a pair +-i sqrt(3)/2: terms of higher order decide
-        ("1", "-1", Word.UNDECIDED),  # a double zero root with a Jordan block
+        ("1/2", "-1/2", Word.STABLE),  # a simple pair +-i sqrt(3)/2: x' = A x is all there is
+        ("1", "-1", Word.UNSTABLE),  # a double zero root with a Jordan block: grows like t
         ("2", "-1/2", Word.UNSTABLE),  # a zero root beside 3/2
-        ("-2", "1/2", Word.UNDECIDED),  # a zero root beside -3/2
+        ("-2", "1/2", Word.STABLE),  # a simple zero root beside -3/2
         ("sqrt(2)", "-sqrt(3)", Word.UNSTABLE),  # det = 1 - sqrt(6) < 0
     ],
 )

@@ -240,3 +240,47 @@ def test_a_dimensionless_time_that_may_run_backwards_leaves_no_verdict(sign: str
     assert failure.code == "time-scale-sign"
     undamped = loaded(**TABLE | {"dimensionless time": "w"})  # its spectrum is the same backwards
     assert undamped.stage(6).failure is None
+
+
+DRAGGED = """
+mbsym: 1
+name: A block dragged by a spring whose end moves evenly
+parameters: {k: positive, v: positive, m: positive, c: positive}
+PRESCRIBED
+bodies:
+  - {name: block, attached to: 0, mass: m, connection point: [x, 0, 0], coordinates: [x]}
+loads:
+  - potential: POTENTIAL
+  - damper: {coordinate: x, coefficient: c}
+motion: {x: {value: START, rate: v}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("potential", "prescribed", "start", "condition"),
+    [
+        ("k*(x - v*t)**2/2", "", "-c*v/k", ""),
+        ("k*(x - v*t)**2/2 + k*(x - v*t)**4", "", "0", "-v*c"),
+        ("k*(x - chi)**2/2", "prescribed: {chi: v}", "-c*v/k", ""),
+        ("k*(x - chi)**2/2", "prescribed: {chi: v}", "0", "-v*c"),
+    ],
+)
+def test_what_does_not_vary_along_the_motion_is_not_called_varying(potential, prescribed, start, condition) -> None:
+    """m x'' + c x' + k (x - v t) = 0 has x = v t - c v/k, no other one: m y'' + c y' + k y = 0 about it.
+
+    With x = v t a force c v is left over, which never vanishes: that motion does not exist.
+    """
+    text = DRAGGED.replace("PRESCRIBED", prescribed).replace("POTENTIAL", potential).replace("START", start)
+    found = mbsym.loads(text)
+    assert found.equilibrium.unsteady == ()
+    assert [str(x) for x in found.equilibrium.impossible] == ([condition] if condition else [])
+    if not condition:
+        assert (str(found.linearisation.K), str(found.linearisation.D)) == ("[[k]]", "[[c]]")
+        assert found.stability.verdict.word == "asymptotically stable"
+        assert not any(check.failed for check in found.checks)
+
+
+def test_what_varies_along_the_motion_is_still_called_varying() -> None:
+    """k (x - 2 v t): the spring's end runs away from the block."""
+    text = DRAGGED.replace("PRESCRIBED", "").replace("START", "0")
+    assert mbsym.loads(text.replace("POTENTIAL", "k*(x - 2*v*t)**2/2")).equilibrium.unsteady == ("x", "t")

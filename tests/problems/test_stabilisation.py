@@ -71,7 +71,7 @@ def test_an_odd_degree_is_beyond_gyroscopic_forces() -> None:
     odd = found("{coordinates: [x, y], G: [[0, 9], [-9, 0]], K: [[-1, 0], [0, 1]]}")
     assert odd.gyroscopic[0].degree == 1
     said = [text for text, _ in sentences(odd, PLAIN)]
-    assert "It is odd: no gyroscopic forces make the motion stable (Kelvin-Chetaev)." in said
+    assert "It is odd: no gyroscopic forces among [[names]] make the motion stable (Kelvin-Chetaev)." in said
 
 
 def test_a_free_coordinate_leaves_the_parity_unsaid() -> None:
@@ -218,7 +218,7 @@ def test_damping_that_may_feed_is_not_called_dissipation() -> None:
             found("{coordinates: [x, y], K: [[1, 2], [2, 5]], D: [[a, 0], [0, 0]]}", "{a: real}"), PLAIN
         )
     ]
-    assert "That D is positive semidefinite is not known." in said
+    assert "That D is positive semidefinite for [[names]] is not known." in said
     assert not any(text.startswith("Where it is felt") for text in said)
 
 
@@ -426,3 +426,53 @@ motion: {x: 0}
 """
     with pytest.raises(Unavailable, match="conditions that were not solved"):
         _ = mbsym.loads(text).stabilisation
+
+
+# --- parts ---
+
+PARTS = """
+mbsym: 1
+name: two particles that know nothing of each other
+parameters: {a: positive, g: real, s: real}
+bodies:
+  - {name: p, mass: 1, connection point: [x, y, 0], coordinates: [x, y]}
+  - {name: q, attached to: 0, mass: 1, connection point: [z, w, 0], coordinates: [z, w]}
+loads:
+  - potential: (x**2 + 2*y**2)/2 + (z**2 - 2*w**2)/2
+  - damper: {coordinate: x, coefficient: a}
+  - damper: {coordinate: z, coefficient: s}
+  - generalized force: {x: g*y_dot, y: -g*x_dot}
+motion: {}
+values: {a: 1, g: 1, s: 1}
+"""
+
+
+def test_what_is_said_of_a_part_names_it() -> None:
+    """D is felt by x and y, and w is not damped at all; gyroscopic forces between y and w could hold up what falls."""
+    said = list(sentences(mbsym.loads(PARTS, (5, 6, 8)).stabilisation, PLAIN))
+    about_parts = (
+        "It is odd",
+        "It is even",
+        "Where it is felt",
+        "At the given values D",
+        "That D",
+        "D is",
+        "Every motion",
+    )
+    told = [(text, gaps) for text, gaps in said if text.startswith(about_parts)]
+    assert {gaps["names"] for _, gaps in told} == {"x, y", "z", "w"}
+    assert all("[[names]]" in text for text, _ in told)
+
+
+def test_what_is_not_known_is_not_told_as_false() -> None:
+    """D = s is positive, zero or negative; D = [1 0; 0 -1] is no dissipation, proved."""
+    told = results(mbsym.loads(PARTS, (5, 6, 8)), (8,))["stabilisation"]["dissipation"]
+    assert {tuple(part["coordinates"]): (part["complete"], part["semidefinite"]) for part in told} == {
+        ("x", "y"): (False, True),
+        ("z",): (None, None),
+    }
+    (part,) = found("{coordinates: [x, y], K: [[1, 2], [2, 5]], D: [[1, 0], [0, -1]]}", "{a: real}").dissipation
+    assert (part.complete, part.semidefinite) == (False, False)
+    feeding = found("{coordinates: [x, y], K: [[1, 2], [2, 5]], D: [[1, 0], [0, -1]]}")
+    said = [text for text, _ in sentences(feeding, PLAIN)]
+    assert "D is not positive semidefinite for [[names]] (proved)." in said

@@ -139,3 +139,78 @@ def test_velocities_and_the_time_forbid_an_energy() -> None:
     assert word(PLANE.format(force="x: x_dot**3, y: 0")) is Word.CRITICAL
     assert word(PLANE.format(force="x: 0, y: -x_dot*y_dot")) is Word.CRITICAL
     assert word(PLANE.format(force="x: y_dot*x, y: -x_dot*x")) is Word.STABLE, "gyroscopic: no work"
+
+
+# --- x'' = f(x) has an energy, and problem 7 tells it ---
+
+TRACK = """
+mbsym: 1
+name: A bead on a track
+parameters: {k: positive, a: positive, l: positive}
+bodies:
+  - {name: p, attached to: 0, mass: 1, connection point: [x, a*x**2/2, 0], coordinates: [x]}
+loads:
+  - LOAD
+motion: {x: 0}
+claims:
+  - {claim: first integral, equals: "(1 + a**2*x**2)*x_dot**2/2 + V"}
+"""
+
+
+@pytest.mark.parametrize(
+    ("force", "potential"),
+    [
+        ("-k*sin(x)", "-k*cos(x)"),
+        ("-k*x + a*x**3", "k*x**2/2 - a*x**4/4"),
+        ("-k*x*(1 - l/sqrt(x**2 + a**2))", "k*x**2/2 - k*l*sqrt(x**2 + a**2)"),
+        ("k/(l + x)**2 - k/l**2", "k/(l + x) + k*x/l**2"),
+        ("-k*x*exp(-x**2)", "-k*exp(-x**2)/2"),
+        ("-k*x*sin(x)**2", "k*x**2/4 - k*x*sin(x)*cos(x)/2 + k*sin(x)**2/4"),
+    ],
+)
+def test_a_force_of_one_coordinate_has_an_energy(force: str, potential: str) -> None:
+    """m(x) x'' + m'(x) x'^2/2 = Q(x): m(x) x'^2/2 + V(x) with V' = -Q is constant, V by hand."""
+    text = TRACK.replace("LOAD", f'generalized force: {{x: "{force}"}}').replace("V", potential)
+    found = mbsym.loads(text)
+    (integral,) = found.integrals
+    assert (integral.name, integral.status) == ("energy with the potential of the forces", "proved")
+    assert [result.holds for result in found.claims] == [True]
+
+
+def test_a_force_on_a_body_counts_as_well() -> None:
+    """F = -k x along the axis 1 on the bead: Q_x = -k x, V = k x^2/2; along the axis 2 Q_x = -k x a x."""
+    for components, potential in (("[-k*x, 0, 0]", "k*x**2/2"), ("[0, -k*x, 0]", "k*a*x**3/3")):
+        load = f"force: {{body: p, point: [0, 0, 0], components: {components}, axes: 0}}"
+        found = mbsym.loads(TRACK.replace("LOAD", load).replace("V", potential))
+        assert [item.status for item in found.integrals] == ["proved"]
+        assert [result.holds for result in found.claims] == [True]
+
+
+def test_where_the_force_does_work_on_a_way_round_there_is_none() -> None:
+    """Forces of velocities; and Q = (y, -x) in the plane, whose work around a circle is not zero."""
+    for force in ("-k*x - x_dot", "-k*x + x_dot**2", "-k*x*sin(t)"):
+        found = mbsym.loads(TRACK.replace("LOAD", f'generalized force: {{x: "{force}"}}').replace("+ V", ""))
+        assert found.integrals == ()
+    assert mbsym.loads(PLANE.format(force="x: -y, y: x")).integrals == ()
+    (turned,) = mbsym.loads(PLANE.format(force="x: y, y: x")).integrals  # V = -x y
+    assert str(turned.formula) == "(x_dot**2 + y_dot**2 + (x - y)**2)/2"
+
+
+def test_the_energy_is_told_beside_the_theorem_that_stands_on_it() -> None:
+    """x'' = c - sin x, c = sin x_0: x'^2/2 - c x - cos x is constant, with the other sign of c x it is not."""
+    found = mbsym.load(STATEMENTS / "force-of-one-coordinate.yaml")
+    assert found.stability.numerical is not None
+    assert found.stability.numerical.theorem == "Lagrange-Dirichlet"
+    (integral,) = found.integrals
+    assert integral.name == "energy with the potential of the forces"
+    assert [result.holds for result in found.claims] == [True, False]
+
+
+def test_no_closed_form_is_not_called_no_energy() -> None:
+    """x'' = -atan x has one, with V = x atan x - log(1 + x^2)/2, which the ring does not hold: nothing denies it."""
+    from mbsym.report.sections.integrals import lines
+
+    found = mbsym.loads(TRACK.replace("LOAD", 'generalized force: {x: "-k*atan(x)"}').replace("+ V", ""))
+    assert found.integrals == ()
+    assert found.stability.verdict.theorem == "Lagrange-Dirichlet"
+    assert [*lines(found.integrals, found)] == ["none in closed form of the kinds that are looked for"]

@@ -17,7 +17,7 @@ from mbsym.algebra.failures import Limit, Severity
 from mbsym.model.claims import CLAIMS
 from mbsym.numerics.accuracy import Lacking
 from mbsym.numerics.conservation import Doubt, Standing
-from mbsym.problems.checks import EXACT, FAILED, NUMERICAL, UNDECIDED
+from mbsym.problems.checks import EXACT, FAILED, NUMERICAL, SINGULAR, UNDECIDED
 from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.requirements import Method, Place
 from mbsym.problems.stability.theorems import THEOREMS
@@ -105,7 +105,8 @@ def test_the_words_of_the_schemas_are_those_of_the_code() -> None:
     assert set(words["failure"]["properties"]["limit"]["enum"]) == {None, *(item.value for item in Limit)}
     of = RESULTS["properties"]
     assert set(of["claims"]["items"]["properties"]["kind"]["enum"]) == set(CLAIMS)
-    assert set(of["checks"]["items"]["properties"]["outcome"]["enum"]) == {EXACT, NUMERICAL, UNDECIDED, FAILED}
+    outcomes = {EXACT, NUMERICAL, UNDECIDED, SINGULAR, FAILED}
+    assert set(of["checks"]["items"]["properties"]["outcome"]["enum"]) == outcomes
     stability = of["stability"]["properties"]
     reasons = stability["reasons"]["items"]["properties"]["code"]["enum"]
     assert set(reasons) == {item.name.lower() for item in Because}

@@ -239,3 +239,42 @@ def test_a_journal_that_is_a_link_leads_to_no_other_file(path: Path, tmp_path: P
         assert client.post("journal", text=OTHER).status_code == 200
     assert json.loads(precious.read_text())["text"] == "secret"
     assert not journal.is_symlink()
+
+
+def test_what_killed_saves_left_aside_goes_with_the_next_start_or_save(path: Path) -> None:
+    """Of this file only, and not while its writer is at work."""
+    killed = """
+import os, sys
+from pathlib import Path
+from mbsym.serving import storage
+os.replace = lambda *_: os._exit(9)
+one = storage.Storage(Path(sys.argv[1]))
+one.save("half", one.read().digest)
+"""
+    other = path.with_name(".mbsym-part-of-somebody-else")
+    other.write_text("at work")
+
+    def kill() -> None:
+        assert subprocess.run([sys.executable, "-c", killed, str(path)], check=False).returncode == 9
+        assert len(strays(path.parent)) == 2
+
+    kill()
+    storage = Storage(path)
+    assert strays(path.parent) == [other.name]
+    kill()
+    storage.save(OTHER, storage.read().digest)
+    assert strays(path.parent) == [other.name]
+    sleeping = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"])
+    try:
+        kill()
+        (left,) = (x for x in path.parent.iterdir() if x.name in strays(path.parent) and x != other)
+        head, _, tail = left.name.removeprefix(".mbsym-part-").split("-", 2)
+        running = left.rename(left.with_name(f".mbsym-part-{head}-{sleeping.pid}-{tail}"))
+        storage.save(PENDULUM, storage.read().digest)
+        assert running.exists()
+        os.utime(running, (time.time() - 4000, time.time() - 4000))
+        storage.save(OTHER, storage.read().digest)
+        assert not running.exists()
+    finally:
+        sleeping.kill()
+        sleeping.wait()

@@ -241,6 +241,14 @@ class Manifold:
         if image is None or not all(outer.contains_interior(inner) for outer, inner in zip(box, image, strict=True)):
             raise ZeroDivisionError("no root was proved")
         found = place(image)
-        if any(is_certain(x) for x in at(found)[0]):
+        residual, slopes = at(found)
+        if any(is_certain(x) for x in residual):
             raise ZeroDivisionError("the other rows do not hold there")
+        if not all(_is_narrow(x) for row in (residual, *slopes) for x in row):  # sin of 1e400 may be anything
+            raise ZeroDivisionError("too wide to tell whether the other rows hold there")
         return found
+
+
+def _is_narrow(x: Any) -> bool:
+    """Whether an enclosure is so narrow that zero in it means something."""
+    return not isinstance(x, arb) or bool(x.rad() < (1 + abs(x.mid())) * arb(2) ** (WIDTH // 2))

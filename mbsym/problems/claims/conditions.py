@@ -1,41 +1,47 @@
 """Claimed conditions of stability: proved from those of problem 6, refuted by exact parameters, or left undecided.
 
-With R the parameters at which every condition of problem 6 holds, and N those at which none of its inequalities is
-reversed (R in N; outside N a root has a positive real part: the motion is unstable), a claimed condition C is
+Of a condition C that is to be necessary, one measure for systems of every kind:
 
-* one of problem 6, if it is the same inequality up to factors of known sign;
-* necessary for stability, if N lies in C;
-* necessary for asymptotic stability, if R lies in C and all roots lie to the left in R only;
-* necessary for stability in the first approximation, if without it K of a conservative part is singular: q = q0 + q1 t;
-* necessary but for border cases, if R lies in C: in N but outside R, nothing is proved;
-* sufficient, if with C (and the others of its place) the cases of problem 6 give every subsystem a stable verdict.
+* it **holds exactly** if the motion is proved to be unstable wherever C does not hold;
+* it holds **but for border cases** if C is strict and the motion is proved to be unstable where C does not hold with
+  equality either: at equality it may be stable where a condition of problem 6 is an equality, too, and is told to be
+  where such parameters are known;
+* it **does not hold** if other parameters are known at which C does not hold and the motion is stable, be it in first
+  approximation;
+* where no parameters but perhaps border cases make the motion stable, C says nothing.
 
-That one set lies in another is proved by ``mbsym.algebra.signs``, or not at all.  Parameters that are no body's are
-left out: where it helps, the triangle inequalities of the moments of inertia are used, and the remark says so.
+C is sufficient if with it, and the others of its place, the cases of problem 6 give the whole a stable verdict.  All of
+this is decided of sets of parameters (``regions``): the cases of the parts are intersected, and what is proved to be
+empty is left out.  Whatever refutes is a point at which the exact judge was asked.
+
+Parameters that are no body's are left out: where it helps, the triangle inequalities of the moments of inertia are
+used, and the remark says so.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
+from itertools import chain
 from typing import Any
 
-from mbsym.algebra.failures import NoClosedForm
-from mbsym.algebra.signs import Signs
+from mbsym.algebra.failures import NOT_THERE, NoClosedForm
+from mbsym.algebra.signs import ContradictionError, Signs
 from mbsym.expressions.tree import subtract, text
 from mbsym.model.claims import NECESSARY, SUFFICIENT, Claim
-from mbsym.problems.claims.counterexample import Counterexample
+from mbsym.problems.claims.counterexample import IN_FIRST, Counterexample, Tried
 from mbsym.problems.claims.differences import rational_ratio
 from mbsym.problems.claims.regions import Inequality, Region, is_certain
+from mbsym.problems.claims.remarks import Remark, Said, said, words
 from mbsym.problems.claims.result import BORDERS, EXACT, FAILS, UNDECIDED, ClaimResult, Derived
 from mbsym.problems.claims.symbols import Symbols
 from mbsym.problems.stability.sentences import with_theorem
+from mbsym.problems.stability.verdict import Flaw, Verdict
 from mbsym.problems.stability.word import Word
 
-#: Verdicts of a motion that is stable, if only in first approximation.
-_LINEARLY_STABLE = (*(word for word in Word if word.stable), Word.GYROSCOPIC)
 _BODIES = ", with the triangle inequalities of the inertias"
+_STRICT = (">", "<")
 
 
 def examined_condition(derived: Derived, claim: Claim, about: str) -> ClaimResult:
@@ -48,7 +54,27 @@ def examined_condition(derived: Derived, claim: Claim, about: str) -> ClaimResul
     return examined(derived, claim, result)
 
 
+def _told(result: ClaimResult, outcome: str, *remarks: Remark, example: Counterexample | None = None) -> ClaimResult:
+    return replace(result, outcome=outcome, remark=words(remarks), remarks=remarks, counterexample=example)
+
+
 # --- necessary conditions, and those without a role ---
+
+
+@dataclass(frozen=True)
+class Need:
+    """What is proved of a condition: ``beyond`` (and even with equality: ``everywhere``) the motion is unstable.
+
+    ``but_borders``: beyond it is, but perhaps where other conditions are equalities.  ``because``: what it is among the
+    conditions of problem 6, or follows from; ``exponential``: the coordinates whose roots are to the left only with it.
+    """
+
+    everywhere: bool
+    beyond: bool
+    but_borders: bool
+    because: Remark
+    exponential: tuple[str, ...] | None
+    note: str
 
 
 def _necessary(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimResult:
@@ -57,19 +83,114 @@ def _necessary(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimResu
         found = trivial(region, wanted_of(region, claim), result) or one_of_problem_6(region, claim, result)
         if found is not None:
             return found
+    verdict = derived.stability.verdict
+    never = verdict.word in (Word.UNSTABLE, Word.UNSTABLE_BUT_BORDERS)
+    needs = [] if never else [_need(region, claim) for region in regions]
+    for one in needs:
+        if one.everywhere:
+            return _told(result, EXACT, one.because, said(Said.UNSTABLE_WITHOUT))
+    tried = _refuting(derived, claim)
+    example = tried.found
+    exponential = next((one for one in needs if one.exponential is not None), None)
+    for_exponential = () if exponential is None else (_for_exponential(derived, exponential),)
+    # On a border with equality alone nothing is contradicted that is said of all other parameters.
+    need = next((one for one in needs if one.beyond), None)
+    if need is not None and (example is None or (example.at_equality and example.at_border)):
+        return _but_for_equality(derived, claim, result, need, example, for_exponential)
+    if example is not None:
+        in_first = example.word in IN_FIRST
+        code = Said.NOT_NECESSARY_IN_FIRST if in_first else Said.NOT_NECESSARY
+        equal = (said(Said.STABLE_WITH_EQUALITY),) if claim.relation in _STRICT and example.at_equality else ()
+        return _told(result, FAILS, said(code), *equal, *for_exponential, example=example)
+    if never:
+        told = with_theorem(verdict.word, verdict.theorem)
+        return _told(result, UNDECIDED, said(Said.NEVER_STABLE, told, verdict.word is Word.UNSTABLE_BUT_BORDERS))
+    if claim.relation == "!=":
+        return _apart(derived, regions, claim, result, tried, for_exponential)
+    partly = next((one for one in needs if one.but_borders), exponential)
+    if partly is not None:
+        return _told(result, BORDERS, partly.because, said(Said.UNSTABLE_INSIDE), *for_exponential)
+    return _told(result, UNDECIDED, said(Said.NOT_PROVED_NECESSARY), *for_exponential, _tried(tried, Said.NONE_STABLE))
+
+
+def _need(region: Region, claim: Claim) -> Need:
+    wanted = wanted_of(region, claim)
+    closed = replace(wanted, relation=">=") if wanted.relation == ">" else wanted
+    what, _ = _found_among(region, wanted, ("sufficient",))
+    everywhere = beyond = but_borders = False
+    exponential: tuple[str, ...] | None = None
+    bodies_used = False
+    for bodies in (False, True):
+        if bodies and region.signs_of_bodies is region.signs:
+            continue
+        without = region.without(wanted, bodies).word
+        everywhere = without is Word.UNSTABLE
+        but_borders = but_borders or without is Word.UNSTABLE_BUT_BORDERS
+        beyond = everywhere or (
+            closed is not wanted
+            and region.without(closed, bodies).word is Word.UNSTABLE
+            and not is_certain(region.signs_of_bodies, closed)  # else there is nothing beyond
+        )
+        exponential = region.exponential(wanted, bodies) if exponential is None else exponential
+        bodies_used = bodies
+        if everywhere or beyond or exponential is not None:
+            break
+    labels = region.labels(exponential or ()) if not (everywhere or beyond) else region.labels()
+    note = _BODIES if bodies_used else ""
+    because = what or said(Said.FOLLOWS, f"{labels}{note}")
+    return Need(everywhere, beyond, but_borders, because, exponential, "" if everywhere or beyond else note)
+
+
+def _for_exponential(derived: Derived, need: Need) -> Remark:
+    assert need.exponential is not None
+    whose = "" if len(derived.stability.subsystems) == 1 else ", ".join(need.exponential)
+    return said(Said.FOR_EXPONENTIAL, whose, need.note)
+
+
+def _but_for_equality(
+    derived: Derived,
+    claim: Claim,
+    result: ClaimResult,
+    need: Need,
+    example: Counterexample | None,
+    further: tuple[Remark, ...],
+) -> ClaimResult:
+    """A strict condition without which, but for the case of equality, the motion is unstable."""
+    if example is not None:
+        also = Said.STABLE_IN_FIRST_WITH_EQUALITY if example.word in IN_FIRST else Said.STABLE_WITH_EQUALITY
+        found = (said(Said.UNSTABLE_BEYOND), *further, said(also))
+        return _told(result, BORDERS, need.because, *found, example=example)
+    region = Region(derived, claim, own=False)
+    singular = region.makes_stiffness_singular(wanted_of(region, claim).polynomial)
+    if singular and derived.balance.exactly_linear:
+        return _told(result, EXACT, need.because, said(Said.UNSTABLE_BEYOND), said(Said.GROWS_WITH_EQUALITY))
+    last = said(Said.GROWTH_LEAVES_OPEN if singular else Said.EQUALITY_OPEN)
+    return _told(result, BORDERS, need.because, said(Said.UNSTABLE_BEYOND), *further, last)
+
+
+def _apart(
+    derived: Derived,
+    regions: Sequence[Region],
+    claim: Claim,
+    result: ClaimResult,
+    tried: Tried,
+    further: tuple[Remark, ...],
+) -> ClaimResult:
+    """p != 0, which fails on a border only, at which no parameters are known that make the motion stable."""
     for region in regions:
-        found = _needed(region, claim, result)
-        if found is not None:
-            return found
-    refuted = _contradicted(derived, claim, result)
-    if refuted is not None:
-        return refuted
-    for region in regions:
-        found = _inside(derived, region, claim, result)
-        if found is not None:
-            return found
-    remark = "it is not one of the conditions of problem 6 as they stand there; no parameters that were tried refute it"
-    return replace(result, outcome=UNDECIDED, remark=remark)
+        wanted = wanted_of(region, claim)
+        if not region.makes_stiffness_singular(wanted.polynomial):
+            continue
+        what, _ = _found_among(region, wanted, ("sufficient",))
+        because = () if what is None else (what,)
+        if derived.balance.exactly_linear:
+            return _told(result, EXACT, *because, said(Said.GROWS_WITH_EQUALITY))
+        return _told(result, UNDECIDED, *because, *further, said(Said.GROWTH_LEAVES_OPEN))
+    return _told(result, UNDECIDED, said(Said.NOT_PROVED_NECESSARY), *further, _tried(tried, Said.NONE_STABLE))
+
+
+def _tried(tried: Tried, code: Said) -> Remark:
+    return said(code, tried.asked) if tried.asked else said(Said.NOT_TRIED)
 
 
 def forms(derived: Derived, claim: Claim) -> Iterator[Region]:
@@ -101,9 +222,9 @@ def trivial(region: Region, wanted: Inequality, result: ClaimResult) -> ClaimRes
         (region.signs_of_bodies, f"{known} and the triangle inequalities of the inertias"),
     ):
         if is_certain(signs, wanted):
-            return replace(result, remark=f"it follows from {what}")
+            return _told(result, EXACT, said(Said.FOLLOWS_FROM_SIGNS, what))
         if is_certain(signs, wanted.negated()):
-            return replace(result, outcome=FAILS, remark=f"with {what} it never holds")
+            return _told(result, FAILS, said(Said.NEVER_HOLDS, what))
     return None
 
 
@@ -113,54 +234,22 @@ def one_of_problem_6(region: Region, claim: Claim, result: ClaimResult) -> Claim
         return None
     wanted = wanted_of(region, claim)
     what, equality = _found_among(region, wanted, ())
-    if not what:
+    if what is None:
         return None
     if not equality:
-        return replace(result, remark=what)
-    outcome = EXACT if is_certain(region.not_unstable(), wanted) else BORDERS
-    return replace(result, outcome=outcome, remark=f"{what}, but for the case of equality")
+        return _told(result, EXACT, what)
+    outcome = EXACT if region.without(wanted).word is Word.UNSTABLE else BORDERS
+    label, whose, note = what.data
+    return _told(result, outcome, said(Said.IS, label, whose, f"{note}, but for the case of equality"))
 
 
-def _found_among(region: Region, wanted: Inequality, left_out: Sequence[str]) -> tuple[str, bool]:
-    """ "it is the condition v0 of x" and whether it differs in the case of equality; "" where it is none of them."""
+def _found_among(region: Region, wanted: Inequality, left_out: Sequence[str]) -> tuple[Remark | None, bool]:
+    """Which condition it is, and whether it differs in the case of equality; None where it is none of them."""
     for same in (_proportional, partial(_same_condition, region.signs)):
         for what, found in region.conditions(left_out):
             if (wanted.relation == "!=") == (found.relation == "!=") and same(wanted, found):
                 return what, wanted.relation != found.relation
-    return "", False
-
-
-def _needed(region: Region, claim: Claim, result: ClaimResult) -> ClaimResult | None:
-    """Proofs that nothing on the borders can contradict: of necessity for stability, or for asymptotic stability."""
-    wanted = wanted_of(region, claim)
-    what, _ = _found_among(region, wanted, ("sufficient",))
-    for bodies in (False, True):
-        note = _BODIES if bodies else ""
-        if is_certain(region.not_unstable(bodies), wanted):
-            why = what or f"it follows from {region.labels()}{note}"
-            return replace(result, remark=f"{why}; without it the motion is unstable")
-        if is_certain(region.inside(bodies, asymptotic=True), wanted):
-            why = what or f"it follows from {region.labels(asymptotic=True)}{note}"
-            return replace(result, remark=f"{why}; it is necessary for asymptotic stability")
-    return None
-
-
-def _inside(derived: Derived, region: Region, claim: Claim, result: ClaimResult) -> ClaimResult | None:
-    """Proofs that leave borders open; a border where the motion is stable after all refutes a strict inequality."""
-    wanted = wanted_of(region, claim)
-    what, _ = _found_among(region, wanted, ("sufficient",))
-    singular = region.makes_stiffness_singular(wanted.polynomial)
-    for bodies in (False, True):
-        why = what or f"it follows from {region.labels()}{_BODIES if bodies else ''}"
-        weak = replace(wanted, relation=">=")
-        on_all = wanted.relation == "!=" or is_certain(region.not_unstable(bodies), weak)
-        if singular and on_all:
-            remark = "stability in the first approximation needs it"
-            return replace(result, remark=f"{what}; {remark}" if what else remark)
-        if wanted.relation != "!=" and is_certain(region.inside(bodies), wanted):
-            remark = f"{why}; where it or another condition is an equality, nothing is proved"
-            return replace(result, outcome=BORDERS, remark=remark)
-    return None
+    return None, False
 
 
 def _proportional(first: Inequality, second: Inequality) -> bool:
@@ -181,30 +270,67 @@ def _same_condition(signs: Signs, first: Inequality, second: Inequality) -> bool
 
 
 def _sufficient(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimResult:
-    refuted = _contradicted(derived, claim, result)
-    if refuted is not None:
-        return refuted
     together = _of_its_place(derived, claim)
-    subject = "it" if len(together) == 1 else "the conditions of this place together"
-    remark = f"{subject} {'is' if len(together) == 1 else 'are'} neither proved sufficient nor refuted by parameters"
+    number = len(together)
+    tried = _refuting(derived, claim)
+    if tried.found is not None:
+        return _told(result, FAILS, said(Said.NOT_SUFFICIENT, number), example=tried.found)
+    open_words: tuple[Remark, ...] = ()
     for region in forms(derived, claim):
         conditions = [wanted_of(region, one) for one in together]
         known = trivial(region, conditions[together.index(claim)], result)
         if known is not None and known.outcome == FAILS:
             return known
+        strict = [replace(one, relation=">") if one.relation == ">=" else one for one in conditions]
         for bodies in (False, True):
-            found = region.verdict_with(conditions, bodies)
-            if found is None:
+            if bodies and region.signs_of_bodies is region.signs:
                 continue
-            if found.word.stable:
-                with_it = "with it" if len(together) == 1 else f"with {subject}"
-                note = f"{with_it}{_BODIES if bodies else ''} the motion is {with_theorem(found.word, found.theorem)}"
-                return replace(result, remark=note)
+            note = _BODIES if bodies else ""
+            found = region.verdict(conditions, bodies)
+            if found.stable:
+                return _told(result, EXACT, said(Said.WITH_IT, number, note, with_theorem(found.word, found.theorem)))
             if found.word in (Word.GYROSCOPIC, Word.CRITICAL):
-                remark = f"in the first approximation {subject} suffice{'s' if len(together) == 1 else ''}; " + (
-                    "whether the motion itself is stable is open"
-                )
-    return replace(result, outcome=UNDECIDED, remark=remark)
+                open_words = (said(Said.FIRST_WITH_IT, number),)
+            inner = region.verdict(strict, bodies) if strict != conditions else found
+            if inner.stable and strict != conditions:
+                told = with_theorem(inner.word, inner.theorem)
+                inside = said(Said.WITH_IT, number, f"{note}, but for the case of equality,", told)
+                return _told(result, UNDECIDED, inside, _with_equality(derived, claim))
+    by_integrals = _by_integrals(derived, claim, together)
+    if by_integrals is not None:
+        told = with_theorem(by_integrals.word, by_integrals.theorem)
+        return _told(result, EXACT, said(Said.WITH_IT, number, "", told))
+    remarks = open_words or (said(Said.NOT_PROVED_SUFFICIENT, number), _tried(tried, Said.NONE_UNSTABLE))
+    return _told(result, UNDECIDED, *remarks)
+
+
+def _with_equality(derived: Derived, claim: Claim) -> Remark:
+    """What is known where both sides are equal: nothing in general, perhaps something at the given values."""
+    given = derived.trials.given
+    if given is not None and claim.right is not None:
+        symbols, sides = Symbols.of(derived), [claim.equals, claim.right]
+        try:
+            lower = symbols.lowering(derived.trials.numbers, given.values, symbols.occurring(sides))
+            equal = lower(symbols.opened(sides[0])) == lower(symbols.opened(sides[1]))
+        except (*NOT_THERE, KeyError):
+            equal = False
+        verdict = derived.trials.looked_into(given) if equal else None
+        if verdict is not None and not verdict.word.open:
+            return said(Said.EQUAL_AT_VALUES, with_theorem(verdict.word, verdict.theorem))
+    return said(Said.EQUALITY_OPEN)
+
+
+def _by_integrals(derived: Derived, claim: Claim, together: Sequence[Claim]) -> Verdict | None:
+    """The verdict of a combination of integrals where the conditions of one place hold."""
+    from mbsym.problems.claims import by_integrals  # few claims need it
+
+    try:
+        region = Region(derived, claim, own=False)
+        facts = [wanted_of(region, one) for one in together]
+        known = region.signs.assuming((x.polynomial, x.relation) for x in facts if not x.polynomial.is_constant())
+        return by_integrals.verdict_with(derived, known)
+    except (ContradictionError, NoClosedForm):
+        return None
 
 
 def _of_its_place(derived: Derived, claim: Claim) -> list[Claim]:
@@ -218,28 +344,31 @@ def _of_its_place(derived: Derived, claim: Claim) -> list[Claim]:
 # --- parameters that refute ---
 
 
-def _contradicted(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimResult | None:
-    """The claim refuted by parameters: stable without it, or (where it is to be sufficient) unstable with it."""
+def _refuting(derived: Derived, claim: Claim) -> Tried:
+    """Parameters at which the motion is stable without it, or (where it is to be sufficient) unstable with it."""
     together = _of_its_place(derived, claim)
     find = partial(_counterexample, derived, claim, together)
-    found = find() if len(together) == 1 else derived.trials.once(claim.place, find)
-    if found is None:
-        return None
-    if claim.role == SUFFICIENT:
-        subject = "it is" if len(together) == 1 else "the conditions of this place together are"
-        remark = f"{subject} not sufficient for stability"
-    else:
-        in_first = found.word is Word.GYROSCOPIC
-        remark = "it is not necessary for stability" + (" in the first approximation" if in_first else "")
-        if claim.relation in ("<", ">") and found.at_equality:
-            remark += ": with equality, too, the motion is stable"
-    return replace(result, outcome=FAILS, remark=remark, counterexample=found)
+    return find() if len(together) == 1 else derived.trials.once(claim.place, find)
 
 
-def _counterexample(derived: Derived, claim: Claim, together: Sequence[Claim]) -> Counterexample | None:
-    """Parameters that refute these conditions; None where none are found, or the formulas are too long.
+def _stable_words(derived: Derived) -> tuple[Word, ...]:
+    """Verdicts of a motion that is stable, if only in first approximation, the weakest last.
 
-    A condition that is to be necessary is tried on its border, too: at equality the motion may be stable.
+    Where no coordinate is cyclic for all parameters, one that is at some parameters drifts away there.
+    """
+    parts = derived.stability.subsystems
+    verdicts = chain((part.theory.verdict for part in parts), (case.verdict for x in parts for case in x.theory.cases))
+    drift = any(Flaw.CYCLIC in one.flawed for one in verdicts)
+    but_drift = (Word.ASYMPTOTIC_BUT_CYCLIC, Word.STABLE_BUT_CYCLIC)
+    stable = (word for word in Word if word.stable and (drift or word not in but_drift))
+    # Under constraints on velocities there is no other word for a stable first approximation.
+    return (*stable, Word.GYROSCOPIC, *((Word.CRITICAL,) if derived.system.constraints else ()))
+
+
+def _counterexample(derived: Derived, claim: Claim, together: Sequence[Claim]) -> Tried:
+    """Parameters that refute these conditions, if some are found; none where the formulas are too long.
+
+    They are also looked for on the border of the condition, and of those of problem 6.
     """
     symbols = Symbols.of(derived)
     environment = derived.parameters_scene.environment
@@ -248,24 +377,36 @@ def _counterexample(derived: Derived, claim: Claim, together: Sequence[Claim]) -
     sides = []
     for one in together:
         assert one.right is not None
-        said = text(subtract(one.equals, one.right))
+        about = text(subtract(one.equals, one.right))
         both = [one.equals, one.right]
-        sides.append((said, [symbols.opened(side) for side in both], symbols.occurring(both), one.relation))
+        sides.append((about, [symbols.opened(side) for side in both], symbols.occurring(both), one.relation))
 
     def claimed(numbers: Any, values: Mapping[str, Any]) -> list[tuple[str, Any, str]]:
         found = []
-        for said, (left, right), occurring, relation in sides:
+        for about, (left, right), occurring, relation in sides:
             lower = symbols.lowering(numbers, values, occurring)
-            found.append((said, lower(left) - lower(right), relation))
+            found.append((about, lower(left) - lower(right), relation))
         return found
 
+    verdicts = (Word.UNSTABLE,) if sufficient else _stable_words(derived)
+    usual = Tried(None, 0)
     try:
         claimed(derived.ring, environment)  # its budgets end what would be too long as numbers, too
-        found = derived.trials.counterexample(claimed, sufficient, (Word.UNSTABLE,) if sufficient else _LINEARLY_STABLE)
-        if found is not None or sufficient or claim.relation in ("<=", ">="):
-            return found
-        border = wanted_of(Region(derived, claim, own=False), claim).polynomial
-        among = derived.trials.where_zero(border)
-        return derived.trials.counterexample(claimed, sufficient, _LINEARLY_STABLE, among)
+        region = Region(derived, claim, own=False)
+        find = partial(derived.trials.counterexample, claimed, sufficient, verdicts, on_border=region.is_border)
+        usual = find(among=derived.trials)
+        if usual.found is not None and not any(_weight(usual.found)):
+            return usual
+        border = wanted_of(region, claim).polynomial
+        others = (x.polynomial for _, x in region.conditions())
+        among = chain.from_iterable(derived.trials.where_zero(x) for x in (border, *others))
+        special = find(among=among)
     except NoClosedForm:
-        return None
+        return usual
+    asked = usual.asked + special.asked
+    better = special.found is not None and (usual.found is None or _weight(special.found) < _weight(usual.found))
+    return Tried(special.found if better else usual.found, asked)
+
+
+def _weight(found: Counterexample) -> tuple[bool, bool, bool]:
+    return found.at_border, found.at_equality, found.word in IN_FIRST

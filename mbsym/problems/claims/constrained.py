@@ -6,47 +6,35 @@ multipliers nor a choice of independent velocities matter; a first integral one 
 exact states on the constraints with the accelerations of the equations without multipliers, and proved in the ring
 (``mbsym.problems.constraints.along``).
 
-The first approximation is that of the independent coordinates.  A claimed condition that is one of problem 6, or
-follows from those without which a root lies to the right, is proved.  It is refuted by exact parameters at which it
-fails and the first approximation is stable (to be necessary), or at which it holds and a root lies to the right (to be
-sufficient).  That a condition suffices is not decided here, nor anything refuted where a root is zero for all
-parameters.
+The first approximation is that of the independent coordinates; conditions are judged as those of other systems.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import islice
 from typing import Any
 
-from flint import arb, arb_mat, ctx, fmpq, fmpq_poly
+from flint import arb, arb_mat, ctx
 
-from mbsym.algebra.base import Algebra
 from mbsym.algebra.certainty import Certainty
-from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, NoClosedForm, SingularPoint
-from mbsym.algebra.point import Rationals
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.expressions.tree import subtract, text
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.constraints.programs import constrained_programs
 from mbsym.mechanics.constraints.ranks import is_certain
 from mbsym.mechanics.constraints.states import PRECISION, Manifold, OnManifold
 from mbsym.mechanics.oracle import State
-from mbsym.model.claims import SUFFICIENT, SUMS, Claim
-from mbsym.model.comparison import holds
+from mbsym.model.claims import SUMS, Claim
 from mbsym.model.system import System, acceleration_name
 from mbsym.problems.claims.comparison import examined_formula
-from mbsym.problems.claims.conditions import forms, one_of_problem_6, trivial, wanted_of
-from mbsym.problems.claims.counterexample import Counterexample, completed, parameter_samples, shown
+from mbsym.problems.claims.conditions import examined_condition
+from mbsym.problems.claims.counterexample import Counterexample, shown
 from mbsym.problems.claims.forms import in_parameters
 from mbsym.problems.claims.in_momenta import IN_MOMENTA
 from mbsym.problems.claims.numbers import examined_number
 from mbsym.problems.claims.quantities import derived_quantity, of_first_approximation
-from mbsym.problems.claims.regions import is_certain as follows
 from mbsym.problems.claims.result import (
-    BORDERS,
     EXACT,
     FAILS,
     NUMERICAL,
@@ -63,8 +51,6 @@ from mbsym.problems.integrals import total_rate
 DIGITS_SHOWN = 8
 #: A printed state keeps a constraint if it misses it by less than this part of 1 and of the row's size.
 KEPT = 1e-6
-#: Parameters at which a claimed condition is tried.
-TRIALS = 300
 
 ON_CONSTRAINTS = "with the velocities that the constraints allow"
 FROM_CONSTRAINTS = "it follows from the constraints alone"
@@ -75,7 +61,7 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     if claim.is_numerical:
         return examined_number(derived, claim, about)
     if claim.right is not None:
-        return _condition(derived, claim, about)
+        return examined_condition(derived, claim, about)
     if claim.kind in IN_MOMENTA or claim.kind.startswith(("state matrix", "linear matrix B")):
         raise NoClosedForm(f"a claim about the {claim.kind}: not judged under constraints")
     if claim.kind == "coefficient" and claim.of not in SUMS:
@@ -242,129 +228,3 @@ def accelerated_at(system: System, ring: Ring, tied: Constraints, state: State) 
         raise SingularPoint("the constraints and the masses leave the accelerations open there") from None
     moved = {acceleration_name(name): solved[i, 0] for i, name in enumerate(system.coordinates)}
     return State(state.numbers, {**state.values, **moved})
-
-
-# --- conditions ---
-
-
-def _condition(derived: Derived, claim: Claim, about: str) -> ClaimResult:
-    """An inequality against problem 6."""
-    result = ClaimResult(claim, about, EXACT)
-    for region in forms(derived, claim):
-        wanted = wanted_of(region, claim)
-        found = trivial(region, wanted, result)
-        if claim.role == SUFFICIENT:
-            if found is not None and found.outcome == FAILS:
-                return found
-            continue  # what always holds suffices only where everything is stable
-        found = found or one_of_problem_6(region, claim, result)
-        if found is not None:
-            return found
-        if follows(region.not_unstable(), wanted):
-            return replace(result, remark=f"it follows from {region.labels()}; without it the motion is unstable")
-        if wanted.relation == ">" and follows(region.not_unstable(), replace(wanted, relation=">=")):
-            remark = f"it follows from {region.labels()}; where it is an equality, nothing is proved"
-            return replace(result, outcome=BORDERS, remark=remark)
-    example = _against(derived, claim)
-    if example is not None:
-        remark = "it is not necessary for stability in the first approximation"
-        if claim.role == SUFFICIENT:
-            remark = "it is not sufficient for stability"
-        return replace(result, outcome=FAILS, remark=remark, counterexample=example)
-    remark = "it is not one of the conditions of problem 6 as they stand there"
-    if claim.role == SUFFICIENT:
-        remark = "whether it suffices is not decided under constraints"
-    return replace(result, outcome=UNDECIDED, remark=f"{remark}; no parameters that were tried refute it")
-
-
-def _against(derived: Derived, claim: Claim) -> Counterexample | None:
-    """Exact parameters that refute the condition."""
-    if claim.role == SUFFICIENT and claim.place and _others(derived, claim):
-        return None  # those of one place count together
-    symbols, numbers = Symbols.of(derived), Rationals({}, {})
-    assert claim.right is not None
-    sides = [claim.equals, claim.right]
-    for values in islice(_parameters(derived, numbers), TRIALS):
-        try:
-            lower = symbols.lowering(numbers, values, symbols.occurring(sides))
-            left, right = (lower(symbols.opened(side)) for side in sides)
-            if holds(left - right, claim.relation) is not (claim.role == SUFFICIENT):
-                continue
-            if claim.role != SUFFICIENT and holds(left - right, claim.relation.rstrip("=") + "=") and left == right:
-                continue  # of borders nothing is said
-            word = _roots(derived, numbers, values)
-        except (*NOT_THERE, KeyError):
-            continue
-        derived.ring.spend(500)
-        if word != ("right" if claim.role == SUFFICIENT else "left"):
-            continue
-        at = tuple((name, str(values[name])) for name in derived.system.parameter_names)
-        seen = "unstable (a root lies to the right)" if word == "right" else "stable in the first approximation"
-        return Counterexample(at, ((text(subtract(*sides)), str(left - right)), ("the motion", seen)))
-    return None
-
-
-def _others(derived: Derived, claim: Claim) -> list[Claim]:
-    key = (claim.kind, claim.role, claim.place)
-    return [one for one in derived.system.claims if one is not claim and (one.kind, one.role, one.place) == key]
-
-
-def _parameters(derived: Derived, numbers: Algebra) -> Iterator[Mapping[str, Any]]:
-    """Values of parameters with which there are such bodies, and such a motion."""
-    system, ring = derived.system, derived.ring
-    solved = {name: value.polynomial for name, value in derived.equilibrium.solved}
-
-    def further(known: Mapping[str, Any]) -> Mapping[str, Any]:
-        return {name: Carrier(ring, numbers, known)(x) for name, x in solved.items()}
-
-    for free in parameter_samples(system, tuple(solved)):
-        try:
-            values = completed(system, numbers, free, further)
-            mass = [[Carrier(ring, numbers, values)(x.polynomial) for x in row] for row in derived.linearisation.M]
-        except (*NOT_THERE, KeyError):
-            continue
-        if _positive(mass):
-            yield values
-
-
-def _positive(mass: list[list[fmpq]]) -> bool:
-    """Whether a symmetric matrix is positive definite, rows of zeros apart."""
-    kept = [i for i, row in enumerate(mass) if any(x != 0 for x in row)]
-    block = [[mass[i][j] for j in kept] for i in kept]
-    for k in range(len(block)):
-        if not block[k][k] > 0:
-            return False
-        for i in range(k + 1, len(block)):
-            factor = block[i][k] / block[k][k]
-            block[i] = [x - factor * y for x, y in zip(block[i], block[k], strict=True)]
-    return True
-
-
-def _roots(derived: Derived, numbers: Algebra, values: Mapping[str, Any]) -> str:
-    """``right``: a root lies to the right for certain; ``left``: none does for certain; else "".
-
-    Those of a polynomial in lambda^2 may lie on the axis, if they are simple; others lie to the left.
-    """
-    carry = Carrier(derived.ring, numbers, values)
-    words = [_side([carry(x.polynomial) for x in part.characteristic]) for part in derived.stability.subsystems]
-    if "right" in words:
-        return "right"
-    return "left" if words and all(word == "left" for word in words) else ""
-
-
-def _side(coefficients: list[fmpq]) -> str:
-    """Where the roots of one polynomial, the constant coefficient first, lie; "" where that is not certain."""
-    while coefficients and coefficients[-1] == 0:
-        coefficients = coefficients[:-1]
-    if len(coefficients) < 2:
-        return ""
-    even = len(coefficients) % 2 == 1 and all(x == 0 for x in coefficients[1::2])
-    whole = fmpq_poly(list(coefficients[:: 2 if even else 1]))
-    roots: Any = whole.numer().complex_roots()
-    if even:  # lambda^2 must be real and negative, and simple
-        if any(not root.imag.contains(0) or root.real > 0 for root, _ in roots):
-            return "right"
-        return "left" if all(root.imag == 0 and root.real < 0 and count == 1 for root, count in roots) else ""
-    if any(root.real > 0 for root, _ in roots):
-        return "right"
-    return "left" if all(root.real < 0 for root, _ in roots) else ""

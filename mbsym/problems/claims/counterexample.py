@@ -21,7 +21,7 @@ from functools import partial
 from itertools import count, islice
 from typing import Any
 
-from flint import arb, ctx, fmpq, fmpq_mat
+from flint import arb, ctx, fmpq, fmpq_mat, fmpq_poly
 
 from mbsym.algebra.base import Algebra, Lowering
 from mbsym.algebra.evaluate import Carrier
@@ -43,12 +43,14 @@ from mbsym.problems.stability.word import Word
 
 #: Parameters, and states, that are tried.
 SAMPLES, STATES = 400, 40
-#: Verdicts of problem 6 that are asked for, at those parameters where they could refute a condition.
-VERDICTS = 100
+#: Verdicts of problem 6 that are asked for, at those parameters where they could refute a condition; of so many of them
+#: that leave it open the nonlinear system is looked at.
+VERDICTS, LOOKED_INTO = 100, 10
 #: Parameters that a border is solved for, and points on it for each.
 SOLVED_FOR, BORDER_POINTS = 3, 6
-#: What the comparison of one inequality with numbers counts for, in the measure of the ring's work.
-WORK_OF_A_TRIAL = 500
+#: What the comparison of one inequality with numbers, and a look at the nonlinear system, count for in the measure of
+#: the ring's work.
+WORK_OF_A_TRIAL, WORK_OF_A_LOOK = 500, 20_000
 #: Working precision of balls, in bits; a value is shown to so many digits.
 PRECISION, DIGITS_SHOWN = 256, 12
 
@@ -57,14 +59,15 @@ PRECISION, DIGITS_SHOWN = 256, 12
 class Counterexample:
     """``at`` holds exact numbers by name, ``shows`` what is found there: (what, value).
 
-    ``word`` is the verdict of problem 6 there, where it is asked for; ``at_equality``: both sides of the condition
-    that was claimed are equal there.
+    ``word`` is the verdict there, where it is asked for; ``at_equality``: both sides of the condition that was claimed
+    are equal there; ``at_border``: so is a condition of problem 6.
     """
 
     at: tuple[tuple[str, str], ...]
     shows: tuple[tuple[str, str], ...]
     word: Word | None = None
     at_equality: bool = False
+    at_border: bool = False
 
 
 # --- parameters ---
@@ -146,17 +149,38 @@ def _is_body(body: Body, values: Mapping[str, Fraction]) -> bool:
 
 @dataclass
 class Trial:
-    """Exact parameter ``values`` (notation included), and the verdict of problem 6 there once it is asked for."""
+    """Exact parameter ``values`` (notation included), and the verdict there once it is asked for.
+
+    ``special``: the given values, or a border; there an open verdict is looked into first.  ``looked``: it was.
+    """
 
     values: Mapping[str, Any]
+    special: bool = False
     verdict: Verdict | None = None
+    looked: bool = False
+
+
+@dataclass(frozen=True)
+class Tried:
+    """Parameters that refute, if some were ``found``, and at how many they were looked for (``asked``)."""
+
+    found: Counterexample | None
+    asked: int
+
+
+#: Verdicts of what is stable in first approximation, and left open beyond.
+IN_FIRST = (Word.GYROSCOPIC, Word.CRITICAL)
+
+Judge = Callable[[Mapping[str, Fraction]], Verdict]
 
 
 class Trials:
     """Parameters at which claimed conditions are tried: made once for all claims of a description.
 
-    At each the mass matrix of the first approximation is positive definite.  ``verdict_at`` gives the verdict of
-    problem 6 at exact parameters; ``solved`` are the parameters that follow from the conditions of problem 4.
+    At each the mass matrix of the first approximation is positive definite, rows of first order apart.  The first are
+    those that the description gives.  ``verdict_at`` is the exact verdict of the first approximation, ``decided_at``
+    what the nonlinear system adds where that leaves it open; ``solved`` are the parameters that follow from the
+    conditions of problem 4.
     """
 
     def __init__(
@@ -165,13 +189,14 @@ class Trials:
         ring: Ring,
         mass_matrix: Matrix,
         solved: Mapping[str, Polynomial],
-        verdict_at: Callable[[Mapping[str, Fraction]], Verdict],
+        verdict_at: Judge,
+        decided_at: Callable[[Verdict, Mapping[str, Fraction]], Verdict],
     ) -> None:
         self.system, self.ring, self.solved = system, ring, solved
         self.numbers = Rationals({}, {})
-        self._known: dict[str, Counterexample | None] = {}
+        self._known: dict[str, Tried] = {}
         self._dependent = {relation.name for relation in system.relations} | set(solved)
-        self._mass_matrix, self._verdict_at = mass_matrix, verdict_at
+        self._mass_matrix, self._verdict_at, self._decided_at = mass_matrix, verdict_at, decided_at
         self._made: list[Trial] = []
         self._coming = self._trials()
 
@@ -184,27 +209,46 @@ class Trials:
                 self._made.append(more)
             yield self._made[k]
 
+    @property
+    def given(self) -> Trial | None:
+        """The values of the description; where it gives none of a parameter, any."""
+        first = next(iter(self), None)
+        return first if first is not None and first.special else None
+
     def verdict(self, trial: Trial) -> Verdict:
-        """The verdict of problem 6 at these parameters."""
+        """The verdict of the first approximation there, or of the nonlinear system if it was looked at."""
         if trial.verdict is None:
-            parameters = {name: trial.values[name] for name in self.system.parameter_names}
-            trial.verdict = self._verdict_at({name: Fraction(int(x.p), int(x.q)) for name, x in parameters.items()})
+            trial.verdict = self._verdict_at(self._parameters(trial))
         return trial.verdict
+
+    def looked_into(self, trial: Trial) -> Verdict:
+        """The same after a look at the nonlinear system, where the first approximation leaves it open."""
+        verdict = self.verdict(trial)
+        if verdict.word.open and not trial.looked:
+            self.ring.spend(WORK_OF_A_LOOK)
+            trial.verdict, trial.looked = self._decided_at(verdict, self._parameters(trial)), True
+        return self.verdict(trial)
+
+    def _parameters(self, trial: Trial) -> dict[str, Fraction]:
+        parameters = {name: trial.values[name] for name in self.system.parameter_names}
+        return {name: Fraction(int(x.p), int(x.q)) for name, x in parameters.items()}
 
     def counterexample(
         self,
         claimed: Callable[[Algebra, Mapping[str, Any]], Sequence[tuple[str, Any, str]]],
         sufficient: bool,
         words: Sequence[str],
-        among: Iterable[Trial] | None = None,
-    ) -> Counterexample | None:
-        """Parameters at which the claim is contradicted and problem 6 finds one of ``words``, the first if possible.
+        among: Iterable[Trial],
+        on_border: Callable[[Mapping[str, Any]], bool],
+    ) -> Tried:
+        """Parameters at which the claim is contradicted and the verdict is one of ``words``, the first if possible.
 
         ``claimed`` gives (text, left - right, relation) of every inequality.  A necessary condition is contradicted
-        where one of them fails, sufficient ones where all hold.  ``among`` are other parameters than the usual ones.
+        where one of them fails, sufficient ones where all hold.  Of what contradicts, points are preferred that are not
+        ``on_border`` of a condition of problem 6, then those at which no two sides are equal.
         """
-        asked, best = 0, None
-        for trial in self if among is None else among:
+        asked, looked, best = 0, 0, None
+        for trial in among:
             if asked == VERDICTS:
                 break
             try:
@@ -218,59 +262,71 @@ class Trials:
                 continue
             asked += 1
             verdict = self.verdict(trial)
-            if verdict.word not in words or (best is not None and verdict.word == words[-1]):
+            if verdict.word.open and looked < LOOKED_INTO and (trial.special or verdict.word not in words):
+                looked += 1
+                verdict = self.looked_into(trial)
+            if verdict.word not in words:
                 continue
-            word = with_theorem(verdict.word, verdict.theorem)
-            at = tuple((name, str(trial.values[name])) for name in self.system.parameter_names)
-            shows = tuple((text, str(gap)) for text, gap, _ in gaps)
-            best = Counterexample(at, (*shows, ("the motion", word)), verdict.word, bool(gaps[0][1] == 0))
-            if verdict.word != words[-1] or len(words) == 1:
+            equal = any(gap == 0 for _, gap, _ in gaps)
+            border = equal and on_border(trial.values)
+            rank = border, equal, verdict.word in IN_FIRST
+            if best is None or rank < best[0]:
+                best = rank, trial, gaps
+            if not any(best[0]):
                 break
-        return best
+        return Tried(None if best is None else self._shown(best[1], best[2], best[0][0]), asked)
+
+    def _shown(self, trial: Trial, gaps: Sequence[tuple[str, Any, str]], border: bool) -> Counterexample:
+        verdict = self.looked_into(trial)
+        word = with_theorem(verdict.word, verdict.theorem)
+        at = tuple((name, str(trial.values[name])) for name in self.system.parameter_names)
+        shows = tuple((text, str(gap)) for text, gap, _ in gaps)
+        return Counterexample(at, (*shows, ("the motion", word)), verdict.word, bool(gaps[0][1] == 0), border)
 
     def where_zero(self, x: Polynomial) -> Iterator[Trial]:
-        """Parameters at which a polynomial in free parameters vanishes: one of them is solved for.
-
-        Only factors that are linear in a parameter are used.
-        """
+        """Parameters at which a polynomial in free parameters vanishes: one of them is solved for, rationally."""
         ring = self.ring
         free = {name for name in self.system.parameter_names if name not in self._dependent}
         for factor, _ in [] if x.is_constant() else ring.factored(x)[1]:
             degrees = factor.degrees()
-            linear = [
-                g.name
+            names = sorted(
+                (degrees[k], g.name)
                 for k, g in enumerate(ring.generators)
-                if g.kind == "parameter" and g.name in free and degrees[k] == 1
-            ]
-            for name in linear[:SOLVED_FOR]:
+                if g.kind == "parameter" and g.name in free and degrees[k]
+            )
+            for degree, name in names[:SOLVED_FOR]:
                 for trial in islice(self, BORDER_POINTS):
                     values = {other: Fraction(int(y.p), int(y.q)) for other, y in trial.values.items() if other in free}
-                    found = self._trial(values | {name: Fraction(0)}, factor, name)
-                    if found is not None:
-                        yield found
+                    yield from self._zeros_along(values, factor, name, degree)
 
-    def _trial(self, free: Mapping[str, Fraction], factor: Polynomial, name: str) -> Trial | None:
-        """Where ``factor``, linear in the parameter ``name``, vanishes; None where no body is like that."""
+    def _zeros_along(self, free: Mapping[str, Fraction], factor: Polynomial, name: str, degree: int) -> Iterator[Trial]:
+        """Where ``factor`` vanishes at rational values of the parameter ``name``, the others as they are."""
 
         def value_at(number: int) -> Any:
             values = dict(free) | {name: Fraction(number)}
             return Carrier(self.ring, self.numbers, {key: self.numbers.number(y) for key, y in values.items()})(factor)
 
         try:
-            constant = value_at(0)
-            root = -constant / (value_at(1) - constant)
-            return self._made_of(dict(free) | {name: Fraction(int(root.p), int(root.q))})
+            roots = rational_zeros([value_at(k) for k in range(degree + 1)])
         except (*NOT_THERE, KeyError):
-            return None
+            return
+        for root in roots:
+            try:
+                found = self._made_of(dict(free) | {name: Fraction(int(root.p), int(root.q))})
+            except (*NOT_THERE, KeyError):
+                continue
+            if found is not None:
+                found.special = True
+                yield found
 
-    def once(self, place: str, find: Callable[[], Counterexample | None]) -> Counterexample | None:
+    def once(self, place: str, find: Callable[[], Tried]) -> Tried:
         """What ``find`` gives for the conditions of one place, which are taken together and searched for once."""
         if place not in self._known:
             self._known[place] = find()
         return self._known[place]
 
     def _trials(self) -> Iterator[Trial]:
-        for free in parameter_samples(self.system, tuple(self.solved)):
+        for number, free in enumerate(parameter_samples(self.system, tuple(self.solved))):
             try:
                 made = self._made_of(free)
             except KeyError:  # a name without a value, here and everywhere
@@ -278,6 +334,7 @@ class Trials:
             except NOT_THERE:
                 continue
             if made is not None:
+                made.special = number == 0
                 yield made
 
     def _made_of(self, free: Mapping[str, Fraction]) -> Trial | None:
@@ -285,8 +342,23 @@ class Trials:
         numbers = self.numbers
         values = completed(self.system, numbers, free, partial(_solved, self.ring, numbers, self.solved))
         carry = Carrier(self.ring, numbers, values)
-        massive = is_positive(fmpq_mat([[carry(x) for x in row] for row in self._mass_matrix.polynomials]))
+        mass = [[carry(x) for x in row] for row in self._mass_matrix.polynomials]
+        moving = [i for i, row in enumerate(mass) if any(x != 0 for x in row)]  # others are of first order
+        massive = not moving or is_positive(fmpq_mat([[mass[i][j] for j in moving] for i in moving]))
         return Trial(values) if massive else None
+
+
+def rational_zeros(values: Sequence[Any]) -> list[Any]:
+    """The rational zeros of a polynomial that has these values at 0, 1, 2, ...; none of one that is zero."""
+    total = fmpq_poly([0])
+    for k, value in enumerate(values):
+        term = fmpq_poly([value])
+        for j in range(len(values)):
+            if j != k:
+                term = term * fmpq_poly([-j, 1]) / (k - j)
+        total = total + term
+    linear = (factor for factor, _ in total.factor()[1] if factor.degree() == 1) if total != 0 else ()
+    return [-factor[0] / factor[1] for factor in linear]
 
 
 def _solved(

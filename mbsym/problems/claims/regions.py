@@ -6,20 +6,28 @@ its denominators are cleared by their signs.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
+from typing import Any
 
+from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import Failure
+from mbsym.algebra.point import Rationals
 from mbsym.algebra.ring import ParameterRing, Polynomial
+from mbsym.algebra.semialgebraic import atom, where
 from mbsym.algebra.signs import MOST_TERMS, ContradictionError, Signs
 from mbsym.expressions.tree import is_number
 from mbsym.model.claims import Claim
 from mbsym.problems.claims.forms import in_parameters, on_relations
+from mbsym.problems.claims.remarks import Remark, Said, said
 from mbsym.problems.claims.result import Derived
 from mbsym.problems.stability import SubsystemStability
-from mbsym.problems.stability.requirements import Case, Requirement
-from mbsym.problems.stability.verdict import Verdict, combine
+from mbsym.problems.stability.covering import Cell, Lift, atoms, cells_of, everywhere, joined
+from mbsym.problems.stability.problem import in_parameters as of_parameters
+from mbsym.problems.stability.requirements import Case, Place, Requirement, against
+from mbsym.problems.stability.theorems import Fact
+from mbsym.problems.stability.verdict import Verdict, concluded, depends
 from mbsym.problems.stability.word import Word
 
 #: More labels than these are not listed.
@@ -77,7 +85,7 @@ class Region:
 
     # --- single conditions ---
 
-    def conditions(self, left_out: Sequence[str] = ()) -> Iterator[tuple[str, Inequality]]:
+    def conditions(self, left_out: Sequence[str] = ()) -> Iterator[tuple[Remark, Inequality]]:
         """What a condition of problem 6 is called, and its inequality: as they stand, as they arise, and sufficient."""
         for part in self.parts:
             whose = ", ".join(part.coordinates)
@@ -87,13 +95,12 @@ class Region:
                 (part.guaranteed, ": it holds, the kinetic energy is positive definite"),
             ):
                 for label, formula, relation in found:
-                    what = f"it is the condition {label} of {whose}{note}"
-                    yield what, Inequality(self.cleared(formula.polynomial), relation)
+                    yield said(Said.IS, label, whose, note), Inequality(self.cleared(formula.polynomial), relation)
 
-    def labels(self, asymptotic: bool = False) -> str:
-        """Names of the conditions that an implication rests on."""
-        parts = [part for part in self.parts if not asymptotic or part.theory.variable == "lambda"]
-        found = [([r.label for r in part.theory.requirements if not r.always], part.coordinates) for part in parts]
+    def labels(self, of: Sequence[str] = ()) -> str:
+        """Names of the conditions that an implication rests on, those of one part where its coordinates are given."""
+        parts = [part for part in self.parts if not of or part.coordinates == of]
+        found = [(_needed(part.theory.requirements), part.coordinates) for part in parts]
         if not 0 < sum(len(labels) for labels, _ in found) <= _MOST_LABELS:
             return "the conditions of problem 6"
         return " and ".join(f"{', '.join(labels)} of {', '.join(names)}" for labels, names in found if labels)
@@ -120,39 +127,74 @@ class Region:
                 if not gap.is_constant() and len(gap) <= MOST_TERMS:
                     yield Inequality(gap, ">=")
 
-    def inside(self, bodies: bool = False, asymptotic: bool = False) -> Signs | None:
-        """What is known where all conditions hold; with ``asymptotic`` where all roots of some parts lie to the left.
+    def verdict(self, conditions: Sequence[Inequality], bodies: bool = False) -> Verdict:
+        """What the cases of problem 6 have in common where all of these hold, as sets of parameters.
 
-        None where problem 6 requires nothing (of such parts).
+        "depends on the parameters" where that is nothing, and where it was not found.
         """
-        known: list[Inequality] = []
+        try:
+            carry, known = self._domain(conditions, bodies)
+            cells = [self._cells(part, partial(self._carried, carry, part)) for part in self.parts]
+            within = where(*(atom(carry(x.polynomial), x.relation) for x in conditions))
+            return joined(cells, known, self.derived.balance.law.bounded, within)
+        except (ContradictionError, Failure):
+            return depends()
+
+    def without(self, wanted: Inequality, bodies: bool = False) -> Verdict:
+        """The verdict where it does not hold."""
+        return self.verdict([wanted.negated()], bodies)
+
+    def exponential(self, wanted: Inequality, bodies: bool = False) -> tuple[str, ...] | None:
+        """The coordinates of a part whose roots all lie to the left only where it holds; None where there is none."""
+        opposite = wanted.negated()
         for part in self.parts:
-            if asymptotic and part.theory.variable != "lambda":
+            requirements = [r for r in part.theory.requirements if not r.by_mass]
+            if part.theory.variable != "lambda" or any(r.unwritten for r in requirements):
                 continue
-            for requirement in part.theory.requirements:
-                condition = requirement.condition
-                if condition.kind in ("inequality", "never") and not requirement.by_mass:
-                    known.append(Inequality(self._lifted(part, requirement.polynomial), ">"))
-                    known.append(Inequality(self._lifted(part, condition.polynomial), ">"))
-                known += [Inequality(self._lifted(part, x), "!=") for x in condition.nonzero]
-        return self._assuming(known, bodies)
+            try:
+                carry, known = self._domain([wanted], bodies)
+                lift = partial(self._carried, carry, part)
+                inside = where(*(x for r in requirements for x in atoms(r, lift)))
+                beyond = inside & where(atom(carry(opposite.polynomial), opposite.relation))
+                if beyond.is_empty(known) and not inside.is_empty(known):
+                    return part.coordinates
+            except (ContradictionError, Failure):
+                continue
+        return None
 
-    def not_unstable(self, bodies: bool = False) -> Signs | None:
-        """What is known where no inequality is reversed: elsewhere a root has a positive real part."""
-        known = [
-            Inequality(self._lifted(part, requirement.polynomial), ">=")
+    def is_border(self, values: Mapping[str, Any]) -> bool:
+        """Whether some condition of problem 6, as it arises, is an equality there."""
+        carry = Carrier(self.derived.ring, Rationals({}, {}), values)
+        return any(
+            carry(part.in_whole(r.polynomial)) == 0
             for part in self.parts
-            for requirement in part.theory.requirements
-            if requirement.relation == ">" and not requirement.always and requirement.condition.kind != "unwritten"
-        ]
-        return self._assuming(known, bodies)
+            for r in part.theory.requirements
+            if r.relation == ">" and r.place is not Place.HARMLESS and not r.by_mass and not r.unwritten
+        )
 
-    def _assuming(self, known: Sequence[Inequality], bodies: bool) -> Signs | None:
-        if not known:
-            return None
+    def _domain(self, wanted: Sequence[Inequality], bodies: bool) -> tuple[Lift, Signs]:
+        """How polynomials are carried into the ring of the parameters that occur, and what is known of these."""
         signs = self.signs_of_bodies if bodies else self.signs
-        facts = (x for x in (*known, *self._mass()) if not x.polynomial.is_constant())
-        return signs.assuming((x.polynomial, x.relation) for x in facts if len(x.polynomial) <= MOST_TERMS)
+        masses = [x.polynomial for x in self._mass() if not x.polynomial.is_constant()]
+        held = [self._lifted(part, x) for part in self.parts for x in part.theory.polynomials]
+        ring, known = of_parameters(self.derived.ring, [[[*(x.polynomial for x in wanted), *held, *masses]]], signs)
+
+        def carry(x: Polynomial) -> Polynomial:
+            return ring.project(x) if isinstance(ring, ParameterRing) else x
+
+        return carry, known.assuming((carry(x), ">") for x in masses)
+
+    def _cells(self, part: SubsystemStability, lift: Lift) -> tuple[Cell, ...]:
+        """The cases of a part; where a condition is reversed it is unstable, whether a case says so or not."""
+        theory = part.theory
+        if theory.verdict.word is not Word.DEPENDS:
+            return everywhere(theory.verdict)
+        told = {r.label for case in theory.cases if case.verdict.word is Word.UNSTABLE for r in case.any_of}
+        plain = Signs(part.ring.context, ("real",) * part.ring.context.nvars())
+        further = tuple(r for r in against(theory.requirements, plain) if r.label not in told)
+        cases = [case for case in theory.cases if not case.never]
+        cases += [Case((), further, concluded({Fact.ROOT_RIGHT}))] if further else []
+        return cells_of(cases, lift) or everywhere(theory.verdict)
 
     def _mass(self) -> Iterator[Inequality]:
         """M > 0, as of every kinetic energy: its leading minors."""
@@ -161,12 +203,13 @@ class Region:
                 if len(requirement.polynomial) <= MOST_TERMS:
                     yield Inequality(self._lifted(part, requirement.polynomial), ">")
 
+    def _carried(self, carry: Lift, part: SubsystemStability, x: Polynomial) -> Polynomial:
+        return carry(self._lifted(part, x))
+
     def _lifted(self, part: SubsystemStability, x: Polynomial) -> Polynomial:
         """A polynomial of problem 6 in this form."""
         ring = self.derived.ring
         return self.cleared(part.ring.lift(x) if isinstance(part.ring, ParameterRing) else ring.reduce(x))
-
-    # --- what follows ---
 
     def makes_stiffness_singular(self, x: Polynomial) -> bool:
         """Whether x = 0 implies det K = 0 in a part M q'' + K q = 0: then q = q0 + q1 t solves it."""
@@ -182,44 +225,6 @@ class Region:
         may_vanish = [f for f in factors if not self.signs.never_zero(f)]
         return all(any(ring.quotient(k, factor) is not None for k in stiff) for factor in may_vanish)
 
-    def verdict_with(self, conditions: Sequence[Inequality], bodies: bool = False) -> Verdict | None:
-        """What the cases of problem 6 say where these hold; None where that is open, or they contradict each other."""
-        signs = self.signs_of_bodies if bodies else self.signs
-        facts = [*conditions, *self._mass()]
-        known = signs.assuming((x.polynomial, x.relation) for x in facts if not x.polynomial.is_constant())
-        try:
-            found = [self._verdict_of(part, known) for part in self.parts]
-        except ContradictionError:
-            return None
-        return combine(x for x in found if x is not None) if found and None not in found else None
 
-    def _verdict_of(self, part: SubsystemStability, known: Signs) -> Verdict | None:
-        """The verdict of the first case that holds, if all before it do not."""
-        theory = part.theory
-        if theory.verdict.word not in (Word.UNDECIDED, Word.DEPENDS):
-            return theory.verdict
-        for case in theory.cases:
-            word = self._state(part, case, known)
-            if word == "holds":
-                return case.verdict
-            if word == "open":
-                return None
-        return None
-
-    def _state(self, part: SubsystemStability, case: Case, known: Signs) -> str:
-        """Whether a case ``holds``, ``fails`` or is ``open``."""
-        every = [self._decided(part, requirement, known) for requirement in case.all_of]
-        some = [self._decided(part, requirement, known) for requirement in case.any_of]
-        if "fails" in every or (some and all(word == "fails" for word in some)):
-            return "fails"
-        return "holds" if all(w == "holds" for w in every) and (not some or "holds" in some) else "open"
-
-    def _decided(self, part: SubsystemStability, requirement: Requirement, known: Signs) -> str:
-        if requirement.always:
-            return "holds"
-        if requirement.condition.kind == "unwritten":
-            return "open"
-        wanted = Inequality(self._lifted(part, requirement.polynomial), requirement.relation)
-        if is_certain(known, wanted):
-            return "holds"
-        return "fails" if is_certain(known, wanted.negated()) else "open"
+def _needed(requirements: Sequence[Requirement]) -> list[str]:
+    return [r.label for r in requirements if not r.always and r.place is not Place.HARMLESS]

@@ -22,6 +22,8 @@ from mbsym.problems.claims.counterexample import (
     Counterexample,
     Trials,
 )
+from mbsym.problems.claims.remarks import Remark
+from mbsym.problems.dissipation import Balance
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
 from mbsym.problems.equilibrium import Equilibrium
@@ -84,6 +86,8 @@ class Derived(Protocol):
     @property
     def routh(self) -> Routh: ...
     @property
+    def balance(self) -> Balance: ...
+    @property
     def stability(self) -> Stability: ...
     @property
     def integrals(self) -> Sequence[Integral]: ...
@@ -121,8 +125,7 @@ class ClaimResult:
     claimed - factor*derived.  For a first integral I the difference is dI/dt on the equations of motion instead.
     ``where`` are the signs to which the outcome is restricted, ``counterexample`` numbers that refute the claim.  For
     numbers at a state ``value`` is the derived one, to more digits than the claim has, ``digits`` how many of the
-    ``printed_digits`` hold.  ``remark``
-    says what else there is to say.
+    ``printed_digits`` hold.  ``remark`` says what else there is to say, of conditions in the words of ``remarks``.
     """
 
     claim: Claim
@@ -136,6 +139,7 @@ class ClaimResult:
     digits: int | None = None
     printed_digits: int | None = None
     remark: str = ""
+    remarks: tuple[Remark, ...] = ()
     where: str = ""
     counterexample: Counterexample | None = None
 

@@ -22,9 +22,9 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import unperturbed_with, unsteady
 from mbsym.mechanics.speeds import SpeedForm, Variable
 from mbsym.mechanics.variables import ring_environment
-from mbsym.problems.checks import EXACT, FAILED, UNDECIDED, Check
+from mbsym.problems.checks import Check, check_identities
 from mbsym.problems.constraints.in_speeds import dependent_speeds
-from mbsym.problems.equilibrium import Equilibrium
+from mbsym.problems.equilibrium import Equilibrium, unsolved
 from mbsym.problems.first_order import FirstOrder, product, solved
 from mbsym.problems.reduction import Reduced
 from mbsym.problems.speeds import SpeedEquations
@@ -109,14 +109,13 @@ def check(form: SpeedForm, found: FirstOrder, reduced: Reduced, at: Equilibrium)
     a, b, c = on(equations.A), on(equations.B), on(equations.C)
     below = solved(ring, a, [[*(-row[place[i]] for i in range(n)), *(-x for x in b[k])] for k, row in enumerate(c)])
     left, right = product(ring, found.A.polynomials, rows), product(ring, rows, [*nu, *below])
-    known = [
-        ring.is_zero(ring.reduce(x - y - along(z)))
-        for one, other, moved in zip(left, right, rows, strict=True)
-        for x, y, z in zip(one, other, moved, strict=True)
-    ]
-    outcome = FAILED if False in known else UNDECIDED if None in known else EXACT
+    differences = {
+        f"the row of {name}, column {j}": ring.reduce(x - y - along(z))
+        for name, one, other, moved in zip(found.names, left, right, rows, strict=True)
+        for j, (x, y, z) in enumerate(zip(one, other, moved, strict=True), start=1)
+    }
     routes = ("equations of the independent speeds differentiated", "constraints expanded in coordinates")
-    return Check("first approximation in speeds", *routes, outcome, "" if outcome != EXACT else "identical polynomials")
+    return check_identities(ring, "first approximation in speeds", routes, differences, unsolved(plain, at))
 
 
 def _felt(form: SpeedForm, formulas: Sequence[Polynomial], rates: Mapping[str, Polynomial]) -> list[Variable]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 from flint import acb, arb, ctx
@@ -44,6 +44,34 @@ PRECISION = 320
 ORDER = 6
 
 
+class _Expanded:
+    """The expansions of a system to any order, each made once; with forces of a generalized potential taken in."""
+
+    def __init__(
+        self,
+        scene: Scene,
+        whole: Any,
+        equilibrium: Equilibrium | None,
+        conservative: bool,
+        cyclic: Collection[str],
+    ) -> None:
+        self.conservative = conservative
+        self.plain = cache(lambda order: expansion(scene, whole, equilibrium, order, cyclic))
+        self.to = cache(lambda order: taken_in(self.plain(order)) if conservative else self.plain(order))
+
+    def at(self, values: Mapping[str, Any]) -> Judged:
+        """What is decided at values of all parameters."""
+        with ctx.workprec(PRECISION):
+            return at_numbers(self.to, values, None) if self.conservative else _judged_field(self.to(4), values)
+
+
+def judge(
+    scene: Scene, whole: Any, equilibrium: Equilibrium | None, conservative: bool, cyclic: Collection[str]
+) -> Callable[[Mapping[str, Any]], Judged]:
+    """What terms of higher order decide at any values, as ``normal_forms`` has it at one.  Raises as that does."""
+    return _Expanded(scene, whole, equilibrium, conservative, cyclic).at
+
+
 def normal_forms(
     scene: Scene,
     whole: Any,
@@ -59,23 +87,12 @@ def normal_forms(
     NoClosedForm.
     """
 
-    @cache
-    def to(order: int) -> Expansion:
-        return taken_in(expanded(order)) if conservative else expanded(order)
-
-    @cache
-    def expanded(order: int) -> Expansion:
-        return expansion(scene, whole, equilibrium, order, cyclic)
-
-    found = to(4)
+    expanded = _Expanded(scene, whole, equilibrium, conservative, cyclic)
+    found = expanded.to(4)
     coordinates = tuple(name for i, name in enumerate(found.coordinates) if i not in found.cyclic)
     with ctx.workprec(PRECISION):
-        if conservative:
-            at_values = None if values is None else at_numbers(to, values, None)
-            symbols: Any = lambda: _in_symbols(found)  # noqa: E731
-        else:
-            at_values = None if values is None else _judged_field(found, values)
-            symbols = lambda: focus(found)  # noqa: E731
+        at_values = None if values is None else expanded.at(values)
+        symbols: Any = partial(_in_symbols if conservative else focus, found)
         in_symbols, why = known(symbols)
     return NormalForms(
         coordinates=coordinates,
@@ -85,7 +102,7 @@ def normal_forms(
         at_values=at_values,
         in_symbols=in_symbols,
         no_symbols=why,
-        taken_in=conservative and has_forces(expanded(4)),
+        taken_in=conservative and has_forces(expanded.plain(4)),
     )
 
 

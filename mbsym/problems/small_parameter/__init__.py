@@ -13,8 +13,9 @@ the manifold and that of the fast variables, whose Hurwitz minors decide by thei
 sufficiently small eps > 0 (``steady``).  Reports expand to order 2, or 3 where order 2 does not decide; mbsym expand to
 any order.
 
-A description with a prescribed phase whose rate is a parameter: the effective potential of what the phase shakes
-(``problems.averaging``), as Kapitza's, and problem 6 with it.  A description with neither has nothing to expand.
+A description with a prescribed phase whose rate is a parameter: the effective potential of what the phase shakes or
+drives (``problems.averaging``), as Kapitza's and a Paul trap's, with the orders of eps that are assumed, and problem 6
+with it.  It is withdrawn where the measurement contradicts it.  A description with neither has nothing to expand.
 
 Relations between parameters are put in first: what follows from a scaled parameter is scaled with it, and a small
 parameter that follows from others is refused.  Where all numbers are given the error is measured against a simulation

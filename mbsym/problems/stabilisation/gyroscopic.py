@@ -42,7 +42,7 @@ def regions(whole: Cleared, stiffness: Rows) -> tuple[Region, ...]:
         [
             (whole.formula(factor), "!=")
             for factor, exponent in powers[-1][1]
-            if exponent % 2 == 0 and not whole.known.never_zero(factor)
+            if exponent % 2 == 0 and str(factor) not in factors and not whole.known.never_zero(factor)
         ]
         if powers
         else []

@@ -49,6 +49,9 @@ POINTS = 3
 
 Values = Mapping[str, Any] | None
 
+#: Whether a matrix is positive definite; None is not known.
+_PROVED = {Definite.POSITIVE: True, Definite.NOT_POSITIVE: False}
+
 
 def stabilisation(scene: Scene[Any], linear: Linearisation, signs: Signs, values: Values) -> Stabilisation:
     """Everything that is said; ``values`` are numbers of all parameters, or None."""
@@ -138,7 +141,7 @@ def _energy(whole: Cleared | None, names: tuple[str, ...], damped: Matrix, there
     if whole is not None:
         try:
             found = definiteness(whole.matrices[3], whole.known, "K")
-            definite = {Definite.POSITIVE: True, Definite.NOT_POSITIVE: False}.get(found.word)
+            definite = _PROVED.get(found.word)
             wanted = [one.condition for one in found.requirements if one.condition.kind == "inequality"]
             minors = tuple(whole.formula(one.polynomial) for one in wanted)
         except TooLargeError:
@@ -158,10 +161,9 @@ def _dissipation(whole: Cleared | None, names: tuple[str, ...], there: AtValues 
     pervasive = None if there is None or damped is None else feels_everything(there, damped)
     if whole is None:
         rank = Rank(False, Certainty.UNDECIDED, why_not="the matrices hold roots or functions of parameters")
-        return Dissipation(names, False, False, rank, (), pervasive)
+        return Dissipation(names, None, None, rank, (), pervasive)
     mass, damping, gyro, stiff = whole.matrices
-    word = definiteness(damping, whole.known, "D").word
-    complete = word is Definite.POSITIVE
+    complete = _PROVED.get(definiteness(damping, whole.known, "D").word)
     if complete:
         return Dissipation(names, True, True, Rank(True, Certainty.PROVED, (), Locus()), (), True if there else None)
     opposite = [[-x for x in row] for row in gyro]  # [P(lambda); D] transposed is [P(-lambda), D] with D instead of B
@@ -174,19 +176,19 @@ def _dissipation(whole: Cleared | None, names: tuple[str, ...], there: AtValues 
         for factor in rank.factors
         if (motion := _undamped(whole, mass, gyro, stiff, damping, factor)) is not None
     )
-    return Dissipation(names, False, _semidefinite(damping, whole.known), rank, motions, pervasive)
+    return Dissipation(names, complete, _semidefinite(damping, whole.known), rank, motions, pervasive)
 
 
-def _semidefinite(damping: Rows, known: Signs) -> bool:
-    """Whether all principal minors are known not to be negative."""
+def _semidefinite(damping: Rows, known: Signs) -> bool | None:
+    """Whether no principal minor is negative; None where that is not known."""
     damped = [i for i, row in enumerate(damping) if any(x != 0 for x in row)]
     if len(damped) > MOST_DAMPED:
+        return None
+    minors = (at for size in range(1, len(damped) + 1) for at in combinations(damped, size))
+    words = [known.sign(determinant([[damping[i][j] for j in at] for i in at])) for at in minors]
+    if "negative" in words:
         return False
-    return all(
-        known.sign(determinant([[damping[i][j] for j in at] for i in at])) in ("positive", "nonnegative", "zero")
-        for size in range(1, len(damped) + 1)
-        for at in combinations(damped, size)
-    )
+    return True if all(word in ("positive", "nonnegative", "zero") for word in words) else None
 
 
 def feels_everything(there: AtValues, damped: Any) -> bool:

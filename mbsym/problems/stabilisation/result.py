@@ -86,13 +86,14 @@ class Motion(Shown):
 class Dissipation(Shown):
     """Of one subsystem with D != 0, N = 0: is D pervasive (does every motion with D x' = 0 rest)?
 
-    ``complete``: D > 0 is proved; ``semidefinite``: D >= 0 is proved, without which D may feed motions instead of
-    damping them.  ``at_values``: whether it is pervasive at the given values, exactly; None without any.
+    ``complete``: whether D > 0, ``semidefinite``: whether D >= 0, without which D may feed motions instead of damping
+    them: True proved, False refuted, None not known.  ``at_values``: whether it is pervasive at the given values,
+    exactly; None without any.
     """
 
     coordinates: tuple[str, ...]
-    complete: bool
-    semidefinite: bool
+    complete: bool | None
+    semidefinite: bool | None
     rank: Rank
     motions: tuple[Motion, ...] = ()
     at_values: bool | None = None

@@ -10,8 +10,10 @@ is made primitive (a factor of known sign is removed) and factored; the conditio
 * otherwise: all roots to the left of the imaginary axis (Lienard-Chipart).
 
 Every condition has its logical place.  Where p > 0 is listed and p < 0, a root has a positive real part: p >= 0 is
-necessary for stability.  That p is not 0 either is necessary for asymptotic stability (second kind), but of the first
-kind it is only this method that needs it, as it needs roots that do not coincide: there the motion may be stable.
+necessary for stability.  That p is not 0 either is necessary for exponential stability, all roots to the left (second
+kind): at p = 0 terms of higher order may make the motion stable, asymptotically even.  Of the first kind it is only
+this method that needs it, as it needs roots that do not coincide: there the motion may be stable.  In potential systems
+coinciding roots do no harm: their discriminants are listed, and needed for nothing.
 K > 0 is sufficient where the energy does not grow.
 
 "Necessary conditions hold" is not "stable": the verdict is one of asymptotically stable; stable (the theorem is named);
@@ -21,7 +23,11 @@ enclosures).  A theorem is named where all its hypotheses are shown:
 
 * Lagrange-Dirichlet (G = 0), Routh: M > 0, K > 0, N = 0, D >= 0, and the energy of the nonlinear system does not grow;
 * Kelvin-Chetaev: N = 0, D > 0, and K > 0 or det K != 0; or D = N = 0 and det K < 0;
-* Lyapunov's first method: the signs of the real parts; Lyapunov-Malkin: but for the roots of turned steady spins.
+* Lyapunov's first method: the signs of the real parts; Lyapunov-Malkin: but for the roots of turned steady spins;
+* theory of linear equations: the equations of motion are exactly linear (M constant, f of first degree in q and q',
+  proved in the ring; whatever is given by its matrices): no root to the right and those on the imaginary axis
+  semisimple: stable; a Jordan block there: unstable, like a power of t.  Then no nonlinear system is left open.  A
+  drift of bodies along directions on which nothing depends is told apart, as that of cyclic coordinates is.
 
 Displacements that change no equation are cyclic coordinates in every choice of coordinates (two masses on a ring move
 on together); those with constant momenta are ignored after Routh.  A steady spin is judged in angles in which it is

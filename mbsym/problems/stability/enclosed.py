@@ -17,35 +17,37 @@ from flint import acb_mat, arb, arb_mat, ctx
 from mbsym.algebra.matrices import components
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.state_matrix import state_matrix
-from mbsym.problems.stability.theorems import Fact
-from mbsym.problems.stability.verdict import Verdict, concluded, drifting, undecided
+from mbsym.problems.stability.theorems import Fact, implied
+from mbsym.problems.stability.verdict import Verdict, bounded, concluded, drifting, exactly, undecided
 from mbsym.problems.stability.word import Word
 
 Rows = Sequence[Sequence[Any]]  # flint.arb; an entry known to vanish is exactly 0
 
 
-def enclosed_verdict(matrices: Sequence[Rows], conservative: bool, bits: int = 200) -> Verdict:
+def enclosed_verdict(matrices: Sequence[Rows], conservative: bool, bits: int = 200, exact: bool = False) -> Verdict:
     """The verdict for M x'' + (D + G) x' + (K + N) x = 0 with entries in balls, matrices in the order M, D, G, K, N.
 
-    ``conservative``: the nonlinear system has its energy integral.  What the balls leave open is ``undecided``.
+    ``conservative``: the nonlinear system has its energy integral; ``exact``: there is no nonlinear system, these are
+    the equations of motion.  What the balls leave open is ``undecided``.
     """
     m, d, g, k, n = matrices
     with ctx.workprec(bits):
-        return _verdict(m, d, g, k, n, conservative)
+        found = _verdict(m, d, g, k, n, conservative, exact)
+    return exactly(found) if exact else found
 
 
 def enclosed_verdict_with_cyclic(
-    parts: Sequence[Rows], conservative: bool, cyclic: tuple[int, ...], bits: int = 200
+    parts: Sequence[Rows], conservative: bool, cyclic: tuple[int, ...], bits: int = 200, exact: bool = False
 ) -> Verdict:
     """By enclosures, cyclic coordinates ignored after Routh where their momenta are constant."""
-    plain = enclosed_verdict(parts, conservative, bits)
+    plain = enclosed_verdict(parts, conservative, bits, exact)
     if not cyclic or plain.word is Word.UNSTABLE or plain.coordinates_singular:
         return plain
     with ctx.workprec(bits):
         reduced = _ignoring_cyclic(parts, cyclic)
     if reduced is None:
         return undecided(Because.CYCLIC_ZERO_ROOTS)
-    return drifting(enclosed_verdict(reduced, conservative, bits))
+    return drifting(enclosed_verdict(reduced, conservative, bits, exact))
 
 
 def _ignoring_cyclic(parts: Sequence[Rows], cyclic: Sequence[int]) -> list[Rows] | None:
@@ -72,7 +74,7 @@ def _ignoring_cyclic(parts: Sequence[Rows], cyclic: Sequence[int]) -> list[Rows]
     return [less(m, (m, m)), less(d), less(g, (m, g), (g, m)), less(parts[3], (g, g)), less(n)]
 
 
-def _verdict(m: Rows, d: Rows, g: Rows, k: Rows, n: Rows, conservative: bool) -> Verdict:
+def _verdict(m: Rows, d: Rows, g: Rows, k: Rows, n: Rows, conservative: bool, exact: bool) -> Verdict:
     if not _positive(m):
         return undecided(Because.MASS_SINGULAR)
     shown = {
@@ -84,8 +86,10 @@ def _verdict(m: Rows, d: Rows, g: Rows, k: Rows, n: Rows, conservative: bool) ->
         Fact.POTENTIAL: _no(n),
         Fact.STIFFNESS_POSITIVE: _positive(k),
         Fact.ENERGY_NEVER_GROWS: conservative,
+        Fact.EXACTLY_LINEAR: exact,
     }
     facts = frozenset(fact for fact, holds in shown.items() if holds)
+    conservative = Fact.ENERGY_NEVER_GROWS in implied(facts)
     undamped = facts >= {Fact.UNDAMPED, Fact.POTENTIAL}
     if undamped and Fact.STIFFNESS_POSITIVE in facts:
         if not conservative:
@@ -104,8 +108,8 @@ def _verdict(m: Rows, d: Rows, g: Rows, k: Rows, n: Rows, conservative: bool) ->
         if Fact.NOT_GYROSCOPIC in facts:  # then lambda^2 are the eigenvalues of -M^-1 K
             facts |= {Fact.STIFFNESS_POSITIVE}
             return concluded(facts) if conservative else concluded(facts | {Fact.BOUNDED}, Reason(Because.NO_ENERGY))
-        if _not_positive(k):
-            return concluded(facts | {Fact.BOUNDED}, Reason(Because.GYROSCOPIC_ENCLOSED))
+        if exact or _not_positive(k):
+            return bounded(facts, Reason(Because.GYROSCOPIC_ENCLOSED))
     return concluded(facts, why_not=Because.NEAR_BORDER)
 
 

@@ -13,7 +13,7 @@ from flint import fmpq, fmpq_mat
 from mbsym.algebra.characteristic import Matrix, Polynomial
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.roots import RootCount, counted, rational
-from mbsym.problems.stability import nonholonomic
+from mbsym.problems.stability import linear_theory, nonholonomic
 from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.routh import (
@@ -24,8 +24,19 @@ from mbsym.problems.stability.routh import (
     only_momenta,
 )
 from mbsym.problems.stability.state_matrix import state_matrix
-from mbsym.problems.stability.theorems import Fact, implied
-from mbsym.problems.stability.verdict import Verdict, coasting, concluded, displaced, drifting, off_the_leaf, undecided
+from mbsym.problems.stability.theorems import Fact, Ground, implied
+from mbsym.problems.stability.verdict import (
+    Flaw,
+    Verdict,
+    bounded,
+    coasting,
+    concluded,
+    displaced,
+    drifting,
+    exactly,
+    off_the_leaf,
+    undecided,
+)
 from mbsym.problems.stability.word import Word
 
 Numbers = Any  # a flint.fmpq_mat
@@ -58,6 +69,8 @@ def verdict_at(system: LinearSystem, point: Mapping[int, Fraction]) -> PointVerd
 def verdict_over(system: LinearSystem, at: ExactPoint) -> PointVerdict:
     """The same where the matrices' entries have exact values of whatever kind; ``polynomial`` is of that kind."""
     found = _verdict_over(system, at)
+    if system.exact and found.roots is not None:
+        found = replace(found, verdict=_of_linear_equations(system, at, found.verdict))
     verdict = displaced(found.verdict, system.basis)
     return replace(found, verdict=off_the_leaf(verdict) if system.leaf else verdict)
 
@@ -93,6 +106,21 @@ def _verdict_over(system: LinearSystem, at: ExactPoint) -> PointVerdict:
     return PointVerdict(undecided(Because.CYCLIC_ZERO_ROOTS), polynomial, roots)
 
 
+def _of_linear_equations(system: LinearSystem, at: ExactPoint, found: Verdict) -> Verdict:
+    """A verdict by the first approximation, where that is all there is."""
+    if not linear_theory.is_open(found) and Flaw.CYCLIC not in found.flawed:
+        return exactly(found)
+    m, d, g, k, n = (evaluated(matrix, at) for matrix in system.matrices)
+    a = state_matrix(at.matrix, m.tolist(), (d + g).tolist(), (k + n).tolist(), system.following)
+    if not linear_theory.is_open(found):
+        return exactly(found, Ground.IDLE not in found.laid and linear_theory.is_calm(a))
+    if system.leaf and a.charpoly().coeffs()[0] == 0:  # what changes the relations acts like a constant force
+        return found
+    shifts = evaluated(system.shifts, at) if system.shifts else None
+    facts = frozenset[Fact]() if system.nonholonomic is not None else _facts(m, d, g, k, n, system.conservative)
+    return exactly(linear_theory.decided(found, a, shifts, facts))
+
+
 def _energy_besides(system: LinearSystem, at: ExactPoint, d: Numbers, n: Numbers) -> frozenset[Fact]:
     """What Lagrange's theorem needs for the other coordinates and all velocities, cyclic ones not counted; or nothing.
 
@@ -114,8 +142,9 @@ def _settled(system: LinearSystem, at: ExactPoint) -> LinearSystem:
 
 def _judge(system: LinearSystem, matrices: Sequence[Numbers], a: Numbers, roots: RootCount) -> Verdict:
     m, d, g, k, n = matrices
-    conservative = system.conservative
-    facts = _facts(m, d, g, k, n, conservative)
+    facts = _facts(m, d, g, k, n, system.conservative)
+    if system.exact:
+        facts |= {Fact.EXACTLY_LINEAR}
     if roots.right:
         how_many = Reason(Because.RIGHT_ROOTS, (roots.right,))
         found = concluded(facts | {Fact.ROOT_RIGHT})
@@ -124,8 +153,8 @@ def _judge(system: LinearSystem, matrices: Sequence[Numbers], a: Numbers, roots:
     if roots.left == roots.degree:
         return concluded(facts | {Fact.ROOTS_LEFT})
     if implied(facts) >= {Fact.MASS_POSITIVE, Fact.DAMPING_SEMIDEFINITE, Fact.POTENTIAL, Fact.STIFFNESS_POSITIVE}:
-        if not conservative:
-            return concluded(facts | {Fact.BOUNDED}, Reason(Because.NO_ENERGY), Reason(Because.HIGHER_ORDER))
+        if Fact.ENERGY_NEVER_GROWS not in implied(facts):
+            return bounded(facts, Reason(Because.NO_ENERGY), Reason(Because.HIGHER_ORDER))
         found = concluded(facts)
         if Fact.UNDAMPED in facts:
             return found
@@ -134,13 +163,12 @@ def _judge(system: LinearSystem, matrices: Sequence[Numbers], a: Numbers, roots:
     blocks = counted(a.minpoly()) if max(roots.imaginary_multiplicity, roots.zero) > 1 else roots
     if max(blocks.imaginary_multiplicity, blocks.zero) > 1:
         return undecided(Because.JORDAN_BLOCK)
-    if roots.zero:
-        return undecided(Because.ZERO_ROOT)
-    facts |= {Fact.BOUNDED}
+    if roots.zero:  # without blocks, as a simple pair
+        return concluded({Fact.BOUNDED}, Reason(Because.ZERO_ROOT), Reason(Because.HIGHER_ORDER))
     if facts >= {Fact.MASS_POSITIVE, Fact.UNDAMPED, Fact.POTENTIAL}:
         coinciding = [Reason(Because.COINCIDENCE)] if roots.imaginary_multiplicity > 1 else []
-        return concluded(facts, Reason(Because.GYROSCOPIC_ONLY), *coinciding)
-    return concluded(facts, Reason(Because.IMAGINARY), Reason(Because.HIGHER_ORDER))
+        return bounded(facts, Reason(Because.GYROSCOPIC_ONLY), *coinciding)
+    return bounded(facts, Reason(Because.IMAGINARY), Reason(Because.HIGHER_ORDER))
 
 
 def _facts(m: Numbers, d: Numbers, g: Numbers, k: Numbers, n: Numbers, conservative: bool) -> frozenset[Fact]:
@@ -265,8 +293,7 @@ class RationalPoint:
 
 def evaluated(matrix: Matrix, at: ExactPoint) -> Numbers:
     """A matrix of polynomials at a point."""
-    n = len(matrix)
-    return at.matrix(n, n, [at.value(entry) for row in matrix for entry in row])
+    return at.matrix(len(matrix), len(matrix[0]), [at.value(entry) for row in matrix for entry in row])
 
 
 def is_positive(matrix: Numbers) -> bool:

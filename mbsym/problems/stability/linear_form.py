@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from mbsym.algebra.characteristic import Matrix, Polynomial
@@ -44,6 +45,9 @@ class LinearSystem:
     are for sentences.  ``nonholonomic``: the five matrices are no more than the split of two, and say nothing about
     energy.  ``leaf``: they are those of disturbances that keep so many relations, which others change.  ``basis``:
     the coordinates are not those of the description but combinations of them.
+
+    ``exact``: the equations of motion are these linear ones, without terms of higher order.  ``shifts`` are then the
+    directions along which everything may be shifted, for all parameters alike: rows v with (K + N) v = 0.
     """
 
     M: Matrix
@@ -59,6 +63,8 @@ class LinearSystem:
     nonholonomic: NonholonomicForm | None = None
     leaf: int = 0
     basis: Basis | None = None
+    exact: bool = False
+    shifts: Matrix = ()
 
     def __post_init__(self) -> None:
         n = len(self.M)
@@ -92,15 +98,16 @@ class LinearSystem:
     @property
     def facts(self) -> frozenset[Fact]:
         """What the pattern of zeros shows, and what is presumed: M > 0, as the matrix of a kinetic energy."""
+        told = {Fact.EXACTLY_LINEAR} if self.exact else set()
         if self.nonholonomic is not None:
-            return frozenset({Fact.MASS_POSITIVE})
+            return frozenset({Fact.MASS_POSITIVE, *told})
         zero = [
             fact
             for matrix, fact in ((self.D, Fact.UNDAMPED), (self.G, Fact.NOT_GYROSCOPIC), (self.N, Fact.POTENTIAL))
             if is_zero(matrix)
         ]
         known = [Fact.ENERGY_NEVER_GROWS] if self.conservative else []
-        return frozenset({Fact.MASS_POSITIVE, *zero, *known})
+        return frozenset({Fact.MASS_POSITIVE, *zero, *known, *told})
 
     def name(self, i: int) -> str:
         return self.names[i] if self.names else f"coordinate {i + 1}"
@@ -108,6 +115,55 @@ class LinearSystem:
     @property
     def size(self) -> int:
         return len(self.M)
+
+
+#: Matrices with longer entries on the way are not asked for their null directions.
+_MOST_TERMS = 200
+
+
+def null_rows(matrix: Matrix, normal: Callable[[Polynomial], Polynomial]) -> Matrix:
+    """Rows v with matrix v = 0, a basis for all but exceptional parameters; () also where it would be long.
+
+    ``normal`` gives the normal form of a polynomial, zero where it vanishes.
+    """
+    n = len(matrix)
+    zero, one = matrix[0][0] * 0, matrix[0][0] * 0 + 1
+    rows, pivots = [[normal(x) for x in row] for row in matrix], list[int]()
+    for column in range(n):
+        at = len(pivots)
+        pivot = next((r for r in range(at, n) if rows[r][column] != 0), None)
+        if pivot is None:
+            continue
+        rows[at], rows[pivot] = rows[pivot], rows[at]
+        top = rows[at]
+        for r in range(n):
+            factor = rows[r][column]
+            if r != at and factor != 0:
+                if max(len(x) for x in (*rows[r], *top)) > _MOST_TERMS:
+                    return ()
+                rows[r] = [normal(top[column] * x - factor * y) for x, y in zip(rows[r], top, strict=True)]
+        pivots.append(column)
+    found = []
+    for free in (k for k in range(n) if k not in pivots):
+        scale = one
+        for at, column in enumerate(pivots):
+            if rows[at][free] != 0:
+                scale = normal(scale * rows[at][column])
+        vector = [zero] * n
+        vector[free] = scale
+        for at, column in enumerate(pivots):
+            if rows[at][free] != 0:
+                rest = one
+                for other, leading in enumerate(pivots):
+                    if other != at and rows[other][free] != 0:
+                        rest = normal(rest * rows[other][leading])
+                vector[column] = normal(-rest * rows[at][free])
+        if any(len(x) > _MOST_TERMS for x in vector):
+            return ()
+        found.append(vector)
+    if any(normal(dot(row, v)) != 0 for row in matrix for v in found):
+        return ()
+    return tuple(map(tuple, found))
 
 
 #: The kind of a system with no other forces than those of K.
@@ -131,6 +187,10 @@ def kind_of(system: LinearSystem) -> str:
 
 def add(left: Matrix, right: Matrix) -> Matrix:
     return tuple(tuple(a + b for a, b in zip(*rows, strict=True)) for rows in zip(left, right, strict=True))
+
+
+def dot(left: Sequence[Polynomial], right: Sequence[Polynomial]) -> Polynomial:
+    return sum((a * b for a, b in zip(left, right, strict=True)), start=left[0] * 0)
 
 
 def is_zero(matrix: Matrix) -> bool:

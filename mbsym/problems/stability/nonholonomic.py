@@ -23,7 +23,7 @@ from mbsym.problems.stability.linear_form import NonholonomicForm
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.state_matrix import state_matrix
 from mbsym.problems.stability.theorems import Fact
-from mbsym.problems.stability.verdict import Verdict, concluded, undecided
+from mbsym.problems.stability.verdict import Verdict, bounded, concluded, undecided
 
 #: What is concluded where roots are imaginary and simple.
 OPEN = (Reason(Because.IMAGINARY_NONHOLONOMIC), Reason(Because.HIGHER_ORDER))
@@ -49,23 +49,30 @@ def at_rationals(form: NonholonomicForm, first_order: Any) -> Verdict:
     roots = counted(reduced.charpoly())
     if roots.right:
         return concluded({Fact.ROOT_RIGHT}, Reason(Because.RIGHT_ROOTS, (roots.right,)))
-    if roots.left + roots.zero == roots.degree:
+    if roots.left + roots.zero == roots.degree and (roots.zero == form.family or form.drifts):
         return all_left(form, roots.zero)
     blocks = counted(reduced.minpoly())
     if max(blocks.imaginary_multiplicity, blocks.zero) > 1:
         return undecided(Because.JORDAN_BLOCK)
     if roots.zero > form.family:
-        return undecided(Because.MORE_ZERO_ROOTS, roots.zero, form.family)
+        why = Reason(Because.MORE_ZERO_ROOTS, (roots.zero, form.family))
+        return undecided(why.code, *why.data) if form.drifts else concluded({Fact.BOUNDED}, why)
     return concluded({Fact.BOUNDED}, *OPEN)
 
 
 def enclosed(
-    form: NonholonomicForm, matrices: Sequence[Any], zero_power: int, bits: int, even: bool = False
+    form: NonholonomicForm,
+    matrices: Sequence[Any],
+    zero_power: int,
+    bits: int,
+    even: bool = False,
+    exact: bool = False,
 ) -> Verdict:
     """The verdict with entries in balls, M, D, G, K, N.
 
     Known in symbols are ``zero_power`` of the determinant, and whether the rest is ``even`` in lambda: then simple
     negative roots in lambda^2 are imaginary pairs, and zero roots, if they are those of the family, have no blocks.
+    ``exact``: there is no nonlinear system, these are the equations of motion.
     """
     with ctx.workprec(bits):
         size = len(matrices[0])
@@ -77,7 +84,7 @@ def enclosed(
         coefficients = [arb(x) for x in first.charpoly().coeffs()[zero_power:]]
         right = to_the_right(coefficients)
         if even and form.zeros(zero_power) in (0, form.family) and _negative(coefficients[::2]):
-            return concluded({Fact.BOUNDED}, *OPEN)
+            return bounded({Fact.EXACTLY_LINEAR} if exact else set(), *OPEN)
     if right is None and any(x < 0 for x in coefficients):  # the leading one is 1: not all roots are on this side
         return concluded({Fact.ROOT_RIGHT})
     if right is None:

@@ -5,19 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 from flint import arb, arb_mat, ctx, fmpq
 
 from mbsym.algebra.base import Lowering
+from mbsym.algebra.characteristic import Matrix as Polynomials
 from mbsym.algebra.elimination import Elimination, eliminate
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.ring import ParameterRing, Polynomial, Ring
-from mbsym.algebra.signs import Signs
+from mbsym.algebra.signs import MOST_TERMS, Signs
 from mbsym.expressions.tree import names
 from mbsym.formulas.formula import Formula, Matrix
 from mbsym.formulas.notebook import Shown
@@ -33,14 +34,16 @@ from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.knowledge import definition_in_parameters
 from mbsym.problems.linearisation import Linearisation, Subsystem, first_symbols
 from mbsym.problems.stability import nonholonomic
+from mbsym.problems.stability.covering import Cell, Lift, cells_of, everywhere, joined
 from mbsym.problems.stability.enclosed import enclosed_verdict_with_cyclic
 from mbsym.problems.stability.exact import verdict_at
-from mbsym.problems.stability.linear_form import LinearSystem, NonholonomicForm
+from mbsym.problems.stability.linear_form import LinearSystem, NonholonomicForm, add, null_rows
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.requirements import Requirement
 from mbsym.problems.stability.spectrum import Spectrum, from_characteristic, from_matrices
 from mbsym.problems.stability.symbolic import Theory, analyse
-from mbsym.problems.stability.verdict import Verdict, combine, displaced, off_the_leaf, undecided
+from mbsym.problems.stability.verdict import Verdict, combine, displaced, exactly, off_the_leaf, undecided
+from mbsym.problems.stability.word import Word
 
 if TYPE_CHECKING:
     from mbsym.problems.reduction import Reduction
@@ -116,8 +119,17 @@ class SubsystemStability(Shown):
                 yield wanted.label, self._formula(x), "!="
 
     def _formula(self, x: Polynomial) -> Formula:
-        whole = self.factor.ring
-        return Formula(whole, self.ring.lift(x) if isinstance(self.ring, ParameterRing) else whole.reduce(x))
+        return Formula(self.factor.ring, self.in_whole(x))
+
+    def in_whole(self, x: Polynomial) -> Polynomial:
+        """A polynomial of ``ring`` in the system's ring."""
+        return self.ring.lift(x) if isinstance(self.ring, ParameterRing) else self.factor.ring.reduce(x)
+
+    def cells(self, lift: Lift) -> tuple[Cell, ...]:
+        """Its cases as sets of parameters in another ring: one where the verdict does not depend on them."""
+        decided = self.theory.verdict.word is not Word.DEPENDS
+        found = None if decided else cells_of([case for case in self.theory.cases if not case.never], lift)
+        return everywhere(self.theory.verdict) if found is None else found
 
 
 @dataclass(frozen=True, repr=False)
@@ -178,7 +190,26 @@ def stability(
         )
         numerical = combine(there, balance.at(values).law.bounded)
     verdict = combine((part.theory.verdict for part in judged), balance.law.bounded)
+    if verdict.word is Word.DEPENDS and len(judged) > 1:
+        verdict = _whole(scene.ring, judged, signs, balance.law.bounded)
     return Stability(judged, verdict, numerical, spectra)
+
+
+def _whole(ring: Ring, parts: Sequence[SubsystemStability], signs: Signs, one_energy: bool) -> Verdict:
+    """The verdict on parts some of which depend on the parameters: their cases are intersected."""
+    minors = [(part, r.polynomial) for part in parts for r in part.theory.mass.requirements]
+    every = [part.in_whole(x) for part in parts for case in part.theory.cases for x in case.polynomials]
+    every += [part.in_whole(x) for part, x in minors]
+    small, known = in_parameters(ring, [[every]], signs)
+
+    def lifted(part: SubsystemStability, x: Polynomial) -> Polynomial:
+        whole = part.in_whole(x)
+        return small.project(whole) if isinstance(small, ParameterRing) else whole
+
+    masses = (lifted(part, x) for part, x in minors if len(x) <= MOST_TERMS)
+    known = known.assuming((x, ">") for x in masses if not x.is_constant())
+    cells = [part.cells(partial(lifted, part)) for part in parts]
+    return joined(cells, known, one_energy)
 
 
 def _spectrum(
@@ -238,8 +269,11 @@ def _enclosed(
     matrices = matrices_at(scene, linear, part.coordinates, values, part.system.basis)
     if part.system.nonholonomic is not None:
         even = theory.variable == "lambda^2"
-        return nonholonomic.enclosed(part.system.nonholonomic, matrices, theory.zero_power, PRECISION, even)
-    found = displaced(enclosed_verdict_with_cyclic(matrices, there.law.bounded, cyclic, PRECISION), part.system.basis)
+        form, power, exact = part.system.nonholonomic, theory.zero_power, there.exactly_linear
+        found = nonholonomic.enclosed(form, matrices, power, PRECISION, even, exact)
+        return exactly(found) if exact else found
+    found = enclosed_verdict_with_cyclic(matrices, there.law.bounded, cyclic, PRECISION, there.exactly_linear)
+    found = displaced(found, part.system.basis)
     return off_the_leaf(found) if part.system.leaf else found
 
 
@@ -253,7 +287,10 @@ def _judge(scene: Scene, made: Prepared, values: Mapping[str, Fraction] | None, 
 
 @dataclass(frozen=True)
 class Prepared:
-    """A subsystem ready to be judged: matrices times ``factor``, and as polynomials of ``ring`` in ``system``."""
+    """A subsystem ready to be judged: matrices times ``factor``, and as polynomials of ``ring`` in ``system``.
+
+    ``drifts``: a drift along directions on which nothing depends is told apart, as that of cyclic coordinates is.
+    """
 
     coordinates: tuple[str, ...]
     matrices: tuple[Matrix, Matrix, Matrix, Matrix, Matrix]
@@ -261,6 +298,16 @@ class Prepared:
     ring: Ring
     known: Signs
     system: LinearSystem
+    drifts: bool = True
+
+    @cached_property
+    def _shifts(self) -> Polynomials:
+        rows = add(self.system.K, self.system.N)
+        return null_rows(rows, self.known.normalised) if self.drifts else ()
+
+    def exactly(self, exact: bool) -> LinearSystem:
+        """The system, as one without terms of higher order if ``exact``."""
+        return replace(self.system, exact=exact, shifts=self._shifts if exact else ())
 
     @cached_property
     def theory(self) -> Theory:
@@ -272,7 +319,7 @@ class Prepared:
         driven = self.system.driven
         if self.system.basis is None:
             driven = tuple(i for i in self.system.cyclic if self.coordinates[i] in there.driven)
-        return replace(self.system, conservative=there.law.bounded, driven=driven)
+        return replace(self.exactly(there.exactly_linear), conservative=there.law.bounded, driven=driven)
 
 
 def prepared_parts(
@@ -281,8 +328,7 @@ def prepared_parts(
     """Every subsystem, ready to be judged."""
     elimination = elimination_of(scene)
     spin = None if scene.system.constraints else free_spin(scene.system, still=True)
-    about = linear.constrained
-    lagrangian = about is None or about.holonomic
+    lagrangian = linear.constrained is None or linear.constrained.holonomic
     prepared = tuple(
         _prepared(
             scene, part, elimination, signs, balance, _turned(scene, part, spin, equilibrium), equilibrium, lagrangian
@@ -300,10 +346,10 @@ def prepared_parts(
             )
             for part in prepared
         )
-    if about is None or lagrangian:
-        leaf = 0 if about is None else about.leaf
+    if linear.constrained is None or linear.constrained.holonomic:
+        leaf = 0 if linear.constrained is None else linear.constrained.leaf
         return tuple(replace(part, system=replace(part.system, leaf=leaf)) for part in prepared) if leaf else prepared
-    free = equilibrium.satisfied
+    about, free = linear.constrained, equilibrium.satisfied
     return tuple(
         replace(part, system=replace(part.system, cyclic=(), nonholonomic=_form(part, balance, about, signs, free)))
         for part in prepared
@@ -367,7 +413,8 @@ def _prepared(
     system = LinearSystem(
         mass, damping, gyroscopic, stiffness, circulatory, bounded, cyclic, tuple(turned), driven, names, basis=basis
     )
-    return Prepared(part.coordinates, matrices, factor, ring, known, system)
+    made = Prepared(part.coordinates, matrices, factor, ring, known, system, scene.system.linear is None)
+    return replace(made, system=made.exactly(balance.exactly_linear))
 
 
 def _displaced(

@@ -2,13 +2,15 @@
 
 The places follow from continuity of roots.  While no root has a positive real part, coefficients, Hurwitz minors and,
 with only even powers, (sub)discriminants are limits of positive numbers, so they are >= 0: **that** is necessary for
-stability.  That they are > 0 is necessary for asymptotic stability; where the best that can be had is stability it is
-a demand of the method, which leaves the borders open: at a border roots may coincide and be semisimple (a lamina that
-spins about its axis of largest inertia), or be zero where higher terms make the motion stable."""
+stability.  That they are > 0 is necessary for exponential stability, all roots to the left, and for nothing less: at a
+border the motion may be asymptotically stable all the same, by terms of higher order (a soft border).  Where the best
+that can be had is stability it is a demand of the method, which leaves the borders open: at a border roots may coincide
+and be semisimple (a lamina that spins about its axis of largest inertia), or be zero where higher terms make the motion
+stable.  Without forces on velocities a vanishing coefficient makes solutions of the first approximation grow."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -32,11 +34,13 @@ class Place(StrEnum):
     NECESSARY = "necessary, but for the case of equality"
     #: Without it the first approximation has solutions that grow (linearly in time); the motion may be stable.
     FIRST = "necessary in the first approximation"
-    #: Without it the first approximation is not asymptotically stable.
-    ASYMPTOTIC = "necessary for asymptotic stability"
+    #: Without it not all roots are to the left; by terms of higher order the motion may be asymptotically stable.
+    EXPONENTIAL = "necessary for exponential stability (all roots to the left)"
     SUFFICIENT = "sufficient"
     #: Without it this method decides nothing; the motion may be stable.
     METHOD = "needed by this method only"
+    #: Nothing: a discriminant of a potential system is never negative, and where it vanishes roots are semisimple.
+    HARMLESS = "not needed: equal frequencies of a potential system do no harm"
 
 
 class Definite(StrEnum):
@@ -64,6 +68,11 @@ class Requirement:
     place: Place = Place.NECESSARY
     strict: Place = Place.METHOD
     coefficients: Coefficients = ()
+
+    @property
+    def polynomials(self) -> tuple[Polynomial, ...]:
+        """As it arises, and reduced."""
+        return self.polynomial, self.condition.polynomial, *self.condition.nonzero
 
     @property
     def always(self) -> bool:
@@ -98,6 +107,12 @@ class Case:
     @property
     def always(self) -> bool:
         return all(r.always for r in self.all_of) and (not self.any_of or any(r.always for r in self.any_of))
+
+    @property
+    def polynomials(self) -> Iterator[Polynomial]:
+        """What its conditions are about, as they arise and reduced."""
+        for r in (*self.all_of, *self.any_of):
+            yield from r.polynomials
 
     @property
     def never(self) -> bool:
@@ -147,12 +162,18 @@ def against(requirements: Sequence[Requirement], known: Signs) -> tuple[Requirem
     return tuple(
         Requirement(f"-({r.label})", -r.polynomial, known.condition(-r.polynomial))
         for r in requirements
-        if r.relation == ">" and not r.by_mass and not r.unwritten
+        if r.relation == ">" and r.place is not Place.HARMLESS and not r.by_mass and not r.unwritten
     )
 
 
 def differs(label: str, p: Polynomial, known: Signs) -> Requirement:
     return Requirement(label, p, known.nonzero_condition(p), "!=", place=Place.METHOD)
+
+
+def holds_always(p: Polynomial) -> Requirement:
+    """1 > 0, over the ring of p: of a case that requires nothing."""
+    one = p * 0 + 1
+    return Requirement("none", one, Condition("always", one))
 
 
 def unwritten(p: Polynomial) -> Requirement:

@@ -50,17 +50,19 @@ def ignoring_cyclic(system: LinearSystem) -> LinearSystem:
         )
 
     m, g = system.M, system.G
+    stiffness = schur(system.K, (g, g))  # with G between them an ignored coordinate makes another one felt
     return LinearSystem(
         schur(m, (m, m)),
         schur(system.D),
         schur(g, (m, g), (g, m)),
-        schur(system.K, (g, g)),
+        stiffness,
         schur(system.N),
         system.conservative,
-        cyclic=tuple(k for k, i in enumerate(rest) if i in system.cyclic),
+        cyclic=tuple(k for k, i in enumerate(rest) if i in system.cyclic and all(x == 0 for x in stiffness[k])),
         driven=tuple(k for k, i in enumerate(rest) if i in system.driven),
         turned=system.turned,
         names=tuple(system.name(i) for i in rest),
+        exact=system.exact,
     )
 
 

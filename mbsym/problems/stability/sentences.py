@@ -61,6 +61,22 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
     ),
     Because.UNDAMPED_MOTION: _undamped,
     Because.INTEGRALS: _integrals,
+    Because.LINEAR_BOUNDED: (
+        "The equations of motion are exactly linear: no root has a positive real part, and those on the imaginary axis "
+        "are semisimple, so that every disturbed motion stays near."
+    ),
+    Because.LINEAR_SHIFTED: (
+        "The equations of motion are exactly linear: but for shifts on which they do not depend every disturbed motion "
+        "stays near."
+    ),
+    Because.LINEAR_GROWS: (
+        "The equations of motion are exactly linear, and a multiple root on the imaginary axis is not semisimple: "
+        "there are disturbances that grow like a power of t."
+    ),
+    Because.LINEAR_GYROSCOPIC: (
+        "K is not positive definite: gyroscopic forces alone stabilise the motion, and complete dissipation would make "
+        "it unstable (Kelvin-Chetaev)."
+    ),
     Because.HIGHER_MINIMUM: (
         "K is only semidefinite, but terms of order {} make a strict minimum of the (changed) potential energy.".format
     ),
@@ -110,13 +126,20 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
     Because.PARTLY_CYCLIC: "A part of the coordinates is cyclic.",
     Because.CONSTANT_MOMENTA: ("The momenta of cyclic coordinates are constant, so their velocities stay near theirs."),
     Because.SEE_CASES: "It depends on the parameters; see the cases.",
+    Because.BORDERS_APART: (
+        "This is so wherever no condition is an equality; about border cases the first approximation says nothing."
+    ),
     Because.CONDITIONS_UNWRITTEN: "Conditions are too long to be written out; see the cases.",
     Because.BORDER: "On a border: no theorem of the first approximation decides.",
     Because.NEAR_BORDER: "On a border, or too close to one: no theorem of the first approximation decides.",
-    Because.ZERO_ROOT: "A zero root: terms of higher order decide.",
+    Because.ZERO_ROOT: "No root has a positive real part, but some are zero.",
     Because.JORDAN_BLOCK: (
         "A multiple root on the imaginary axis is not semisimple: the linear equations have growing solutions, the "
         "nonlinear system is not decided by them."
+    ),
+    Because.LINEAR_OPEN: (
+        "The equations of motion are exactly linear: their roots decide, and at numbers they do so in every case; in "
+        "symbols it is left open here."
     ),
     Because.ZERO_OR_MULTIPLE_BESIDES_TURNED: (
         "Besides the turned steady spins there are zero or multiple imaginary roots."

@@ -4,7 +4,9 @@ M, D, K symmetric, G, N skew.  The roots of det(lambda^2 M + lambda (D + G) + K 
 approximation goes; the theorems below go further.  Nothing is claimed on a border.
 
 * D = N = 0 (the determinant is even): roots in mu = lambda^2 real, negative and simple, by the signs of the
-  coefficients and the discriminant (from degree 4 on all subdiscriminants).  **Necessary** for stability.
+  coefficients and the discriminant (from degree 4 on all subdiscriminants).  **Necessary** for stability, but for the
+  case of equality.  With G = 0, too, by the coefficients alone: the roots are real and semisimple anyway, and the
+  discriminants are listed as what nobody needs.
 * K > 0 besides: stable, by Lagrange-Dirichlet (G = 0) or Routh (G != 0), if the nonlinear system has its energy
   integral.  Without K > 0 the motion is **gyroscopically stabilised only**: any complete dissipation destroys it
   (Kelvin-Chetaev), and the nonlinear system is not decided.  det K < 0: unstable (Kelvin-Chetaev).
@@ -23,13 +25,14 @@ all five matrices: neither the roots nor the signs of leading minors change.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
 
 from mbsym.algebra.characteristic import (
     Coefficients,
+    Matrix,
     Polynomial,
     characteristic_polynomial,
     determinant,
@@ -42,17 +45,21 @@ from mbsym.algebra.characteristic import (
 )
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import NoClosedForm, TooLargeError
+from mbsym.algebra.generators import occurring
 from mbsym.algebra.signs import MOST_TERMS, Condition, Signs, conditions
 from mbsym.problems.stability import nonholonomic
+from mbsym.problems.stability.covering import alone, cells_of
 from mbsym.problems.stability.exact import PointVerdict, verdict_at
 from mbsym.problems.stability.linear_form import (
     CONSERVATIVE,
     LinearSystem,
     NonholonomicForm,
     add,
+    dot,
     is_potential,
     is_zero,
     kind_of,
+    null_rows,
 )
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.requirements import (
@@ -66,6 +73,7 @@ from mbsym.problems.stability.requirements import (
     against,
     definiteness,
     differs,
+    holds_always,
     unwritten,
 )
 from mbsym.problems.stability.routh import (
@@ -75,22 +83,22 @@ from mbsym.problems.stability.routh import (
     momenta_are_constant,
     only_momenta,
 )
-from mbsym.problems.stability.theorems import Fact, Ground, applying
+from mbsym.problems.stability.theorems import Fact, Ground, applying, implied
 from mbsym.problems.stability.verdict import (
     Verdict,
+    bounded,
     coasting,
     concluded,
     depends,
     displaced,
     drifting,
+    exactly,
     off_the_leaf,
     undecided,
 )
 
 #: More damped coordinates have too many principal minors.
 MOST_DAMPED = 4
-#: Of more inequalities it is not asked whether two of them exclude each other.
-MOST_COMPARED = 6
 
 
 @dataclass(frozen=True)
@@ -127,6 +135,14 @@ class Theory:
         return self.kind == CONSERVATIVE
 
     @property
+    def polynomials(self) -> Iterator[Polynomial]:
+        """What its conditions and cases are about."""
+        for case in self.cases:
+            yield from case.polynomials
+        for r in self.requirements:
+            yield from r.polynomials
+
+    @property
     def conditions(self) -> tuple[Condition, ...]:
         """What remains of ``requirements``, each once."""
         return conditions(r.condition for r in self.requirements)
@@ -142,6 +158,15 @@ def analyse(system: LinearSystem, signs: Signs, point: Mapping[int, Fraction] | 
         found = _analyse(system, signs)
     except TooLargeError as error:
         found = _left_out(system, signs, str(error))
+    if system.exact:
+        null = null_rows(add(system.K, system.N), signs.normalised) if found.zero_power else ()
+        calm = len(null) == found.zero_power  # the zero roots have no Jordan blocks
+        cases = tuple(replace(case, verdict=exactly(case.verdict, calm)) for case in found.cases)
+        left_open = found.verdict.because(Because.BORDER)
+        verdict = undecided(Because.LINEAR_OPEN) if left_open else exactly(found.verdict, calm)
+        if verdict.word.open and not occurring(x for matrix in system.matrices for row in matrix for x in row):
+            verdict = verdict_at(system, {}).verdict
+        found = replace(found, cases=cases, verdict=verdict)
     if system.leaf or system.basis is not None:
         found = replace(
             found,
@@ -227,11 +252,13 @@ def _analyse(system: LinearSystem, signs: Signs) -> Theory:
         turned=turned is not None,
     )
     if system.nonholonomic is not None:
-        cases, reduced = _cases_of_roots(system.nonholonomic, found, known), None
+        cases, reduced = _cases_of_roots(system, system.nonholonomic, found, known), None
     elif zero_power:
         cases, reduced = _cases_with_zero_roots(system, found, known)
     else:
         cases, reduced = _cases(system, found, known), None
+    if system.exact and zero_power and not any(case.verdict.word.stable for case in cases):
+        cases = _cases_of_linear(system, found, known) or cases
     return replace(found, cases=cases, reduced=reduced, verdict=_first_certain(cases, known))
 
 
@@ -277,9 +304,7 @@ def _requirements(
             remarks.append(f"The conditions{suffix} are not written out ({error}); at a point they are exact.")
             requirements.append(unwritten(p[0]))
             continue
-        place = Place.NECESSARY if even else Place.ASYMPTOTIC
-        strict = place if not even else Place.FIRST if is_potential(system) else Place.METHOD
-        reduced = [_required(known, label, suffix, value, p, (place, strict)) for label, value in wanted]
+        reduced = [_required(known, label, suffix, value, p, _places(system, label, even)) for label, value in wanted]
         left_out = ", ".join(one.label for one in reduced if one.unwritten)
         if left_out:
             remarks.append(f"Not written out, but in the coefficients, because of their length: {left_out}.")
@@ -293,6 +318,29 @@ def _requirements(
             "(equal frequencies) does no harm."
         )
     return tuple(requirements), remarks
+
+
+def _is_symmetric(system: LinearSystem) -> bool:
+    """Whether it is a pencil of two symmetric matrices, one of them positive definite.
+
+    Its roots in lambda^2 are real and semisimple: no discriminant is negative, and none that vanishes does any harm.
+    """
+    return is_potential(system) and system.nonholonomic is None
+
+
+def _places(system: LinearSystem, label: str, even: bool) -> tuple[Place, Place]:
+    """What p > 0 is needed for, and what p != 0.
+
+    Where M x'' + (K + N) x = 0, x = x0 + x1 t solves it where (K + N) x0 = (K + N) x1 = 0, which is so with x1 != 0
+    where a coefficient vanishes while no root in lambda^2 is positive: then the last of them vanishes, too.  With other
+    forces a zero root may be semisimple, as roots that coincide may be whatever the forces are.
+    """
+    if not even:
+        return Place.EXPONENTIAL, Place.EXPONENTIAL
+    if _is_symmetric(system) and not label.startswith("v"):
+        return Place.HARMLESS, Place.HARMLESS
+    grows = is_zero(system.D) and is_zero(system.G) and system.nonholonomic is None
+    return Place.NECESSARY, Place.FIRST if grows and label.startswith("v") else Place.METHOD
 
 
 def _required(
@@ -363,7 +411,8 @@ def _simple(system: LinearSystem, factors: tuple[Factor, ...], known: Signs, rem
                 simple = _is_semisimple(system, left)
                 if not simple:
                     never = left.coefficients[0] * 0
-                    requirements.append(differs(f"multiplicity of factor {i + 1}", never, known))
+                    blocks = differs(f"multiplicity of factor {i + 1}", never, known)
+                    requirements.append(replace(blocks, place=Place.FIRST, strict=Place.FIRST))
                 how = "simple elementary divisors" if simple else "Jordan blocks: its roots are never semisimple"
                 remarks.append(f"Factor {i + 1} occurs {left.multiplicity} times, with {how}.")
         except TooLargeError as error:
@@ -384,15 +433,18 @@ def _cases(system: LinearSystem, found: Theory, known: Signs) -> tuple[Case, ...
     if not is_zero(system.N) or found.dissipation is not None:
         if found.variable == "lambda^2":
             why = Reason(Because.IMAGINARY_SIMPLE), Reason(Because.HIGHER_ORDER)
-            return Case(wanted, (), concluded({Fact.BOUNDED}, *why)), *unstable
+            return Case(wanted, (), bounded(facts & {Fact.EXACTLY_LINEAR}, *why)), *unstable
         if found.dissipation is None:
             odd = tuple(differs(f"a{i}", c, known) for i, c in enumerate(found.polynomial) if i % 2 and c != 0)
             return (Case((), odd, concluded({Fact.ROOT_RIGHT}, Reason(Because.RIGHT_BY_TRACE))),)
         if not is_zero(system.N) or found.dissipation.word is not Definite.POSITIVE:
             held = _semidefinite(system, known) if is_zero(system.N) and not found.turned else facts
             minimum = held | {Fact.STIFFNESS_POSITIVE}
-            lasting = [Case(stiff, (), concluded(minimum))] if Ground.ENERGY in applying(minimum) else []
-            return Case(wanted, (), _all_left(found.turned)), *lasting, *unstable
+            if Ground.ENERGY in applying(minimum):
+                # With D >= 0 and N = 0 roots are all to the left only where K > 0 (Kelvin-Chetaev).
+                decaying = concluded(minimum | {Fact.ROOTS_LEFT})
+                return Case(wanted, (), decaying), Case(stiff, (), concluded(minimum)), *unstable
+            return Case(wanted, (), _all_left(found.turned)), *unstable
     negative = against(stiff, known)
     minimum = facts | {Fact.STIFFNESS_POSITIVE}
     if found.dissipation is not None:
@@ -409,24 +461,69 @@ def _cases(system: LinearSystem, found: Theory, known: Signs) -> tuple[Case, ...
     odd_degree = concluded(facts | {Fact.STIFFNESS_ODD}, Reason(Because.ODD_DEGREE_REMAINS))
     return (
         Case(stiff, (), _conservative(minimum)),
-        Case(
-            wanted, (), concluded(facts - {Fact.STIFFNESS_POSITIVE} | {Fact.BOUNDED}, Reason(Because.GYROSCOPIC_ONLY))
-        ),
+        Case(wanted, (), bounded(facts - {Fact.STIFFNESS_POSITIVE}, Reason(Because.GYROSCOPIC_ONLY))),
         Case((), negative[-1:], odd_degree),
         *unstable,
     )
 
 
-def _cases_of_roots(form: NonholonomicForm, found: Theory, known: Signs) -> tuple[Case, ...]:
+def _cases_of_roots(system: LinearSystem, form: NonholonomicForm, found: Theory, known: Signs) -> tuple[Case, ...]:
     """Of a nonholonomic system: by the roots alone."""
     unstable, zeros = _unstable(found.requirements, known), form.zeros(found.zero_power)
     if found.variable == "lambda^2" and found.factors:
         best = undecided(Because.MORE_ZERO_ROOTS, zeros, form.family)
         if zeros in (0, form.family):  # the family's are in the kernel: no blocks
-            best = concluded({Fact.BOUNDED}, *nonholonomic.OPEN)
+            best = bounded(system.facts & {Fact.EXACTLY_LINEAR}, *nonholonomic.OPEN)
         return Case(found.requirements, (), best), *unstable
-    wanted = found.requirements or tuple(replace(r, by_mass=True) for r in found.mass.requirements)
-    return Case(wanted, (), nonholonomic.all_left(form, zeros)), *unstable
+    return Case(_wanted(found), (), nonholonomic.all_left(form, zeros)), *unstable
+
+
+def _cases_of_linear(system: LinearSystem, found: Theory, known: Signs) -> tuple[Case, ...]:
+    """Of exactly linear equations with lambda^z for a factor: by the r null directions of K + N.
+
+    These make r zero roots without Jordan blocks.  Where z = r there are no others, and the zero roots do no harm; else
+    there are blocks wherever K + N has no further null directions.  Where everything may be shifted along the null
+    directions V at constant velocity, (D + G) V = 0, z = 2 r, they are drifts, and nothing but drifts.
+    """
+    unstable = _unstable(found.requirements, known)
+    places, rates = add(system.K, system.N), add(system.D, system.G)
+    null = null_rows(places, known.normalised)
+    if not null:
+        return ()
+    wanted = _wanted(found)
+    decays = found.variable == "lambda" and bool(found.factors)
+    calm = bounded({Fact.EXACTLY_LINEAR})
+    if found.zero_power == len(null):
+        if decays and system.shifts:
+            calm = drifting(_all_left(False), constant_momenta=False)
+        return Case(wanted, (), calm), *unstable
+    still = all(known.normalised(dot(row, v)) == 0 for row in rates for v in null)
+    if system.shifts and still and found.zero_power == 2 * len(null):
+        calm = drifting(_all_left(False) if decays else calm) if found.factors else coasting()
+        return Case(wanted, (), calm), *unstable
+    if system.shifts:
+        return ()
+    return (Case(_of_full_rank(places, len(null), known), (), concluded({Fact.EXACTLY_LINEAR, Fact.JORDAN_BLOCK})),)
+
+
+def _wanted(found: Theory) -> tuple[Requirement, ...]:
+    """What a case requires by which nothing is wrong with the roots: M > 0, or nothing, where they are all zero."""
+    by_mass = tuple(replace(r, by_mass=True) for r in found.mass.requirements)
+    return found.requirements or by_mass or (holds_always(found.removed),)
+
+
+def _of_full_rank(matrix: Matrix, null: int, known: Signs) -> tuple[Requirement, ...]:
+    """A minor of order n - ``null`` that is not zero: the matrix has no further null directions there."""
+    n = len(matrix)
+    size = n - null
+    if not size:
+        return (holds_always(matrix[0][0]),)
+    for rows in combinations(range(n), size):
+        for columns in combinations(range(n), size):
+            minor = known.normalised(determinant([[matrix[i][j] for j in columns] for i in rows]))
+            if minor != 0:
+                return (differs(f"minor of order {size} of K + N", minor, known),)
+    raise ValueError("the rank is smaller")
 
 
 def _semidefinite(system: LinearSystem, known: Signs) -> frozenset[Fact]:
@@ -449,7 +546,11 @@ def _cases_with_zero_roots(system: LinearSystem, found: Theory, known: Signs) ->
         standing = bool(system.turned) and system.turned[1] == 0  # in any direction of space: two zero roots
         if standing and found.zero_power == 2 and found.variable == "lambda":
             return (Case(found.requirements, (), _all_left(True)), *unstable), None
-        return unstable, None
+        null = null_rows(add(system.K, system.N), known.normalised)
+        if len(null) != found.zero_power:  # Jordan blocks
+            return unstable, None
+        why = Reason(Because.ZERO_ROOT), Reason(Because.HIGHER_ORDER)
+        return (Case(_wanted(found), (), concluded({Fact.BOUNDED}, *why)), *unstable), None
     if only_momenta(system):
         by_mass = tuple(replace(r, by_mass=True) for r in found.mass.requirements)
         return (Case(by_mass, (), coasting()),), None
@@ -483,41 +584,23 @@ def _all_left(turned: bool) -> Verdict:
 
 def _conservative(minimum: frozenset[Fact]) -> Verdict:
     """K > 0, D = N = 0."""
-    if Fact.ENERGY_NEVER_GROWS in minimum:
+    if Fact.ENERGY_NEVER_GROWS in implied(minimum):
         return concluded(minimum)
     return concluded(minimum | {Fact.BOUNDED}, Reason(Because.NO_ENERGY), Reason(Because.HIGHER_ORDER))
 
 
 def _first_certain(cases: Sequence[Case], known: Signs) -> Verdict:
-    """The first case proved to hold while all before it are refuted."""
-    for case in cases:
-        if case.always or (not case.all_of and _one_holds(case.any_of, known)):
-            return case.verdict
-        if not case.never and not _contradict(case.all_of, known):
-            possible = (r for other in cases if not other.never for r in (*other.all_of, *other.any_of))
-            return undecided(Because.CONDITIONS_UNWRITTEN) if any(r.unwritten for r in possible) else depends()
-    return undecided(Because.BORDER)
-
-
-def _contradict(wanted: Sequence[Requirement], known: Signs) -> bool:
-    """Whether two inequalities exclude each other: 2 m k - c^2 > 0 and c^2 - 4 m k > 0, whose sum is -2 m k."""
-    return any(
-        known.assuming([(p, ">")]).sign(q) in ("negative", "nonpositive", "zero")
-        for p, q in combinations(_short_inequalities(wanted), 2)
-    )
-
-
-def _one_holds(choice: Sequence[Requirement], known: Signs) -> bool:
-    """Whether of two inequalities one holds wherever the other does not."""
-    plain = [r for r in choice if not r.condition.nonzero]
-    return any(
-        known.assuming([(-p, ">=")]).sign(q) == "positive" for p, q in combinations(_short_inequalities(plain), 2)
-    )
-
-
-def _short_inequalities(wanted: Sequence[Requirement]) -> list[Polynomial]:
-    found = [r.condition.polynomial for r in wanted if r.condition.kind == "inequality"]
-    return [p for p in found if len(p) <= MOST_TERMS][:MOST_COMPARED]
+    """The verdict of the first case, if it always holds; else what all cases have in common that can hold."""
+    possible = [case for case in cases if not case.never]
+    if not possible:
+        return undecided(Because.BORDER)
+    if possible[0].always:
+        return possible[0].verdict
+    cells = cells_of(possible)
+    if cells is None:
+        unwritten = any(r.unwritten for case in possible for r in (*case.all_of, *case.any_of))
+        return undecided(Because.CONDITIONS_UNWRITTEN) if unwritten else depends()
+    return alone(cells, known)
 
 
 def _unstable(requirements: Sequence[Requirement], known: Signs) -> tuple[Case, ...]:

@@ -15,6 +15,10 @@ x'.M x'/2 + x.K x/2 + terms of higher order:
 * Lagrange-Dirichlet where K is only semidefinite: terms of higher order make a strict minimum (``degenerate``), or none
   in a system of one coordinate, where the converse holds.
 * Chetaev: a combination of integrals has a strict minimum where they keep their values (``bundle``): stable.
+* Exactly linear equations (a Penning trap, a rotating saddle, whatever is given by its matrices): their solutions are
+  known.  No root to the right and those on the axis semisimple, zero ones too: stable; a Jordan block on the axis:
+  unstable, disturbances grow like a power of t (Gantmacher, The Theory of Matrices II, chapter XIV).  There is no
+  nonlinear system that this could leave open, and x'.M x'/2 + x.K x/2 is an energy where N = 0.
 
 A theorem is named only where all its hypotheses have been shown: ``applying`` is the only way to one.
 """
@@ -49,8 +53,11 @@ class Fact(Enum):
     LEFT_BUT_TURNED = "Re lambda < 0 for every root but those of turned steady spins"
     #: The zero roots are as many as the steady motions near by have dimensions, all others are to the left.
     LEFT_BUT_STEADY = "Re lambda < 0 for every root but the zero ones of a family of steady motions"
-    #: No root to the right, and those on the imaginary axis are semisimple and not zero.
+    #: No root to the right, and those on the imaginary axis, zero ones too, are semisimple.
     BOUNDED = "the first approximation is stable"
+    #: The equations of motion are their own first approximation (``exact_linearity``).
+    EXACTLY_LINEAR = "the equations of motion are exactly linear"
+    JORDAN_BLOCK = "a root on the imaginary axis is not semisimple"
     #: K has one null direction, and terms of higher order make a strict minimum of it, or none (``degenerate``).
     MINIMUM_OF_HIGHER_ORDER = "V has a strict minimum, by terms of higher order"
     NO_MINIMUM_IN_ONE_COORDINATE = "V has no minimum, and is a function of one coordinate alone"
@@ -65,6 +72,8 @@ class Ground(Enum):
 
     DECAYS = auto()  # every root to the left, but for those that the flaws explain
     ENERGY = auto()  # a strict minimum of an energy that does not grow
+    LINEAR = auto()  # bounded solutions of exactly linear equations
+    SHIFTED = auto()  # bounded but for shifts on which the equations do not depend
     UNDAMPED = auto()  # bounded in first approximation, neither dissipation nor circulation
     IDLE = auto()  # nothing moves but at constant momenta
 
@@ -90,6 +99,7 @@ LYAPUNOV = "Lyapunov's first method"
 MALKIN = "Lyapunov-Malkin"
 CHETAEV = "Chetaev's combination of integrals"
 CONVERSE = "converse of Lagrange-Dirichlet"
+LINEAR = "theory of linear equations"
 
 _PLAIN = (Fact.MASS_POSITIVE, Fact.POTENTIAL)
 _MINIMUM = (*_PLAIN, Fact.STIFFNESS_POSITIVE, Fact.ENERGY_NEVER_GROWS)
@@ -125,6 +135,8 @@ THEOREMS = (
     _theorem(LAGRANGE, Ground.ENERGY, Because.HIGHER_MINIMUM, Fact.MINIMUM_OF_HIGHER_ORDER, Fact.ENERGY_NEVER_GROWS),
     _theorem(CONVERSE, None, Because.NO_MINIMUM, Fact.NO_MINIMUM_IN_ONE_COORDINATE, Fact.ENERGY_CONSERVED),
     _theorem(CHETAEV, Ground.ENERGY, Because.INTEGRALS, Fact.INTEGRALS_DEFINITE),
+    _theorem(LINEAR, Ground.LINEAR, Because.LINEAR_BOUNDED, Fact.EXACTLY_LINEAR, Fact.BOUNDED),
+    _theorem(LINEAR, None, Because.LINEAR_GROWS, Fact.EXACTLY_LINEAR, Fact.JORDAN_BLOCK),
 )
 
 _IMPLIED = {
@@ -137,7 +149,10 @@ _IMPLIED = {
 
 def implied(shown: Set[Fact]) -> frozenset[Fact]:
     """The facts, and those that they imply."""
-    return frozenset(shown).union(*(_IMPLIED.get(fact, ()) for fact in shown))
+    every = frozenset(shown).union(*(_IMPLIED.get(fact, ()) for fact in shown))
+    if every >= {Fact.EXACTLY_LINEAR, *_PLAIN, Fact.DAMPING_SEMIDEFINITE}:  # the derivative of its energy is -x'.D x'
+        every |= {Fact.ENERGY_NEVER_GROWS}
+    return every
 
 
 def applying(shown: Set[Fact]) -> dict[Ground | None, Theorem]:

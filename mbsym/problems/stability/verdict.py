@@ -16,19 +16,30 @@ and never gives a stronger verdict than any part has.  Why each ground carries o
   the whole is critical.
 * UNDAMPED: a part that gyroscopic forces stabilise, beside others without dissipation; K of the whole is not positive
   definite if that of one part is not (``INDEFINITE``), and then the whole is stabilised by these forces only.
+* LINEAR, SHIFTED: the solutions of exactly linear equations are those of its parts, side by side.
 * IDLE: nothing but constant momenta, which every other statement survives (they are parameters).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Set
+from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from enum import Enum, auto
 
 from mbsym.problems.displacements import Basis
 from mbsym.problems.stability import sentences
 from mbsym.problems.stability.reasons import Because, Reason
-from mbsym.problems.stability.theorems import LAGRANGE, MALKIN, ROUTH, Fact, Ground, applying, implied, reason_of
+from mbsym.problems.stability.theorems import (
+    LAGRANGE,
+    LINEAR,
+    MALKIN,
+    ROUTH,
+    Fact,
+    Ground,
+    applying,
+    implied,
+    reason_of,
+)
 from mbsym.problems.stability.word import Word
 
 
@@ -42,6 +53,7 @@ class Flaw(Enum):
     OPEN = auto()  # no theorem applies
     DEPENDS = auto()  # it depends on the parameters
     UNSTABLE = auto()
+    INSIDE = auto()  # unstable but for border cases
     SINGULAR = auto()  # the mass matrix is singular: nothing that is computed with it means anything
 
 
@@ -66,6 +78,7 @@ _FAMILY = frozenset({Flaw.STEADY})
 LAW = (
     Row(Word.UNDECIDED, wanted=frozenset({Flaw.SINGULAR})),
     Row(Word.UNSTABLE, wanted=frozenset({Flaw.UNSTABLE})),
+    Row(Word.UNSTABLE_BUT_BORDERS, wanted=frozenset({Flaw.INSIDE})),
     Row(Word.DEPENDS, wanted=frozenset({Flaw.DEPENDS})),
     Row(Word.UNDECIDED, wanted=frozenset({Flaw.OPEN})),
     Row(Word.ASYMPTOTIC, Ground.DECAYS, allowed=frozenset()),
@@ -76,7 +89,9 @@ LAW = (
     Row(Word.ASYMPTOTIC_BUT_TURNED, Ground.DECAYS, allowed=_SOUND),
     Row(Word.STABLE, Ground.ENERGY, allowed=frozenset()),
     Row(Word.STABLE, Ground.ENERGY, wanted=_FAMILY, allowed=_FAMILY),  # of a leaf, beside parts that decay
+    Row(Word.STABLE, Ground.LINEAR, allowed=_DRIFT | _FAMILY),  # what may drift by itself stays near, too
     Row(Word.STABLE_BUT_CYCLIC, Ground.ENERGY, wanted=_DRIFT, allowed=_DRIFT | _FAMILY),
+    Row(Word.STABLE_BUT_CYCLIC, Ground.SHIFTED, wanted=_DRIFT, allowed=_DRIFT | _FAMILY),
     Row(Word.GYROSCOPIC, Ground.UNDAMPED, wanted=frozenset({Flaw.INDEFINITE})),
     Row(Word.CRITICAL),
 )
@@ -94,6 +109,7 @@ PLAIN: Mapping[Word, tuple[Set[Ground], Set[Flaw]]] = {
     Word.UNDECIDED: (set(), {Flaw.OPEN}),
     Word.DEPENDS: (set(), {Flaw.DEPENDS}),
     Word.UNSTABLE: (set(), {Flaw.UNSTABLE}),
+    Word.UNSTABLE_BUT_BORDERS: (set(), {Flaw.INSIDE}),
 }
 
 
@@ -188,6 +204,27 @@ def depends() -> Verdict:
     return Verdict(Word.DEPENDS, (), (Reason(Because.SEE_CASES),))
 
 
+def unstable_inside(unstable: Verdict) -> Verdict:
+    """``unstable`` for all parameters but some without inner points, at which it is left open."""
+    return Verdict(Word.UNSTABLE_BUT_BORDERS, unstable.theorems, (*unstable.reasons, Reason(Because.BORDERS_APART)))
+
+
+def weakest(verdicts: Sequence[Verdict]) -> Verdict:
+    """What is true of one system at all parameters, each of which has one of these verdicts."""
+    if len({(one.word, one.theorems, one.reasons, one.grounds, one.flaws) for one in verdicts}) == 1:
+        return verdicts[0]
+    kept = set.intersection(*({*one.laid} for one in verdicts))
+    grounds = {ground: tuple(sorted({name for x in verdicts for name in x.laid[ground]})) for ground in kept}
+    flaws = frozenset[Flaw]().union(*(one.flawed for one in verdicts))
+    row = row_of(kept, flaws)
+    names = () if row.ground is None else grounds[row.ground]
+    alike = [one for one in verdicts if one.word == row.word]
+    if row.ground is None and row.word in (Word.UNSTABLE, Word.UNSTABLE_BUT_BORDERS):
+        names = tuple(sorted({name for one in alike for name in one.theorems}))
+    reasons = {_uncounted(reason) for one in alike for reason in one.reasons}
+    return Verdict(row.word, names, tuple(sorted(reasons, key=lambda x: x.rank)), tuple(grounds.items()), flaws)
+
+
 def concluded(shown: Set[Fact], *reasons: Reason, why_not: Because = Because.BORDER) -> Verdict:
     """What the theorems whose hypotheses are all ``shown`` give, or what may be said without any.
 
@@ -210,13 +247,44 @@ def concluded(shown: Set[Fact], *reasons: Reason, why_not: Because = Because.BOR
         flaws.add(Flaw.STEADY)
     if flaws:  # the energy of a free spin has its minimum at given angular momentum only
         grounds = {ground: names for ground, names in grounds.items() if ground is Ground.DECAYS}
-    if Ground.UNDAMPED in grounds and Ground.ENERGY not in grounds and Fact.STIFFNESS_POSITIVE not in every:
+    positive = Fact.STIFFNESS_POSITIVE in every or Ground.LINEAR in grounds
+    if Ground.UNDAMPED in grounds and Ground.ENERGY not in grounds and not positive:
         flaws.add(Flaw.INDEFINITE)
     row = row_of({*grounds}, flaws)
     theorem = found.get(row.ground)
     told = reasons or ((reason_of(theorem),) if theorem is not None else ())
     names = () if row.ground is None else grounds[row.ground]
     return Verdict(row.word, names, told, tuple(grounds.items()), frozenset(flaws))
+
+
+def bounded(shown: Set[Fact], *reasons: Reason) -> Verdict:
+    """The verdict where the first approximation is stable; ``reasons`` say what that leaves open.
+
+    Nothing is left open where there are no terms of higher order.
+    """
+    every = implied(shown)
+    if Fact.EXACTLY_LINEAR not in every:
+        return concluded(shown | {Fact.BOUNDED}, *reasons)
+    told = [Reason(Because.LINEAR_BOUNDED)]
+    if every >= {Fact.UNDAMPED, Fact.POTENTIAL, Fact.STIFFNESS_NONSINGULAR, Fact.STIFFNESS_NEGATIVE_SOMEWHERE}:
+        told.append(Reason(Because.LINEAR_GYROSCOPIC))
+    return concluded(shown | {Fact.BOUNDED}, *told)
+
+
+def exactly(verdict: Verdict, calm: bool = False) -> Verdict:
+    """A verdict on exactly linear equations: whatever makes them stable, their solutions are bounded.
+
+    ``calm``: those along cyclic coordinates are, too.
+    """
+    if not {Ground.DECAYS, Ground.ENERGY, Ground.LINEAR, Ground.SHIFTED} & {*verdict.laid}:
+        return verdict
+    grounds = {Ground.SHIFTED: (LINEAR,), **verdict.laid}
+    if calm or Flaw.CYCLIC not in verdict.flawed:
+        grounds.setdefault(Ground.LINEAR, (LINEAR,))
+    row = row_of({*grounds}, verdict.flawed)
+    if row.word == verdict.word:
+        return replace(verdict, grounds=tuple(grounds.items()))
+    return Verdict(row.word, (LINEAR,), (Reason(Because.LINEAR_BOUNDED),), tuple(grounds.items()), verdict.flawed)
 
 
 def drifting(verdict: Verdict, constant_momenta: bool = True) -> Verdict:
@@ -226,6 +294,8 @@ def drifting(verdict: Verdict, constant_momenta: bool = True) -> Verdict:
     """
     flaws = verdict.flawed | {Flaw.CYCLIC}
     grounds = {ground: _at_constant_momenta(names) for ground, names in verdict.laid.items()}
+    if Ground.LINEAR in grounds:  # bounded is what is left when shifts are not counted
+        grounds[Ground.SHIFTED] = grounds.pop(Ground.LINEAR)
     decays = constant_momenta and Ground.DECAYS in verdict.laid
     drift = Because.DRIFT_AT_GIVEN_MOMENTA if decays else Because.DRIFT
     row = row_of({*grounds}, flaws)
@@ -244,7 +314,10 @@ def displaced(verdict: Verdict, basis: Basis | None) -> Verdict:
 
 
 #: How reasons read where cyclic coordinates have zero roots, and where momenta of theirs stay different.
-_BESIDE_ZERO_ROOTS = {Reason(Because.LEFT): Reason(Because.LEFT_BUT_CYCLIC)}
+_BESIDE_ZERO_ROOTS = {
+    Reason(Because.LEFT): Reason(Because.LEFT_BUT_CYCLIC),
+    Reason(Because.LINEAR_BOUNDED): Reason(Because.LINEAR_SHIFTED),
+}
 _BESIDE_CONSTANT_MOMENTA = _BESIDE_ZERO_ROOTS | {Reason(Because.DRIFT): Reason(Because.DRIFT_AT_GIVEN_MOMENTA)}
 
 
@@ -274,7 +347,7 @@ def off_the_leaf(verdict: Verdict) -> Verdict:
 
 def coasting() -> Verdict:
     """All coordinates are cyclic and nothing acts on them: M q'' = 0."""
-    every = tuple((ground, ()) for ground in Ground)
+    every = tuple((ground, ()) for ground in Ground if ground is not Ground.LINEAR)
     return Verdict(Word.STABLE_BUT_CYCLIC, (), (Reason(Because.COASTING),), every, frozenset({Flaw.CYCLIC}))
 
 
@@ -303,7 +376,7 @@ def combine(verdicts: Iterable[Verdict], one_energy: bool = False) -> Verdict:
         names = grounds[row.ground]
     else:  # those of the parts that have the flaw which decides
         names = tuple(sorted({name for part in parts if row.wanted <= part.flawed for name in part.theorems}))
-        names = names if row.word == Word.UNSTABLE else ()
+        names = names if row.word in (Word.UNSTABLE, Word.UNSTABLE_BUT_BORDERS) else ()
     return Verdict(row.word, names, _reasons(parts, row), tuple(grounds.items()), flaws)
 
 
@@ -324,6 +397,8 @@ def _reasons(parts: tuple[Verdict, ...], row: Row) -> tuple[Reason, ...]:
         found = {reason for part in told for reason in part.reasons}
     elif row.ground is None:
         found = {Reason(Because.UNLIKE_PARTS)}
+    elif row.ground in (Ground.LINEAR, Ground.SHIFTED):
+        found = {Reason(Because.LINEAR_BOUNDED if row.ground is Ground.LINEAR else Because.LINEAR_SHIFTED)}
     elif row.ground is Ground.DECAYS and len({part.word for part in moving}) == 1:
         found = {reason for part in moving for reason in part.reasons}
     else:

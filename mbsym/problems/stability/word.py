@@ -24,6 +24,8 @@ class Word(StrEnum):
     #: It is different for different parameters: the cases say how.
     DEPENDS = "depends on the parameters"
     UNSTABLE = "unstable"
+    #: Of no point: for all parameters but those at which some condition is an equality, which have no inner point.
+    UNSTABLE_BUT_BORDERS = "unstable but for border cases"
 
     def __repr__(self) -> str:
         return repr(self.value)

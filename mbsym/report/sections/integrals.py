@@ -26,4 +26,4 @@ def lines(found: tuple[Integral, ...], analysis: Analysis) -> Iterator[str]:
     for item in found:
         yield f"{item.name}: {item.status}"
     if not found:
-        yield "none of the kinds that are looked for"
+        yield "none in closed form of the kinds that are looked for"

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from mbsym.analysis.small import Averaging, SmallParameters
+from mbsym.analysis.small import SmallParameters
 from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
 from mbsym.report import oscillation_words
 from mbsym.report.expansion_json import expansion_data, measured_data
-from mbsym.report.expansion_measured import average_measured, flow_measured, oscillation_measured
+from mbsym.report.expansion_measured import JudgedAverage, averages, flow_measured, oscillation_measured
 from mbsym.report.expansion_words import (
     Medium,
     coefficients,
@@ -40,7 +40,7 @@ def data(found: SmallParameters, system: System, write: Write) -> dict[str, Any]
         "measured": None if slow is None else measured_data(flow_measured(found, system)),
         "oscillation": None if found.oscillation is None else _oscillation(found, system),
         "no_oscillation": found.no_oscillation,
-        "averaged": [_averaging(found, one, system, write) for one in found.averaged],
+        "averaged": [_averaging(one, write) for one in averages(found, system)],
     }
 
 
@@ -52,21 +52,27 @@ def _oscillation(found: SmallParameters, system: System) -> dict[str, Any]:
     }
 
 
-def _averaging(whole: SmallParameters, one: Averaging, system: System, write: Write) -> dict[str, Any]:
-    found = one.found
+def _averaging(judged: JudgedAverage, write: Write) -> dict[str, Any]:
+    one, found = judged.one, judged.one.found
     if found is None:
         return {"phase": one.phase, "reason": one.failure}
+    taken = {
+        "phase": one.phase,
+        "rate": found.rate,
+        "small": list(found.small),
+        "orders": {found.rate: -1, **dict(found.orders)},
+        "measured": measured_data(judged.measured),
+    }
+    if judged.withdrawn:
+        return {**taken, "reason": "withdrawn: the measured distance does not shrink as it should"}
     assert one.analysis is not None
     verdict = one.analysis.optional("stability")
     word = None if verdict is None or verdict.numerical is None else verdict.numerical.word.value
     return {
-        "phase": one.phase,
-        "rate": found.rate,
-        "small": list(found.small),
+        **taken,
         "vibrational": write(found.vibrational),
         "potential": write(found.potential),
         "averaged_motion_at_values": word,
-        "measured": measured_data(average_measured(whole, one.phase, system)),
     }
 
 
@@ -79,9 +85,8 @@ def told(found: SmallParameters, system: System, write: Medium) -> Iterator[Said
         yield from sentences(found.slow, write)
         yield from of_measured(found.small, flow_measured(found, system), write)
     yield from _wave(found, system, write)
-    for one in found.averaged:
-        measured = "" if one.found is None else average_measured(found, one.phase, system)
-        yield from of_averaging(one, measured, write)
+    for one in averages(found, system):
+        yield from of_averaging(one, write)
 
 
 def _wave(found: SmallParameters, system: System, write: Medium) -> Iterator[Said | list[Any]]:

@@ -131,7 +131,7 @@ def lines(found: Stability, analysis: Analysis) -> Iterator[str]:
         # Of a motion that is proved to be stable, conditions of something stronger would be misread.
         items = [] if part.theory.verdict.stable else list(statements(part.ring, part.theory.requirements))
         verdict = _verdict(part.theory.verdict)
-        if part.theory.verdict.word is Word.DEPENDS and items:
+        if part.theory.verdict.word in (Word.DEPENDS, Word.UNSTABLE_BUT_BORDERS) and items:
             verdict += f"; {_heading(part.theory)}:"
         yield f"{', '.join(part.coordinates)}: {verdict}"
         shown = Shown()
@@ -140,9 +140,8 @@ def lines(found: Stability, analysis: Analysis) -> Iterator[str]:
                 shown.show(item)
         for item in items:
             yield f"  {_condition(item, shown)}"
-    theories = [part.theory for part in found.subsystems]
-    judged = [verdict for x in theories for verdict in (x.verdict, *(case.verdict for case in x.cases))]
-    for one in dict.fromkeys(reason for x in judged for reason in x.reasons if reason.code in _OF_COORDINATES):
+    verdicts = [x for part in found.subsystems for x in (part.theory.verdict, *(y.verdict for y in part.theory.cases))]
+    for one in dict.fromkeys(reason for x in verdicts for reason in x.reasons if reason.code in _OF_COORDINATES):
         yield _clause(sentence(one))
     if len(found.subsystems) > 1:
         yield ALONE

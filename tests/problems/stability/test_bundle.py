@@ -104,8 +104,8 @@ def test_on_the_border_of_sleep_nothing_is_claimed() -> None:
 def test_a_top_without_its_symmetry_is_left_open() -> None:
     """With a weak spring across, the momentum about the vertical is no integral: gyroscopic stabilisation, no more.
 
-    Nor is that of a slim top's spin about its axis; in axes that turn with it, moments A, B, C, P = m g l, tilts have
-    K1 = (C - B) W^2 - P, K2 = (C - A) W^2 - P:  A B z^4 + (A K2 + B K1 + (A + B - C)^2 W^2) z^2 + K1 K2.
+    Nor is that of a slim top's spin about its axis; in axes that turn with it, moments A, B, C, P = m g l, the tilts
+    have K1 = (C - B) W^2 - P, K2 = (C - A) W^2 - P and  A B z^4 + (A K2 + B K1 + (A + B - C)^2 W^2) z^2 + K1 K2.
     """
     text = (SHIPPED / "heavy-top.yaml").read_text(encoding="utf-8")
     pulled = text.replace("loads:\n", "loads:\n  - potential: sin(beta)**2/100\n")

@@ -80,7 +80,9 @@ def test_friction_keeps_a_minimum_and_forbids_to_speak_of_the_converse() -> None
     assert verdict("x**4", more="  - damper: {coordinate: x, coefficient: 1}\n").word in (Word.STABLE, Word.ASYMPTOTIC)
     assert verdict("x**4", more="  - rayleigh: -x_dot**2/2\n").word is Word.UNSTABLE
     assert verdict("x**4", more="  - rayleigh: -x_dot**4/4\n").word is Word.UNDECIDED, "driven"
-    assert verdict("-x**4", more="  - damper: {coordinate: x, coefficient: 1}\n").word is Word.UNDECIDED
+    assert (
+        verdict("-x**4", more="  - damper: {coordinate: x, coefficient: 1}\n").word is Word.CRITICAL
+    )  # roots 0 and -1
 
 
 def test_an_upright_rod_on_the_torsional_spring_that_just_holds_it() -> None:

@@ -1,0 +1,593 @@
+"""Sets of parameters given by polynomial inequalities: unions of pieces, each a list of conditions that all hold.
+
+Whether a set is empty is decided by, from cheap to dear:
+
+* ``Signs``: a condition whose opposite follows from the others;
+* one parameter left: the zeros of all polynomials, and a number between any two neighbouring ones;
+* equations linear in a parameter: it is eliminated; p >= 0 is p > 0 or p = 0;
+* strict inequalities in a few parameters: a number in every open cell of a cylindrical decomposition, whose projection
+  needs leading coefficients, discriminants and resultants only (McCallum 1993; Strzebonski 2000);
+
+or it is left open: an answer is exact, or none.  Parts of a piece that share no parameter are decided one by one.
+
+Polynomials are ``fmpq_mpoly`` in generators that are free parameters; where others occur (roots, functions, constants)
+only ``Signs`` are asked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from itertools import combinations, pairwise
+from typing import Any
+
+from flint import fmpq, fmpq_poly
+
+from mbsym.algebra.factors import irreducible_factors
+from mbsym.algebra.failures import Failure, Limit, TooLargeError
+from mbsym.algebra.generators import occurring
+from mbsym.algebra.plane.numbers import (
+    AlgebraicNumber,
+    Number,
+    ascending,
+    between_simply,
+    number,
+    primitive,
+    roots_between,
+    sign,
+)
+from mbsym.algebra.signs import MOST_TERMS, RELATIONS, ContradictionError, Polynomial, Signs, coefficients_in
+
+#: Pieces of a set, parameters and degree of what is decomposed, cells and branches that are looked at.
+MOST_PIECES, MOST_PARAMETERS, MOST_DEGREE, MOST_CELLS, MOST_BRANCHES = 200, 4, 24, 2_000, 60
+#: Conditions with more terms in all, and more conditions, are not searched.
+MOST_TERMS_SEARCHED, MOST_SEARCHED = 60, 12
+#: Of more conditions at once, and of longer ones, it is not asked whether one contradicts the others.
+MOST_COMPARED, MOST_TERMS_COMPARED = 8, 40
+
+_NEGATED = {">": (">=", -1), ">=": (">", -1), "=": ("!=", 1), "!=": ("=", 1)}
+_TURNED = {"<": ">", "<=": ">="}
+_ALLOWED = RELATIONS | {"=": frozenset({0})}
+#: What the words of ``Signs`` mean, as relations to 0; of the negative ones for the opposite.
+_OF_WORD = {"positive": (1, ">"), "nonnegative": (1, ">="), "negative": (-1, ">"), "nonpositive": (-1, ">=")}
+
+
+class Emptiness(Enum):
+    """What is known of a set."""
+
+    EMPTY = "empty"
+    INHABITED = "not empty"
+    OPEN = "not decided"
+
+
+@dataclass(frozen=True)
+class Atom:
+    """``polynomial`` ``relation`` 0, with one of > >= = !=."""
+
+    polynomial: Polynomial
+    relation: str
+
+    def negated(self) -> Atom:
+        relation, factor = _NEGATED[self.relation]
+        return Atom(self.polynomial * factor, relation)
+
+
+def atom(polynomial: Polynomial, relation: str) -> Atom:
+    """The condition, with < and <= turned round."""
+    return Atom(-polynomial, _TURNED[relation]) if relation in _TURNED else Atom(polynomial, relation)
+
+
+Piece = tuple[Atom, ...]
+
+
+@dataclass(frozen=True)
+class ParameterSet:
+    """The union of its ``pieces``; operations raise TooLargeError where these are too many."""
+
+    pieces: tuple[Piece, ...]
+
+    def __or__(self, other: ParameterSet) -> ParameterSet:
+        return _of((*self.pieces, *other.pieces))
+
+    def __and__(self, other: ParameterSet) -> ParameterSet:
+        return _of((*one, *two) for one in self.pieces for two in other.pieces)
+
+    def complement(self) -> ParameterSet:
+        found = EVERYTHING
+        for piece in self.pieces:
+            found = found & ParameterSet(tuple((one.negated(),) for one in piece))
+        return found
+
+    def inner(self) -> ParameterSet:
+        """A set that has inner points where this one has, and that is empty where it has none."""
+        return ParameterSet(
+            tuple(
+                tuple(
+                    Atom(one.polynomial, ">") if one.relation == ">=" and one.polynomial != 0 else one for one in piece
+                )
+                for piece in self.pieces
+                if not any(one.relation == "=" and one.polynomial != 0 for one in piece)
+            )
+        )
+
+    def emptiness(self, signs: Signs) -> Emptiness:
+        """Whether no parameters with these signs and assumptions are in it."""
+        return self.witness(signs)[0]
+
+    def witness(self, signs: Signs) -> tuple[Emptiness, Mapping[int, Any] | None]:
+        """The same, and rational values of parameters in it by generator, where some were found; others are free."""
+        for point in _points(signs):
+            if self.holds(point):
+                return Emptiness.INHABITED, dict(enumerate(point))
+        answer = Emptiness.EMPTY
+        for piece in self.pieces:
+            found, at = _decided(piece, signs)
+            if found is Emptiness.INHABITED:
+                return found, at
+            answer = found if found is Emptiness.OPEN else answer
+        return answer, None
+
+    def is_empty(self, signs: Signs) -> bool:
+        """Whether it is proved that no parameters are in it."""
+        if any(self.holds(point) for point in _points(signs)):
+            return False
+        return all(_decided(piece, signs)[0] is Emptiness.EMPTY for piece in self.pieces)
+
+    def holds(self, point: Sequence[Any]) -> bool:
+        """Whether a point, with a value for each generator, is in it."""
+        return any(all(_holds(one.polynomial(*point), one.relation) for one in piece) for piece in self.pieces)
+
+
+def _of(pieces: Iterable[Piece]) -> ParameterSet:
+    kept: dict[frozenset[tuple[str, str]], Piece] = {}
+    for piece in pieces:
+        plain: dict[tuple[str, str], Atom] = {}
+        for one in piece:
+            if not one.polynomial.is_constant():
+                plain[str(one.polynomial), one.relation] = one
+            elif not _holds(_number(one.polynomial), one.relation):
+                break
+        else:
+            kept.setdefault(frozenset(plain), tuple(plain.values()))
+        if len(kept) > MOST_PIECES:
+            raise TooLargeError("a set of parameters in too many pieces", limit=Limit.WORK)
+    return ParameterSet(tuple(kept.values()))
+
+
+EVERYTHING, NOTHING = ParameterSet(((),)), ParameterSet(())
+
+
+def where(*atoms: Atom) -> ParameterSet:
+    """The set in which all of these hold."""
+    return _of([atoms])
+
+
+def _points(signs: Signs) -> tuple[tuple[Any, ...], ...]:
+    """Some points that keep what is known, where all generators are free parameters."""
+    return () if signs.numbers or signs.normal is not None else signs.witnesses
+
+
+def _number(p: Polynomial) -> Any:
+    return p.leading_coefficient() if p != 0 else fmpq(0)
+
+
+def _holds(value: Any, relation: str) -> bool:
+    return sign(value) in _ALLOWED[relation]
+
+
+# --- one piece ---
+
+
+def _decided(piece: Piece, signs: Signs) -> tuple[Emptiness, Mapping[int, Any] | None]:
+    piece = tuple(Atom(signs.normalised(one.polynomial), one.relation) for one in piece)
+    if _excluded(piece, signs):
+        return Emptiness.EMPTY, None
+    used = set(occurring(one.polynomial for one in piece))
+    if signs.numbers or signs.normal is not None:
+        return Emptiness.OPEN, None
+    related = list(_related(signs, used))
+    whole = [*piece, *related, *_words(signs, used)]
+    if sum(len(one.polynomial) for one in piece) > MOST_TERMS_SEARCHED or len(piece) > MOST_SEARCHED:
+        return Emptiness.OPEN, None
+    for chosen, complete in (
+        (whole, True),
+        ([*piece, *_words(signs, set(occurring(x.polynomial for x in piece)))], False),
+    ):
+        try:
+            found = _Search(signs).solve(chosen)
+        except (Failure, _OutOfBudget):
+            continue
+        if found is None:
+            return Emptiness.EMPTY, None
+        if complete:
+            return Emptiness.INHABITED, found
+    return Emptiness.OPEN, None
+
+
+def _excluded(piece: Piece, signs: Signs) -> bool:
+    """Whether the opposite of a condition follows from the others."""
+    short = sorted(piece, key=lambda one: len(one.polynomial))[:MOST_COMPARED]
+    short = [one for one in short if len(one.polynomial) <= MOST_TERMS_COMPARED]
+    try:
+        for k, one in enumerate(short):
+            others = [x for j, other in enumerate(short) if j != k for x in _assumed(other)]
+            word = signs.assuming(others).sign(one.polynomial)
+            if not _SETS[word] & _ALLOWED[one.relation]:
+                return True
+    except ContradictionError:
+        return True
+    return False
+
+
+_SETS: dict[str, frozenset[int]] = {
+    "positive": frozenset({1}),
+    "nonnegative": frozenset({0, 1}),
+    "zero": frozenset({0}),
+    "nonzero": frozenset({-1, 1}),
+    "nonpositive": frozenset({-1, 0}),
+    "negative": frozenset({-1}),
+    "unknown": frozenset({-1, 0, 1}),
+}
+
+
+def _assumed(one: Atom) -> Iterator[tuple[Polynomial, str]]:
+    if one.relation == "=":
+        yield one.polynomial, ">="
+        yield -one.polynomial, ">="
+    else:
+        yield one.polynomial, one.relation
+
+
+def _related(signs: Signs, used: set[int]) -> Iterator[Atom]:
+    """The assumptions about the parameters that occur, and those about what these bring in; they join ``used``."""
+    left = list(signs.assumptions)
+    while True:
+        found = [x for x in left if used & set(occurring([x[0]]))]
+        if not found:
+            return
+        left = [x for x in left if not any(x is y for y in found)]
+        for polynomial, relation in found:
+            used.update(occurring([polynomial]))
+            yield Atom(polynomial, relation)
+
+
+def _words(signs: Signs, used: Iterable[int]) -> Iterator[Atom]:
+    """The declared signs of the parameters that occur."""
+    for k in used:
+        x, word = signs.context.gen(k), signs.words[k]
+        if word in _OF_WORD:
+            factor, relation = _OF_WORD[word]
+            yield Atom(x * factor, relation)
+        elif word == "nonzero":
+            yield Atom(x, "!=")
+        elif word == "zero":
+            yield Atom(x, "=")
+
+
+class _OutOfBudget(Exception):
+    """Left open."""
+
+
+class _Search:
+    """Parameters at which conditions hold."""
+
+    def __init__(self, signs: Signs) -> None:
+        self.context = signs.context
+        self.branches, self.cells = MOST_BRANCHES, MOST_CELLS
+
+    def solve(self, atoms: Sequence[Atom]) -> dict[int, Any] | None:
+        """Values of parameters (numbers, exact), or None where there are none.  Raises _OutOfBudget."""
+        self.branches -= 1
+        if self.branches < 0:
+            raise _OutOfBudget
+        kept: dict[tuple[str, str], Atom] = {}
+        for one in atoms:
+            if one.polynomial.is_constant():
+                if not _holds(_number(one.polynomial), one.relation):
+                    return None
+            else:
+                kept[str(one.polynomial), one.relation] = one
+        found: dict[int, Any] = {}
+        open_ones = False
+        for part in sorted(_components(list(kept.values())), key=lambda part: len(_variables(part))):
+            try:
+                there = self._component(part)
+            except _OutOfBudget:
+                open_ones = True
+                continue
+            if there is None:
+                return None
+            found |= there
+        if open_ones:
+            raise _OutOfBudget
+        return found
+
+    def _component(self, atoms: list[Atom]) -> dict[int, Any] | None:
+        variables = _variables(atoms)
+        if len(variables) == 1:
+            return self._on_line(atoms, variables[0])
+        for k, one in enumerate(atoms):
+            if one.relation == "=":
+                return self._with_equation(one, [x for j, x in enumerate(atoms) if j != k])
+        weak = next((k for k, one in enumerate(atoms) if one.relation == ">="), None)
+        if weak is None:
+            return self._in_cells(atoms, variables)
+        rest, p = [x for j, x in enumerate(atoms) if j != weak], atoms[weak].polynomial
+        return self._either([[Atom(p, ">"), *rest], [Atom(p, "="), *rest]])
+
+    def _either(self, choices: Iterable[list[Atom]]) -> dict[int, Any] | None:
+        left_open = False
+        for chosen in choices:
+            try:
+                found = self.solve(chosen)
+            except _OutOfBudget:
+                left_open = True
+                continue
+            if found is not None:
+                return found
+        if left_open:
+            raise _OutOfBudget
+        return None
+
+    # --- one parameter ---
+
+    def _on_line(self, atoms: list[Atom], x: int) -> dict[int, Any] | None:
+        polynomials = [_univariate(one.polynomial, x) for one in atoms]
+        zeros = _zeros(polynomials)
+        for value in (*_between(zeros), *zeros):
+            self._cell()
+            if all(_holds_there(p, value, one.relation) for p, one in zip(polynomials, atoms, strict=True)):
+                return {x: value}
+        return None
+
+    # --- equations ---
+
+    def _with_equation(self, one: Atom, rest: list[Atom]) -> dict[int, Any] | None:
+        return self._either_factor([f for f, _ in irreducible_factors(one.polynomial)[1]], rest)
+
+    def _either_factor(self, factors: Sequence[Polynomial], rest: list[Atom]) -> dict[int, Any] | None:
+        left_open = False
+        for factor in factors:
+            try:
+                found = self._on_zeros(factor, rest)
+            except _OutOfBudget:
+                left_open = True
+                continue
+            if found is not None:
+                return found
+        if left_open:
+            raise _OutOfBudget
+        return None
+
+    def _on_zeros(self, factor: Polynomial, rest: list[Atom]) -> dict[int, Any] | None:
+        """Where an irreducible factor vanishes: a parameter that it is linear in is eliminated."""
+        degrees = factor.degrees()
+        linear = [k for k, d in enumerate(degrees) if d == 1]
+        if not linear:
+            return self._on_irrational_zeros(factor, rest)
+        x = min(linear, key=lambda k: len(coefficients_in(factor, k)[1]))
+        c, b = coefficients_in(factor, x)
+        there = [Atom(_substituted(one.polynomial, x, -c, b), one.relation) for one in rest]
+        if not b.is_constant():
+            there.append(Atom(b, "!="))
+        left_open = False
+        try:
+            found = self.solve(there)
+        except _OutOfBudget:
+            found, left_open = None, True
+        if found is not None:
+            found = {k: fmpq(1) for k in occurring([c, b])} | found
+            value = _value(-c, found, self.context) / _value(b, found, self.context)
+            return found | {x: value}
+        if not b.is_constant():
+            found = self.solve([Atom(b, "="), Atom(c, "="), *rest])
+        if found is None and left_open:
+            raise _OutOfBudget
+        return found
+
+    def _on_irrational_zeros(self, factor: Polynomial, rest: list[Atom]) -> dict[int, Any] | None:
+        """Nowhere, where no parameters keep the rest, or the factor has one parameter and no zeros; else left open."""
+        used = occurring([factor])
+        alone = [one for one in rest if occurring([one.polynomial]) == used]
+        if len(used) == 1 and self._on_line([Atom(factor, "="), *alone], used[0]) is None:
+            return None
+        if self.solve(rest) is None:
+            return None
+        raise _OutOfBudget
+
+    # --- strict inequalities ---
+
+    def _in_cells(self, atoms: list[Atom], variables: list[int]) -> dict[int, Any] | None:
+        """Open conditions: f != 0 takes nothing away from an open set that is not empty."""
+        if len(variables) > MOST_PARAMETERS:
+            raise _OutOfBudget
+        strict = [one for one in atoms if one.relation == ">"]
+        found = self._cells(strict, _ordered(strict, variables))
+        if found is None:
+            return None
+        apart = [one.polynomial for one in atoms if one.relation == "!="]
+        if any(_value(p, found, self.context) == 0 for p in apart):
+            return self._moved(found, strict, apart)
+        return found
+
+    def _moved(self, found: dict[int, Any], strict: Sequence[Atom], apart: Sequence[Polynomial]) -> dict[int, Any]:
+        """A point near by that is on no surface f = 0."""
+        for power in range(4, 40):
+            moved = {k: v + fmpq(2 * j + 1, 1 << power) for j, (k, v) in enumerate(sorted(found.items()))}
+            inside = all(_value(one.polynomial, moved, self.context) > 0 for one in strict)
+            if inside and all(_value(p, moved, self.context) != 0 for p in apart):
+                return moved
+        raise _OutOfBudget
+
+    def _cells(self, strict: Sequence[Atom], order: Sequence[int]) -> dict[int, Any] | None:
+        levels = [_irreducible([one.polynomial for one in strict])]
+        for x in order[:-1]:
+            levels.append(_projected(levels[-1], x))
+        stages = list(zip(reversed(order), reversed(levels), strict=True))
+
+        def lifted(at: int, values: dict[int, Any]) -> dict[int, Any] | None:
+            if at == len(stages):
+                return values
+            x, factors = stages[at]
+            zeros = _zeros([_univariate(_put_in(f, values, self.context), x) for f in factors])
+            for value in _between(zeros):
+                self._cell()
+                there = values | {x: value}
+                if all(_not_broken(one.polynomial, there, self.context) for one in strict):
+                    found = lifted(at + 1, there)
+                    if found is not None:
+                        return found
+            return None
+
+        return lifted(0, {})
+
+    def _cell(self) -> None:
+        self.cells -= 1
+        if self.cells < 0:
+            raise _OutOfBudget
+
+
+def _variables(atoms: Sequence[Atom]) -> list[int]:
+    return occurring(one.polynomial for one in atoms)
+
+
+def _components(atoms: list[Atom]) -> list[list[Atom]]:
+    """Conditions that share parameters, together."""
+    parts: list[tuple[set[int], list[Atom]]] = []
+    for one in atoms:
+        used, joined = set(occurring([one.polynomial])), [one]
+        apart = []
+        for other, held in parts:
+            if other & used:
+                used |= other
+                joined = [*held, *joined]
+            else:
+                apart.append((other, held))
+        parts = [*apart, (used, joined)]
+    return [held for _, held in parts]
+
+
+def _univariate(p: Polynomial, x: int) -> fmpq_poly:
+    total = fmpq_poly([0])
+    for exponents, value in p.terms():
+        total[int(exponents[x])] = total[int(exponents[x])] + value
+    return total
+
+
+def _zeros(polynomials: Sequence[fmpq_poly]) -> list[Number]:
+    """All real zeros, in their order."""
+    found: dict[str, Any] = {}
+    for p in polynomials:
+        if p.degree() > 0:
+            if p.degree() > MOST_DEGREE:
+                raise _OutOfBudget
+            for factor, _ in primitive(p).factor()[1]:
+                found[str(factor)] = factor
+    numbers: list[Number] = []
+    for factor in found.values():
+        if factor.degree() == 1:
+            numbers.append(fmpq(-factor[0], factor[1]))
+        elif factor.degree() > 1:
+            bound = fmpq(2) + max(abs(fmpq(c, factor.leading_coefficient())) for c in factor.coeffs())
+            numbers += map(number, roots_between(factor, -bound, bound))
+    return list(ascending(numbers))
+
+
+def _between(zeros: Sequence[Number]) -> Iterator[Any]:
+    """A rational number in each open interval between neighbouring zeros, and beyond the outer ones."""
+    if not zeros:
+        yield fmpq(1)
+        return
+    low = zeros[0] if isinstance(zeros[0], fmpq) else zeros[0].low
+    high = zeros[-1] if isinstance(zeros[-1], fmpq) else zeros[-1].high
+    yield fmpq(high.floor()) + 1
+    for a, b in pairwise(zeros):
+        yield between_simply(a, b)
+    yield fmpq(low.ceil()) - 1
+
+
+def _holds_there(p: fmpq_poly, value: Number, relation: str) -> bool:
+    return (value.sign(p) if isinstance(value, AlgebraicNumber) else sign(p(value))) in _ALLOWED[relation]
+
+
+def _substituted(p: Polynomial, x: int, top: Polynomial, bottom: Polynomial) -> Polynomial:
+    """p at x = top/bottom times an even power of bottom, or p where x does not occur."""
+    coefficients = coefficients_in(p, x)
+    degree = len(coefficients) - 1
+    if not degree:
+        return p
+    total, power = p * 0, p * 0 + 1
+    for k in range(degree, -1, -1):
+        total = total * top + coefficients[k] * power
+        power = power * bottom
+    return total * bottom if degree % 2 else total
+
+
+def _put_in(p: Polynomial, values: Mapping[int, Any], context: Any) -> Polynomial:
+    if not values:
+        return p
+    if any(not isinstance(v, fmpq) for v in values.values()):
+        raise _OutOfBudget
+    names = context.names()
+    return p.subs({names[k]: v for k, v in values.items()})
+
+
+def _value(p: Polynomial, values: Mapping[int, Any], context: Any) -> Any:
+    """The value; parameters that nothing is asked of count as 1."""
+    there = _put_in(p, values, context)
+    if there.is_constant():
+        return _number(there)
+    return _number(_put_in(there, {k: fmpq(1) for k in occurring([there])}, context))
+
+
+def _not_broken(p: Polynomial, values: Mapping[int, Any], context: Any) -> bool:
+    """Whether p > 0, or not all of its parameters have values."""
+    if not set(occurring([p])) <= values.keys():
+        return True
+    return bool(_number(_put_in(p, values, context)) > 0)
+
+
+def _irreducible(polynomials: Iterable[Polynomial]) -> list[Polynomial]:
+    found: dict[str, Polynomial] = {}
+    for p in polynomials:
+        if p.is_constant():
+            continue
+        for factor, _ in irreducible_factors(p)[1]:
+            found[str(factor)] = factor
+    return list(found.values())
+
+
+def _projected(factors: Sequence[Polynomial], x: int) -> list[Polynomial]:
+    """Where none of these vanishes the factors have as many real zeros in x, apart from each other, all along."""
+    there = [f for f in factors if f.degrees()[x]]
+    name = factors[0].context().names()[x] if factors else ""
+    made = [f for f in factors if not f.degrees()[x]]
+    for f in there:
+        made.append(coefficients_in(f, x)[-1])
+        if f.degrees()[x] > 1:
+            _affordable(f, f, x)
+            made.append(f.discriminant(name))
+    for f, g in combinations(there, 2):
+        _affordable(f, g, x)
+        made.append(f.resultant(g, name))
+    return _irreducible(made)
+
+
+def _affordable(f: Polynomial, g: Polynomial, x: int) -> None:
+    """Raises _OutOfBudget where a resultant would be of a high degree."""
+    if len(f) * len(g) > MOST_TERMS * MOST_TERMS // 4:
+        raise _OutOfBudget
+    if f.degrees()[x] * g.total_degree() + g.degrees()[x] * f.total_degree() > 2 * MOST_DEGREE:
+        raise _OutOfBudget
+
+
+def _ordered(strict: Sequence[Atom], variables: list[int]) -> list[int]:
+    """The parameters in the order in which they are projected away: of low degree first."""
+    polynomials = [one.polynomial for one in strict]
+
+    def weight(x: int) -> tuple[int, int]:
+        degrees = [p.degrees()[x] for p in polynomials]
+        return max(degrees, default=0), sum(degrees)
+
+    return sorted(variables, key=weight)

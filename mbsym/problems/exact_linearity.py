@@ -1,0 +1,89 @@
+"""Whether the equations of motion are their own first approximation, in all orders.
+
+M q'' = f(q, q', t) is exactly linear in q where M is constant and f is a polynomial of first degree in q and q', with
+constant coefficients but for a part that depends on the time alone.  Deviations from any motion then obey
+M x'' + C x' + S x = 0 with the same M, C, S at every time.  Proved in the ring, where every formula has one form: what
+is seen in coordinates q is seen in all coordinates that depend on them by a constant matrix, q = q_0 + S y.
+
+Constraints whose velocity rows are such polynomials, too, leave exactly linear equations of what is independent.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from mbsym.algebra.failures import Failure
+from mbsym.algebra.generators import occurring
+from mbsym.algebra.ring import Polynomial
+from mbsym.mechanics.generalized import generalized_forces
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.motion import relations
+from mbsym.problems.energy import Energy
+from mbsym.problems.equations import convective_rate
+
+#: The formulas of parameters that have to vanish; None where no parameters make the equations linear.
+Excess = tuple[Polynomial, ...] | None
+
+
+def excess(scene: Scene, energy: Energy, velocity_rows: Sequence[Polynomial] = ()) -> Excess:
+    """What keeps the equations from being linear; () where they are (scene over the ring, with its bodies).
+
+    ``velocity_rows`` of constraints: J q' + j.
+    """
+    try:
+        entries = [x for row in energy.A2.polynomials for x in row]
+        found = _excess(scene, entries, 0)
+        if found is None:
+            return None
+        further = _excess(scene, velocity_rows, 1)
+        if further is None:
+            return None
+        forces = _excess(scene, _forcing(scene, energy), 1)
+        return None if forces is None else (*found, *further, *forces)
+    except Failure:
+        return None
+
+
+def _forcing(scene: Scene, energy: Energy) -> Iterable[Polynomial]:
+    """f row by row, so that the first one that is not linear ends the search."""
+    ring = scene.ring
+    kinetic = energy.kinetic_energy.polynomial
+    lagrangian = kinetic + energy.force_function.polynomial
+    applied = generalized_forces(scene)
+    for name in scene.system.coordinates:
+        momentum = ring.velocity_derivative(kinetic, name)
+        slope = ring.derivative(lagrangian, name)
+        yield ring.reduce(slope + applied[name] - convective_rate(scene, ring, momentum))
+
+
+def _excess(scene: Scene, formulas: Iterable[Polynomial], most: int) -> Excess:
+    """The coefficients of what is of a higher degree than ``most``, or varies with the time."""
+    ring, system = scene.ring, scene.system
+    moving = (*system.coordinates, *system.velocities)
+    running = (*(item.name for item in system.prescribed), "t")
+    images = relations(scene)
+    direct = {ring.index(kind, name) for kind in ("coordinate", "velocity") for name in system.coordinates}
+    found: list[Polynomial] = []
+    for formula in formulas:
+        x = ring.substitute(formula, images)
+        others = [(k, ring.context.gen(k)) for k in occurring([x]) if k not in direct]
+        curved = {k for k, g in others if ring.dependencies(g, moving)}
+        late = {k for k, g in others if ring.dependencies(g, running)}
+        apart: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
+        for monomial, coefficient in x.terms():
+            exponents = list(map(int, monomial))
+            degree = sum(exponents[k] for k in direct)
+            runs = any(exponents[k] for k in late)
+            bent = any(exponents[k] for k in curved)
+            if degree <= most and not bent and not (runs and (degree or not most)):
+                continue
+            key = tuple(power if k in direct | curved | late else 0 for k, power in enumerate(exponents))
+            rest = tuple(0 if known else power for known, power in zip(key, exponents, strict=True))
+            apart.setdefault(key, {})[rest] = coefficient
+        for terms in apart.values():
+            part = ring.context.from_dict(terms)
+            if part.is_constant():
+                return None
+            found.append(part)
+    return tuple(found)
