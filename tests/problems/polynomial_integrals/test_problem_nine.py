@@ -189,7 +189,7 @@ loads:
 
 
 def test_symmetries_are_in_the_reports(tmp_path):
-    """L of x and 2 y is that of an isotropic oscillator: it does not change when these turn, (x, y) moving as (-4 y, x)."""
+    """L of x and 2 y is that of an isotropic oscillator: no change when they turn, (x, y) moving as (-4 y, x)."""
     (tmp_path / "ellipses.yaml").write_text(ELLIPSES, encoding="utf-8")
     words = ["run", tmp_path / "ellipses.yaml", "--problems", "7,9", "--format", "json,latex,html,python"]
     done = CliRunner().invoke(main, [*map(str, words), "--language", "ru", "--out", str(tmp_path)])
