@@ -136,6 +136,7 @@ EXPLAINED = {
     # claims
     "holds exactly": "se cumple exactamente",
     "holds on the relations between the parameters": "se cumple con las relaciones entre los parámetros",
+    "holds on every motion": "se cumple en todo movimiento",
     "holds but for border cases": "se cumple salvo en casos frontera",
     "holds up to a total time derivative": "se cumple salvo una derivada total respecto al tiempo",
     "holds to the digits printed": "se cumple en las cifras impresas",

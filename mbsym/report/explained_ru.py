@@ -136,6 +136,7 @@ EXPLAINED = {
     # claims
     "holds exactly": "верно точно",
     "holds on the relations between the parameters": "верно при соотношениях между параметрами",
+    "holds on every motion": "верно на любом движении",
     "holds but for border cases": "верно, кроме граничных случаев",
     "holds up to a total time derivative": "верно с точностью до полной производной по времени",
     "holds to the digits printed": "верно в пределах напечатанных знаков",
