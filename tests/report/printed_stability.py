@@ -38,6 +38,8 @@ class Line:
     letters: dict[str, Value] = field(default_factory=dict)
     #: The label as a symbol of the surface; "" where it is told in words.
     symbol: str = ""
+    #: The formula, where it is nothing but a symbol: that of a label before, or of a parameter.
+    alone: str = ""
 
 
 @dataclass
@@ -66,7 +68,7 @@ RELATIONS: dict[str, Callable[[Any], bool]] = {
 
 def truth(value: Any, relation: str) -> bool | None:
     """Whether ``value relation 0``; None where a ball does not tell."""
-    if isinstance(value, arb) and value.contains(0) and not value == 0:
+    if isinstance(value, arb) and not value.is_zero() and value.contains(0):
         return None
     return RELATIONS[relation](value)
 
@@ -115,10 +117,10 @@ class Read:
             value = self.shown[line.under]
         else:
             value = line.formula
-        if not line.under and line.symbol:
+        if line.symbol:
             if line.symbol in self.names:
                 raise TwoMeanings(line.symbol)
-            if value is not None:
+            if value is not None and line.alone not in self.letters:  # v0: v4 < 0 says nothing of the size of v0
                 self.letters[line.symbol] = value
         own = dict(line.letters)
         for symbol, meaning in own.items():
@@ -136,6 +138,9 @@ class Read:
             told = value
             value = lambda names: told(Symbols(names, letters))  # noqa: E731
             self.shown.setdefault(line.label, value)
+            if line.label.startswith("-"):
+                opposite = value
+                self.shown.setdefault(_unsigned(line.label), lambda names: -opposite(names))
         return value(self.names)
 
     def truth(self, line: Line) -> bool | None:
@@ -146,6 +151,10 @@ class Read:
         every = [self.truth(x) for x in one.all_of]
         some = [self.truth(x) for x in one.any_of]
         return both(every, some)
+
+
+def _unsigned(label: str) -> str:
+    return label[1:].removeprefix("(").removesuffix(")") if label.startswith("-(") else label[1:]
 
 
 def both(every: list[bool | None], some: list[bool | None]) -> bool | None:
@@ -186,9 +195,9 @@ def python(text: str) -> Value:
     return value
 
 
-def of_terminal(lines: list[str]) -> list[Part]:
+def of_terminal(text: str) -> list[Part]:
     parts: list[Part] = []
-    for line in lines:
+    for line in text.splitlines():
         if not line.startswith("  "):
             parts.append(Part())  # also of what is said after the last one: it has no conditions
             continue
@@ -238,7 +247,7 @@ def _json_line(item: dict[str, Any]) -> Line:
 def of_latex(text: str) -> list[Part]:
     section = text.partition("{Problem 6. Stability}")[2].partition("\\section*{")[0]
     parts: list[Part] = []
-    state, factors = "", False
+    state = ""
     for kind, content in _latex_pieces(section):
         if kind == "words":
             for word in re.finditer(
@@ -265,15 +274,14 @@ def of_latex(text: str) -> list[Part]:
                     state = "any" if "at least one" in word[2] else "all"
             continue
         if state == "polynomial":
-            left, _, right = content.partition(" = ")
-            parts[-1].polynomial = latex(right)
-            state = ""
+            parts[-1].polynomial = latex(content.partition(" = ")[2])
+            state = "told"
         elif state == "factors":
             _, _, right = content.partition(r"\colon\quad ")
             raised = re.fullmatch(r"\\bigl\[(.*)\\bigr\]\^\{(\d+)\}", right.strip(), re.DOTALL)
             whole, times = (raised[1], int(raised[2])) if raised else (right, 1)
             parts[-1].factors.append((latex(whole), times))
-        elif state:
+        elif state not in ("", "told"):
             into = {"lines": lambda: parts[-1].lines, "all": lambda: parts[-1].cases[-1].all_of}.get(
                 state, lambda: parts[-1].cases[-1].any_of
             )()
@@ -315,12 +323,13 @@ def _latex_line(content: str) -> Line:
     if r"\text" in formula or "^{(" in formula:  # a label in words, or with a number above: no formula
         return Line(symbol, None, relation, under=_latex_label(formula))
     shown = label if re.fullmatch(r"[av]_\{\d+\}", label) else ""
-    return Line(symbol, latex(formula), relation, symbol=shown)
+    return Line(symbol, latex(formula), relation, symbol=shown, alone=formula)
 
 
 def _latex_label(label: str) -> str:
     words = re.sub(r"\\text\{([^{}]*)\}", r"\1", label.strip())
-    return re.sub(r"([av])_\{(\d+)\}(?:\^\{\((\d+)\)\})?", lambda m: m[1] + m[2] + (f" of factor {m[3]}" if m[3] else ""), words)
+    words = re.sub(r"([av])_\{(\d+)\}\^\{\((\d+)\)\}", r"\1\2 of factor \3", words)
+    return re.sub(r"([av])_\{(\d+)\}", r"\1\2", words)
 
 
 def latex(text: str) -> Value:
@@ -399,7 +408,8 @@ def _html_line(part: Part, state: str, tokens: list[Token]) -> None:
             into.append(Line(_html_label(label), None, relation, under=_html_label(formula)))
         else:
             symbol = str(label[0][1]) if len(label) == 1 and label[0][0] == "mi" else ""
-            into.append(Line(_html_label(label), mathml(formula), relation, symbol=symbol))
+            alone = str(formula[0][1]) if len(formula) == 1 and formula[0][0] == "mi" else ""
+            into.append(Line(_html_label(label), mathml(formula), relation, symbol=symbol, alone=alone))
 
 
 def _html_label(tokens: list[Token]) -> str:
@@ -423,7 +433,9 @@ def mathml(tokens: list[Token]) -> Value:
 
 def of_wolfram(text: str) -> list[Part]:
     """The parts; their lines have no labels."""
-    found = re.search(r"characteristicPolynomials = \{\n(.*?)\n\};\nstabilityConditions = \{\n(.*?)\n\};", text, re.DOTALL)
+    found = re.search(
+        r"characteristicPolynomials = \{\n(.*?)\n\};\nstabilityConditions = \{\n(.*?)\n\};", text, re.DOTALL
+    )
     assert found is not None
     parts = []
     for polynomial, conditions in zip(found[1].split(",\n"), found[2].split("},\n  {"), strict=True):
@@ -442,7 +454,7 @@ def wolfram_symbol(name: str) -> str:
 
 def wolfram(text: str) -> Value:
     plain = wolfram_symbol(text).replace("^", "**")
-    for theirs, ours in (("Sin", "sin"), ("Cos", "cos"), ("Sqrt", "sqrt"), ("Exp", "exp"), ("ArcTan", "atan"), ("Log", "log")):
+    for theirs, ours in (("ArcTan", "atan"), *((x.capitalize(), x) for x in ("sin", "cos", "sqrt", "exp", "log"))):
         plain = re.sub(rf"\b{theirs}\[", f"{ours}[", plain)
     return python(plain.replace("[", "(").replace("]", ")"))
 
@@ -451,3 +463,34 @@ def mathml_symbol(markup: str) -> str:
     """How the reader calls a symbol that is written so."""
     ((_, name),) = tokens_of(ET.fromstring(f"<math>{markup}</math>"))
     return str(name)
+
+
+# --- problem 4 ----------------------------------------------------------------------------------------------------
+
+
+def equations(surface: str, text: str) -> list[Value | None]:
+    """The left-hand sides of ``... = 0``; None of what is counted only."""
+    match surface:
+        case "terminal":
+            lines = [x for x in text.splitlines() if x.endswith(" = 0") or "see the reports" in x]
+            return [None if x.startswith("(") and "see the reports" in x else python(x[:-4]) for x in lines]
+        case "json":
+            return [python(x) for x in json.loads(text)["equilibrium"]["conditions"]]
+        case "wolfram":
+            listed = re.search(r"^equilibriumConditions = \{(.*?)\};", text, re.MULTILINE | re.DOTALL)
+            assert listed is not None
+            return [wolfram(x) for x in re.split(r",\s+", listed[1]) if x.strip()]
+        case "latex":
+            section = text.partition("{Problem 4. The unperturbed motion}")[2].partition("\\section*{")[0]
+            section = section.partition("if and only if")[2].partition("which problems")[0]
+            formulas = [x for kind, x in _latex_pieces(section) if kind == "formula"]
+            return [latex(x.removesuffix(" = 0")) for x in formulas]
+    (section_4,) = [x for x in tree(text).iter("section") if x.get("id") == "problem-4"]
+    lines_4: list[list[Token]] = []
+    for node in section_4.iter():
+        if node.tag == "p" and "use in the form" in "".join(node.itertext()):
+            break
+        if node.tag == "div" and node.get("class") == "formula":
+            lines_4.append([x for part in node.iter("math") for x in tokens_of(part)])
+    assert all(x[-2:] == [("mo", "="), ("mn", "0")] for x in lines_4)
+    return [mathml(x[:-2]) for x in lines_4]

@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 import random
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -21,22 +21,29 @@ from flint import arb, fmpq
 from printed_stability import Part, Read, TwoMeanings, WithVariable, bare, both, truth
 
 import mbsym
-from mbsym.algebra.ring import ParameterRing
+from mbsym.algebra.ring import ParameterRing, Ring
 from mbsym.analysis import Analysis
+from mbsym.formulas import latex, mathml
 from mbsym.formulas.latex import latex_names
 from mbsym.formulas.mathml import mathml_names
 from mbsym.formulas.wolfram import wolfram_names
 from mbsym.problems.stability import SubsystemStability
-from mbsym.problems.stability.requirements import Requirement
-from mbsym.report import conditions
+from mbsym.problems.stability.requirements import Case, Requirement
+from mbsym.report import coefficients, conditions
 from mbsym.report.conditions import Shown
-from mbsym.report.sections import stability
+from mbsym.report.sections import equilibrium, stability
 from mbsym.report.targets import TARGETS
 
 MANY = int(os.environ.get("MBSYM_READ_BACK", "16"))
 POINTS = 12
 STATEMENTS = TESTS / "cases" / "statements"
-SURFACES = ("terminal", "latex", "html", "json", "wolfram")
+PARTS: dict[str, Callable[[str], list[Part]]] = {
+    "terminal": printed.of_terminal,
+    "latex": printed.of_latex,
+    "html": printed.of_html,
+    "json": printed.of_json,
+    "wolfram": printed.of_wolfram,
+}
 
 
 # --- what stands behind ---------------------------------------------------------------------------------------------
@@ -84,63 +91,64 @@ def points(analysis: Analysis, part: SubsystemStability, source: random.Random) 
             yield here
 
 
-def verdict_behind(part: SubsystemStability, holds: Callable[[Requirement], bool | None]) -> str | None:
-    """The first case that applies; "?" where a ball does not tell."""
-    for case in part.theory.cases:
-        found = both(list(map(holds, case.all_of)), list(map(holds, case.any_of)))
-        if found is None:
-            return "?"
-        if found:
-            return case.verdict.word.value
-    return None
+def cases_behind(part: SubsystemStability) -> list[Case]:
+    """Those that can occur, up to one that always does; nothing is told of one that is not an alternative."""
+    found = [case for case in part.theory.cases if not case.never]
+    certain = next((k for k, case in enumerate(found) if case.always), len(found))
+    return [] if certain == 0 else found[: certain + 1]
 
 
 # --- each surface ---------------------------------------------------------------------------------------------------
 
 
-def _named(written: Mapping[str, str], here: Point) -> dict[str, Any]:
-    """Values by symbols; no two names are written alike."""
-    found: dict[str, Any] = {}
-    for name, symbol in written.items():
-        if symbol in found:
-            raise TwoMeanings(symbol)
-        found[symbol] = here.values[name]
-    return found
-
-
-def read(analysis: Analysis, surface: str) -> tuple[list[Part], Callable[[SubsystemStability], dict[str, str]]]:
-    """The parts that a surface prints, and how it writes the names of a part."""
-    found = analysis.stability
+def rendered(analysis: Analysis, surface: str) -> str:
     if surface == "terminal":
-        parts = printed.of_terminal(list(stability.lines(found, analysis)))
-        return parts, lambda part: {name: name for name in part.ring.names()}
+        return "\n".join(stability.lines(analysis.stability, analysis))
     text = TARGETS[surface].render(analysis, (4, 6))
     assert isinstance(text, str)
-    match surface:
-        case "json":
-            return printed.of_json(text), lambda part: {name: name for name in part.ring.names()}
-        case "latex":
-            return printed.of_latex(text), lambda part: {
-                name: "".join(str(latex_names(part.ring)[name]).split()) for name in part.ring.names()
-            }
-        case "html":
-            return printed.of_html(text), lambda part: {
-                name: printed.mathml_symbol(str(mathml_names(part.ring)[name])) for name in part.ring.names()
-            }
-    return printed.of_wolfram(text), lambda part: {
-        name: printed.wolfram_symbol(wolfram_names(part.ring)[name]) for name in part.ring.names()
-    }
+    return text
+
+
+def written(ring: Ring, surface: str, here: Mapping[str, Any]) -> dict[str, Any]:
+    """Values by symbols, as the surface writes the names of a ring; no two of them are written alike."""
+    in_latex, in_mathml, in_wolfram = latex_names(ring), mathml_names(ring), wolfram_names(ring)
+    symbol: Callable[[str], str] = {
+        "latex": lambda name: "".join(str(in_latex[name]).split()),
+        "html": lambda name: printed.mathml_symbol(str(in_mathml[name])),
+        "wolfram": lambda name: printed.wolfram_symbol(in_wolfram[name]),
+    }.get(surface, lambda name: name)
+    found: dict[str, Any] = {}
+    for name, value in here.items():
+        if symbol(name) in found:
+            raise TwoMeanings(name)
+        found[symbol(name)] = value
+    return found
 
 
 def check(analysis: Analysis, surface: str) -> int:
     """Compares what is printed with what stands behind it; how many values and verdicts were compared."""
-    parts, written = read(analysis, surface)
-    compared = 0
+    text = rendered(analysis, surface)
     source = random.Random(analysis.system.name)
+    compared = _check_equations(analysis, surface, text, source)
+    parts = PARTS[surface](text)
     for number, part in enumerate(analysis.stability.subsystems):
         for here in points(analysis, part, source):
-            compared += _check_at(parts[number], part, here, _named(written(part), here), surface)
+            compared += _check_at(parts[number], part, here, written(part.ring, surface, here.values), surface)
     return compared
+
+
+def _check_equations(analysis: Analysis, surface: str, text: str, source: random.Random) -> int:
+    """The conditions of problem 4 are those behind it."""
+    if surface == "terminal":
+        text = "\n".join(equilibrium.lines(analysis.equilibrium, analysis))
+    behind, ring = analysis.equilibrium.conditions, analysis.ring
+    shown = printed.equations(surface, text)
+    assert len(shown) == len(behind), surface
+    here = {name: arb(fmpq(source.randint(1, 40), 16)) for name in ring.names()} if behind else {}
+    for formula, value in zip(behind, shown, strict=True):
+        exact = ring.evaluate(formula.polynomial, dict(here))
+        assert value is None or _same(value(written(ring, surface, here)), exact), f"{surface}: {formula}"
+    return len(behind)
 
 
 def _same(x: Any, y: Any) -> bool:
@@ -155,7 +163,7 @@ def _check_at(shown: Part, part: SubsystemStability, here: Point, names: Mapping
     for line in shown.lines:
         value = reading.value(line)
         told.setdefault(bare(line.label), []).append(None if value is None else truth(value, line.relation))
-        if value is None or not line.label:
+        if value is None or not line.label or line.under or line.alone in reading.letters:
             continue
         exact = [here(p) for p in wanted[bare(line.label)].polynomials]
         assert any(_same(value, x) for x in exact), f"{surface}: {line.label} is {value}, not {exact}"
@@ -176,22 +184,30 @@ def _check_at(shown: Part, part: SubsystemStability, here: Point, names: Mapping
         exact_value = sum((here(x) * root ** (k + zero) for k, x in enumerate(part.theory.polynomial)), root * 0)
         assert _same(value, exact_value), f"{surface}: characteristic polynomial {value}, not {exact_value}"
         compared += 1
-    if shown.cases:
-        words = verdict_behind(part, here.holds), verdict_behind(part, here.reduced)
-        said_word = _verdict(reading, shown)
-        assert "?" in (said_word, *words) or said_word in words, f"{surface}: {said_word} by its cases, and is {words}"
-        compared += 1
+        if shown.factors:  # up to a number they make up what is left of it
+            ratios = []
+            for x in (root, root + 1, root - 3):
+                at = WithVariable(names, x)
+                product = root * 0 + 1
+                for factor, times in shown.factors:
+                    product *= factor(WithVariable(names, x)) ** times
+                ratios.append((product * x**zero, shown.polynomial(at)))
+            (p, q), *others = ratios
+            assert all(_same(p * y, q * x) for x, y in others), f"{surface}: factors"
+    told_cases = [case for case in shown.cases if surface != "json" or cases_behind(part)]
+    if surface in ("latex", "html", "json"):
+        behind_cases = cases_behind(part)
+        assert [x.word for x in told_cases] == [x.verdict.word.value for x in behind_cases], surface
+        for case, real in zip(told_cases, behind_cases, strict=True):
+            said = reading.case(case)
+            behind = tuple(
+                both(list(map(one, real.all_of)), list(map(one, real.any_of))) for one in (here.holds, here.reduced)
+            )
+            assert None in (said, *behind) or said in behind, (
+                f"{surface}: {case.word} is printed {said}, and is {behind}"
+            )
+            compared += 1
     return compared
-
-
-def _verdict(reading: Read, shown: Part) -> str | None:
-    for case in shown.cases:
-        found = reading.case(case)
-        if found is None:
-            return "?"
-        if found:
-            return case.word
-    return None
 
 
 # --- systems ----------------------------------------------------------------------------------------------------------
@@ -238,14 +254,15 @@ def random_system(seed: int) -> str:
     if seed % 3:
         shown = "".join(f"  {name}: {_listed(_listed(row) for row in rows)}\n" for name, rows in matrices.items())
         return f"{head}linear system:\n  coordinates: [{', '.join(q)}]\n{shown}"
-    return head + _tree(q, matrices)
+    away = f"({names[0]}*{names[1]} - {names[1]}**2)*x0 + " if source.random() < 0.3 else ""
+    return head + _tree(q, matrices, away)
 
 
 def _listed(items: Iterable[str]) -> str:
     return f"[{', '.join(items)}]"
 
 
-def _tree(q: list[str], matrices: Mapping[str, list[list[str]]]) -> str:
+def _tree(q: list[str], matrices: Mapping[str, list[list[str]]], away: str) -> str:
     """The same forces on unit masses, one after the other along a line, with quartic springs besides."""
 
     def form(rows: list[list[str]], of: list[str]) -> str:
@@ -257,7 +274,7 @@ def _tree(q: list[str], matrices: Mapping[str, list[list[str]]]) -> str:
         f"  - {{name: p{k}, attached to: 0, mass: 1, connection point: [{x}, {k}, 0], coordinates: [{x}]}}\n"
         for k, x in enumerate(q)
     )
-    loads = f'  - potential: "{form(matrices["K"], q)} + x0**4"\n'
+    loads = f'  - potential: "{form(matrices["K"], q)} + {away}x0**4"\n'
     if "D" in matrices:
         loads += f'  - rayleigh: "{form(matrices["D"], rates)}"\n'
     shares = [
@@ -271,7 +288,9 @@ def _tree(q: list[str], matrices: Mapping[str, list[list[str]]]) -> str:
         for i in range(len(q))
     ]
     if any(shares):
-        loads += "  - generalized force: {" + ", ".join(f'{x}: "{s}"' for x, s in zip(q, shares) if s) + "}\n"
+        loads += (
+            "  - generalized force: {" + ", ".join(f'{x}: "{s}"' for x, s in zip(q, shares, strict=True) if s) + "}\n"
+        )
     return f"bodies:\n{bodies}loads:\n{loads}motion: {{{', '.join(f'{x}: 0' for x in q)}}}\n"
 
 
@@ -280,11 +299,12 @@ def _tree(q: list[str], matrices: Mapping[str, list[list[str]]]) -> str:
 FILES = [
     *(SHIPPED / f"{name}.yaml" for name in (
         "satellite", "heavy-top", "double-pendulum", "ziegler", "ziegler-damped", "gyroscopic-pair",
-        "triangular-points", "gravity-gradient", "satellite-with-gyroscope", "rolling-disc",
+        "triangular-points", "gravity-gradient", "satellite-with-gyroscope", "rolling-disc", "spherical-pendulum",
+        "orbital-gyrostat", "cart-pendulum",
     )),
     *(STATEMENTS / f"{name}.yaml" for name in (
         "bead_on_hoop", "bowl", "earnshaw", "foucault2", "gov_A", "necessary-at-border", "never_hurwitz", "soft",
-        "strict_border", "two_parts", "whole_dep",
+        "strict_border", "two_parts", "whole_dep", "far", "staude2",
     )),
 ]  # fmt: skip
 
@@ -293,12 +313,93 @@ FILES = [
 def test_files_are_read_back(path: Path) -> None:
     analysis = derived(path)
     with precision(400):
-        for surface in SURFACES:
+        for surface in PARTS:
             check(analysis, surface)
 
 
 @pytest.mark.parametrize("seed", range(MANY))
 def test_random_systems_are_read_back(seed: int) -> None:
     analysis = mbsym.loads(random_system(seed))
-    for surface in SURFACES:
+    for surface in PARTS:
         check(analysis, surface)
+
+
+# --- planted lies -----------------------------------------------------------------------------------------------------
+
+#: Three coupled gyroscopic coordinates, the discriminant of which is told in coefficients; v_2 looks like one.
+LONG = """
+mbsym: 1
+name: a discriminant in coefficients
+parameters: {v_2: real, k: real, b: real, s: real}
+linear system:
+  coordinates: [x, y, z]
+  G: [[0, -b, 0], [b, 0, -s], [0, s, 0]]
+  K: [[4*k, k, s], [k, v_2, 1], [s, 1, b]]
+"""
+
+
+def no_letters(patch: pytest.MonkeyPatch) -> None:
+    """The form in coefficients is shown without them."""
+    patch.setattr(Shown, "unshown", lambda self, told: ())
+
+
+def two_meanings(patch: pytest.MonkeyPatch) -> None:
+    """Nobody looks whether a letter is a parameter, too."""
+    for module in (coefficients, conditions):
+        patch.setattr(module, "names_in", lambda ring: frozenset())
+
+
+def lost_factor(patch: pytest.MonkeyPatch) -> None:
+    """The first of several factors is not written."""
+    joined = latex._joined
+    patch.setattr(latex, "_joined", lambda factors: joined(factors[1:] or factors))
+
+
+def lost_sign(patch: pytest.MonkeyPatch) -> None:
+    """Minus is written as plus."""
+    mo = mathml.mo
+    patch.setattr(mathml, "mo", lambda sign, first=False: mo(sign.replace("\u2212", "+"), first))
+
+
+def turned(patch: pytest.MonkeyPatch) -> None:
+    """> is written as <."""
+    text = stability.statement_text
+    patch.setattr(stability, "statement_text", lambda item: text(item).replace(" > ", " < "))
+
+
+def turned_reference(patch: pytest.MonkeyPatch) -> None:
+    """What refers to a label forgets that the sign has changed."""
+    patch.setattr(conditions, "_OPPOSITE", {})
+
+
+LIES = [
+    (no_letters, "terminal", NameError),
+    (no_letters, "latex", NameError),
+    (no_letters, "html", NameError),
+    (two_meanings, "latex", TwoMeanings),
+    (two_meanings, "html", TwoMeanings),
+    (lost_factor, "latex", AssertionError),
+    (lost_sign, "html", AssertionError),
+    (turned, "terminal", AssertionError),
+    (turned_reference, "latex", AssertionError),
+    (turned_reference, "html", AssertionError),
+    (turned_reference, "json", AssertionError),
+]
+
+
+@pytest.mark.parametrize(("lie", "surface", "caught"), LIES, ids=lambda x: getattr(x, "__name__", x))
+def test_planted_lies_are_caught(
+    lie: Callable[[pytest.MonkeyPatch], None], surface: str, caught: type[Exception], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert check(mbsym.loads(LONG), surface) > 0
+    lie(monkeypatch)
+    with pytest.raises(caught):
+        check(mbsym.loads(LONG), surface)
+
+
+@pytest.mark.parametrize("surface", ["latex", "html"])
+def test_the_variable_is_one_letter_in_formulas_and_words(surface: str) -> None:
+    """Where a parameter is called lambda, "all roots in lambda^2" speaks of another letter: that of the polynomial."""
+    text = rendered(mbsym.loads(LONG.replace("v_2", "lam")), surface)
+    words = {"latex": r"all roots in $\hat{\lambda}^{2}$", "html": "all roots in <math><msup><mrow><mi>\u03bc</mi>"}
+    assert words[surface] in text
