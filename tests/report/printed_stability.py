@@ -1,6 +1,6 @@
-"""Readers of what terminal, LaTeX, HTML, JSON and Wolfram print of problem 6: each knows its own text alone.
+"""Readers of what terminal, LaTeX, HTML, JSON and Wolfram print of problems 4 to 6: each knows its own text alone.
 
-They give the same shape of every surface: per subsystem the characteristic polynomial, the conditions with the letters
+They give the same shape of every surface: equations, matrices, and per subsystem the characteristic polynomial, the conditions with the letters
 defined beside them, and the cases.  A formula is a function of a look-up of symbols; how symbols are written is the
 surface's own affair.
 """
@@ -16,6 +16,7 @@ from xml.etree import ElementTree as ET
 
 import tex_reader
 from flint import arb, fmpq
+from flint.utils.flint_exceptions import DomainError
 from mathml_reader import Reader as MathReader
 from mathml_reader import Token, tokens_of, tree
 
@@ -336,7 +337,10 @@ def latex(text: str) -> Value:
     plain = re.sub(r"\\mathrm\{pi\}", r"\\pi", text)
 
     def value(symbols: Mapping[str, Any]) -> Any:
-        return tex_reader.read(plain, symbols, fmpq)
+        try:
+            return tex_reader.read(plain, symbols, fmpq)
+        except DomainError:  # the root of 3
+            return tex_reader.read(plain, symbols, arb)
 
     return value
 
@@ -494,3 +498,51 @@ def equations(surface: str, text: str) -> list[Value | None]:
             lines_4.append([x for part in node.iter("math") for x in tokens_of(part)])
     assert all(x[-2:] == [("mo", "="), ("mn", "0")] for x in lines_4)
     return [mathml(x[:-2]) for x in lines_4]
+
+
+# --- problem 5 ----------------------------------------------------------------------------------------------------
+
+
+def matrices(surface: str, text: str) -> dict[str, dict[tuple[int, int], Value]]:
+    """What is written of M, D, G, K and N in physical time; of symmetric ones perhaps the upper half."""
+    found: dict[str, dict[tuple[int, int], Value]] = {}
+    if surface == "json":
+        listed = json.loads(text)["linearisation"]
+        return {x: _numbered([[python(y) for y in row] for row in listed[x]]) for x in "MDGKN"}
+    if surface == "wolfram":
+        for x, body in re.findall(r"^linear([MDGKN]) = \{\s*\{(.*?)\}\s*\};", text, re.MULTILINE | re.DOTALL):
+            found[x] = _numbered([[wolfram(y) for y in re.split(r",\s+", row)] for row in re.split(r"\},\s*\{", body)])
+        return found
+    if surface == "latex":
+        section = text.partition("{Problem 5. First approximation}")[2].partition("\\section*{")[0]
+        for match in re.finditer(r"([MDGKN]) = (\d*) ?\\begin\{pmatrix\}(.*?)\\end\{pmatrix\}", section, re.DOTALL):
+            rows = [row.split("&") for row in match[3].split(r"\\") if row.strip()]
+            found.setdefault(
+                match[1], _numbered([[_times(match[2], latex(" ".join(y.split()))) for y in r] for r in rows])
+            )
+        for match in re.finditer(r"eq:linear:([MDGKN]):\d+\]\{[MDGKN]_\{(\d)(\d)\} = ", section):
+            formula = next(x for kind, x in _latex_pieces(section[section.rindex("\\longformula", 0, match.end()) :])
+                           if kind == "formula")  # fmt: skip
+            found.setdefault(match[1], {})[int(match[2]), int(match[3])] = latex(formula.partition(" = ")[2])
+        return found
+    (section_5,) = [x for x in tree(text).iter("section") if x.get("id") == "problem-5"]
+    for node in section_5.iter():
+        if node.tag == "h3":
+            break
+        if node.tag == "div" and node.get("class") == "formula":
+            tokens = [x for part in node.iter("math") for x in tokens_of(part)]
+            name = re.fullmatch(r"([MDGKN])(?:_(\d)(\d))?", str(tokens[0][1])) if tokens[1:2] == [("mo", "=")] else None
+            if name is not None and name[2]:
+                found.setdefault(name[1], {})[int(name[2]), int(name[3])] = mathml(tokens[2:])
+            elif name is not None and (table := [x for kind, x in tokens if kind == "table"]):
+                front = str(tokens[2][1]) if tokens[2][0] == "mn" else ""
+                found[name[1]] = _numbered([[_times(front, mathml(y)) for y in row] for row in table[0]])
+    return found
+
+
+def _numbered(rows: list[list[Value]]) -> dict[tuple[int, int], Value]:
+    return {(i, j): value for i, row in enumerate(rows, 1) for j, value in enumerate(row, 1)}
+
+
+def _times(number: str, value: Value) -> Value:
+    return lambda symbols: fmpq(int(number or 1)) * value(symbols)

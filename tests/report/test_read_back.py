@@ -1,4 +1,4 @@
-"""Whatever is printed of problem 6 can be evaluated from what is printed on that surface, and is as true as the value.
+"""Whatever is printed of problems 4 to 6 can be evaluated from what is printed on that surface, and is as true as the value.
 
 Terminal, LaTeX, HTML, JSON and Wolfram are read back (``printed_stability``) and evaluated at random rational points,
 each from its own text alone: how it writes the parameters, and which letters it defines.  Behind them stand the exact
@@ -104,7 +104,7 @@ def cases_behind(part: SubsystemStability) -> list[Case]:
 def rendered(analysis: Analysis, surface: str) -> str:
     if surface == "terminal":
         return "\n".join(stability.lines(analysis.stability, analysis))
-    text = TARGETS[surface].render(analysis, (4, 6))
+    text = TARGETS[surface].render(analysis, (4, 5, 6))
     assert isinstance(text, str)
     return text
 
@@ -129,7 +129,7 @@ def check(analysis: Analysis, surface: str) -> int:
     """Compares what is printed with what stands behind it; how many values and verdicts were compared."""
     text = rendered(analysis, surface)
     source = random.Random(analysis.system.name)
-    compared = _check_equations(analysis, surface, text, source)
+    compared = _check_equations(analysis, surface, text, source) + _check_matrices(analysis, surface, text, source)
     parts = PARTS[surface](text)
     for number, part in enumerate(analysis.stability.subsystems):
         for here in points(analysis, part, source):
@@ -149,6 +149,26 @@ def _check_equations(analysis: Analysis, surface: str, text: str, source: random
         exact = ring.evaluate(formula.polynomial, dict(here))
         assert value is None or _same(value(written(ring, surface, here)), exact), f"{surface}: {formula}"
     return len(behind)
+
+
+def _check_matrices(analysis: Analysis, surface: str, text: str, source: random.Random) -> int:
+    """The matrices of problem 5, in which what is not written is zero; the terminal does not write them."""
+    if surface == "terminal":
+        return 0
+    linear, ring = analysis.linearisation, analysis.ring
+    shown = printed.matrices(surface, text)
+    here = {name: arb(fmpq(source.randint(1, 40), 16)) for name in ring.names()}
+    names, compared = written(ring, surface, here), 0
+    for letter in "MDGKN":
+        told = shown.get(letter, {})
+        for i, row in enumerate(getattr(linear, letter), 1):
+            for j, entry in enumerate(row, 1):
+                value = told.get((i, j)) or (told.get((j, i)) if letter in "MDK" else None)
+                exact = ring.evaluate(entry.polynomial, dict(here))
+                said = arb(0) if value is None else arb(value(names))
+                assert _same(said, exact), f"{surface}: {letter}{i}{j} is {said}, not {exact}"
+                compared += value is not None
+    return compared
 
 
 def _same(x: Any, y: Any) -> bool:
