@@ -156,7 +156,7 @@ def context(
         characteristic="Lambda" if "<mi>Λ</mi>" not in taken else _free_letter("ΔΦPQ", taken),
         factors=factors,
         math_text=lambda words: Markup(mtext(words)),
-        provided=provided(len(analysis.equilibrium.conditions), bool(analysis.system.inputs)) if 6 in found else "",
+        provided=provided(found[6].presumed, bool(analysis.system.inputs)) if 6 in found else "",
         decided=_decided,
         **first_order(analysis, found.get(5)),
         DEPENDS=Word.DEPENDS,

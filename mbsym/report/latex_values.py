@@ -168,7 +168,7 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "variable": "\\lambda" if "\\lambda" not in taken else free_name("\\hat{\\lambda}", taken),
         "characteristic": "\\Lambda" if "\\Lambda" not in taken else free_name("\\hat{\\Lambda}", taken),
         "factors": factors,
-        "provided": "" if verdicts is None else provided(len(analysis.equilibrium.conditions), bool(system.inputs)),
+        "provided": "" if verdicts is None else provided(verdicts.presumed, bool(system.inputs)),
         **first_order(analysis, found.get(5)),
         "DEPENDS": Word.DEPENDS,
         "ENERGY": ENERGY,

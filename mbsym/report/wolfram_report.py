@@ -106,7 +106,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         state=_in_order(analysis.system, names),
         numberless=[names[name] for name in _numberless(analysis.system)],
         **first_order(analysis, found.get(5)),
-        provided=provided(len(analysis.equilibrium.conditions), bool(analysis.system.inputs)) if 6 in found else "",
+        provided=provided(found[6].presumed, bool(analysis.system.inputs)) if 6 in found else "",
         checks=analysis.checks,
     )
 

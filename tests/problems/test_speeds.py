@@ -6,6 +6,8 @@ import pytest
 import mbsym
 from mbsym.algebra.vectors import Tensor
 from mbsym.problems.checks import EXACT, FAILED
+from mbsym.problems.stability.reasons import Because
+from mbsym.report.sections import stability
 
 #: A heavy gyrostat about a fixed point; what is put after its inertia says how it is told.
 GYROSTAT = """
@@ -219,12 +221,20 @@ def test_planted_mistakes_are_found(tmp_path, monkeypatch, mistake):
 
 
 def test_deviations_are_told_in_coordinates_where_these_are_regular(tmp_path):
-    """The spinning top stands upright: axes 3, 1, 3 are singular there, 1, 2, 3 are not; the verdict is Lagrange's."""
+    """The spinning top stands upright: axes 3, 1, 3 are singular there, 1, 2, 3 are not; the verdict is Lagrange's.
+
+    Of a symmetric one, which may stand so whatever its numbers, the verdict is had in other angles.
+    """
     upright = "motion: {psi: 0, theta: 0, phi: {rate: w}}\n"
     text = GYROSTAT.format(told=SPEEDS).replace("m: positive,", "m: positive, w: positive,") + upright
     found = load(tmp_path, text)
     for problem in (4, 5, 6):
         assert found.stage(problem).failure.code == "singular-angles"
+    symmetric = text.replace("[x0, y0, z0]", "[0, 0, z0]").replace("inertia: [A, B, C]", "inertia: [A, A, C]")
+    symmetric = load(tmp_path, symmetric.replace("    gyrostatic moment: [l1, l2, l3]\n", ""))
+    assert symmetric.stage(4).failure.code == "singular-angles"
+    assert symmetric.stability.verdict.because(Because.OTHER_ANGLES)
+    assert any("judged in other angles" in line for line in stability.lines(symmetric.stability, symmetric))
     for told in (SPEEDS, POISSON):
         top = GYROSTAT.format(told=told).replace("axes: [3, 1, 3]", "axes: [1, 2, 3]")
         top = top.replace("[x0, y0, z0]", "[0, 0, z0]").replace("inertia: [A, B, C]", "inertia: [A, A, C]")

@@ -135,9 +135,11 @@ def test_first_approximation_in_the_dish() -> None:
 
 
 def test_nothing_is_claimed_of_the_dish_that_roots_on_the_axis_do_not_show() -> None:
+    """All roots are imaginary and simple, +-i s of the sphere's attitude among them, but two zeros of its spin."""
     found = shipped("dish-sphere").stability
     assert found.numerical is not None
-    assert found.numerical.word is Word.UNDECIDED
+    assert found.numerical.word is Word.CRITICAL
+    assert not found.numerical.theorem
     on_top = changed("dish-sphere", ("z: -l", "z: l"), ("Omega: {sign: real, value: 3,", "Omega: {value: 0,")).stability
     assert on_top.numerical is not None
     assert on_top.numerical.word is Word.UNSTABLE  # slowly spinning on the top of a dome

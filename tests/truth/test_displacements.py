@@ -107,7 +107,7 @@ def test_a_direction_that_is_none_is_caught(monkeypatch: pytest.MonkeyPatch) -> 
         return Displacements(tuple(coordinates), ((one, one * 2),), 1)
 
     monkeypatch.setattr(Balance, "displacements", wrong)
-    assert ring(("a", "b"), "{potential: k*(A - B)**2/2}").stability.verdict.word is Word.UNDECIDED
+    assert ring(("a", "b"), "{potential: -k*cos(A - B)}").stability.verdict.word is Word.UNDECIDED
 
 
 def test_a_cylinder_in_a_cylinder_drifts_with_constraints_and_without() -> None:

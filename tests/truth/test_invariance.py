@@ -206,3 +206,38 @@ def test_the_order_of_bodies_and_units_change_nothing(seed: int) -> None:
     order = list(first.order)
     chance.shuffle(order)
     compared(first, replace(first, order=tuple(order), units=chance.choice((2, 9))), "", chance)
+
+
+@pytest.mark.parametrize("seed", range(2000, 2000 + MANY // 3))
+def test_a_constraint_instead_of_a_coordinate_changes_nothing(seed: int) -> None:
+    """The last coordinate, r, is told by q_(n-1) = r + (a sum of others): whichever of the two depends on the other."""
+    chance = Random(seed)
+    first = changed(sketched(chance), chance)
+    last, others = first.size - 1, range(first.size - 1)
+    weights = [chance.randint(-1, 1) for _ in others]
+    relation = " + ".join([f"q{last}", *(f"({w})*q{j}" for j, w in enumerate(weights) if w)])
+    light = "  - {name: slide, attached to: 0, connection point: [0, r, 0], coordinates: [r], mass: 0}"
+    left = mbsym.loads(described(first), (4, 5, 6))
+    words = {left.stability.numerical and left.stability.numerical.word}
+    at = {parameter.name: value(parameter.name, first) for parameter in left.system.parameters}
+    wanted = polynomial(left, at)
+    for dependent in ("r", f"q{last}"):
+        text = described(first, f"constraints: [relation: r = {relation}]\ndependent: [{dependent}]")
+        text = (
+            text.replace("loads:", f"{light}\nloads:", 1)
+            if "\nloads:" in text
+            else text.replace("constraints:", f"{light}\nconstraints:", 1)
+        )
+        motion = text.rsplit("motion: {", 1)[1].rstrip("}\n")
+        turns = {
+            entry.split(":")[0].strip(): Fraction(entry.split(":")[1].split("*")[0])
+            for entry in motion.split(",")
+            if entry
+        }
+        place = turns.get(f"q{last}", 0) + sum(w * turns.get(f"q{j}", 0) for j, w in enumerate(weights))
+        given = [entry.strip() for entry in motion.split(",") if entry] + ([f"r: {place}*pi"] if place else [])
+        right = mbsym.loads(text.rsplit("motion:", 1)[0] + f"motion: {{{', '.join(given)}}}", (4, 5, 6))
+        assert right.stability.numerical is not None
+        words.add(right.stability.numerical.word)
+        assert polynomial(right, at) == wanted
+    assert len(words) == 1

@@ -8,7 +8,7 @@ Of a condition C that is to be necessary, one measure for systems of every kind:
   where such parameters are known;
 * it **does not hold** if other parameters are known at which C does not hold and the motion is stable, be it in first
   approximation;
-* where no parameters are known to make the motion stable, C says nothing.
+* where no parameters but perhaps border cases make the motion stable, C says nothing.
 
 C is sufficient if with it, and the others of its place, the cases of problem 6 give the whole a stable verdict.  All of
 this is decided of sets of parameters (``regions``): the cases of the parts are intersected, and what is proved to be
@@ -32,7 +32,7 @@ from mbsym.expressions.tree import subtract, text
 from mbsym.model.claims import NECESSARY, SUFFICIENT, Claim
 from mbsym.problems.claims.counterexample import IN_FIRST, Counterexample, Tried
 from mbsym.problems.claims.differences import rational_ratio
-from mbsym.problems.claims.regions import Inequality, Region, equations_are_linear, is_certain
+from mbsym.problems.claims.regions import Inequality, Region, is_certain
 from mbsym.problems.claims.remarks import Remark, Said, said, words
 from mbsym.problems.claims.result import BORDERS, EXACT, FAILS, UNDECIDED, ClaimResult, Derived
 from mbsym.problems.claims.symbols import Symbols
@@ -104,7 +104,7 @@ def _necessary(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimResu
         return _told(result, FAILS, said(code), *equal, *for_exponential, example=example)
     if never:
         told = with_theorem(verdict.word, verdict.theorem)
-        return _told(result, UNDECIDED, said(Said.NEVER_STABLE, told))
+        return _told(result, UNDECIDED, said(Said.NEVER_STABLE, told, verdict.word is Word.UNSTABLE_BUT_BORDERS))
     if claim.relation == "!=":
         return _apart(derived, regions, claim, result, tried, for_exponential)
     partly = next((one for one in needs if one.but_borders), exponential)
@@ -162,7 +162,7 @@ def _but_for_equality(
         return _told(result, BORDERS, need.because, *found, example=example)
     region = Region(derived, claim, own=False)
     singular = region.makes_stiffness_singular(wanted_of(region, claim).polynomial)
-    if singular and equations_are_linear(derived):
+    if singular and derived.balance.exactly_linear:
         return _told(result, EXACT, need.because, said(Said.UNSTABLE_BEYOND), said(Said.GROWS_WITH_EQUALITY))
     last = said(Said.GROWTH_LEAVES_OPEN if singular else Said.EQUALITY_OPEN)
     return _told(result, BORDERS, need.because, said(Said.UNSTABLE_BEYOND), *further, last)
@@ -183,7 +183,7 @@ def _apart(
             continue
         what, _ = _found_among(region, wanted, ("sufficient",))
         because = () if what is None else (what,)
-        if equations_are_linear(derived):
+        if derived.balance.exactly_linear:
             return _told(result, EXACT, *because, said(Said.GROWS_WITH_EQUALITY))
         return _told(result, UNDECIDED, *because, *further, said(Said.GROWTH_LEAVES_OPEN))
     return _told(result, UNDECIDED, said(Said.NOT_PROVED_NECESSARY), *further, _tried(tried, Said.NONE_STABLE))

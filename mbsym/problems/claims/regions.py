@@ -228,17 +228,3 @@ class Region:
 
 def _needed(requirements: Sequence[Requirement]) -> list[str]:
     return [r.label for r in requirements if not r.always and r.place is not Place.HARMLESS]
-
-
-def equations_are_linear(derived: Derived) -> bool:
-    """Whether M q'' = f are linear equations in q: their solutions are those of the first approximation."""
-    if derived.system.linear is not None or derived.system.constraints or derived.system.speeds:
-        return False
-    equations, ring = derived.equations, derived.ring
-    states = [*derived.system.coordinates, *derived.system.velocities]
-    moving = [*states, *(item.name for item in derived.system.prescribed), *derived.system.input_names, "t"]
-    mass = [x.polynomial for row in equations.mass_matrix for x in row]
-    slopes = [ring.derivative(f.polynomial, name) for f in equations.forcing for name in derived.system.coordinates] + [
-        ring.velocity_derivative(f.polynomial, name) for f in equations.forcing for name in derived.system.coordinates
-    ]
-    return not any(ring.dependencies(x, moving) for x in (*mass, *slopes))

@@ -79,10 +79,10 @@ _SENTENCES: dict[Said, str | Callable[..., str]] = {
         "with equality the first approximation has solutions that grow; whether the motion is stable there, terms of "
         "higher order decide"
     ),
-    Said.NEVER_STABLE: (
-        "the motion is {}: as no parameters are known to make it stable, any condition would be necessary, and it says "
-        "nothing"
-    ).format,
+    Said.NEVER_STABLE: lambda verdict, borders: (
+        f"the motion is {verdict}: as it is stable {'nowhere else' if borders else 'for no parameters'}, any condition "
+        "would be necessary, and it says nothing"
+    ),
     Said.NOT_NECESSARY: "it is not necessary for stability",
     Said.NOT_NECESSARY_IN_FIRST: "it is not necessary for stability in the first approximation",
     Said.NOT_SUFFICIENT: lambda n: f"{_subject(n)} {_is(n)} not sufficient for stability",

@@ -29,6 +29,10 @@ enclosures).  A theorem is named where all its hypotheses are shown:
   semisimple: stable; a Jordan block there: unstable, like a power of t.  Then no nonlinear system is left open.  A
   drift of bodies along directions on which nothing depends is told apart, as that of cyclic coordinates is.
 
+Displacements that change no equation are cyclic coordinates in every choice of coordinates (two masses on a ring move
+on together); those with constant momenta are ignored after Routh.  A steady spin is judged in angles in which it is
+steady, and the verdict says in which.
+
 No verdict is given where terms of higher order hold t, or what grows with it, outside of sines and cosines: they are
 not small at all times alike, as Lyapunov's theorems ask; nor where D is not 0 (or G and N are both there) and the rate
 of a dimensionless time is not known to be positive.

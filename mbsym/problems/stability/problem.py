@@ -136,13 +136,15 @@ class SubsystemStability(Shown):
 class Stability(Shown):
     """``verdict`` for the whole system; ``numerical`` the verdict at the description's parameter values, if any.
 
-    ``spectra`` are the eigenvalues there, subsystem by subsystem, where the motion exists.
+    ``spectra`` are the eigenvalues there, subsystem by subsystem, where the motion exists.  ``presumed``: so many
+    conditions of problem 4 are presumed by all this.
     """
 
     subsystems: tuple[SubsystemStability, ...]
     verdict: Verdict
     numerical: Verdict | None
     spectra: tuple[Spectrum, ...] = ()
+    presumed: int = 0
 
     @property
     def terms(self) -> int:
@@ -192,7 +194,7 @@ def stability(
     verdict = combine((part.theory.verdict for part in judged), balance.law.bounded)
     if verdict.word is Word.DEPENDS and len(judged) > 1:
         verdict = _whole(scene.ring, judged, signs, balance.law.bounded)
-    return Stability(judged, verdict, numerical, spectra)
+    return Stability(judged, verdict, numerical, spectra, len(equilibrium.conditions))
 
 
 def _whole(ring: Ring, parts: Sequence[SubsystemStability], signs: Signs, one_energy: bool) -> Verdict:

@@ -126,7 +126,7 @@ def _case(case: CaseStatement, shown: Shown) -> dict[str, Any]:
 
 def lines(found: Stability, analysis: Analysis) -> Iterator[str]:
     """The lines in the terminal."""
-    presumed = provided(len(analysis.equilibrium.conditions), bool(analysis.system.inputs))
+    presumed = provided(found.presumed, bool(analysis.system.inputs))
     for part in found.subsystems:
         # Of a motion that is proved to be stable, conditions of something stronger would be misread.
         items = [] if part.theory.verdict.stable else list(statements(part.ring, part.theory.requirements))
@@ -160,7 +160,8 @@ def lines(found: Stability, analysis: Analysis) -> Iterator[str]:
 def _without_numbers(analysis: Analysis) -> list[str]:
     """The parameters that have no value, where others have one."""
     system = analysis.system
-    known = {one.name for one in system.relations} | {name for name, _ in analysis.equilibrium.solved}
+    motion = analysis.optional("equilibrium")
+    known = {one.name for one in system.relations} | {name for name, _ in (() if motion is None else motion.solved)}
     lacking = [one.name for one in system.parameters if one.value is None and one.name not in known]
     used = {name for x in expressions(system) for name in names(x)} if lacking else set()
     return [name for name in lacking if name in used] if any(x.value is not None for x in system.parameters) else []

@@ -167,20 +167,42 @@ def test_hess_relation_of_the_shipped_file():
     assert linear_relations(other.field, (1, 1, 1, 2, 2, 2), ["A", "C", "x0", "z0", "m", "g"]).relations == ()
 
 
-def test_symmetries_are_in_the_reports(tmp_path):
+def test_a_symmetry_with_gamma_gives_the_energy_that_problem_7_finds(tmp_path):
     """A cart that is pushed by a constant F: t -> t + s changes L by d(F x)/dt, so that the energy less F x is kept."""
-    words = ["run", SYSTEMS / "cart-pendulum.yaml", "--problems", "7,9", "--format", "json,latex,html,python"]
+    words = ["run", SYSTEMS / "cart-pendulum.yaml", "--problems", "7,9", "--format", "json"]
+    done = CliRunner().invoke(main, [*map(str, words), "--out", str(tmp_path)])
+    assert done.exit_code == 0, done.output
+    symmetries = json.loads((tmp_path / "results.json").read_text("utf-8"))["polynomial_integrals"]["symmetries"]
+    assert [(one["field"], one["gauge"], one["new"]) for one in symmetries["symmetries"]] == [({}, "F*x", False)]
+
+
+ELLIPSES = """
+mbsym: 1
+name: Ellipses that turn into each other
+parameters: {m: positive, k: positive}
+bodies:
+  - {name: one, mass: m, connection point: [x, 0, 0], coordinates: [x]}
+  - {name: two, attached to: 0, mass: 4*m, connection point: [y, 0, 0], coordinates: [y]}
+loads:
+  - potential: k*(x**2 + 4*y**2)/2
+"""
+
+
+def test_symmetries_are_in_the_reports(tmp_path):
+    """L of x and 2 y is that of an isotropic oscillator: no change when they turn, (x, y) moving as (-4 y, x)."""
+    (tmp_path / "ellipses.yaml").write_text(ELLIPSES, encoding="utf-8")
+    words = ["run", tmp_path / "ellipses.yaml", "--problems", "7,9", "--format", "json,latex,html,python"]
     done = CliRunner().invoke(main, [*map(str, words), "--language", "ru", "--out", str(tmp_path)])
     assert done.exit_code == 0, done.output
     data = json.loads((tmp_path / "results.json").read_text("utf-8"))
     jsonschema.validate(data, schema("results"))
     symmetries = data["polynomial_integrals"]["symmetries"]
-    assert [(one["field"], one["gauge"], one["new"]) for one in symmetries["symmetries"]] == [({}, "F*x", True)]
+    fields = [(one["field"], one["new"]) for one in symmetries["symmetries"]]
+    assert fields == [({}, False), ({"x": "-4*y", "y": "x"}, True)]
     tex = (tmp_path / "report.tex").read_text("utf-8")
-    assert "$\\tau = 1$, $\\Gamma = F x$ даёт новый интеграл" in tex
-    told = "The field time: 1; Gamma = F*x gives a further integral"
-    assert told in (tmp_path / "report.html").read_text("utf-8")
-    assert "integral of the symmetry time: 1" in (tmp_path / "model.py").read_text("utf-8")
+    assert "$\\xi_{x} = -4 y$, $\\xi_{y} = x$ даёт новый интеграл" in tex
+    assert "The field x: -4*y, y: x gives a further integral" in (tmp_path / "report.html").read_text("utf-8")
+    assert "integral of the symmetry x: -4*y" in (tmp_path / "model.py").read_text("utf-8")
 
 
 def test_symmetries_that_are_denied():
