@@ -1,8 +1,8 @@
 """Readers of what terminal, LaTeX, HTML, JSON and Wolfram print of problems 4 to 6: each knows its own text alone.
 
-They give the same shape of every surface: equations, matrices, and per subsystem the characteristic polynomial, the conditions with the letters
-defined beside them, and the cases.  A formula is a function of a look-up of symbols; how symbols are written is the
-surface's own affair.
+They give the same shape of every surface: equations, matrices, and per subsystem the characteristic polynomial, the
+conditions with the letters defined beside them, and the cases.  A formula is a function of a look-up of symbols; how
+symbols are written is the surface's own affair.
 """
 
 from __future__ import annotations

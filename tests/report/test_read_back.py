@@ -1,4 +1,4 @@
-"""Whatever is printed of problems 4 to 6 can be evaluated from what is printed on that surface, and is as true as the value.
+"""What is printed of problems 4 to 6 can be evaluated from that surface alone, and is as true as the value behind it.
 
 Terminal, LaTeX, HTML, JSON and Wolfram are read back (``printed_stability``) and evaluated at random rational points,
 each from its own text alone: how it writes the parameters, and which letters it defines.  Behind them stand the exact
