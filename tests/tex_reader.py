@@ -10,11 +10,11 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Any
 
-_TOKEN = re.compile(r"\\penalty-?\d+|\\[A-Za-z]+|\\.|\d+|[A-Za-z]|[-+^_{}()\[\]]|\s+")
+_TOKEN = re.compile(r"\\penalty-?\d+|\\[A-Za-z]+|\\.|\d+|[A-Za-z]|[-+^_{}()\[\],]|\s+")
 _FUNCTIONS = {r"\sin": "sin", r"\cos": "cos", r"\exp": "exp", r"\ln": "log", r"\arctan": "atan"}
 _OPENING, _CLOSING = ("(", "[", r"\{"), (")", "]", r"\}")
 _SILENT = (r"\,", r"\bigl", r"\bigr", r"\Bigl", r"\Bigr", r"\;")
-_ACCENTS = (r"\dot", r"\ddot")
+_ACCENTS = (r"\dot", r"\ddot", r"\hat")
 _TEXT = (r"\mathrm", r"\mathit", r"\mathtt")
 
 

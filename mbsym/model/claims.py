@@ -68,8 +68,10 @@ CLAIMS: dict[str, ClaimKind] = {
     "coefficient": ClaimKind("of one product of velocities in a quantity, or in a coordinate's equation", SUM, at=True),
     "mass matrix": ClaimKind("an entry of M(q)", entry=2),
     "equation of motion": ClaimKind(
-        "of a coordinate: an expression that vanishes", COORDINATE, accelerations=True, state=False, homogeneous=True
+        "of a coordinate: an expression that vanishes on every motion", COORDINATE, accelerations=True, state=False,
+        homogeneous=True,
     ),
+    "acceleration": ClaimKind("of a coordinate: q'' = M^-1 f in coordinates, velocities and the time", COORDINATE),
     **{
         f"{which} matrix {name}": ClaimKind(f"an entry of {name} {where}", entry=2, state=False)
         for which, where in (

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from mbsym.algebra.characteristic import Polynomial, lienard_chipart, subdiscriminants
 from mbsym.algebra.ring import Ring
 from mbsym.formulas.formula import Formula
+from mbsym.formulas.names import parts
 from mbsym.problems.stability.requirements import Requirement
 
 #: Shorter conditions are written out.
@@ -36,8 +37,15 @@ class InCoefficients:
 
 
 def names_in(ring: Ring) -> frozenset[str]:
-    """The names that formulas over the ring may hold."""
-    return frozenset(ring.names())
+    """The names that formulas over the ring may hold, and those that look like them: v4 for ``v_4``, which is v_{4}."""
+    names = ring.names()
+    return frozenset([*names, *map(_looks, names)])
+
+
+def _looks(name: str) -> str:
+    """The shortest name that reports write in the same way."""
+    split = parts(name)
+    return split.stem + "_".join(split.indices)
 
 
 def in_coefficients(ring: Ring, requirement: Requirement) -> InCoefficients | None:

@@ -219,8 +219,10 @@ def polynomial(left: str, coefficients: Sequence[Formula], variable: str) -> Mar
         elif raised and len(shape.terms) > 1:
             pieces, negative = MathPrinter(coefficient.ring).factor_pieces(Factor(shape)), False
         else:
-            negative = shape.terms[0].coefficient < 0 and len(shape.terms) == 1
-            pieces = mathml_pieces(coefficient.ring, -coefficient.polynomial if negative else coefficient.polynomial)
+            negative = shape.terms[0].coefficient < 0
+            pieces = mathml_pieces(coefficient.ring, coefficient.polynomial)
+            if negative:
+                pieces[0] = pieces[0].removeprefix(sign("\u2212"))
         if raised:
             pieces = [raised] if pieces == [mn(1)] else [*pieces[:-1], pieces[-1] + TIMES + raised]
         if found:
@@ -276,10 +278,10 @@ def label(words: str) -> Markup:
     return Markup(_joined(shown, mtext(f", {rest}"))) if comma else shown
 
 
-def prose(words: str) -> Markup:
-    """Words of the stability kernel, with lambda as a symbol."""
+def prose(words: str, variable: str = "λ") -> Markup:
+    """Words of the stability kernel, with lambda as the ``variable`` of the characteristic polynomial."""
 
     def power_of(found: re.Match[str]) -> str:
-        return math(power(mi("λ"), mn(found[2])) if found[2] else mi("λ"))
+        return math(power(mi(variable), mn(found[2])) if found[2] else mi(variable))
 
     return Markup(re.sub(r"\blambda(\^(\d+))?", power_of, str(escape(words))))

@@ -5,7 +5,7 @@ What was found stands first.  Formulas are MathML; long ones are folded away beh
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -152,8 +152,8 @@ def context(
         code=_code(analysis) if 3 in stages and 3 not in found else None,
         state=analysis.optional("first_order") if system.speeds and 5 in found else None,
         told=compact(analysis, {number: found.get(number) for number in problems}),
-        variable="λ" if "<mi>λ</mi>" not in taken else free_name("lam", taken),
-        characteristic="Lambda" if "<mi>Λ</mi>" not in taken else "Delta",
+        variable=_free_letter("λμσs", taken),
+        characteristic="Lambda" if "<mi>Λ</mi>" not in taken else _free_letter("ΔΦPQ", taken),
         factors=factors,
         math_text=lambda words: Markup(mtext(words)),
         provided=provided(found[6].presumed, bool(analysis.system.inputs)) if 6 in found else "",
@@ -288,6 +288,11 @@ def _filled(said_ones: Iterable[tuple[str, dict[str, object]]]) -> Iterator[Mark
         for name, value in values.items():
             said = said.replace(f"[[{name}]]", escape(value))
         yield said
+
+
+def _free_letter(letters: str, taken: Collection[str]) -> str:
+    """The first that is the symbol of nothing declared."""
+    return next((x for x in letters if mi(x) not in taken), free_name(letters[0] * 2, taken))
 
 
 def _functions(long: frozenset[int]) -> dict[str, Callable[..., Any]]:

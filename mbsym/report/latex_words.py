@@ -63,10 +63,10 @@ def refer(reference: Reference, say: Callable[[str], str] = str) -> str:
     return f"{under}{label(reference.under, say)} {relation} 0"
 
 
-def prose(words: str) -> str:
-    """Words of the stability kernel, with lambda as a symbol."""
+def prose(words: str, variable: str = r"\lambda") -> str:
+    """Words of the stability kernel, with lambda as the ``variable`` of the characteristic polynomial."""
     power = r"\blambda(\\\^\{\}(\d+))?"
-    return re.sub(power, lambda m: rf"$\lambda^{{{m[2]}}}$" if m[1] else r"$\lambda$", escaped(words))
+    return re.sub(power, lambda m: f"${variable}^{{{m[2]}}}$" if m[1] else f"${variable}$", escaped(words))
 
 
 def label(words: str, say: Callable[[str], str] = str) -> str:

@@ -96,8 +96,15 @@ def test_euler() -> None:
 
 
 def test_a_planted_multiplier_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What takes any form for definite has no say where parameters refute."""
+    """What takes any form for definite holds a near miss of the sleeping top's C^2 W^2 > 4 A m g l for sufficient.
+
+    3999999/1000000 < 4: between the two the top falls, in a strip too thin for parameters that are tried.  So nothing
+    but the proof keeps the claim from being held, and the first of these lines is what fails where the proof is wrong.
+    """
+    near = "1000000*C**2*W**2 > 3999999*A*m*g*l"
+    assert outcomes(TOP, near) != ["held"]
     monkeypatch.setattr(by_integrals._Second, "_is_definite", lambda *_: True)
+    assert outcomes(TOP, near) == ["held"]  # nothing else refutes it: the line above sees this error
     assert outcomes(TOP, "W > 0", "A > C") == ["refuted", "refuted"]  # parameters refute before anything is proved
 
 

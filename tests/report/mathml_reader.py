@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 from xml.etree import ElementTree as ET
 
@@ -101,8 +101,8 @@ def written(name: str, dots: str = "") -> str:
 class Reader:
     """sum := product (+|- product)*,  product := factor (invisible times factor)*,  factor := atom [power]."""
 
-    def __init__(self, tokens: list[Token], values: Mapping[str, Any]) -> None:
-        self.tokens, self.values, self.place = tokens, values, 0
+    def __init__(self, tokens: list[Token], values: Mapping[str, Any], number: Callable[[fmpq], Any] = arb) -> None:
+        self.tokens, self.values, self.number, self.place = tokens, values, number, 0
 
     def value(self) -> Any:
         found = self.sum()
@@ -133,10 +133,13 @@ class Reader:
         return total
 
     def exponent(self) -> Any:
-        return self.inner(self.take()[1]) if self.peek()[0] == "power" else arb(1)
+        if self.peek()[0] != "power":
+            return 1
+        value = self.inner(self.take()[1])
+        return int(value) if isinstance(value, fmpq) else value
 
     def inner(self, tokens: list[Token]) -> Any:
-        return Reader(tokens, self.values).value()
+        return Reader(tokens, self.values, self.number).value()
 
     def factor(self) -> Any:
         kind, content = self.take()
@@ -145,19 +148,19 @@ class Reader:
             assert self.take() == ("mo", APPLY), "a function is applied"
             argument = self.factor()
             function = {"sin": arb.sin, "cos": arb.cos, "ln": arb.log, "exp": arb.exp, "arctan": arb.atan}[content]
-            return function(argument) ** power
+            return function(arb(argument)) ** power
         match kind:
             case "mi":
                 found = self.values[content]
             case "mn":
                 whole, _, digits = content.partition(".")
-                found = arb(fmpq(int(whole + digits), 10 ** len(digits)))
+                found = self.number(fmpq(int(whole + digits), 10 ** len(digits)))
             case "fraction":
                 found = self.inner(content[0]) / self.inner(content[1])
             case "group":
                 found = self.inner(content)
             case "root":
-                found = self.inner(content).sqrt()
+                found = arb(self.inner(content)).sqrt()
             case "mo" if content in "([{":
                 found = self.sum()
                 assert self.take() == ("mo", {"(": ")", "[": "]", "{": "}"}[content]), "brackets close"

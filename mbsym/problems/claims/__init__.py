@@ -12,8 +12,9 @@ that would be right with something added.
 
 What only has to vanish (an equation of motion, a characteristic polynomial) may be multiplied by anything that is not
 zero: it holds up to a factor.  Where it does not, it is compared with that multiple of the derived one that agrees with
-it in most places, so that the difference is what is wrong:  claimed - factor*derived.  Of every other quantity a factor
-is an error, and it differs by the factor.
+it in most places, so that the difference is what is wrong:  claimed - factor*derived.  An equation of motion holds on
+every motion, too, if it is a combination of the equations (solved for an acceleration, a sum): which one is said
+(``equations``).  Of every other quantity a factor is an error, and it differs by the factor.
 
 A first integral I is decided by dI/dt = 0 on the equations of motion; one that fails is told its dI/dt, with q''
 replaced by M^-1 f, and a state where this is not zero.  A condition of stability that is to be *necessary* (key 'as')
@@ -39,12 +40,14 @@ from __future__ import annotations
 from mbsym.model.claims import CLAIMS, Claim
 from mbsym.problems.claims.comparison import examined_formula
 from mbsym.problems.claims.conditions import examined_condition
+from mbsym.problems.claims.equations import examined_equation
 from mbsym.problems.claims.forms import in_parameters
 from mbsym.problems.claims.in_momenta import with_momenta
 from mbsym.problems.claims.integrals import examined_integral
 from mbsym.problems.claims.numbers import examined_number
 from mbsym.problems.claims.quantities import derived_quantity
 from mbsym.problems.claims.result import (
+    ALONG,
     BORDERS,
     DIFFERS,
     DIGITS,
@@ -67,6 +70,7 @@ from mbsym.problems.claims.result import (
 from mbsym.problems.claims.symbols import Symbols
 
 __all__ = [
+    "ALONG",
     "BORDERS",
     "DIFFERS",
     "DIGITS",
@@ -122,4 +126,7 @@ def examine(derived: Derived, claim: Claim) -> ClaimResult:
     claimed = symbols.polynomial(scene, claim)
     if claim.kind == "first integral":
         return examined_integral(derived, claim, about, in_parameters(derived, claimed))
-    return examined_formula(derived, claim, about, symbols, claimed, derived_quantity(derived, claim))
+    found = examined_formula(derived, claim, about, symbols, claimed, derived_quantity(derived, claim))
+    if claim.kind == "equation of motion":
+        return examined_equation(derived, found, symbols, claimed)
+    return found

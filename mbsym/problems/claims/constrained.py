@@ -30,6 +30,7 @@ from mbsym.model.system import System, acceleration_name
 from mbsym.problems.claims.comparison import examined_formula
 from mbsym.problems.claims.conditions import examined_condition
 from mbsym.problems.claims.counterexample import Counterexample, shown
+from mbsym.problems.claims.equations import NOTHING, power_of
 from mbsym.problems.claims.forms import in_parameters
 from mbsym.problems.claims.in_momenta import IN_MOMENTA
 from mbsym.problems.claims.numbers import examined_number
@@ -73,6 +74,11 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
         return _integral(derived, ClaimResult(claim, about, EXACT, Formula(derived.ring, claimed)))
     if claim.kind == "equation of motion":
         return _equation(derived, ClaimResult(claim, about, EXACT, Formula(derived.ring, claimed)))
+    if claim.kind == "acceleration":
+        if claim.of not in derived.system.coordinates:
+            raise NoClosedForm("the acceleration of a speed: not judged under constraints")
+        own = derived.ring.generator("acceleration", claim.of)
+        return _equation(derived, ClaimResult(claim, about, EXACT, Formula(derived.ring, own - claimed)))
     if claim.kind.startswith(("linear matrix", "subsystem matrix", "characteristic")):
         truth = of_first_approximation(derived, claim)
         return examined_formula(derived, claim, about, symbols, claimed, truth)
@@ -133,11 +139,13 @@ def _equation(derived: Derived, result: ClaimResult) -> ClaimResult:
     ring, along = derived.ring, _along(derived)
     claimed = _polynomial(derived, result)
     if ring.vanishes(claimed):
-        return replace(result, outcome=UNDECIDED, remark="it says 0 = 0")
+        return replace(result, outcome=UNDECIDED, remark=NOTHING)
     places = [ring.index("acceleration", name) for name in along.tied.coordinates]
     slopes = [claimed.derivative(place) for place in places]
-    found = _vanishing(derived, along, result, claimed, slopes, "the claimed expression")
-    if found.holds and all(ring.is_zero(slope) is True for slope in along.along_speeds(slopes)):
+    equation = result.claim.kind == "equation of motion"
+    what = "the claimed expression" if equation else "derived - claimed"
+    found = _vanishing(derived, along, result, claimed, slopes, what)
+    if found.holds and equation and all(ring.is_zero(slope) is True for slope in along.along_speeds(slopes)):
         return replace(found, remark=FROM_CONSTRAINTS)
     return found
 
@@ -157,7 +165,7 @@ def _vanishing(
         wrong = next(((one, value) for one, value in found if is_certain(value)), None)
         if wrong is not None and not derived.system.relations:
             return replace(result, outcome=FAILS, counterexample=_example(derived, *wrong, what))
-    linear = not any(ring.dependencies(slope, _accelerations(derived)) for slope in slopes)
+    linear = power_of(ring, x, [ring.index("acceleration", name) for name in along.tied.coordinates]) <= 1
     if wrong is None and linear and along.proves_zero(x, slopes):
         return result
     if wrong is not None:
@@ -166,10 +174,6 @@ def _vanishing(
     if len(found) < STATES or ring.kinked:
         return replace(result, outcome=UNDECIDED, remark="there are too few states at which it could be tried")
     return replace(result, outcome=NUMERICAL, remark="at exact states on the constraints")
-
-
-def _accelerations(derived: Derived) -> list[str]:
-    return [g.name for g in derived.ring.generators if g.kind == "acceleration"]
 
 
 def _example(derived: Derived, one: OnManifold, value: Any, what: str) -> Counterexample:

@@ -1,8 +1,9 @@
 """Claims about systems with speeds and unit vectors of their own, in the variables of these.
 
 A claim holds if claimed - derived vanishes wherever unit vectors are orthonormal and quaternions of norm 1; an equation
-also if it is a multiple of the derived one by parameters.  A first integral is decided by its rate along the motion.
-Matrices, characteristic polynomials and conditions are those of the first approximation in coordinates.
+also if it is a multiple of the derived one by parameters, or a combination of all of them.  A first integral is decided
+by its rate along the motion.  Matrices, characteristic polynomials and conditions are those of the first approximation
+in coordinates.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import cast
 
-from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.ring import Polynomial
 from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula, Matrix, column
@@ -21,9 +22,20 @@ from mbsym.model.claims import Claim
 from mbsym.problems import speeds
 from mbsym.problems.claims.comparison import examined_formula
 from mbsym.problems.claims.conditions import examined_condition
+from mbsym.problems.claims.equations import NOT_LINEAR, NOTHING, SAME_ACCELERATIONS, Dynamics, along_motion
 from mbsym.problems.claims.forms import in_parameters
 from mbsym.problems.claims.quantities import derived_quantity, of_first_approximation
-from mbsym.problems.claims.result import DIFFERS, EXACT, FACTOR, FAILS, RELATIONS, UNDECIDED, ClaimResult, Derived
+from mbsym.problems.claims.result import (
+    ALONG,
+    DIFFERS,
+    EXACT,
+    FACTOR,
+    FAILS,
+    RELATIONS,
+    UNDECIDED,
+    ClaimResult,
+    Derived,
+)
 from mbsym.problems.claims.symbols import Symbols
 from mbsym.problems.speed_integrals import Field
 from mbsym.problems.speeds import SpeedEquations
@@ -46,7 +58,8 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
         return examined_condition(derived, claim, about)  # problem 6 is told in coordinates
     if claim.kind.startswith(_LINEAR) and not claim.kind.endswith("B"):
         return _linear(derived, claim, about)
-    claimed = in_parameters(derived, Symbols.of(derived).polynomial(derived.parameters_scene, claim))
+    scene = derived.scene if derived.system.inputs else derived.parameters_scene  # the latter holds no inputs
+    claimed = in_parameters(derived, Symbols.of(derived).polynomial(scene, claim))
     if claim.kind == "first integral":
         return _integral(derived, form, claim, about, claimed)
     truth = in_parameters(derived, _derived(derived, form, claim))
@@ -57,6 +70,8 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     if known is True:
         return result
     if claim.kind == "equation of motion":
+        if form.vanishes(form.ring.substitute(claimed, images)) is True:
+            return replace(result, outcome=UNDECIDED, remark=NOTHING)
         factor = _factor(form, claimed, truth)
         if factor is not None:
             return replace(result, outcome=FACTOR, factor=Formula(form.ring, factor))
@@ -66,7 +81,37 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
         if known is True:
             return replace(result, outcome=RELATIONS)
     outcome = UNDECIDED if known is None else DIFFERS
-    return replace(result, outcome=outcome, difference=Formula(form.ring, difference))
+    result = replace(result, outcome=outcome, difference=Formula(form.ring, difference))
+    return _along(derived, form, result, claimed) if claim.kind == "equation of motion" else result
+
+
+def _along(derived: Derived, form: SpeedForm, found: ClaimResult, claimed: Polynomial) -> ClaimResult:
+    """A claimed equation that is no multiple of the own one: a combination of all, or what it differs by from one."""
+    ring, images = form.ring, relations(derived.parameters_scene)
+    dynamics = Dynamics.in_speeds(form, cast(SpeedEquations, derived.equations))
+
+    def verdict(left: Polynomial) -> tuple[str, str]:
+        known = form.vanishes(ring.substitute(left, images) if images else left)
+        return UNDECIDED if known is None else EXACT if known else DIFFERS, ""
+
+    try:
+        (outcome, _), made = along_motion(dynamics, claimed, verdict)
+    except Failure:
+        remark = "whether it vanishes on every motion is not decided: the equations are too long"
+        return replace(found, outcome=UNDECIDED, difference=None, remark=remark)
+    plain = replace(found, outcome=outcome, difference=None)
+    if outcome == EXACT:
+        remark = NOT_LINEAR if made is None else made.words(dynamics, derived, without_velocity(found.claim.of))
+        return replace(plain, outcome=ALONG, remark=remark)
+    if outcome == UNDECIDED:
+        return replace(plain, remark="whether it vanishes on every motion is not decided")
+    if made is not None and made.coefficients and found.difference is not None:
+        whole = made.equation(dynamics)
+        rest = form.shortened(ring.reduce(claimed - whole))
+        if not ring.vanishes(rest) and len(rest) < len(found.difference.polynomial):
+            told = replace(found, derived=Formula(ring, whole), difference=Formula(ring, rest))
+            return replace(told, outcome=DIFFERS, remark=SAME_ACCELERATIONS)
+    return replace(found, outcome=DIFFERS)
 
 
 def _linear(derived: Derived, claim: Claim, about: str) -> ClaimResult:
@@ -89,6 +134,10 @@ def _derived(derived: Derived, form: SpeedForm, claim: Claim) -> Polynomial:
             if position.name == claim.of and claim.of in derived.system.variables:
                 return form.ring.context.gen(position.rate_index) - form.rates[claim.of]
         return speeds.residual(equations, _speed(form, claim.of))
+    if claim.kind == "acceleration":
+        dynamics = Dynamics.in_speeds(form, equations)
+        top, bottom = dynamics.solved(_speed(form, claim.of))
+        return form.ring.reduce(form.ring.times(top, form.ring.reciprocal(bottom)))
     raise NoClosedForm(f"a claim about the {claim.kind}: not judged in speeds")
 
 

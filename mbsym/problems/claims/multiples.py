@@ -70,7 +70,7 @@ def closest_multiple(derived: Derived, claim: Claim, claimed: Polynomial, truth:
         difference = ring.reduce(claimed - ring.times(truth, factor))
     except Failure:
         return None
-    return Multiple(Formula(ring, factor), difference, decided(derived, left), _exceptions(derived, top, bottom))
+    return Multiple(Formula(ring, factor), difference, decided(derived, left), exceptions(derived, top, bottom))
 
 
 def _accelerations(ring: Ring, x: Polynomial) -> bool:
@@ -97,7 +97,7 @@ def _importance(ring: Ring, claim: Claim, place: tuple[int, ...]) -> tuple[bool,
     return not own, not accelerated_, -sum(place), place
 
 
-def _exceptions(derived: Derived, top: Polynomial, bottom: Polynomial) -> str:
+def exceptions(derived: Derived, top: Polynomial, bottom: Polynomial) -> str:
     """ "where r and cos(theta) are not 0": what of top and bottom is not known to be different from zero."""
     ring = derived.ring
     doubtful: list[str] = []

@@ -15,6 +15,7 @@ from mbsym.algebra.point import Balls
 from mbsym.expressions.counting import counted
 from mbsym.expressions.tree import (
     Expression,
+    Name,
     names,
     text,
 )
@@ -108,7 +109,14 @@ def _derived_number(derived: Derived, claim: Claim, state: State) -> Any:
     state = _with_speeds(derived, state)
     if claim.of_expression is not None:
         return _value(derived, Symbols.of(derived), state, claim.of_expression)
+    if claim.kind == "acceleration":
+        return _value(derived, Symbols.of(derived), state, Name(rate_of(derived.system, claim.of)))
     return Carrier(derived.ring, state.numbers, state.values)(derived_quantity(derived, claim))
+
+
+def rate_of(system: System, name: str) -> str:
+    """The name of the acceleration of a coordinate, or of the rate of a speed."""
+    return acceleration_name(name) if name in system.coordinates else velocity_name(name)
 
 
 def _with_speeds(derived: Derived, state: State) -> State:

@@ -12,6 +12,7 @@ from mbsym.expressions.tree import (
 from mbsym.mechanics.kinematics import Scene
 from mbsym.model.claims import SUMS, Claim
 from mbsym.model.system import INERTIAL
+from mbsym.problems.claims.equations import Dynamics
 from mbsym.problems.claims.forms import by_motion
 from mbsym.problems.claims.in_momenta import IN_MOMENTA, in_velocities
 from mbsym.problems.claims.result import Derived
@@ -31,6 +32,9 @@ def derived_quantity(derived: Derived, claim: Claim) -> Polynomial:
         return derived.energy.A2[rows[0], rows[1]].polynomial
     if kind == "equation of motion":
         return _equation(derived, claim.of)
+    if kind == "acceleration":
+        top, bottom = Dynamics.of(derived).solved(derived.system.coordinates.index(claim.of))
+        return ring.reduce(ring.times(top, ring.reciprocal(bottom)))
     if kind in IN_MOMENTA:
         return in_velocities(derived, kind, claim.of)
     if kind == "linear matrix B":

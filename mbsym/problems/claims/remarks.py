@@ -69,15 +69,15 @@ _SENTENCES: dict[Said, str | Callable[..., str]] = {
         f"it is necessary for exponential stability{f' of {whose}' if whose else ''} (all roots to the left){note}"
     ),
     Said.GROWS_WITH_EQUALITY: "with equality solutions grow: the equations are linear",
-    Said.STABLE_WITH_EQUALITY: "with equality, too, the motion is stable",
-    Said.STABLE_IN_FIRST_WITH_EQUALITY: "with equality, too, the first approximation is stable",
-    Said.EQUALITY_OPEN: "where it is an equality, nothing is proved",
+    Said.STABLE_WITH_EQUALITY: "with equality, too, the motion may be stable",
+    Said.STABLE_IN_FIRST_WITH_EQUALITY: "with equality, too, the first approximation may be stable",
+    Said.EQUALITY_OPEN: "where it is an equality, nothing is proved in general",
     Said.EQUAL_AT_VALUES: (
         "where it is an equality nothing is proved but at the given values: there the motion is {}".format
     ),
     Said.GROWTH_LEAVES_OPEN: (
         "with equality the first approximation has solutions that grow; whether the motion is stable there, terms of "
-        "higher order decide"
+        "higher order decide, if there are any"
     ),
     Said.NEVER_STABLE: lambda verdict, borders: (
         f"the motion is {verdict}: as it is stable {'nowhere else' if borders else 'for no parameters'}, any condition "

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
 EXACT = "holds exactly"
 RELATIONS = "holds on the relations between the parameters"
 FACTOR = "holds up to a factor"
+ALONG = "holds on every motion"
 BORDERS = "holds but for border cases"
 EQUIVALENT = "holds up to a total time derivative"
 DIGITS = "holds to the digits printed"
@@ -145,7 +146,18 @@ class ClaimResult:
 
     @property
     def holds(self) -> bool:
-        return self.outcome in (EXACT, RELATIONS, FACTOR, BORDERS, EQUIVALENT, DIGITS, TOLERANCE, DOUBLES, NUMERICAL)
+        return self.outcome in (
+            EXACT,
+            RELATIONS,
+            FACTOR,
+            ALONG,
+            BORDERS,
+            EQUIVALENT,
+            DIGITS,
+            TOLERANCE,
+            DOUBLES,
+            NUMERICAL,
+        )
 
     @property
     def refuted(self) -> bool:

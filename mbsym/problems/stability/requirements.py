@@ -18,6 +18,9 @@ from mbsym.algebra.characteristic import Coefficients, Matrix, Polynomial, leadi
 from mbsym.algebra.signs import MOST_TERMS, Condition, Signs
 from mbsym.problems.stability.verdict import Verdict
 
+#: Of the label of a minor that was reduced by the minors before it being positive.
+REDUCED = ", reduced by those before"
+
 
 class Method(StrEnum):
     """What the conditions on the characteristic polynomial say together."""
@@ -142,10 +145,14 @@ class Factor:
 def definiteness(matrix: Matrix, signs: Signs, name: str) -> Definiteness:
     """Sylvester's criterion, each leading minor reduced by ``signs`` and by the minors before it being positive."""
     requirements: list[Requirement] = []
+    first = signs
     for i, minor in enumerate(leading_minors(matrix), start=1):
         condition = signs.condition(minor)
-        place = Place.SUFFICIENT
-        requirements.append(Requirement(f"minor {i} of {name}", minor, condition, place=place, strict=place))
+        place, label = Place.SUFFICIENT, f"minor {i} of {name}"
+        # What has the minor's sign only beside the others is not told under its name.
+        if condition.kind == "inequality" and first.condition(minor) != condition:
+            label += REDUCED
+        requirements.append(Requirement(label, minor, condition, place=place, strict=place))
         if condition.kind == "inequality" and len(condition.polynomial) <= MOST_TERMS:
             signs = signs.assuming([(condition.polynomial, ">"), *((p, "!=") for p in condition.nonzero)])
     if all(r.always for r in requirements):
@@ -160,7 +167,7 @@ def definiteness(matrix: Matrix, signs: Signs, name: str) -> Definiteness:
 def against(requirements: Sequence[Requirement], known: Signs) -> tuple[Requirement, ...]:
     """p < 0 for every p > 0.  By continuity none of them occurs while all roots have Re <= 0 (or mu <= 0)."""
     return tuple(
-        Requirement(f"-({r.label})", -r.polynomial, known.condition(-r.polynomial))
+        Requirement(f"-({r.label.partition(REDUCED)[0]})", -r.polynomial, known.condition(-r.polynomial))
         for r in requirements
         if r.relation == ">" and r.place is not Place.HARMLESS and not r.by_mass and not r.unwritten
     )

@@ -46,7 +46,7 @@ from mbsym.algebra.characteristic import (
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import NoClosedForm, TooLargeError
 from mbsym.algebra.generators import occurring
-from mbsym.algebra.signs import MOST_TERMS, Condition, Signs, conditions
+from mbsym.algebra.signs import MOST_TERMS, Condition, ContradictionError, Signs, conditions
 from mbsym.problems.stability import nonholonomic
 from mbsym.problems.stability.covering import alone, cells_of
 from mbsym.problems.stability.exact import PointVerdict, verdict_at
@@ -160,8 +160,12 @@ def analyse(system: LinearSystem, signs: Signs, point: Mapping[int, Fraction] | 
         found = _left_out(system, signs, str(error))
     if system.exact:
         null = null_rows(add(system.K, system.N), signs.normalised) if found.zero_power else ()
-        calm = len(null) == found.zero_power  # the zero roots have no Jordan blocks
-        cases = tuple(replace(case, verdict=exactly(case.verdict, calm)) for case in found.cases)
+        calm = len(null) == found.zero_power  # the zero roots have no Jordan blocks, where there are no others
+        cases = tuple(
+            replace(case, verdict=exactly(case.verdict, calm and _without_further_zeros(found, signs, case)))
+            for case in found.cases
+        )
+        calm = calm and _without_further_zeros(found, signs, found.cases[0] if found.cases else None)
         left_open = found.verdict.because(Because.BORDER)
         verdict = undecided(Because.LINEAR_OPEN) if left_open else exactly(found.verdict, calm)
         if verdict.word.open and not occurring(x for matrix in system.matrices for row in matrix for x in row):
@@ -174,6 +178,24 @@ def analyse(system: LinearSystem, signs: Signs, point: Mapping[int, Fraction] | 
             verdict=_told(system, found.verdict),
         )
     return found if point is None else replace(found, at_point=verdict_at(system, point))
+
+
+def _without_further_zeros(found: Theory, signs: Signs, case: Case | None) -> bool:
+    """Whether the lowest coefficient is known not to vanish, by the signs or by what the case requires.
+
+    Where it vanishes more roots are zero than lambda^z tells, and they may have Jordan blocks: x'' = g y', y'' = -g x'.
+    """
+    if not found.polynomial or signs.never_zero(found.polynomial[0]):
+        return True
+    if case is None:
+        return False
+    if all(r in case.all_of for r in found.requirements if not r.always):
+        return True
+    try:
+        known = signs.assuming((r.polynomial, r.relation) for r in case.all_of if not r.always)
+        return known.never_zero(found.polynomial[0])
+    except (ContradictionError, NoClosedForm):
+        return False
 
 
 def _told(system: LinearSystem, verdict: Verdict) -> Verdict:

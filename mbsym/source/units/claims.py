@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Container
+
+from mbsym.expressions.rates import acceleration_name, velocity_name
+from mbsym.expressions.tree import Name
 from mbsym.model.claims import CLAIMS, Claim
 from mbsym.model.units import ENERGY, LENGTH, NONE, RATE, SPEED, Dimension
 from mbsym.source.units.expressions import Dimensions
@@ -25,13 +29,16 @@ _FIXED: dict[str, tuple[Dimension, str]] = {
 }
 
 
-def check_claim(claim: Claim, dimensions: Dimensions, scaled: bool) -> None:
+def check_claim(claim: Claim, dimensions: Dimensions, scaled: bool, speeds: Container[str] = ()) -> None:
     """Complains where what was printed cannot be the quantity that it is said to be; ``scaled``: time is a number."""
     if claim.right is not None:
         dimensions.alike(claim.equals, claim.right, "compared")
     elif claim.kind in _FIXED:
         wanted, what = _FIXED[claim.kind]
         dimensions.expect(claim.equals, Form(wanted), what)
+    elif claim.kind == "acceleration":
+        rate = Name(velocity_name(claim.of) if claim.of in speeds else acceleration_name(claim.of))
+        dimensions.alike(rate, claim.equals, "equal")
     elif claim.of_expression is not None and not CLAIMS[claim.kind].order:
         dimensions.alike(claim.of_expression, claim.equals, "equal")
     elif claim.kind in CLAIMS:

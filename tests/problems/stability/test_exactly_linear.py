@@ -354,3 +354,24 @@ def test_planted_terms_of_higher_order_are_seen(monkeypatch):
     assert mbsym.loads(text).stability.numerical.word is not Word.STABLE
     monkeypatch.setattr(dissipation, "excess", lambda *_: ())
     assert mbsym.loads(text).stability.numerical.word is Word.STABLE
+
+
+@pytest.mark.parametrize(
+    ("sign", "word"), [("positive", Word.STABLE), ("nonzero", Word.STABLE), ("real", Word.STABLE_BUT_CYCLIC)]
+)
+def test_a_particle_in_a_magnetic_field_that_may_vanish(sign: str, word: Word) -> None:
+    """x'' = g y', y'' = -g x': circles where g != 0 (lambda^2 (lambda^2 + g^2), two null directions); at g = 0 a free
+    particle, whose four zero roots have Jordan blocks: lambda^2 does not tell of these."""
+    text = f"""
+mbsym: 1
+name: A particle in a magnetic field
+parameters: {{g: {sign}}}
+bodies:
+  - {{name: p, mass: 1, connection point: [x, y, 0], coordinates: [x, y]}}
+loads:
+  - generalized force: {{x: g*y_dot, y: -g*x_dot}}
+motion: {{}}
+values: {{g: 1}}
+"""
+    assert mbsym.loads(text).stability.verdict.word is word
+    assert mbsym.loads(text).stability.numerical.word is Word.STABLE
