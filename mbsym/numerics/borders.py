@@ -46,7 +46,7 @@ POWERS = range(-10, 11)
 OFF = Fraction(998, 997)
 APPROACH = tuple(10.0**-k for k in range(2, 15, 2))
 
-#: How far beside an undecided value it is seen whether a border runs through it.
+#: How far beside a value it is seen whether a border runs through it, or things are otherwise there alone.
 BESIDE = Fraction(1, 10**15)
 
 #: Eigenvalues nearer to the imaginary axis than this part of the largest are taken to lie on it.
@@ -284,11 +284,14 @@ class LinearModel:
                 while high - low > low / 10**20:
                     middle = (low + high) / 2
                     found = word(middle)
-                    if found == Word.UNDECIDED:
-                        beside = [word(middle * (1 + sign * BESIDE)) for sign in (-1, 1)]
-                        if len({*beside}) > 1 or beside[0] not in (below, above):
-                            return middle, middle  # exactly on the border
-                        found = beside[0]  # a point inside, at which no theorem decides (roots that coincide)
+                    wide = high - low > 4 * BESIDE * middle
+                    side = word(middle * (1 + BESIDE)) if wide or found == Word.UNDECIDED else found
+                    if side != found:
+                        if word(middle * (1 - BESIDE)) != side:
+                            return middle, middle  # on the border
+                        found = side  # a point inside at which roots coincide, and things are otherwise there alone
+                    if found not in (below, above):
+                        return middle, middle
                     low, high = (middle, high) if found == below else (low, middle)
                 return low, high
         return None

@@ -424,7 +424,7 @@ def test_everything_that_is_missing_is_listed_at_once(tmp_path: Path) -> None:
         (["--time", "1", "--set", "m1=-1", "--set", "l1=0"], ["m1 = -1", "l1 = 0", "declared positive"]),
         (["--time", "1", "--set", "m1=exp(1e50)"], ["range"]),
         (["--time", "1", "--set", "m1=(1e59)**64"], ["range"]),
-        (["--time", "1", "--set", "m1=log(-1)"], ["not real"]),
+        (["--time", "1", "--set", "m1=log(-1)"], ["no real number"]),
         (["--time", "1", "--set", "m1=l1", "--set", "l1=m1"], ["no value for m1, l1"]),
     ],
 )  # fmt: skip
