@@ -21,15 +21,26 @@ from mbsym_cli.robots import Choices, described, robot_text
 @click.option("--floating", is_flag=True, help="Of a robot: its first link moves freely, by six coordinates.")
 @click.option("--symbols", is_flag=True, help="Of a robot: masses, lengths, moments are parameters with values.")
 @click.option("--no-damping", is_flag=True, help="Of a robot: without dampers and springs of joints.")
+@click.option(
+    "--angles",
+    type=click.Choice(["snap", "exact"]),
+    help="Of a robot: 1.5708 is pi/2 (snap, the default; it is told), or stays the number that it is (exact).",
+)
 @click.option("--out", type=OutPath(path_type=Path, dir_okay=False), help="Default: standard output.")
 def command(
-    file: Path, spelling: str | None, floating: bool, symbols: bool, no_damping: bool, out: Path | None
+    file: Path,
+    spelling: str | None,
+    floating: bool,
+    symbols: bool,
+    no_damping: bool,
+    angles: str | None,
+    out: Path | None,
 ) -> None:
     """Convert a description between YAML and the editor's plain text, or make one of a robot's URDF or MJCF.
 
     Between the two spellings comments are not kept; everything that has a meaning is.  Of a robot, what rigid bodies
     in an open tree have no place for (contacts, actuators, sensors, ...) is left out, and listed; a link that hangs on
-    two joints is an error.
+    two joints is an error.  Links and named sites without mass are frames: massless bodies.
 
     \b
     Examples:
@@ -47,11 +58,11 @@ def command(
         sys.exit(BAD_INPUT)
     robot = robot_text(file)
     if robot is not None:
-        written = described(file, robot, Choices(floating, symbols, not no_damping))
+        written = described(file, robot, Choices(floating, symbols, not no_damping, angles == "exact"))
         system = None if written is None else read(written, f"{file.stem}.yaml")[0]
     else:
-        if floating or symbols or no_damping:
-            complain(file, "is no URDF or MJCF: --floating, --symbols and --no-damping mean nothing here")
+        if floating or symbols or no_damping or angles:
+            complain(file, "is no URDF or MJCF: --floating, --symbols, --no-damping and --angles mean nothing here")
             sys.exit(BAD_INPUT)
         written, system = None, read_description(file)
     if system is None:

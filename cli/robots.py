@@ -22,6 +22,7 @@ class Choices:
     floating: bool
     symbols: bool
     damping: bool
+    exact_angles: bool
 
 
 def robot_text(file: Path) -> str | None:
@@ -44,7 +45,7 @@ def described(file: Path, text: str, choices: Choices) -> str | None:
     from mbsym.source.robots import convert
 
     complaints = Complaints()
-    made = convert(text, complaints, choices.floating, choices.symbols, choices.damping)
+    made = convert(text, complaints, choices.floating, choices.symbols, choices.damping, choices.exact_angles)
     if made is not None:
         _, doubts = read(made.yaml, f"{file.stem}.yaml")
         for doubt in doubts.sorted():  # of the description that was made: its lines are not the file's
@@ -58,6 +59,9 @@ def described(file: Path, text: str, choices: Choices) -> str | None:
         return None
     for told in made.left_out:
         print(f"{printable(file)}: left out: {printable(told)}", file=sys.stderr)
+    for told in made.snapped:
+        hint = "leave it as it is with --angles exact"
+        print(f"{printable(file)}: printed angle read as a part of pi: {printable(told)} ({hint})", file=sys.stderr)
     for joint in made.still:
         print(f"{printable(file)}: held still, because it moves no inertia: {printable(joint)}", file=sys.stderr)
     return made.yaml

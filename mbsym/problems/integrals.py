@@ -176,7 +176,7 @@ def _work(scene: Scene, power: Polynomial) -> Polynomial | None:
     ring, coordinates = scene.ring, scene.system.coordinates
     try:
         field = [ring.velocity_derivative(power, name) for name in coordinates]
-        running = (*scene.system.velocities, *(item.name for item in scene.system.prescribed), "t")
+        running = (*scene.system.velocities, *(x.name for x in scene.system.prescribed), *scene.system.input_names, "t")
         speeds = [ring.generator("velocity", name) for name in coordinates]
         if any(ring.dependencies(x, running) for x in field) or not ring.is_zero(power - ring.dot(speeds, field)):
             return None

@@ -33,3 +33,23 @@ def test_an_integral_holds_no_input() -> None:
     assert [one.code for one in complaints.items] == ["misplaced-name"]
     _, complaints = read(TEXT + "abbreviations: {w: u*m}\n", "x")
     assert [one.code for one in complaints.items] == ["misplaced-name"]
+
+
+def test_what_an_input_does_is_no_part_of_an_energy() -> None:
+    """m l^2 theta'' = -m g l sin theta + u with u any function of time: no energy; with u a constant there is one."""
+    motor = """
+mbsym: 1
+name: Pendulum with a motor
+parameters: {m: positive, l: positive, g: positive}
+inputs: [u]
+bodies:
+  - {name: rod, attached to: 0, rotation: {axes: [3], angles: [theta]}, mass centre: [0, -l, 0], mass: m}
+loads:
+  - uniform gravity: {vector: [0, -g, 0]}
+  - torque: {body: rod, components: [0, 0, u], axes: 0}
+motion: {theta: 0}
+"""
+    assert mbsym.loads(motor).integrals == ()
+    constant = motor.replace("inputs: [u]\n", "").replace("g: positive}", "g: positive, u: real}")
+    (energy,) = mbsym.loads(constant.replace("motion: {theta: 0}\n", "")).integrals
+    assert energy.name == "energy with the potential of the forces"

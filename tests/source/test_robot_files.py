@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+import mbsym
 from mbsym.expressions.place import Complaints
 from mbsym.expressions.tree import text as written
+from mbsym.problems.claims import DIFFERS, EXACT
 from mbsym.source import read, to_text
 from mbsym.source.robots import Converted, convert, is_robot
 from mbsym.source.robots.elements import MAX_DEPTH
@@ -318,3 +320,115 @@ def test_what_looks_like_nothing_known_is_left_out_by_name() -> None:
     made = converted(mujoco("", '<body name="b"><joint quux="1"/><geom size="0.5" density="6"/></body>', after))
     assert "unknown attribute 'quux' of <joint>" in made.left_out
     assert not any("polycoef" in one or "obj" in one for one in made.left_out)
+
+
+# --- angles that are printed ---
+
+#: Two turns of the fixed link; the second is no rounded part of pi.
+TILTED = """<robot name="tilted"><link name="base"/>
+<link name="a"><inertial><origin xyz="0 0.3 0"/><mass value="1"/>
+  <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="j" type="continuous"><origin rpy="1.5708 0.2 -0.785398"/><parent link="base"/><child link="a"/>
+  <axis xyz="0 1 0"/></joint></robot>"""
+
+
+def angles_of(yaml: str, name: str) -> list[str]:
+    system, complaints = read(yaml, "p.yaml")
+    assert system is not None, [one.message for one in complaints]
+    (body,) = [body for body in system.bodies if body.name == name]
+    return [written(angle) for angle in body.rotation.angles]
+
+
+def test_an_angle_that_is_read_as_a_part_of_pi_is_told_and_left_where_that_is_asked_for(tmp_path: Path) -> None:
+    """1.5708 is pi/2 + 3.7e-6 and -0.785398 is -pi/4 + 1.6e-7, within half of their last digits; 0.2 is neither."""
+    made = converted(TILTED)
+    assert set(made.snapped) == {"1.5708 as pi/2", "-0.785398 as -pi/4"}
+    assert "1.5708 as pi/2" in made.yaml.partition("mbsym:")[0]
+    assert angles_of(made.yaml, "a frame 1") + angles_of(made.yaml, "a") == ["-pi/4", "0.2", "pi/2", "q1"]
+    exact = converted(TILTED, exact_angles=True)
+    assert exact.snapped == ()
+    assert angles_of(exact.yaml, "a frame 1") + angles_of(exact.yaml, "a") == ["-0.785398", "0.2", "1.5708", "q1"]
+    file = tmp_path / "t.urdf"
+    file.write_text(TILTED, encoding="utf-8")
+    assert "1.5708 as pi/2" in CliRunner().invoke(main, ["convert", str(file)]).stderr
+    done = CliRunner().invoke(main, ["convert", str(file), "--angles", "exact"])
+    assert done.exit_code == 0
+    assert "1.5708" in done.stdout
+    assert "as pi/2" not in done.stderr
+    (tmp_path / "t.yaml").write_text(exact.yaml, encoding="utf-8")
+    assert CliRunner().invoke(main, ["convert", str(tmp_path / "t.yaml"), "--angles", "exact"]).exit_code == 2
+
+
+def test_angles_of_mjcf_in_radians_are_told_and_those_in_degrees_are_exact() -> None:
+    body = '<body name="b" euler="{} 0 0"><joint name="h" axis="0 1 0"/><geom size="0.1" pos="0 0 -1"/></body>'
+    text = '<mujoco><compiler angle="{}"/><worldbody>{}</worldbody></mujoco>'
+    assert converted(text.format("radian", body.format("0.7854"))).snapped == ("0.7854 as pi/4",)
+    degrees = converted(text.format("degree", body.format("45")))
+    assert (degrees.snapped, angles_of(degrees.yaml, "b")) == ((), ["pi/4", "q1"])
+
+
+# --- frames ---
+
+#: An arm in the plane with a massless flange, a camera on that, and a finger that moves nothing.
+ARM = """<robot name="arm"><link name="base"/>
+<link name="upper"><inertial><origin xyz="0 0 0.2"/><mass value="2"/>
+  <inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<link name="lower"><inertial><origin xyz="0 0 0.1"/><mass value="1"/>
+  <inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<link name="tool0"/><link name="camera"><visual><geometry><box size="1 2 3"/></geometry></visual></link>
+<link name="finger"/>
+<joint name="s" type="continuous"><parent link="base"/><child link="upper"/><axis xyz="0 1 0"/></joint>
+<joint name="e" type="continuous"><parent link="upper"/><child link="lower"/><origin xyz="0 0 0.4"/>
+  <axis xyz="0 1 0"/></joint>
+<joint name="t" type="fixed"><parent link="lower"/><child link="tool0"/><origin xyz="0 0 0.3"/></joint>
+<joint name="c" type="fixed"><parent link="tool0"/><child link="camera"/><origin xyz="0.1 0 0"/></joint>
+<joint name="f" type="revolute"><parent link="tool0"/><child link="finger"/><origin xyz="0 0 0.05"/></joint></robot>"""
+
+
+def test_links_without_mass_are_frames_that_can_be_named() -> None:
+    """A turn by q about axis 2 takes (x, 0, z) to (x cos q + z sin q, 0, z cos q - x sin q).
+
+    So with p = q1 + q2 the flange is at x = 0.4 sin q1 + 0.3 sin p, the camera at z = 0.4 cos q1 + 0.3 cos p -
+    0.1 sin p, and the finger, held at zero, at z = 0.4 cos q1 + 0.35 cos p.  The frames carry nothing:
+    2 T = (2*0.2^2 + 0.1) q1'^2 + 0.4^2 q1'^2 + 2*0.4*0.1 cos q2 q1' p' + (0.1^2 + 0.1) p'^2.
+    """
+    made = converted(ARM)
+    claims = (
+        "{claim: position, of: tool0, component: 1, equals: 0.4*sin(q1) + 0.3*sin(q1 + q2)}",
+        "{claim: position, of: camera, component: 3, equals: 0.4*cos(q1) + 0.3*cos(q1 + q2) - 0.1*sin(q1 + q2)}",
+        "{claim: position, of: finger, component: 3, equals: 0.4*cos(q1) + 0.35*cos(q1 + q2)}",
+        "{claim: position, of: tool0, component: 1, equals: 0.4*sin(q1) + 0.2*sin(q1 + q2)}",
+        "{claim: angular velocity, of: camera, component: 2, equals: q1_dot + q2_dot}",
+        "{claim: kinetic energy, equals: 0.09*q1_dot**2 + (0.16*q1_dot**2 + 0.08*cos(q2)*q1_dot*(q1_dot + q2_dot))/2"
+        " + 0.055*(q1_dot + q2_dot)**2}",
+    )
+    analysis = mbsym.loads(made.yaml + "claims:\n" + "".join(f"  - {claim}\n" for claim in claims))
+    assert [one.outcome for one in analysis.claims] == [EXACT, EXACT, EXACT, DIFFERS, EXACT, EXACT]
+    assert made.still == ("f",)
+    assert made.joints == ("s", "e")
+    assert [body.name for body in analysis.system.bodies if body.shapes] == ["camera"]
+
+
+SITES = """<mujoco><worldbody><site name="home" pos="0 0 1"/>
+<body name="b"><joint name="h" type="hinge" axis="0 1 0"/><geom type="sphere" size="0.1" pos="0 0 -1"/>
+  <site name="b" pos="0 0 -2"/><site pos="1 0 0"/>
+  <body name="flag" pos="0 0 -3"><joint name="dead" type="hinge" axis="1 0 0"/></body></body></worldbody></mujoco>"""
+
+
+def test_named_sites_and_bodies_without_mass_are_frames_and_other_sites_are_listed() -> None:
+    """Turned by q1 about axis 2 the site at (0, 0, -2) is at x = -2 sin q1, the flag at x = -3 sin q1."""
+    made = converted(SITES)
+    assert "site without a name" in made.left_out
+    text = (
+        made.yaml + "claims:\n"
+        "  - {claim: position, of: site b, component: 1, equals: -2*sin(q1)}\n"
+        "  - {claim: position, of: flag, component: 1, equals: -3*sin(q1)}\n"
+        "  - {claim: position, of: home, component: 3, equals: 1}\n"
+    )
+    assert [one.outcome for one in mbsym.loads(text).claims] == [EXACT] * 3
+    freed, _ = read(converted(SITES, floating=True).yaml, "p.yaml")
+    assert freed is not None
+    assert [body.name for body in freed.bodies if "x" in body.coordinates] == ["b frame 1"]
+    assert (
+        complaints_of('<mujoco><worldbody><site name="home" pos="0 0 1"/></worldbody></mujoco>')[0][0] == "missing-key"
+    )

@@ -20,13 +20,15 @@ _LOOK = 20_000
 class Converted:
     """``yaml`` is the description; ``joints`` the file's joints in the order of the coordinates after a free base's.
 
-    ``left_out`` says what of the file the description has no place for; ``still`` which joints move no inertia.
+    ``left_out`` says what of the file the description has no place for; ``still`` which joints move no inertia;
+    ``snapped`` which printed angles are read as parts of pi.
     """
 
     yaml: str
     joints: tuple[str, ...]
     left_out: tuple[str, ...] = ()
     still: tuple[str, ...] = ()
+    snapped: tuple[str, ...] = ()
 
 
 def is_robot(text: str) -> bool:
@@ -41,14 +43,23 @@ def is_robot(text: str) -> bool:
 
 
 def convert(
-    text: str, complaints: Complaints, floating: bool = False, symbols: bool = False, damping: bool = True
+    text: str,
+    complaints: Complaints,
+    floating: bool = False,
+    symbols: bool = False,
+    damping: bool = True,
+    exact_angles: bool = False,
 ) -> Converted | None:
-    """The description of a robot, or None with complaints.  The options are those of :func:`describe`."""
+    """The description of a robot, or None with complaints.  The options are those of :func:`describe`.
+
+    Angles in radians that are parts of pi, rounded to the digits that are printed, are read as these, or with
+    ``exact_angles`` left as they are.
+    """
     root = parsed(text, complaints)
     if root is None:
         return None
-    robot = read_mjcf(root, complaints) if root.tag == "mujoco" else read_urdf(root, complaints)
+    robot = (read_mjcf if root.tag == "mujoco" else read_urdf)(root, complaints, exact_angles)
     if robot is None or complaints.errors:
         return None
     made = describe(robot, floating, symbols, damping)
-    return Converted(made.yaml, made.joints, robot.left_out, made.still)
+    return Converted(made.yaml, made.joints, robot.left_out, made.still, robot.snapped)

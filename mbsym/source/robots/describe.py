@@ -1,7 +1,7 @@
 """A robot as a description in YAML: one body a link, massless frames where one does not suffice, nothing invented.
 
-* Links without inertia that carry none are left out; a joint that moves no inertia is held still at zero, as no
-  equation determines it.
+* Links without inertia are massless bodies: frames that formulas and reports can name.  A joint that moves no inertia
+  is held still at zero, as no equation determines it.
 * A tensor in axes of its own, or a second inertia, is a body fixed to the link.
 * Tensors that no body has (rounded, or made up) are accepted as they stand.
 """
@@ -9,7 +9,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from mbsym.source.bodies import is_body_name
@@ -66,13 +66,15 @@ class _Writer:
         if any(part != "0" for part in self.robot.gravity):
             self._load(f"uniform gravity: {{{self._gravity()}}}")
         for link in self.robot.links:
-            if link.name in carrying:
-                self._link(link)
-            else:
+            if link.name not in carrying:
                 self.still += [joint.name for joint in link.joints]
+                link = replace(link, joints=())
+            self._link(link)
         head = [f"# From the robot '{self._comment(self.robot.name)}'."]
         if self.robot.left_out:
             head.append(f"# Left out: {self._comment('; '.join(self.robot.left_out))}.")
+        if self.robot.snapped:
+            head.append(f"# Printed angles read as parts of pi: {self._comment('; '.join(self.robot.snapped))}.")
         if self.still:
             head.append(f"# Held still, because they move no inertia: {self._comment(', '.join(self.still))}.")
         lines = [*head, "mbsym: 1", f"name: {scalar_text(self.robot.name)}"]
@@ -87,7 +89,7 @@ class _Writer:
         return "".join(character if character.isprintable() else " " for character in text)
 
     def _carrying(self) -> set[str]:
-        """Links that have inertia, or bear something that has; of the others the ground is enough."""
+        """Links that have inertia, or bear something that has: no equation determines how the others move."""
         carrying = {link.name for link in self.robot.links if _weighs(link)}
         for link in reversed(self.robot.links):
             if link.name in carrying:

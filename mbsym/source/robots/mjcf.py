@@ -1,4 +1,4 @@
-"""MJCF (MuJoCo): bodies within bodies, joints inside them, inertia given or made of their geoms.
+"""MJCF (MuJoCo): bodies within bodies, joints inside them, inertia given or made of their geoms; sites are frames.
 
 Orientations by ``euler`` are exact; by ``quat``, ``axisangle``, ``xyaxes``, ``zaxis`` and ``fromto`` they become yaw,
 pitch, roll, exact where these are multiples of pi/4 or pi/6 and else rounded to the digits of a double.
@@ -42,9 +42,9 @@ _WORDS = {
 _INSIDE = {"composite": "composite body", "flexcomp": "flexible body", "frame": "", "replicate": ""}
 
 
-def read_mjcf(root: Element, complaints: Complaints) -> Robot | None:
-    """The robot of an MJCF file, or None with complaints."""
-    reader = Reader(complaints)
+def read_mjcf(root: Element, complaints: Complaints, exact: bool = False) -> Robot | None:
+    """The robot of an MJCF file, or None with complaints; ``exact``: angles in radians stay as they are printed."""
+    reader = Reader(complaints, exact)
     for element in root.walk():
         if element.tag in ("include", "attach", "frame", "replicate"):
             reader.error("unsupported", f"<{element.tag}> is not read", element, "let MuJoCo save the compiled model")
@@ -57,12 +57,13 @@ def read_mjcf(root: Element, complaints: Complaints) -> Robot | None:
         reader.error("missing-key", "there is no <worldbody>", root)
         return None
     bodies = _Bodies(root, reader)
-    links = tuple(link for world in worlds for link in bodies.links(world, GROUND, bodies.childclass(world, "")))
-    if not links and not complaints.errors:
+    links = [link for world in worlds for link in bodies.links(world, GROUND, bodies.childclass(world, ""))]
+    links.sort(key=lambda link: link.name in bodies.sites and link.parent == GROUND)  # the first one is a body
+    if not bodies.bodies and not complaints.errors:
         reader.error("missing-key", "there is no <body>", worlds[0])
     name = root.get("model") or "robot"
     gravity = _gravity(root, reader)
-    return None if complaints.errors else Robot(name, links, gravity, reader.left_out())
+    return None if complaints.errors else Robot(name, tuple(links), gravity, reader.left_out(), reader.snapped())
 
 
 def _together(root: Element, tag: str) -> Element:
@@ -98,6 +99,9 @@ class _Bodies:
         self.autolimits = compiler.get("autolimits", "true") != "false"
         self.from_geoms = compiler.get("inertiafromgeom", "auto")
         self.names: set[str] = set()
+        self.sites: set[str] = set()
+        inside = [element for world in root.all("worldbody") for element in world.walk()]
+        self.bodies = {element.get("name") for element in inside if element.tag == "body"}
         for key in ("settotalmass", "balanceinertia", "boundmass", "boundinertia"):
             if compiler.get(key, "0") not in ("0", "false", "-1"):
                 reader.leave_out(f"setting of the compiler ({key})")
@@ -109,7 +113,7 @@ class _Bodies:
         return self.defaults.checked(element, "childclass") or above
 
     def links(self, above: Element, parent: str, childclass: str) -> Iterator[Link]:
-        """The bodies inside an element, each followed by those inside it."""
+        """The bodies inside an element, each followed by those inside it, and then its sites."""
         for element in above.all("body"):
             name = element.get("name") or f"body {len(self.names) + 1}"
             if name in self.names:
@@ -118,6 +122,22 @@ class _Bodies:
             inside = self.childclass(element, childclass)
             yield self.link(name, element, parent, inside)
             yield from self.links(element, name, inside)
+        for site in above.all("site"):
+            yield from self.site(self.defaults.of(site, childclass), parent)
+
+    def site(self, element: Element, parent: str) -> Iterator[Link]:
+        """A site with a name is a massless frame; others nothing can name."""
+        name = element.get("name")
+        if not name or element.get("fromto"):
+            self.reader.leave_out("site with two ends (fromto)" if name else "site without a name")
+            return
+        own = f"site {name}" if name in self.bodies else name
+        if own in self.names:
+            self.reader.error("repeated-name", f"a second site called {ascii_safe(name)}", element)
+        self.names.add(own)
+        self.sites.add(own)
+        place, turned = self.pose(element)
+        yield Link(own, parent, place, turned, span=element.span)
 
     def link(self, name: str, element: Element, parent: str, childclass: str) -> Link:
         reader = self.reader

@@ -30,8 +30,8 @@ class Angles:
     in_degrees: bool
     sequence: str
 
-    def text(self, printed: str) -> str:
-        return degrees(printed) if self.in_degrees else angle(printed)
+    def text(self, printed: str, reader: Reader) -> str:
+        return degrees(printed) if self.in_degrees else reader.angle(printed)
 
 
 def orientation(element: Element, angles: Angles, reader: Reader) -> Turns:
@@ -44,7 +44,7 @@ def orientation(element: Element, angles: Angles, reader: Reader) -> Turns:
         x, y, z, turn = reader.numbers(element, "axisangle", 4, raw=True)
         on = [k for k, part in enumerate((x, y, z), start=1) if float(part)]
         if len(on) == 1:
-            words = angles.text(turn)
+            words = angles.text(turn, reader)
             positive = float((x, y, z)[on[0] - 1]) > 0
             return ((on[0], words if positive else _opposite(words)),) if words != "0" else ()
         size = math.radians(float(turn)) if angles.in_degrees else float(turn)
@@ -74,7 +74,8 @@ def _euler(element: Element, angles: Angles, reader: Reader) -> Turns:
         reader.error("unsupported", f"the sequence {ascii_safe(sequence)} of Euler angles", element)
         return ()
     parts = reader.three(element, "euler", raw=True)
-    turns = [("xyz".index(letter.lower()) + 1, angles.text(part)) for letter, part in zip(sequence, parts, strict=True)]
+    axes = ["xyz".index(letter) + 1 for letter in sequence.lower()]
+    turns = [(axis, angles.text(part, reader)) for axis, part in zip(axes, parts, strict=True)]
     ordered = turns if sequence.islower() else turns[::-1]  # about fixed axes: the last turn comes first
     return tuple(turn for turn in ordered if turn[1] != "0")
 

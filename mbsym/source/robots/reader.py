@@ -9,15 +9,20 @@ from mbsym.expressions.counting import counted
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints
 from mbsym.source.robots.elements import Element
-from mbsym.source.robots.numbers import NOWHERE, Texts, decimal, number
+from mbsym.source.robots.numbers import NOWHERE, Texts, angle, decimal, number
 
 
 @dataclass
 class Reader:
-    """Collects complaints, and what is left out, by kind."""
+    """Collects complaints, what is left out, by kind, and the printed angles that are read as parts of pi.
+
+    With ``exact`` these stay the numbers that are printed.
+    """
 
     complaints: Complaints
+    exact: bool = False
     omitted: Counter[str] = field(default_factory=Counter)
+    parts_of_pi: dict[str, str] = field(default_factory=dict)
 
     def error(self, code: str, message: str, element: Element, hint: str | None = None) -> None:
         self.complaints.error(code, message, element.span, hint)
@@ -59,6 +64,18 @@ class Reader:
                 return tuple(parts if raw else map(number, parts))
             self.error("bad-number", f"{ascii_safe(bad[0])} in '{attribute}' is no number", element)
         return ("0",) * count
+
+    def angle(self, text: str) -> str:
+        """An angle in radians as it is printed, or the part of pi that it rounds."""
+        plain = number(text)
+        found = plain if self.exact else angle(text)
+        if found != plain:
+            self.parts_of_pi[text.strip()] = found
+        return found
+
+    def snapped(self) -> tuple[str, ...]:
+        """``1.5708 as pi/2``, in the order of the file."""
+        return tuple(f"{text} as {words}" for text, words in self.parts_of_pi.items())
 
     def leave_out(self, what: str) -> None:
         """Notes something that a description of rigid bodies in a tree has no place for."""

@@ -74,9 +74,13 @@ class Link:
 
 @dataclass(frozen=True, slots=True)
 class Robot:
-    """Links, each after its parent; ``left_out`` says in words what of the file is no part of it."""
+    """Links, each after its parent; ``left_out`` says in words what of the file is no part of it.
+
+    ``snapped`` are the printed angles that were read as parts of pi: ``1.5708 as pi/2``.
+    """
 
     name: str
     links: tuple[Link, ...]
     gravity: Texts = ("0", "0", "-9.81")
     left_out: tuple[str, ...] = ()
+    snapped: tuple[str, ...] = ()

@@ -2,7 +2,7 @@
 
 ``origin`` places the child's axes by xyz and the active rotation Rz(yaw) Ry(pitch) Rx(roll).  Passive and in the order
 of turning that is yaw, pitch, roll about the axes 3, 2, 1.  Angles that are a multiple of pi/4 or pi/6 rounded to the
-digits that were printed are spelled so.
+digits that were printed are spelled so, and told, unless they are to stay as they are.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from fractions import Fraction
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints
 from mbsym.source.robots.elements import Element
-from mbsym.source.robots.numbers import Texts, angle, is_nonnegative
+from mbsym.source.robots.numbers import Texts, is_nonnegative
 from mbsym.source.robots.reader import Reader
 from mbsym.source.robots.robot import GROUND, Inertial, Joint, Link, Robot, Shape, Turns
 
@@ -48,9 +48,9 @@ def _slips(root: Element, reader: Reader) -> None:
                 reader.leave_out(f"unknown element <{ascii_safe(child.tag).strip(chr(39))}> in <{element.tag}>")
 
 
-def read_urdf(root: Element, complaints: Complaints) -> Robot | None:
-    """The robot of a URDF, or None with complaints."""
-    reader = Reader(complaints)
+def read_urdf(root: Element, complaints: Complaints, exact: bool = False) -> Robot | None:
+    """The robot of a URDF, or None with complaints; ``exact``: angles stay as they are printed."""
+    reader = Reader(complaints, exact)
     template = next((element for element in root.walk() if element.tag.startswith("xacro:")), None)
     if template is not None:
         reader.error("unsupported", "this is a template, no URDF yet", template, "expand it with xacro first")
@@ -80,7 +80,7 @@ def read_urdf(root: Element, complaints: Complaints) -> Robot | None:
         return None
     made = tuple(_link(name, links[name], joints.get(name), reader) for name in ordered)
     name = root.get("name") or "robot"
-    return None if complaints.errors else Robot(name, made, left_out=reader.left_out())
+    return None if complaints.errors else Robot(name, made, left_out=reader.left_out(), snapped=reader.snapped())
 
 
 def _few(names: list[str]) -> str:
@@ -211,10 +211,10 @@ def _shape(visual: Element, reader: Reader) -> Shape | None:
 def _origin(element: Element, reader: Reader) -> tuple[Texts, Turns]:
     """(place, turns)."""
     found = element.first("origin")
-    return reader.three(found, "xyz"), fixed_turns(reader.three(found, "rpy", raw=True))
+    return reader.three(found, "xyz"), fixed_turns(reader.three(found, "rpy", raw=True), reader)
 
 
-def fixed_turns(rpy: Texts) -> Turns:
+def fixed_turns(rpy: Texts, reader: Reader) -> Turns:
     """Roll, pitch, yaw (active, about fixed axes) as passive turns in the order yaw, pitch, roll."""
-    roll, pitch, yaw = map(angle, rpy)
+    roll, pitch, yaw = map(reader.angle, rpy)
     return tuple((axis, words) for axis, words in ((3, yaw), (2, pitch), (1, roll)) if words != "0")
