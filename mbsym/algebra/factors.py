@@ -82,3 +82,11 @@ def _factored(p: Polynomial) -> tuple[Any, list[tuple[Polynomial, int]]]:
     unit, powers = fmpq_mpoly_ctx.get(whole.names(), whole.ordering()).from_dict(p.to_dict()).factor()
     back = [({monomial: c.p for monomial, c in factor.to_dict().items()}, exponent) for factor, exponent in powers]
     return unit.p, [(whole.from_dict(terms), exponent) for terms, exponent in back]
+
+
+def rational_ratio(x: Any, y: Any) -> Any:
+    """x / y where that is a rational number, else None."""
+    if len(x) != len(y) or x.is_zero() or x.monomial(0) != y.monomial(0):
+        return None
+    ratio = x.coefficient(0) / y.coefficient(0)
+    return ratio if x == y * ratio else None

@@ -16,9 +16,10 @@ only ``Signs`` are asked.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
+from functools import partial
 from itertools import combinations, pairwise
 from typing import Any
 
@@ -314,13 +315,14 @@ class _Search:
         if weak is None:
             return self._in_cells(atoms, variables)
         rest, p = [x for j, x in enumerate(atoms) if j != weak], atoms[weak].polynomial
-        return self._either([[Atom(p, ">"), *rest], [Atom(p, "="), *rest]])
+        return self._first(partial(self.solve, [Atom(p, relation), *rest]) for relation in (">", "="))
 
-    def _either(self, choices: Iterable[list[Atom]]) -> dict[int, Any] | None:
+    def _first(self, searches: Iterable[Callable[[], dict[int, Any] | None]]) -> dict[int, Any] | None:
+        """What the first search with a result finds; left open if one that ran out of budget might have found more."""
         left_open = False
-        for chosen in choices:
+        for search in searches:
             try:
-                found = self.solve(chosen)
+                found = search()
             except _OutOfBudget:
                 left_open = True
                 continue
@@ -344,21 +346,7 @@ class _Search:
     # --- equations ---
 
     def _with_equation(self, one: Atom, rest: list[Atom]) -> dict[int, Any] | None:
-        return self._either_factor([f for f, _ in irreducible_factors(one.polynomial)[1]], rest)
-
-    def _either_factor(self, factors: Sequence[Polynomial], rest: list[Atom]) -> dict[int, Any] | None:
-        left_open = False
-        for factor in factors:
-            try:
-                found = self._on_zeros(factor, rest)
-            except _OutOfBudget:
-                left_open = True
-                continue
-            if found is not None:
-                return found
-        if left_open:
-            raise _OutOfBudget
-        return None
+        return self._first(partial(self._on_zeros, f, rest) for f, _ in irreducible_factors(one.polynomial)[1])
 
     def _on_zeros(self, factor: Polynomial, rest: list[Atom]) -> dict[int, Any] | None:
         """Where an irreducible factor vanishes: a parameter that it is linear in is eliminated."""

@@ -359,12 +359,8 @@ def _of_piece(
             yield None
             return
         here = Stretch(left, right, onset)
-        if (
-            last is not None
-            and last.onset is here.onset
-            and _regular(borders, made.curves[curve], made, left, place, count, here)
-        ):
-            assert last is not None
+        alike = last is not None and last.onset is onset
+        if last is not None and alike and _regular(borders, made.curves[curve], made, left, place, count, here):
             last = replace(last, end=right)
             continue
         if last is not None:

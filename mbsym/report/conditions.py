@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from flint import fmpq
-
-from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.factors import rational_ratio
+from mbsym.algebra.ring import Ring
 from mbsym.formulas.formula import Formula
 from mbsym.problems.stability import SubsystemStability
 from mbsym.problems.stability.requirements import Case, Place, Requirement
@@ -210,18 +209,10 @@ class Shown:
                 bare, shown = _bare(under), -formula.polynomial if _is_opposite(under) else formula.polynomial
                 if (bare == label) is not own:
                     continue
-                ratio = _ratio(polynomial, shown)
-                if ratio > 0 or (ratio < 0 and not own):
+                ratio = rational_ratio(polynomial, shown)
+                if ratio is not None and (ratio > 0 or not own):
                     return Reference(label, bare, relation if ratio > 0 else _OPPOSITE.get(relation, relation))
         return None
-
-
-def _ratio(p: Polynomial, q: Polynomial) -> fmpq:
-    """c with p = c q, a rational number; 0 where there is none."""
-    if not p or not q or len(p) != len(q):
-        return fmpq(0)
-    ratio = fmpq(p.leading_coefficient()) / fmpq(q.leading_coefficient())
-    return ratio if p == q * ratio else fmpq(0)
 
 
 _HELD = (

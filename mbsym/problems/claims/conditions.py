@@ -26,12 +26,12 @@ from functools import partial
 from itertools import chain
 from typing import Any
 
+from mbsym.algebra.factors import rational_ratio
 from mbsym.algebra.failures import NOT_THERE, NoClosedForm
 from mbsym.algebra.signs import ContradictionError, Signs
 from mbsym.expressions.tree import subtract, text
 from mbsym.model.claims import NECESSARY, SUFFICIENT, Claim
 from mbsym.problems.claims.counterexample import IN_FIRST, Counterexample, Tried
-from mbsym.problems.claims.differences import rational_ratio
 from mbsym.problems.claims.regions import Inequality, Region, is_certain
 from mbsym.problems.claims.remarks import Remark, Said, said, words
 from mbsym.problems.claims.result import BORDERS, EXACT, FAILS, UNDECIDED, ClaimResult, Derived

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
 
 from flint import fmpq
 
+from mbsym.algebra.factors import rational_ratio
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.tree import (
     Expression,
@@ -79,14 +79,6 @@ def _same_as(coefficient: Polynomial, values: Mapping[str, Polynomial]) -> str:
             sign = "-" if ratio < 0 else ""
             return sign + (name if abs(ratio) == 1 else f"{abs(ratio)}*{name}")
     return ""
-
-
-def rational_ratio(x: Polynomial, y: Polynomial) -> Any:
-    """x / y where that is a rational number, else None."""
-    if len(x) != len(y) or x.is_zero() or x.monomial(0) != y.monomial(0):
-        return None
-    ratio = x.coefficient(0) / y.coefficient(0)
-    return ratio if x == y * ratio else None
 
 
 def _slopes(derived: Derived, claim: Claim, symbols: Symbols) -> dict[str, Polynomial]:

@@ -40,8 +40,8 @@ class Place(StrEnum):
     #: Without it not all roots are to the left; by terms of higher order the motion may be asymptotically stable.
     EXPONENTIAL = "necessary for exponential stability (all roots to the left)"
     SUFFICIENT = "sufficient"
-    #: Without it this method decides nothing; the motion may be stable.
-    METHOD = "needed by this method only"
+    #: Without it this method decides nothing: the motion may be stable, or not.
+    METHOD = "needed by this method, which leaves the rest open"
     #: Nothing: a discriminant of a potential system is never negative, and where it vanishes roots are semisimple.
     HARMLESS = "not needed: equal frequencies of a potential system do no harm"
 

@@ -40,10 +40,10 @@ def test_a_lamina_spins_stably_about_its_largest_axis() -> None:
     assert at(CASES / "s_euler_lamina.yaml", A="2", B="3", C="5", W="1").startswith("stable")  # not necessary
     assert at(CASES / "s_euler_lamina.yaml", A="2", B="4", C="3", W="1") == "unstable"  # the middle axis: v0 < 0
     (line,) = summary(a, (6,), []).problems
-    assert "    resultant of factors 1 and 2: A + B - C != 0 (needed by this method only)" in [
+    assert "    resultant of factors 1 and 2: A + B - C != 0 (needed by this method, which leaves the rest open)" in [
         "  " + x for x in line.lines
     ]
-    assert "(needed by this method only)" in TARGETS["latex"].render(a, (6,))
+    assert "(needed by this method, which leaves the rest open)" in TARGETS["latex"].render(a, (6,))
     told = json.loads(TARGETS["json"].render(a, (6,)))["stability"]
     assert [[item["place"] for item in part["conditions"]] for part in told["subsystems"]] == [
         [],
