@@ -6,8 +6,11 @@ lightness or a hatch, too.  Arcs at which nothing changes are left out.
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from string import ascii_lowercase
+from textwrap import fill
 from typing import Any
 
 from matplotlib.axes import Axes
@@ -47,6 +50,9 @@ TOLERANCE = 4e-4
 
 #: A number is written into a region that is so wide, as a part of the plane.
 ROOM = 0.045
+
+#: Letters in a line of the legend.
+WIDEST = 52
 
 _DARK, _EDGE = "#1a1a1a", "#777777"
 _DASHES: Any = (0, (3, 2))
@@ -205,7 +211,8 @@ def _corners(axes: Axes, found: PlaneMap) -> None:
 
 def lettered(found: PlaneMap) -> dict[int, str]:
     """A letter for every curve (by its number) of which an arc is drawn, in the order in which they are listed."""
-    return {k: letter_of(i) for i, k in enumerate(sorted(drawn_curves(found)))}
+    curves = sorted(drawn_curves(found))
+    return dict(zip(curves, letters([axis.name for axis in found.section.axes], len(curves)), strict=True))
 
 
 def drawn_curves(found: PlaneMap) -> set[int]:
@@ -213,10 +220,10 @@ def drawn_curves(found: PlaneMap) -> set[int]:
     return {k for one, there in _arcs(found) if _style(found, one) for k in there.factors}
 
 
-def letter_of(place: int) -> str:
-    """a, b, ..., z, a1, ..."""
-    letters = "abcdefghijklmnopqrstuvwxyz"
-    return letters[place] if place < len(letters) else f"{letters[place % 26]}{place // 26}"
+def letters(taken: Collection[str], count: int) -> list[str]:
+    """So many of a, b, ..., z, a1, ..., none of which is ``taken``: an axis may be called so."""
+    named = (f"{letter}{round_ or ''}" for round_ in itertools.count() for letter in ascii_lowercase)
+    return list(itertools.islice((name for name in named if name not in taken), count))
 
 
 def _letters(
@@ -321,7 +328,7 @@ def entries_of(shown: Sequence[tuple[PlaneMap, Mapping[int, str]]], language: La
         entries.append((patch, words))
     if counted:
         entries.append(("2", say(language, "number of roots with positive real part")))
-    entries += [(", ".join(letters), words) for words, letters in by_condition.items()]
+    entries += [(", ".join(names), fill(words, WIDEST)) for words, names in by_condition.items()]
     if dashed:
         line = Line2D([], [], color=_DARK, linewidth=0.8, linestyle=_DASHES)
         entries.append((line, say(language, "dashed: another verdict on the curve alone")))

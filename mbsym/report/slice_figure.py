@@ -32,7 +32,7 @@ from mbsym.report.map_figure import (
     entries_of,
     labels,
     legend,
-    letter_of,
+    letters,
     named,
 )
 from mbsym.report.map_language import say
@@ -84,7 +84,8 @@ def letters_of(found: Stack) -> dict[str, str]:
     for _, plane in panels(found):
         names |= dict.fromkeys(curve_name(found, plane, k) for k in sorted(drawn_curves(plane)))
     order = sorted(names, key=lambda name: (not name.isdigit(), int(name) if name.isdigit() else 0))
-    return {name: letter_of(k) for k, name in enumerate(order)}
+    taken = [*(axis.name for axis in found.section.axes), found.axis.name]
+    return dict(zip(order, letters(taken, len(order)), strict=True))
 
 
 def curve_name(found: Stack, plane: PlaneMap, k: int) -> str:

@@ -27,6 +27,7 @@ from mbsym.maps.slices import stack
 from mbsym.maps.soft_borders import Missing, Onset
 from mbsym.problems.normal_forms import Why
 from mbsym.report.language import Language
+from mbsym.report.map_figure import lettered, letters
 from mbsym.report.map_words import onset_words
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main
@@ -310,3 +311,10 @@ def test_regions_that_no_change_of_verdict_separates_are_counted_as_one() -> Non
     across = mapped(UNCHANGED, "d", "a", b=0)
     words = {across.regions[k].word for k in across.together}
     assert len({*across.together}) == len(words) == 2
+
+
+def test_a_curve_is_not_called_what_an_axis_is_called() -> None:
+    assert letters(["a", "b"], 3) == ["c", "d", "e"]
+    assert letters([], 27)[-2:] == ["z", "a1"]
+    found = mapped(VERTICAL, "a", "b", c=Fraction(1, 100))
+    assert not {"a", "b"} & {*lettered(found).values()}
