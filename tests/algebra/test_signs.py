@@ -194,7 +194,7 @@ def test_witnesses_keep_every_assumption(three: tuple[str, ...], given_: list[tu
         point = tuple(module._between(lower, upper, random.choice(SHARES)) for lower, upper in bounds)
         if all(_sign(a(*point)) in RELATIONS[relation] for a, relation in given_):
             slow.append(point)
-    assert known._witnesses == tuple(slow[:WITNESSES])
+    assert known.witnesses == tuple(slow[:WITNESSES])
 
 
 WIDE = fmpq_mpoly_ctx.get([f"w{k}" for k in range(30)], Ordering.lex)

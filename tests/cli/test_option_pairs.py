@@ -485,7 +485,7 @@ def test_a_quiet_plan_says_nothing_but_by_its_exit_code(described: Path, tmp_pat
 
 def test_every_option_is_there() -> None:
     """A new option has to say what goes with it."""
-    known = {option for item in ITEMS.values() for option in item.names} | {"--debug"}  # of all commands, from outside
+    known = {option for item in ITEMS.values() for option in item.names} | {"--debug", "--force"}  # from outside
     assert {max(one.opts, key=len) for one in command.params if one.param_type_name == "option"} - known == {
         "--time",
         "--fixed",  # of descriptions with constraints: tests/constrained/test_constrained_runs.py

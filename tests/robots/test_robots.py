@@ -85,6 +85,9 @@ def test_numbers_are_spelled_as_they_are_printed() -> None:
         "pi/2", "-pi/2", "pi", "pi/6", "0.5", "pi/2", "1.6",
     ]  # fmt: skip
     assert multiple_of_pi(-3) == "-3*pi"
+    # What lies below the last digit of a description is rounded there: the converted file has to be read again.
+    assert number("5.77686E-66") == "0"
+    assert number("-1.23456789E-55") == "-1.23457E-55"
 
 
 def test_which_tensors_are_of_a_body() -> None:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
-from decimal import Decimal, InvalidOperation
+from decimal import Context, Decimal, InvalidOperation
 from fractions import Fraction
+
+from mbsym.expressions.parser import MAX_DIGITS
 
 Texts = tuple[str, str, str]
 NOWHERE: Texts = ("0", "0", "0")
@@ -12,8 +14,9 @@ NOWHERE: Texts = ("0", "0", "0")
 #: Angles printed with fewer digits are not taken for a rounded part of pi: 0.5 is no pi/6.
 FEWEST_DIGITS = 4
 
-#: A printed number is refused beyond this power of ten, or with more digits.
-_LARGEST_POWER, _MOST_DIGITS = 300, 60
+#: A printed number beyond this power of ten is refused; what is below the last digit of a description is rounded.
+_LARGEST_POWER = MAX_DIGITS - 1
+_SMALLEST, _EXACTLY = Decimal(1).scaleb(-MAX_DIGITS), Context(prec=2 * MAX_DIGITS + 1)
 
 #: What is longer than this many characters as a plain decimal is written with an exponent.
 _PLAIN_POWER = 6
@@ -25,14 +28,16 @@ def decimal(text: str) -> Decimal | None:
         value = Decimal(text.strip())
     except InvalidOperation:
         return None
-    if not value.is_finite() or len(value.as_tuple().digits) > _MOST_DIGITS:
+    if not value.is_finite() or len(value.as_tuple().digits) > MAX_DIGITS:
         return None
-    return value if value == 0 or abs(value.adjusted()) <= _LARGEST_POWER else None
+    return value if value == 0 or value.adjusted() <= _LARGEST_POWER else None
 
 
 def number(text: str) -> str:
     """The number as it is printed, in a form that descriptions accept; zero is 0."""
     value = Decimal(text)
+    if int(value.as_tuple().exponent) < -MAX_DIGITS:
+        value = value.quantize(_SMALLEST, context=_EXACTLY)
     if value == 0:
         return "0"
     return f"{value.normalize():f}" if abs(value.adjusted()) < _PLAIN_POWER else str(value.normalize())
