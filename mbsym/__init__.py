@@ -380,7 +380,9 @@ def extremes(
     values: Mapping[str, Fraction | float | str] | None = None,
     budget: float = 60.0,
 ) -> ExtremesStudy:
-    """How many digits each quantity keeps at the extremes, in about ``budget`` seconds: ``mbsym extremes``.
+    """How many digits each quantity keeps at the extremes, as far as ``budget`` goes: ``mbsym extremes``.
+
+    ``budget`` is counted work, worth about so many seconds on a usual machine: the same rows come out everywhere.
 
     Raises DescriptionError, ValueError, ``mbsym.numerics.scenario.Incomplete``.
     """
