@@ -49,20 +49,19 @@ class Judge:
     def decided(self, verdict: Verdict, values: Mapping[str, Any]) -> Verdict:
         """A verdict of step 1, decided by the nonlinear system where it is open: steps 2 and 3.
 
-        Values that are not rational are not judged further, nor is what has constraints or speeds of its own.
+        What has constraints or speeds of its own is not judged further; by step 2 only rational values are.
         """
         system = self.analysis.system
         if not verdict.word.open or verdict.coordinates_singular or any(map(verdict.because, _NO_MOTION)):
             return verdict
         if system.linear is not None or system.constraints or system.speeds:
             return verdict
-        if not all(isinstance(x, Fraction) for x in values.values()):
-            return verdict
-        from mbsym.problems import open_verdicts  # what equilibria are judged by is not imported for nothing
+        if all(isinstance(x, Fraction) for x in values.values()):
+            from mbsym.problems import open_verdicts  # what equilibria are judged by is not imported for nothing
 
-        verdict = open_verdicts.decided_at(verdict, self.analysis.parameters_scene, values)
-        if not verdict.word.open or verdict.coordinates_singular:
-            return verdict
+            verdict = open_verdicts.decided_at(verdict, self.analysis.parameters_scene, values)
+            if not verdict.word.open or verdict.coordinates_singular:
+                return verdict
         found = self._of_higher_order(values)
         return verdict if found is None else self._in_words(found) or verdict
 

@@ -15,7 +15,7 @@ from mbsym.analysis.stages import Unavailable
 from mbsym.expressions.tree import Expression, Name, multiply, number
 from mbsym.mechanics.motion import motion_values
 from mbsym.mechanics.rest import Value, at_numbers
-from mbsym.model.system import MotionEntry, System
+from mbsym.model.system import MotionEntry, Parameter, System
 from mbsym.problems.equilibria import WITHIN, Equilibria, equilibria
 from mbsym.problems.open_verdicts import MOST_COORDINATES
 from mbsym.problems.rest_result import CoordinateValue, RelativeEquilibrium
@@ -34,7 +34,7 @@ def relative_equilibria(system: System, values: Mapping[str, Value], within: flo
 
 
 def judged(system: System, values: Mapping[str, Value], found: Equilibria) -> Equilibria:
-    """Open verdicts at exact places, judged further."""
+    """Open verdicts at isolated places, judged further."""
     if len(system.coordinates) > MOST_COORDINATES or not any(x.verdict.word.open for x in found.equilibria):
         return found
     bare = at_numbers(system, values)
@@ -42,19 +42,25 @@ def judged(system: System, values: Mapping[str, Value], found: Equilibria) -> Eq
 
 
 def _decided(bare: System, one: RelativeEquilibrium) -> RelativeEquilibrium:
-    if not one.verdict.word.open or one.coordinates_of or not all(x.exact for x in one.values):
+    """Coordinates without an exact text are parameters that are known by their enclosures."""
+    if not one.verdict.word.open or one.coordinates_of:
         return one
-    places = {x.name: _exact(x) for x in one.values}
+    enclosed = {f"{_PLACE}{x.name}": one.enclosures[x.name] for x in one.values if not x.exact}
+    places = {x.name: _exact(x) if x.exact else Name(f"{_PLACE}{x.name}") for x in one.values}
     motion = tuple(
         MotionEntry(name, places.get(name, value), rate) for name, (value, rate) in motion_values(bare).items()
     )
-    analysis = Analysis(replace(bare, motion=motion), ())
+    analysis = Analysis(replace(bare, motion=motion, parameters=tuple(map(Parameter, enclosed))), ())
     try:
         if not {*one.free} <= higher.ignorable(analysis)[1]:
             return one
-        return replace(one, verdict=Judge(analysis).decided(one.verdict, {}))
+        return replace(one, verdict=Judge(analysis).decided(one.verdict, enclosed))
     except (Failure, *NOT_THERE):
         return one
+
+
+#: How names of parameters begin that are coordinates of a place; no name of a description ends in ``_dot``.
+_PLACE = "place_dot_"
 
 
 def _exact(value: CoordinateValue) -> Expression:
