@@ -94,6 +94,7 @@ from mbsym.problems.stability.verdict import (
     drifting,
     exactly,
     off_the_leaf,
+    only_drifts,
     undecided,
 )
 
@@ -168,7 +169,8 @@ def analyse(system: LinearSystem, signs: Signs, point: Mapping[int, Fraction] | 
         calm = calm and _without_further_zeros(found, signs, found.cases[0] if found.cases else None)
         left_open = found.verdict.because(Because.BORDER)
         verdict = undecided(Because.LINEAR_OPEN) if left_open else exactly(found.verdict, calm)
-        if verdict.word.open and not occurring(x for matrix in system.matrices for row in matrix for x in row):
+        at_hand = verdict.word.open or verdict.because(Because.LINEAR_GROWS)
+        if at_hand and not occurring(x for matrix in system.matrices for row in matrix for x in row):
             verdict = verdict_at(system, {}).verdict
         found = replace(found, cases=cases, verdict=verdict)
     if system.leaf or system.basis is not None:
@@ -525,7 +527,10 @@ def _cases_of_linear(system: LinearSystem, found: Theory, known: Signs) -> tuple
         return Case(wanted, (), calm), *unstable
     if system.shifts:
         return ()
-    return (Case(_of_full_rank(places, len(null), known), (), concluded({Fact.EXACTLY_LINEAR, Fact.JORDAN_BLOCK})),)
+    grows = concluded({Fact.EXACTLY_LINEAR, Fact.JORDAN_BLOCK})
+    if still and found.zero_power == 2 * len(null) and not decays and all(r.always for r in wanted):
+        return (Case(wanted, (), only_drifts(grows)),)
+    return (Case(_of_full_rank(places, len(null), known), (), grows),)
 
 
 def _wanted(found: Theory) -> tuple[Requirement, ...]:
