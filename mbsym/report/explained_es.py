@@ -89,6 +89,9 @@ EXPLAINED = {
     "In a conservative system without gyroscopic forces the roots in lambda^2 are real and semisimple: K > 0 is necessary and sufficient for the stability of the first approximation, a vanishing discriminant (equal frequencies) does no harm.": "En un sistema conservativo sin fuerzas giroscópicas las raíces en lambda^2 son reales y semisimples: K > 0 es necesario y suficiente para la estabilidad de la primera aproximación, y un discriminante nulo (frecuencias iguales) no perjudica.",
     # conditions
     "not needed: equal frequencies of a potential system do no harm": "no hace falta: las frecuencias iguales de un sistema potencial no perjudican",
+    "necessary: with equality the motion is unstable": "necesaria: con igualdad el movimiento es inestable",
+    "with equality, the other conditions holding, the motion is stable, too": "con igualdad, si se cumplen las demás condiciones, el movimiento también es estable",
+    "with equality, the other conditions holding, the motion is unstable": "con igualdad, si se cumplen las demás condiciones, el movimiento es inestable",
     "needed by this method, which leaves the rest open": "la exige este método, que no decide el resto",
     "condition {}": "condición {0}",
     "minor {} of {}, reduced by those before": "menor {0} de {1}, reducido con los anteriores positivos",

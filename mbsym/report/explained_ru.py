@@ -89,6 +89,9 @@ EXPLAINED = {
     "In a conservative system without gyroscopic forces the roots in lambda^2 are real and semisimple: K > 0 is necessary and sufficient for the stability of the first approximation, a vanishing discriminant (equal frequencies) does no harm.": "В консервативной системе без гироскопических сил корни по lambda^2 вещественны и полупросты: K > 0 необходимо и достаточно для устойчивости первого приближения, обращение дискриминанта в нуль (равные частоты) не вредит.",
     # conditions
     "not needed: equal frequencies of a potential system do no harm": "не требуется: равные частоты потенциальной системы не вредят",
+    "necessary: with equality the motion is unstable": "необходимо: при равенстве движение неустойчиво",
+    "with equality, the other conditions holding, the motion is stable, too": "при равенстве и выполнении остальных условий движение тоже устойчиво",
+    "with equality, the other conditions holding, the motion is unstable": "при равенстве и выполнении остальных условий движение неустойчиво",
     "needed by this method, which leaves the rest open": "требуется этим методом, остальное он не решает",
     "condition {}": "условие {0}",
     "minor {} of {}, reduced by those before": "минор {0} матрицы {1}, приведённый при положительных предыдущих",
