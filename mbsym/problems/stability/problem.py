@@ -57,7 +57,8 @@ class SubsystemStability(Shown):
     """``matrices`` M, D, G, K, N are those of the subsystem times the positive ``factor``, as they were judged.
 
     ``theory`` holds the characteristic polynomial, conditions, cases and verdict, as polynomials of ``ring`` (that of
-    the parameters, where nothing else occurs); the power of lambda is the position in a list of coefficients.
+    the parameters, where nothing else occurs); the power of lambda is the position in a list of coefficients.  ``system``
+    with what is ``known`` is what was judged.
     """
 
     coordinates: tuple[str, ...]
@@ -65,6 +66,8 @@ class SubsystemStability(Shown):
     factor: Formula
     ring: Ring
     theory: Theory
+    system: LinearSystem | None = None
+    known: Signs | None = None
 
     @property
     def characteristic(self) -> tuple[Formula, ...]:
@@ -286,7 +289,7 @@ def _judge(scene: Scene, made: Prepared, values: Mapping[str, Fraction] | None, 
     theory = analyse(made.system, made.known)
     if values is not None and point is not None:
         theory = replace(theory, at_point=verdict_at(made.at(balance.at(values)), point))
-    return SubsystemStability(made.coordinates, made.matrices, made.factor, made.ring, theory)
+    return SubsystemStability(made.coordinates, made.matrices, made.factor, made.ring, theory, made.system, made.known)
 
 
 @dataclass(frozen=True)

@@ -30,6 +30,7 @@ class Because(Enum):
     LINEAR_BOUNDED = auto()
     LINEAR_SHIFTED = auto()
     LINEAR_GROWS = auto()
+    LINEAR_DRIFTS = auto()
     LINEAR_GYROSCOPIC = auto()
     HIGHER_MINIMUM = auto()  # (order)
     NO_MINIMUM = auto()  # (order)
