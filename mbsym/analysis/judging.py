@@ -111,10 +111,15 @@ def _order(analysis: Analysis, kind: str) -> int:
 
 def trials(analysis: Analysis) -> Trials:
     """Parameters at which claimed conditions are tried, with exact verdicts."""
-    scene, linear = analysis.parameters_scene, analysis.judgeable
-    verdict_at = stability.ExactVerdicts(scene, analysis.balance, linear, analysis.equilibrium, analysis.signs)
     solved = {name: value.polynomial for name, value in analysis.equilibrium.solved}
-    return Trials(analysis.system, analysis.ring, linear.M, solved, verdict_at, decider(analysis))
+    mass_matrix, verdict_at = analysis.judgeable.M, exact_verdicts(analysis)
+    return Trials(analysis.system, analysis.ring, mass_matrix, solved, verdict_at, decider(analysis))
+
+
+def exact_verdicts(analysis: Analysis) -> stability.ExactVerdicts:
+    """Those of the first approximation, and of the energy, at any exact values of all parameters."""
+    scene, linear = analysis.parameters_scene, analysis.judgeable
+    return stability.ExactVerdicts(scene, analysis.balance, linear, analysis.equilibrium, analysis.signs)
 
 
 def decider(analysis: Analysis) -> Callable[[Verdict, Mapping[str, Fraction]], Verdict]:
