@@ -1,8 +1,8 @@
 """What is assumed of parameters holds wherever something is tried: in claims, and at the points of self-checks.
 
-Derived by hand.  The governor's ball hangs down: V'' = m l (g - l w^2), negative under l w^2 > g, so K has one negative
-eigenvalue.  Under a < b, -1 < m < 0, n < 0 the roots are sqrt(n^2) = -n, sqrt((a - b)^2) = b - a, sqrt((1 + m)^2) = 1 + m
-and sqrt((m - 1)^2) = 1 - m.
+Derived by hand.  The ball of the governor hangs down: V'' = m l (g - l w^2), negative under l w^2 > g, so K has one
+negative eigenvalue.  Under a < b, -1 < m < 0, n < 0 the roots are sqrt(n^2) = -n, sqrt((a - b)^2) = b - a,
+sqrt((1 + m)^2) = 1 + m and sqrt((m - 1)^2) = 1 - m.
 """
 
 from __future__ import annotations

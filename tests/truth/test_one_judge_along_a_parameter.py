@@ -1,8 +1,8 @@
 """``mbsym nonlinear --vary`` says at an exceptional value what ``mbsym run`` says there.
 
-Derived by hand.  Van der Pol's oscillator at mu = 0 is x'' + x = 0, whose energy is definite: stable.  The Jeffcott rotor
-z'' + (ce + ci) z' + (1 - i ci W) z = 0 with ce = ci = 1 has at W = 2 the roots i and -2 - i, each simple, and its
-equations are linear: stable.
+Derived by hand.  Van der Pol's oscillator at mu = 0 is x'' + x = 0, whose energy is definite: stable.  Jeffcott's
+rotor z'' + (ce + ci) z' + (1 - i ci W) z = 0 with ce = ci = 1 has at W = 2 the roots i and -2 - i, each
+simple, and its equations are linear: stable.
 """
 
 from __future__ import annotations
