@@ -101,14 +101,14 @@ def stabilisation_of(analysis: Analysis) -> Stabilisation:
     """Problem 8, with numbers where the description gives all of them."""
     from mbsym.problems.stabilisation import problem  # few ask for it
 
-    found = analysis.equilibrium
+    found, linear = analysis.equilibrium, analysis.judgeable  # raises first where there is no such motion
     if len(found.conditions) > len(found.solved):
         reason = "the motion exists under conditions that were not solved: parameters are not independent then"
         raise Unavailable("conditions", NoResult(reason, "see problem 4", "conditions", "unsolved-conditions"))
     values = stability.parameter_values(analysis.parameters_scene, found)
     if values is not None and not problem.on_motion(analysis.parameters_scene, found, values):
         values = None
-    return problem.stabilisation(analysis.parameters_scene, analysis.judgeable, analysis.signs, values)
+    return problem.stabilisation(analysis.parameters_scene, linear, analysis.signs, values)
 
 
 def equilibrium_of(analysis: Analysis) -> Equilibrium:

@@ -27,10 +27,10 @@ def normal_forms_of(analysis: Analysis) -> NormalForms:
     from mbsym.problems.stabilisation.problem import on_motion
 
     found, scene = analysis.equilibrium, analysis.parameters_scene
+    analysis.judgeable  # noqa: B018  raises where the first approximation, or time, says that no theorem applies
     if len(found.conditions) > len(found.solved):
         reason = "the motion exists under conditions that were not solved: parameters are not independent then"
         raise Unavailable("conditions", NoResult(reason, "see problem 4", "conditions", "unsolved-conditions"))
-    analysis.judgeable  # noqa: B018  raises where the first approximation, or time, says that no theorem applies
     values = stability.parameter_values(scene, found)
     nothing = Why.NONE
     if values is not None:
