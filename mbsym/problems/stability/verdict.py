@@ -407,6 +407,8 @@ def _reasons(parts: tuple[Verdict, ...], row: Row) -> tuple[Reason, ...]:
             found.add(Reason(Because.MINIMUM_AND_DISSIPATION))
         if any(Flaw.CYCLIC in part.flawed for part in moving) or (row.ground is Ground.ENERGY and idle):
             found.add(Reason(Because.PARTLY_CYCLIC))
+    if Flaw.CYCLIC in row.wanted:
+        found |= {reason for part in parts for reason in part.reasons if reason.code is Because.DISPLACEMENTS}
     if idle and moving and row.ground is Ground.DECAYS:
         found.add(Reason(Because.CONSTANT_MOMENTA))
     if Reason(Because.CONSTANT_MOMENTA) in found:
