@@ -137,7 +137,8 @@ class Stability(Shown):
     """``verdict`` for the whole system; ``numerical`` the verdict at the description's parameter values, if any.
 
     ``spectra`` are the eigenvalues there, subsystem by subsystem, where the motion exists.  ``presumed``: so many
-    conditions of problem 4 are presumed by all this.
+    conditions of problem 4 are presumed by all this.  ``before_higher_order``: the verdict there that was open, where
+    terms of higher order decide it.
     """
 
     subsystems: tuple[SubsystemStability, ...]
@@ -145,6 +146,7 @@ class Stability(Shown):
     numerical: Verdict | None
     spectra: tuple[Spectrum, ...] = ()
     presumed: int = 0
+    before_higher_order: Verdict | None = None
 
     @property
     def terms(self) -> int:
