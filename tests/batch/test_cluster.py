@@ -13,6 +13,7 @@ import time
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -20,8 +21,10 @@ from click.testing import CliRunner
 
 from mbsym_cli.main import main
 
-pytest.importorskip("distributed", reason="needs the extra 'cluster'")
-pytestmark = [pytest.mark.slow, pytest.mark.skipif(os.name != "posix", reason="signals")]
+pytestmark = [
+    pytest.mark.skipif(find_spec("distributed") is None, reason="needs the extra 'cluster'"),
+    pytest.mark.skipif(os.name != "posix", reason="signals"),
+]
 
 SYSTEMS = ("simple-pendulum", "double-pendulum", "ziegler", "dumbbell", "spring-pendulum", "cart-pendulum")
 MBSYM = [sys.executable, "-m", "mbsym_cli"]
