@@ -201,7 +201,8 @@ def reads_a_clock(text: str) -> bool:
         if isinstance(node, ast.Call):
             called = node.func
             name = called.attr if isinstance(called, ast.Attribute) else getattr(called, "id", "")
-            if name in WAITS or any(word.arg == "timeout" and word.value is not None for word in node.keywords):
+            waits = name[:1].islower() and any(word.arg == "timeout" for word in node.keywords)  # no value that is kept
+            if name in WAITS or waits:
                 return True
     return False
 
