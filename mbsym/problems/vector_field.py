@@ -132,8 +132,8 @@ def transfer_of(
 
 def _told(ring: Ring, k: int) -> str:
     g = ring.generators[k]
-    if g.kind == "prescribed":
-        return f"the prescribed {g.name}"
+    if g.kind == "prescribed":  # an input, too
+        return f"{g.name}, a function of the time,"
     return (
         "the time" if g.kind == "time" else f"{g.kind} of {g.name}" if g.name and not g.name.startswith("#") else g.kind
     )

@@ -13,6 +13,7 @@ import time
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -20,8 +21,10 @@ from click.testing import CliRunner
 
 from mbsym_cli.main import main
 
-pytest.importorskip("distributed", reason="needs the extra 'cluster'")
-pytestmark = [pytest.mark.slow, pytest.mark.skipif(os.name != "posix", reason="signals")]
+pytestmark = [
+    pytest.mark.skipif(find_spec("distributed") is None, reason="needs the extra 'cluster'"),
+    pytest.mark.skipif(os.name != "posix", reason="signals"),
+]
 
 SYSTEMS = ("simple-pendulum", "double-pendulum", "ziegler", "dumbbell", "spring-pendulum", "cart-pendulum")
 MBSYM = [sys.executable, "-m", "mbsym_cli"]
@@ -128,7 +131,15 @@ def test_no_cluster_is_a_complaint_with_what_to_do(tmp_path: Path, monkeypatch: 
     assert done.exit_code == 2
     assert "no scheduler answers at tcp://127.0.0.1:9" in done.stderr
     assert not (tmp_path / "b" / "ziegler").exists()
-    sweep = ["sweep", str(tmp_path / "s" / "ziegler.yaml"), "--vary", "P=0:1:3", "--out", str(tmp_path / "w"), "--cluster"]
+    sweep = [
+        "sweep",
+        str(tmp_path / "s" / "ziegler.yaml"),
+        "--vary",
+        "P=0:1:3",
+        "--out",
+        str(tmp_path / "w"),
+        "--cluster",
+    ]
     done = CliRunner().invoke(main, [*sweep, "tcp://127.0.0.1:9"])
     assert done.exit_code == 2
     assert "no scheduler answers at tcp://127.0.0.1:9" in done.stderr

@@ -30,6 +30,11 @@ class Method(StrEnum):
     NONE = "none"
 
 
+#: What Hurwitz's conditions say where zero roots, or those of a turned steady spin as well, are left out of them.
+BUT_ZERO = "all roots but the zero ones to the left of the imaginary axis: Lienard-Chipart"
+BUT_TURNED = "all roots but the zero ones and those of a turned spin to the left of the imaginary axis: Lienard-Chipart"
+
+
 class Place(StrEnum):
     """What follows where a condition fails."""
 

@@ -85,6 +85,9 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
         "K is only semidefinite, but terms of order {} make a strict minimum of the (changed) potential energy.".format
     ),
     Because.NO_MINIMUM: "The (changed) potential energy has no minimum: terms of order {} decide.".format,
+    Because.TERMS_OF_HIGHER_ORDER: (
+        "The first approximation leaves the nonlinear system open; terms of higher order decide (problem 11)."
+    ),
     Because.GYROSCOPIC_ONLY: (
         "The necessary conditions hold, but K is not positive definite: the first approximation is stable by "
         "gyroscopic forces alone, complete dissipation would make it unstable (Kelvin-Chetaev), and leaves the "

@@ -66,6 +66,8 @@ from mbsym.problems.stability.linear_form import (
 from mbsym.problems.stability.on_border import where_zero
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.requirements import (
+    BUT_TURNED,
+    BUT_ZERO,
     Case,
     Definite,
     Definiteness,
@@ -134,6 +136,13 @@ class Theory:
     at_point: PointVerdict | None = None
     reduced: Theory | None = None  # with cyclic coordinates ignored after Routh
     turned: bool = False  # the roots of a turned steady spin are left out of the requirements
+
+    @property
+    def wanted(self) -> str:
+        """What the conditions say together."""
+        if self.method is not Method.HURWITZ or not (self.zero_power or self.turned):
+            return self.method.value
+        return BUT_TURNED if self.turned else BUT_ZERO
 
     @property
     def potential(self) -> bool:

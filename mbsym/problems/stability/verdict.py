@@ -420,6 +420,8 @@ def _reasons(parts: tuple[Verdict, ...], row: Row) -> tuple[Reason, ...]:
             found.add(Reason(Because.PARTLY_CYCLIC))
     if not all(part.stable or part.because(Because.LINEAR_DRIFTS) for part in parts):
         found.discard(_DRIFTS)  # of a part: others grow otherwise
+    if Flaw.CYCLIC in row.wanted:
+        found |= {reason for part in parts for reason in part.reasons if reason.code is Because.DISPLACEMENTS}
     if idle and moving and row.ground is Ground.DECAYS:
         found.add(Reason(Because.CONSTANT_MOMENTA))
     if Reason(Because.CONSTANT_MOMENTA) in found:

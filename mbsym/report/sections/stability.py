@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from mbsym.expressions.counting import counted
@@ -135,7 +135,7 @@ def lines(found: Stability, analysis: Analysis) -> Iterator[str]:
         items = [] if part.theory.verdict.stable else list(statements(part.ring, part.theory.requirements))
         verdict = _verdict(part.theory.verdict)
         if part.theory.verdict.word in (Word.DEPENDS, Word.UNSTABLE_BUT_BORDERS) and items:
-            verdict += f"; {_heading(part.theory)}:"
+            verdict += f"; {_heading(part.theory, items)}:"
         yield f"{', '.join(part.coordinates)}: {verdict}"
         shown = Shown()
         for item in items:
@@ -208,15 +208,17 @@ def _condition(item: Statement, shown: Shown) -> str:
     return f"{item.label}: {shortened(statement_text(item), 0 if item.formula is None else item.formula.terms)}{remark}"
 
 
-def _heading(theory: Theory) -> str:
-    """What the listed conditions are."""
+def _heading(theory: Theory, items: Sequence[Statement]) -> str:
+    """What the listed conditions are; some may say themselves what they are needed for."""
     if theory.method is Method.EVEN and not theory.potential:
+        if any(item.remark for item in items):
+            return "conditions, necessary but for the case of equality where nothing else is said"
         return "necessary conditions, but for the case of equality"
     always = next((case.verdict for case in theory.cases if case.always), None)
     if always is not None and always.stable:
         return f"{_verdict(always)} in any case, asymptotically stable under these conditions"
     if theory.method is Method.HURWITZ:  # a motion may be stable without them: where friction is zero, say
-        return "conditions on the roots that are not zero (Lienard-Chipart)"
+        return f"conditions for {theory.wanted.replace(': ', ' (')})"
     return "conditions"
 
 
