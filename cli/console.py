@@ -132,7 +132,7 @@ def wrapped(line: str, width: int | None, margin: int | None = None) -> str:
 
 
 def _breaks(line: str, width: int, margin: int | None = None) -> tuple[str, list[int]]:
-    """What stands before the further lines, and where these begin: at words, so that no line is wider that need not be."""
+    """What stands before the further lines, and where these begin: at words, so that none is wider that need not be."""
     before = len(line) - len(line.lstrip(" "))
     indent, at, start, room = " " * (before + HANGING if margin is None else margin), list[int](), 0, width
     for word in re.finditer(r"\S+", line):

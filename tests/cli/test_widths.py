@@ -1,4 +1,4 @@
-"""Lines of words are as wide as is asked for by COLUMNS; a file or pipe of which nothing is said has one line a statement."""
+"""Lines of words are as wide as COLUMNS asks for; a file or pipe of which nothing is said has one line a statement."""
 
 from __future__ import annotations
 

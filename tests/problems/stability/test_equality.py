@@ -4,9 +4,9 @@ By hand, of x'' + g y' + a x = 0, y'' - g x' + b y = 0 (a particle in a magnetic
 
 * a = b = 0: zero roots twice, +- i g.  The kernel of A has two dimensions where g != 0: bounded.  g = 0: x'' = y'' = 0,
   Jordan blocks: unstable.
-* a = b: mu^2 + (2 a + g^2) mu + a^2 = 0, discriminant g^2 (g^2 + 4 a).  a = 0 != g: stable, as above.  g^2 + 4 a = 0: mu =
-  -g^2/4 twice, the pencil has rank 1 there (its entry g lambda is not zero): Jordan blocks, unstable.  g = 0 < a:
-  two equal oscillators, stable.
+* a = b: mu^2 + (2 a + g^2) mu + a^2 = 0, discriminant g^2 (g^2 + 4 a).  a = 0 != g: stable, as above.
+  g^2 + 4 a = 0: mu = -g^2/4 twice, the pencil has rank 1 there (its entry g lambda is not zero): Jordan
+  blocks, unstable.  g = 0 < a: two equal oscillators, stable.
 """
 
 from __future__ import annotations
