@@ -188,8 +188,8 @@ SENTENCES = {
     "Dependent velocities: those of [[dependent]]; independent ones: those of [[free]].": "Зависимые скорости: [[dependent]]; независимые: [[free]].",
     "Whether the velocity constraints are integrable is undecided: the formulas outgrew their budget.": "Интегрируемость связей на скорости не решена: формулы превысили отведённый размер.",
     "The constraints determine all velocities: nothing is left to be integrated.": "Связи определяют все скорости: интегрировать нечего.",
-    "The velocity constraints are integrable (Frobenius; [[sure]]): the system is holonomic, and the configurations that can be reached at any one time have [[k]] dimensions.": "Связи на скорости интегрируемы (Фробениус; [[sure]]): система голономна, конфигурации, достижимые в каждый момент времени, имеют размерность [[k]].",
-    "The velocity constraints are integrable (Frobenius; [[sure]]): the system is holonomic, and the configurations that can be reached have [[k]] dimensions.": "Связи на скорости интегрируемы (Фробениус; [[sure]]): система голономна, достижимые конфигурации имеют размерность [[k]].",
+    "The velocity constraints are integrable (Frobenius; [[sure]]): the system is holonomic, and the configurations that can be reached at any one time are of dimension [[k]].": "Связи на скорости интегрируемы (Фробениус; [[sure]]): система голономна, конфигурации, достижимые в каждый момент времени, имеют размерность [[k]].",
+    "The velocity constraints are integrable (Frobenius; [[sure]]): the system is holonomic, and the configurations that can be reached are of dimension [[k]].": "Связи на скорости интегрируемы (Фробениус; [[sure]]): система голономна, достижимые конфигурации имеют размерность [[k]].",
     "The velocity constraints are integrable in part ([[sure]]): they keep [[kept]] further relations between the coordinates; the fields and their Lie brackets span [[growth]] dimensions.": "Связи на скорости интегрируемы частично ([[sure]]): они сохраняют ещё соотношений между координатами: [[kept]]; поля и их скобки Ли порождают размерности [[growth]].",
     "The system is nonholonomic ([[sure]]): no relation between the coordinates follows from the velocity constraints; the fields and their Lie brackets span [[growth]] dimensions.": "Система неголономна ([[sure]]): из связей на скорости не следует ни одного соотношения между координатами; поля и их скобки Ли порождают размерности [[growth]].",
     "$J = \\partial (\\dot\\varphi, \\chi)/\\partial \\dot q$, a row for each of these, and $\\gamma$, their second rates (of $\\chi$ the rates) at $\\ddot q = 0$:": "$J = \\partial (\\dot\\varphi, \\chi)/\\partial \\dot q$, по строке на каждую, и $\\gamma$, их вторые производные по времени (от $\\chi$ первые) при $\\ddot q = 0$:",
@@ -391,6 +391,12 @@ WORDS = {
     ),
     "all roots to the left of the imaginary axis: Lienard-Chipart": (
         "все корни слева от мнимой оси: критерий Льенара-Шипара"
+    ),
+    "all roots but the zero ones to the left of the imaginary axis: Lienard-Chipart": (
+        "все корни, кроме нулевых, слева от мнимой оси: критерий Льенара-Шипара"
+    ),
+    "all roots but the zero ones and those of a turned spin to the left of the imaginary axis: Lienard-Chipart": (
+        "все корни, кроме нулевых и корней повёрнутого вращения, слева от мнимой оси: критерий Льенара-Шипара"
     ),
     "holds: the kinetic energy is positive definite": "выполнено: кинетическая энергия положительно определена",
     "never holds": "не выполняется никогда",

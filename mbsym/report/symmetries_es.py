@@ -6,7 +6,7 @@ SENTENCES = {
     "Symmetries (Noether) with fields of degree one in the positions and Gamma of degree two, both free of the time:": "Simetrías (Noether) con campos de grado uno en las posiciones y Gamma de grado dos, ambos independientes del tiempo:",
     "The field [[field]] gives an integral that is known ([[name]]).": "El campo [[field]] da una integral conocida ([[name]]).",
     "The field [[field]] gives no further integral ([[name]]; verified at a random state).": "El campo [[field]] no da una integral nueva ([[name]]; verificado en un estado al azar).",
-    "The field [[field]] gives a further integral, no function of those of problem 7 (proved):": "El campo [[field]] da una integral nueva, que no es función de las del problema 7 (demostrado):",
+    "The field [[field]] gives a further integral, no function of those known without it (proved):": "El campo [[field]] da una integral nueva, que no es función de las conocidas sin ella (demostrado):",
     "The field [[field]] gives an integral of which it is undecided whether it is a function of those of problem 7:": "El campo [[field]] da una integral de la que no está decidido si es función de las del problema 7:",
     "None was found; that there is none is not proved.": "No se encontró ninguna; que no haya ninguna no está demostrado.",
     "Each of them is an identity of the exact ring (proved).": "Cada una es una identidad del anillo exacto (demostrado).",

@@ -6,7 +6,7 @@ SENTENCES = {
     "Symmetries (Noether) with fields of degree one in the positions and Gamma of degree two, both free of the time:": "Симметрии (Нётер) с полями первой степени по положениям и Gamma второй степени, не зависящими от времени:",
     "The field [[field]] gives an integral that is known ([[name]]).": "Поле [[field]] даёт известный интеграл ([[name]]).",
     "The field [[field]] gives no further integral ([[name]]; verified at a random state).": "Поле [[field]] нового интеграла не даёт ([[name]]; проверено в случайном состоянии).",
-    "The field [[field]] gives a further integral, no function of those of problem 7 (proved):": "Поле [[field]] даёт новый интеграл, не функцию интегралов задачи 7 (доказано):",
+    "The field [[field]] gives a further integral, no function of those known without it (proved):": "Поле [[field]] даёт новый интеграл, не функцию интегралов, известных без него (доказано):",
     "The field [[field]] gives an integral of which it is undecided whether it is a function of those of problem 7:": "Поле [[field]] даёт интеграл, о котором не выяснено, есть ли он функция интегралов задачи 7:",
     "None was found; that there is none is not proved.": "Ничего не найдено; что таких нет, не доказано.",
     "Each of them is an identity of the exact ring (proved).": "Каждая есть тождество точного кольца (доказано).",

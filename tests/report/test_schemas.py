@@ -18,6 +18,7 @@ from mbsym.model.claims import CLAIMS
 from mbsym.numerics.accuracy import Lacking
 from mbsym.numerics.conservation import Doubt, Standing
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL, SINGULAR, UNDECIDED
+from mbsym.problems.normal_forms import Theorem
 from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.requirements import Method, Place
 from mbsym.problems.stability.theorems import THEOREMS
@@ -99,7 +100,8 @@ def test_the_command_prints_it(name: str) -> None:
 def test_the_words_of_the_schemas_are_those_of_the_code() -> None:
     words = RESULTS["$defs"]
     assert set(words["verdict"]["enum"]) == set(Word)
-    assert set(words["theorem"]["enum"]) == {theorem.name for theorem in THEOREMS}
+    names = {theorem.name for theorem in THEOREMS} | {item.value for item in Theorem if item is not Theorem.NONE}
+    assert set(words["theorem"]["enum"]) == names
     assert set(words["place"]["enum"]) == {place.name.lower() for place in Place}
     assert set(words["failure"]["properties"]["severity"]["enum"]) == {item.value for item in Severity}
     assert set(words["failure"]["properties"]["limit"]["enum"]) == {None, *(item.value for item in Limit)}

@@ -58,7 +58,8 @@ class SubsystemStability(Shown):
     """``matrices`` M, D, G, K, N are those of the subsystem times the positive ``factor``, as they were judged.
 
     ``theory`` holds the characteristic polynomial, conditions, cases and verdict, as polynomials of ``ring`` (that of
-    the parameters, where nothing else occurs); the power of lambda is the position in a list of coefficients.
+    the parameters, where nothing else occurs); the power of lambda is the position in a list of coefficients.  ``system``
+    with what is ``known`` is what was judged.
     """
 
     coordinates: tuple[str, ...]
@@ -66,6 +67,8 @@ class SubsystemStability(Shown):
     factor: Formula
     ring: Ring
     theory: Theory
+    system: LinearSystem | None = None
+    known: Signs | None = None
 
     @property
     def characteristic(self) -> tuple[Formula, ...]:
@@ -138,7 +141,8 @@ class Stability(Shown):
     """``verdict`` for the whole system; ``numerical`` the verdict at the description's parameter values, if any.
 
     ``spectra`` are the eigenvalues there, subsystem by subsystem, where the motion exists.  ``presumed``: so many
-    conditions of problem 4 are presumed by all this.
+    conditions of problem 4 are presumed by all this.  ``before_higher_order``: the verdict there that was open, where
+    terms of higher order decide it.
     """
 
     subsystems: tuple[SubsystemStability, ...]
@@ -146,6 +150,7 @@ class Stability(Shown):
     numerical: Verdict | None
     spectra: tuple[Spectrum, ...] = ()
     presumed: int = 0
+    before_higher_order: Verdict | None = None
 
     @property
     def terms(self) -> int:
@@ -310,7 +315,7 @@ def _judge(scene: Scene, made: Prepared, values: Mapping[str, Fraction] | None, 
     theory = analyse(made.system, made.known)
     if values is not None and point is not None:
         theory = replace(theory, at_point=verdict_at(made.at(balance.at(values)), point))
-    return SubsystemStability(made.coordinates, made.matrices, made.factor, made.ring, theory)
+    return SubsystemStability(made.coordinates, made.matrices, made.factor, made.ring, theory, made.system, made.known)
 
 
 @dataclass(frozen=True)
