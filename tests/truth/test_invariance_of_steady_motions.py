@@ -331,6 +331,16 @@ def test_a_ring_of_equilibria_is_one_in_cartesian_coordinates(loads: dict[str, s
             assert [reason.data for reason in told] in ([("(dx, dy) = (-y, x)",)], [("(dx, dy) = (y, -x)",)])
 
 
+@pytest.mark.parametrize("polar", [True, False])
+def test_a_magnetic_field_does_no_work_beside_friction(polar: bool) -> None:
+    """-P = d (r r')^2 whatever the Lorentz force: the energy has its minimum, k > 0, on the ring."""
+    given = ring({"potential": "k*(r^2 - a**2)**2/4", "rayleigh": "d*M**2/2"}, polar)
+    force = {"r": "m*r*p_dot", "p": "-m*r*r_dot"} if polar else {"x": "m*y_dot", "y": "-m*x_dot"}
+    given["loads"].append({"generalized force": force})
+    found = loaded(given).stability
+    assert found.verdict.word is Word.STABLE_BUT_CYCLIC
+
+
 def test_a_valley_that_is_no_ring_is_not_taken_for_one() -> None:
     """Its minima are an ellipse, along which T is not the same: nothing is turned into itself."""
     given = ring({"potential": "k*(x**2 + 4*y**2 - a**2)**2/4"}, polar=False)
