@@ -12,7 +12,6 @@ from mbsym.problems.stability import SubsystemStability
 from mbsym.problems.stability.requirements import Case, Place, Requirement
 from mbsym.report.coefficients import InCoefficients, in_coefficients, names_in
 
-
 #: Places that are told with the condition: the others are those of the list as a whole.
 _TOLD = (Place.METHOD, Place.FIRST, Place.HARMLESS, Place.STRICTLY, Place.BESIDE, Place.EQUALITY)
 

@@ -131,7 +131,15 @@ def test_no_cluster_is_a_complaint_with_what_to_do(tmp_path: Path, monkeypatch: 
     assert done.exit_code == 2
     assert "no scheduler answers at tcp://127.0.0.1:9" in done.stderr
     assert not (tmp_path / "b" / "ziegler").exists()
-    sweep = ["sweep", str(tmp_path / "s" / "ziegler.yaml"), "--vary", "P=0:1:3", "--out", str(tmp_path / "w"), "--cluster"]
+    sweep = [
+        "sweep",
+        str(tmp_path / "s" / "ziegler.yaml"),
+        "--vary",
+        "P=0:1:3",
+        "--out",
+        str(tmp_path / "w"),
+        "--cluster",
+    ]
     done = CliRunner().invoke(main, [*sweep, "tcp://127.0.0.1:9"])
     assert done.exit_code == 2
     assert "no scheduler answers at tcp://127.0.0.1:9" in done.stderr

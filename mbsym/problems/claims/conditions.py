@@ -300,7 +300,9 @@ def _sufficient(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimRes
                 borders = _on_borders(region, conditions)
                 if borders is not None:
                     whole = weakest([inner, *borders])
-                    return _told(result, EXACT, said(Said.WITH_IT, number, note, with_theorem(whole.word, whole.theorem)))
+                    return _told(
+                        result, EXACT, said(Said.WITH_IT, number, note, with_theorem(whole.word, whole.theorem))
+                    )
                 inside = said(Said.WITH_IT, number, f"{note}, but for the case of equality,", told)
                 return _told(result, UNDECIDED, inside, _with_equality(derived, claim))
     by_integrals = _by_integrals(derived, claim, together)

@@ -79,7 +79,11 @@ class _Known:
         ring = self.ring
         still = {ring.index("velocity", name): ring.zero for name in self.names}
         drifts = [ring.substitute(self.tied.velocity[i].polynomial, still) for i in self.tied.independent]
-        if all(ring.is_zero(x) is True for x in drifts) and self._is(self.energy, self.speeds) and varies(self.scene, self.energy):
+        if (
+            all(ring.is_zero(x) is True for x in drifts)
+            and self._is(self.energy, self.speeds)
+            and varies(self.scene, self.energy)
+        ):
             yield Integral(ENERGY, ENERGY, "time", Formula(ring, self.energy), Certainty.PROVED)
 
     def momenta(self) -> Iterator[Integral]:

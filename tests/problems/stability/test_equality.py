@@ -92,7 +92,9 @@ def test_the_judge_agrees_at_points_of_every_border(tmp_path) -> None:
         gaps = [eval(str(x.formula), {"__builtins__": {}}, {"g": g, "a": a}) for x in listed]
         stable = at_values(path, g=str(g), a=str(a), b="0").stability.numerical.stable
         for x, gap in zip(listed, gaps, strict=True):
-            others = all(y != 0 if z.relation == "!=" else y > 0 for z, y in zip(listed, gaps, strict=True) if z is not x)
+            others = all(
+                y != 0 if z.relation == "!=" else y > 0 for z, y in zip(listed, gaps, strict=True) if z is not x
+            )
             if gap == 0 and x.place is Place.STRICTLY:
                 assert not stable, (x, g, a)
             if gap == 0 and others and x.place in (Place.BESIDE, Place.EQUALITY):
