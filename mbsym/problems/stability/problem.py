@@ -426,7 +426,10 @@ def _prepared(
     )
     driven = tuple(i for i in cyclic if part.coordinates[i] in balance.driven)
     names, basis = part.coordinates, None
-    hidden = _displaced(scene, part, balance, signs, cyclic, equilibrium, bool(turned)) if lagrangian else None
+    turns = bool(turned) and not all(
+        x.is_zero() for matrix in (part.D, part.N) for row in matrix.polynomials for x in row
+    )
+    hidden = _displaced(scene, part, balance, signs, cyclic, equilibrium, turns) if lagrangian else None
     if hidden is not None:
         found, basis = hidden
         inner = basis.through(scene.ring, elimination)
@@ -462,7 +465,7 @@ def _displaced(
     """Displacements that change no equation, and coordinates made of them; None where cyclic coordinates are all.
 
     They are looked for where K + N is singular besides the cyclic coordinates, or forces act on several of these; those
-    that vary with the position where the others do not explain all zero roots, nor does a spin that may be ``turned``.
+    that vary with the position where the others do not explain all zero roots, nor does a damped spin, ``turned``.
     """
     others = [i for i in range(len(part.coordinates)) if i not in cyclic]
     stiff = [[part.K.polynomials[i][j] + part.N.polynomials[i][j] for j in others] for i in others]
