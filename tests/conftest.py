@@ -15,7 +15,16 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import properties  # noqa: F401  (before the command line asks for one of its profiles)
 import pytest
+from durations import (  # noqa: F401
+    pytest_addoption,
+    pytest_collection_modifyitems,
+    pytest_runtest_logreport,
+    pytest_runtest_makereport,
+    pytest_runtest_setup,
+    pytest_terminal_summary,
+)
 from flint import arb, ctx, fmpq
 
 import mbsym

@@ -1,4 +1,4 @@
-"""The page on JSON files, from the schemas that are shipped."""
+"""The page on JSON files, from the schemas of the types."""
 
 from __future__ import annotations
 

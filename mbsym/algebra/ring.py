@@ -439,7 +439,7 @@ class Ring(Algebra[Polynomial]):
         if constant is not None and constant < 0:
             s, c = self._own_angle(-argument)
             return -s, c
-        if constant is None and (parts := self._arc_tangents(argument)):
+        if parts := self._arc_tangents(argument):
             return self._with_arc_tangents(argument, parts)
         index = self._adjoined("sine", argument)
         if index is None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, cast
 
 from mbsym.algebra.failures import Failure
 from mbsym.analysis import constrained, given
+from mbsym.analysis.judge import Judge
 from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.mechanics.rest import given_values, missing_values
@@ -89,11 +90,11 @@ def _judged(analysis: Analysis) -> Stability:
     divisor = "" if values is None or analysis.system.linear is not None else pole(analysis, values)
     if divisor:
         return replace(found, numerical=undecided(Because.POLE, divisor), spectra=())
-    if found.numerical is None or not found.numerical.word.open or analysis.system.constraints:
-        return found  # what looks further at open verdicts knows the open tree alone
-    from mbsym.problems import open_verdicts  # what equilibria are judged by is not imported for nothing
-
-    return open_verdicts.decided(found, scene, analysis.equilibrium)
+    if found.numerical is None or values is None or not found.numerical.word.open:
+        return found
+    judged = Judge(analysis).decided(found.numerical, values)
+    before = found.numerical if judged.because(Because.TERMS_OF_HIGHER_ORDER) else None
+    return replace(found, numerical=judged, before_higher_order=before)
 
 
 def stabilisation_of(analysis: Analysis) -> Stabilisation:
@@ -173,6 +174,7 @@ def equilibria_of(analysis: Analysis) -> Equilibria:
     if missing:
         hint = f"add for example  values: {{{missing[0]}: 1, ...}}"
         raise Unavailable("values", NoResult(f"no number for {', '.join(missing)}", hint, "no values", "no-value"))
+    from mbsym.analysis import resting
     from mbsym.problems import equilibria
 
-    return equilibria.equilibria(analysis.system, values)
+    return resting.judged(analysis.system, values, equilibria.equilibria(analysis.system, values))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import NOT_THERE
 from mbsym.analysis.higher import ignorable
-from mbsym.analysis.judging import decider, exact_verdicts
+from mbsym.analysis.judge import Judge
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.problems.stability.word import Word
 
@@ -55,7 +55,7 @@ def _judged(analysis: Analysis, values: Mapping[str, Fraction], name: str, speci
         return special
     there = {**values, name: special.exactly}
     try:
-        verdict = decider(analysis)(exact_verdicts(analysis)(there), there)
+        verdict = Judge(analysis)(there)
     except NOT_THERE:
         return special
     return special if verdict.word.open else replace(special, verdict=verdict)

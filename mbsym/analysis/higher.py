@@ -39,12 +39,17 @@ def normal_forms_of(analysis: Analysis) -> NormalForms:
     conservative, cyclic = ignorable(analysis)
     result = problem.normal_forms(scene, analysis.system, found, values, conservative, cyclic)
     judged = analysis.optional("stability")
-    first = None if judged is None or judged.numerical is None else judged.numerical.word
+    before = None if judged is None else judged.before_higher_order or judged.numerical
+    first = None if before is None else before.word
     if nothing is not Why.NONE:
         result = replace(result, at_values=Judged(Outcome.UNDECIDED, Theorem.NONE, nothing))
     if isinstance(result.in_symbols, InSymbols):
         result = replace(result, in_symbols=_told_by_signs(result.in_symbols, analysis.signs))
-    return replace(result, first=first, everywhere=None if judged is None else decided(judged.verdict.word))
+    return replace(
+        result,
+        first=first,
+        everywhere=None if judged is None else decided(judged.verdict.word),
+    )
 
 
 def judge(analysis: Analysis) -> Callable[[Mapping[str, Any]], Judged | None]:

@@ -10,6 +10,11 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
+from typing import Annotated
+
+from msgspec import Meta
+
+from mbsym.report.documents.base import SHA256, Part, words
 
 #: The version of the schema of summary.json; another one where a reader would have to be changed.
 FORMAT = 1
@@ -68,76 +73,69 @@ _EXIT_CODES = {
 }
 
 
-@dataclass(frozen=True)
-class ProblemRow:
-    """One numbered problem.
+class ProblemRow(Part, frozen=True):
+    """a numbered problem"""
 
-    ``status`` is ``derived`` or ``none``; of a problem without a result, ``code`` names the reason
-    (``no-closed-form``, ``internal-error``, ``withdrawn``, ...), ``reason`` says it in a sentence, and ``defect`` is
-    true where the program is at fault.  ``verdict`` and ``verdict_at_values`` are the words of problem 6, None
-    elsewhere.
-    """
-
-    number: int
-    name: str
-    title: str
-    status: str
-    code: str | None = None
-    reason: str | None = None
-    hint: str | None = None
-    defect: bool = False
-    verdict: str | None = None
-    verdict_at_values: str | None = None
+    number: Annotated[int, "its number", Meta(ge=1)]
+    name: Annotated[str, "its name in results.json"]
+    title: Annotated[str, "what it is about"]
+    status: Annotated[str, words("derived", "none"), "whether there is a result"]
+    code: Annotated[
+        str | None,
+        "kind of the reason why there is no result: no-closed-form, internal-error, withdrawn, ...",
+    ] = None
+    reason: Annotated[str | None, "the same in a sentence"] = None
+    hint: Annotated[str | None, "what to try next, in a sentence"] = None
+    defect: Annotated[bool, "the program is at fault"] = False
+    verdict: Annotated[str | None, "of problem 6"] = None
+    verdict_at_values: Annotated[str | None, "of problem 6 at the description's values"] = None
 
 
-@dataclass(frozen=True)
-class ClaimRow:
-    """One claim: ``word`` is held, refuted or undecided; ``outcome`` says how, ``lines`` by what it differs."""
+class ClaimRow(Part, frozen=True):
+    """a claim of the description"""
 
-    place: str
-    title: str
-    word: str
-    outcome: str
-    lines: tuple[str, ...] = ()
+    place: Annotated[str, "where it is printed"]
+    title: Annotated[str, "what it is about, in words"]
+    word: Annotated[str, words("held", "refuted", "undecided"), "the outcome in one word"]
+    outcome: Annotated[str, "how it holds, or does not"]
+    lines: Annotated[tuple[str, ...], "by what it differs"] = ()
 
 
-@dataclass(frozen=True)
-class CheckRow:
-    """One self-check, of the routes ``first`` and ``second``.
+class CheckRow(Part, frozen=True):
+    """a self-check: two routes to a result"""
 
-    ``outcome`` is ``exact``, ``verified numerically``, ``undecided`` or ``FAILED``.
-    """
-
-    name: str
-    first: str
-    second: str
-    outcome: str
-    detail: str = ""
+    name: Annotated[str, "what is compared"]
+    first: Annotated[str, "the first route"]
+    second: Annotated[str, "the second route"]
+    outcome: Annotated[
+        str,
+        words("exact", "verified numerically", "undecided", "singular", "FAILED"),
+        "how certain it is that they agree",
+    ]
+    detail: Annotated[str, "how they were compared, or what differs, in words"] = ""
 
     @property
     def failed(self) -> bool:
         return self.outcome == "FAILED"
 
 
-@dataclass(frozen=True)
-class ComplaintRow:
-    """One complaint about the description; 1-based ``line`` and ``column``, None where it is about the whole file."""
+class ComplaintRow(Part, frozen=True):
+    """a complaint about the description"""
 
-    severity: str
-    code: str
-    message: str
-    line: int | None = None
-    column: int | None = None
-    length: int | None = None
-    hint: str | None = None
+    severity: Annotated[str, words("error", "warning"), "how bad it is"]
+    code: Annotated[str, "what kind of complaint it is"]
+    message: Annotated[str, "the same in a sentence"]
+    line: Annotated[Annotated[int, Meta(ge=1)] | None, "line, counted from 1; null: the file as a whole"] = None
+    column: Annotated[Annotated[int, Meta(ge=1)] | None, "column, counted from 1"] = None
+    length: Annotated[Annotated[int, Meta(ge=0)] | None, "so many characters"] = None
+    hint: Annotated[str | None, "what to do, in a sentence"] = None
 
 
-@dataclass(frozen=True)
-class FileRow:
-    """A file that was written, by its name in the row's folder."""
+class FileRow(Part, frozen=True):
+    """a file that was written"""
 
-    name: str
-    sha256: str
+    name: Annotated[str, "its name in the folder of the description"]
+    sha256: Annotated[str, "its SHA-256", SHA256]
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,8 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
+from msgspec import convert, to_builtins
+
 from mbsym.batch.outcome import CheckRow, ClaimRow, ComplaintRow, FileRow, Outcome, ProblemRow, Row
 from mbsym.batch.task import Asked, Finished, Task
 
@@ -60,7 +62,7 @@ def _read_content(found: Any) -> str | bytes:
 
 def row_data(row: Row) -> dict[str, Any]:
     """A row without what differs from batch to batch: its seconds, and whether it was up to date."""
-    found = asdict(row)
+    found: dict[str, Any] = to_builtins(row)
     del found["seconds"], found["cached"]
     return found
 
@@ -72,11 +74,11 @@ def read_row(found: Mapping[str, Any]) -> Row:
         folder=str(found["folder"]),
         outcome=Outcome(found["outcome"]),
         name=str(found["name"]),
-        problems=tuple(ProblemRow(**item) for item in found["problems"]),
-        claims=tuple(ClaimRow(**item | {"lines": tuple(item["lines"])}) for item in found["claims"]),
-        checks=tuple(CheckRow(**item) for item in found["checks"]),
-        complaints=tuple(ComplaintRow(**item) for item in found["complaints"]),
-        files=tuple(FileRow(**item) for item in found["files"]),
+        problems=convert(found["problems"], tuple[ProblemRow, ...]),
+        claims=convert(found["claims"], tuple[ClaimRow, ...]),
+        checks=convert(found["checks"], tuple[CheckRow, ...]),
+        complaints=convert(found["complaints"], tuple[ComplaintRow, ...]),
+        files=convert(found["files"], tuple[FileRow, ...]),
         message=str(found["message"]),
         notes=tuple(map(str, found["notes"])),
     )

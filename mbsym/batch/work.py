@@ -10,6 +10,8 @@ import hashlib
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
+from msgspec import structs
+
 from mbsym.batch.outcome import CheckRow, ClaimRow, ComplaintRow, FileRow, Outcome, ProblemRow, Row
 from mbsym.batch.task import Finished, Task
 
@@ -50,7 +52,7 @@ def complaint_row(complaint: Complaint) -> ComplaintRow:
     """A complaint of :mod:`mbsym.source` as a row."""
     span = complaint.span
     row = ComplaintRow(complaint.severity, complaint.code, complaint.message, hint=complaint.hint)
-    return row if span is None else replace(row, line=span.line, column=span.column, length=span.length)
+    return row if span is None else structs.replace(row, line=span.line, column=span.column, length=span.length)
 
 
 def _derived(task: Task, system: System) -> tuple[Row, dict[str, str | bytes]]:
@@ -120,7 +122,7 @@ def _problem_row(analysis: Analysis, number: int) -> ProblemRow:
     row = ProblemRow(number, problem.attribute, problem.title, "derived")
     if stage.failure is not None:
         why = stage.failure
-        return replace(
+        return structs.replace(
             row,
             status="none",
             code=why.code,
@@ -130,7 +132,7 @@ def _problem_row(analysis: Analysis, number: int) -> ProblemRow:
         )
     if isinstance(stage.value, Stability):
         at_values = stage.value.numerical
-        return replace(
+        return structs.replace(
             row,
             verdict=stage.value.verdict.word.value,
             verdict_at_values=None if at_values is None else at_values.word.value,

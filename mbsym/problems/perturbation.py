@@ -176,9 +176,8 @@ def unperturbed_state(
     values |= {one.name: lower(one.held) for one in system.inputs}
     running = {one.name: (one.initial or ZERO, one.rate) for one in system.prescribed}
     running |= {name: motion[name] for name in system.coordinates if name not in (*at_rest, *turning)}
-    for name, (value, rate) in running.items():
-        if name not in ring.angles:  # of angles the check knows no time: they have any values
-            values[name] = lower(value) + lower(rate) * values["t"]
+    for name, (value, rate) in running.items():  # sines and cosines of rational states are any, whatever the time
+        values[name] = lower(value) + lower(rate) * values["t"]
     for name, (value, rate) in motion.items():
         if name in at_rest:
             values[name] = lower(value)

@@ -12,7 +12,7 @@ from mbsym.algebra.plane.numbers import enclosure
 from mbsym.maps.branches_result import Branches, Critical, Meeting, Piece
 from mbsym.model.system import System
 from mbsym.problems.equilibria import CoordinateValue
-from mbsym.report.schemas import version
+from mbsym.report.documents.writer import version
 from mbsym.report.sections.stability import verdict_data
 from mbsym.source.meaning import meaning
 

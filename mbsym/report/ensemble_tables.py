@@ -17,7 +17,7 @@ from mbsym.expressions.counting import counted
 from mbsym.model.quantities import marked, unit_of
 from mbsym.numerics.ensemble import QUANTILES, Ensemble
 from mbsym.numerics.variation import Grid, Variation
-from mbsym.report.schemas import version
+from mbsym.report.documents.writer import version
 from mbsym.report.simulation_words import laws_json
 from mbsym.report.trajectory_csv import written
 from mbsym.source.meaning import meaning

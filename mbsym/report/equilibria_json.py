@@ -13,7 +13,7 @@ from mbsym.model.quantities import units_by_name
 from mbsym.model.system import System
 from mbsym.problems.equilibria import CoordinateValue, Equilibria, RelativeEquilibrium
 from mbsym.problems.permanent_rotations import PermanentRotations
-from mbsym.report.schemas import version
+from mbsym.report.documents.writer import version
 from mbsym.report.sections.stability import verdict_data
 
 #: The version of ``schemas/equilibria.json`` that it follows.

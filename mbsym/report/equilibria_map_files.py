@@ -20,12 +20,12 @@ from mbsym.formulas.latex import LatexNames
 from mbsym.maps.equilibria_map import Cell, EquilibriaMap
 from mbsym.model.quantities import unit_of
 from mbsym.model.system import System
+from mbsym.report.documents.writer import version
 from mbsym.report.drawing import pictures
 from mbsym.report.equilibria_map_words import ORIGINS, cell_words, say
 from mbsym.report.language import Language
 from mbsym.report.map_figure import HEIGHT, NODES, RESOLUTION, SMALL, TEXT, TOLERANCE, WIDTH, named
 from mbsym.report.map_tex import equation, escaped
-from mbsym.report.schemas import version
 from mbsym.report.sections.stability import verdict_data
 from mbsym.report.unit_text import labelled
 from mbsym.report.verdict_colours import NONE, Look

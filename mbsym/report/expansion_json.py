@@ -13,8 +13,8 @@ from mbsym.analysis.expanding import Expansion
 from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
 from mbsym.problems.small_parameter.result import Hurwitz, Outcome
+from mbsym.report.documents.writer import version
 from mbsym.report.plain import Write
-from mbsym.report.schemas import version
 
 if TYPE_CHECKING:
     from mbsym.simulation.averaged import Measured as MeasuredAverage

@@ -15,7 +15,7 @@ from mbsym.numerics.extremes_told import sentences
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
 from mbsym.numerics.singular import Singularities
 from mbsym.numerics.singular_positions import SingularPositions
-from mbsym.report.schemas import version
+from mbsym.report.documents.writer import version
 
 #: The version of ``schemas/extremes.json`` that it follows.
 FORMAT = 1

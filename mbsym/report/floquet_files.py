@@ -8,7 +8,7 @@ from typing import Any
 
 from mbsym.model.system import System
 from mbsym.numerics.floquet import Judged, Multiplier, Word
-from mbsym.report.schemas import version
+from mbsym.report.documents.writer import version
 from mbsym.source.meaning import meaning
 
 #: The version of ``schemas/floquet.json`` that it follows.

@@ -22,7 +22,7 @@ from mbsym.problems.polynomial_integrals import (
     Special,
     ZeroLevels,
 )
-from mbsym.report.schemas import version
+from mbsym.report.documents.writer import version
 
 #: The version of ``schemas/integrals.json`` that it follows.
 FORMAT = 1

@@ -15,8 +15,8 @@ from matplotlib.figure import Figure
 
 from mbsym.model.system import System
 from mbsym.numerics.lyapunov import Exponents, Parting
+from mbsym.report.documents.writer import version
 from mbsym.report.drawing import BLUE, GREY, pictures
-from mbsym.report.schemas import version
 from mbsym.report.trajectory_csv import written
 from mbsym.source.meaning import meaning
 

@@ -16,7 +16,7 @@ from mbsym.maps.check import Check
 from mbsym.maps.result import LineMap, PlaneMap, Stratum
 from mbsym.maps.slices import Stack
 from mbsym.model.system import System
-from mbsym.report.schemas import version
+from mbsym.report.documents.writer import version
 from mbsym.report.sections.stability import verdict_data
 from mbsym.source.meaning import meaning
 

@@ -7,7 +7,7 @@ SENTENCES = {
     "What is said is about the system without its cyclic coordinates [[names]], whose momenta keep their unperturbed values.": "Lo dicho se refiere al sistema sin sus coordenadas cíclicas [[names]], cuyos momentos conservan los valores no perturbados.",
     "What is said is about the other coordinates and all velocities; [[names]] are cyclic.": "Lo dicho se refiere a las demás coordenadas y a todas las velocidades; [[names]] son cíclicas.",
     "The applied forces have a generalized potential (Helmholtz's conditions): Lagrange's function takes it in.": "Las fuerzas aplicadas tienen un potencial generalizado (se cumplen las condiciones de Helmholtz): entra en la función de Lagrange.",
-    "At the given values problem 6 says: [[word]].": "Con los valores dados el problema 6 dice: [[word]].",
+    "At the given values problem 6 says without terms of higher order: [[word]].": "Con los valores dados el problema 6 dice, sin términos de orden superior: [[word]].",
     "There is no formula in parameters: [[why]].": "No hay fórmula en los parámetros: [[why]].",
     "Frequencies with the signs of their energies: [[values]] (enclosed).": "Frecuencias con los signos de sus energías: [[values]] (con cotas garantizadas).",
     "A resonance of order [[order]] holds exactly: [[relation]].": "Se cumple exactamente una resonancia de orden [[order]]: [[relation]].",

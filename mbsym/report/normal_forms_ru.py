@@ -7,7 +7,7 @@ SENTENCES = {
     "What is said is about the system without its cyclic coordinates [[names]], whose momenta keep their unperturbed values.": "Всё сказанное относится к системе без циклических координат [[names]], импульсы которых сохраняют невозмущённые значения.",
     "What is said is about the other coordinates and all velocities; [[names]] are cyclic.": "Всё сказанное относится к остальным координатам и всем скоростям; координаты [[names]] циклические.",
     "The applied forces have a generalized potential (Helmholtz's conditions): Lagrange's function takes it in.": "Приложенные силы имеют обобщённый потенциал (условия Гельмгольца выполнены): он входит в функцию Лагранжа.",
-    "At the given values problem 6 says: [[word]].": "При заданных значениях задача 6 даёт: [[word]].",
+    "At the given values problem 6 says without terms of higher order: [[word]].": "При заданных значениях задача 6 без членов высшего порядка даёт: [[word]].",
     "There is no formula in parameters: [[why]].": "Формулы в параметрах нет: [[why]].",
     "Frequencies with the signs of their energies: [[values]] (enclosed).": "Частоты со знаками их энергий: [[values]] (с гарантированными границами).",
     "A resonance of order [[order]] holds exactly: [[relation]].": "Точно выполнен резонанс порядка [[order]]: [[relation]].",

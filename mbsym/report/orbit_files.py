@@ -15,7 +15,7 @@ import numpy as np
 from mbsym.expressions.counting import counted
 from mbsym.model.quantities import marked, unit_of
 from mbsym.numerics.periodic import Orbit
-from mbsym.report.schemas import version
+from mbsym.report.documents.writer import version
 from mbsym.report.trajectory_csv import written
 from mbsym.simulation.motions import PeriodicMotion
 from mbsym.source.meaning import meaning

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
 from mbsym.problems.small_parameter.harmonics import Harmonics
+from mbsym.report.documents.writer import version
 from mbsym.report.oscillation_words import numerator
-from mbsym.report.schemas import version
 
 if TYPE_CHECKING:
     from mbsym.analysis.oscillating import Oscillating

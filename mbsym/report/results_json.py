@@ -18,11 +18,11 @@ from mbsym.problems.claims import ClaimResult
 from mbsym.report.canonical import data as canonical_data
 from mbsym.report.canonical import forms_of
 from mbsym.report.claims import claim_line, left_side
+from mbsym.report.documents.writer import version
 from mbsym.report.first_order import first_order
 from mbsym.report.inertias import accepted_inertias
 from mbsym.report.lengths import COUNTED, FILE, withheld
 from mbsym.report.plain import Written, matrix_text
-from mbsym.report.schemas import version
 from mbsym.report.sections import section_of
 
 if TYPE_CHECKING:

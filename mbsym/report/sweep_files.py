@@ -15,7 +15,7 @@ import numpy as np
 
 from mbsym.model.system import System
 from mbsym.numerics.variation import Grid, Variation
-from mbsym.report.schemas import version
+from mbsym.report.documents.writer import version
 from mbsym.report.trajectory_csv import header, rows
 from mbsym.source.meaning import meaning
 from mbsym.sweeps.judged import VERDICT

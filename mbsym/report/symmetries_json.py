@@ -10,7 +10,7 @@ from typing import Any
 from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
 from mbsym.problems.symmetries import Symmetries, Symmetry
-from mbsym.report.schemas import version
+from mbsym.report.documents.writer import version
 
 #: The version of ``schemas/symmetries.json`` that it follows.
 FORMAT = 1

@@ -25,7 +25,6 @@ from mbsym.maps.mapping import plane_map
 from mbsym.maps.result import PlaneMap, Standing
 from mbsym.maps.section import Axis
 from mbsym.maps.verdicts import Border
-from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.word import Word
 from mbsym.report.language import Language
 from mbsym.report.latex_reading import read_latex
@@ -318,18 +317,6 @@ def test_the_words_of_a_map_are_there_in_every_language() -> None:
         assert wanted <= words.keys(), name
         assert WORDS["ru"].keys() == words.keys()
         assert Language(name).say(Word.STABLE) != Word.STABLE
-
-
-def test_the_words_of_the_schema_are_those_of_the_code() -> None:
-    found = schema("map")
-    stability = found["$defs"]["stability"]["properties"]
-    assert set(stability["reasons"]["items"]["properties"]["code"]["enum"]) == {x.name.lower() for x in Because}
-    assert set(found["$defs"]["verdict"]["enum"]) == set(Word)
-    region = found["properties"]["regions"]["items"]["properties"]
-    assert set(region["standing"]["enum"]) == set(Standing)
-    assert set(region["border"]["enum"]) == {None, *Border}
-    origins = found["properties"]["vanishing"]["items"]["properties"]["origin"]["enum"]
-    assert set(origins) == {x.value for x in Origin}
 
 
 def test_one_moment_of_inertia_alone_is_that_of_plane_motion() -> None:

@@ -10,8 +10,9 @@ import mpmath
 import numpy as np
 import pytest
 from flint import acb, arb, arb_series, ctx
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from properties import settings
 
 import mbsym
 from mbsym.numerics.dynamics import Dynamics
@@ -194,7 +195,7 @@ def test_a_derivative_without_its_motion_is_found(monkeypatch: pytest.MonkeyPatc
     assert radius() < 1e-8
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     st.lists(st.floats(-1, 1), min_size=3, max_size=3),
     st.floats(0.05, 0.6),

@@ -19,8 +19,10 @@ import random
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
 from itertools import product
 from pathlib import Path
+from types import CodeType
 
 import pytest
 
@@ -122,9 +124,14 @@ def claimed(source: random.Random, conditions: tuple[str, ...]) -> str:
     return factor + whole
 
 
+@cache
+def compiled(text: str) -> CodeType:
+    return compile(text, "<condition>", "eval")
+
+
 def value(text: str, point: dict[str, Fraction]) -> Fraction:
     """The tests' own arithmetic: Python's, on exact fractions."""
-    return Fraction(eval(text, {"__builtins__": {}}, dict(point)))
+    return Fraction(eval(compiled(text), {"__builtins__": {}}, dict(point)))
 
 
 def samples(sign: str) -> list[dict[str, Fraction]]:
@@ -171,10 +178,11 @@ def judged(
         with_it = tuple((t, r) for t, r, o, p in written if (o, p) == (role, place))
         found.append(Judged(one, relation, role, with_it, result))
 
-    def truth(point: dict[str, Fraction]) -> str:
-        return family.truth(*(value(text, point) for text in texts), point["w"])
+    @cache
+    def truth(point: tuple[tuple[str, Fraction], ...]) -> str:
+        return family.truth(*(value(text, dict(point)) for text in texts), dict(point)["w"])
 
-    return found, sign, truth, known
+    return found, sign, lambda point: truth(tuple(point.items())), known
 
 
 def contradiction(

@@ -14,8 +14,9 @@ import numpy as np
 import pytest
 import sympy
 from conftest import TESTS, at_values
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from properties import settings
 from scipy.integrate import solve_ivp
 
 import mbsym
@@ -99,7 +100,7 @@ TERMS = ["x_dot**2", "y_dot**2", "x_dot*y_dot", "x_dot**4", "x_dot**3", "(x_dot 
 TERMS += ["x*x_dot**2", "x**2*y_dot**2", "(1 + x)*y_dot**2", "x_dot**2*y_dot**2", "(x_dot + y)**2", "y*x_dot*y_dot"]
 
 
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=60, derandomize=True)
 @given(st.lists(st.tuples(st.integers(-2, 3), st.sampled_from(TERMS)), min_size=1, max_size=4))
 def test_what_is_proved_of_the_power_holds_near_the_motion(terms: list[tuple[int, str]]) -> None:
     text = " + ".join(f"{number}*{term}" for number, term in terms)

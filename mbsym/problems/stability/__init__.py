@@ -41,8 +41,9 @@ Verdicts of subsystems combine to the weakest that they share: all asymptoticall
 energy that does not grow (a damped part beside an undamped one: stable), or none of them dissipative; else critical.
 
 At the values, what the first approximation leaves open is looked at in the nonlinear system: terms of higher order
-where K has a null direction, and combinations of first integrals with a definite second variation (Chetaev; sleeping
-tops, free bodies, rotors).
+where K has a null direction, combinations of first integrals with a definite second variation (Chetaev; sleeping
+tops, free bodies, rotors), and the theorems of problem 11.  Claims, and every entry of a list of equilibria, are judged
+so, too.
 
 Source: Banshchikov & Vetrov, section 5, eqs (4) to (6); the theorems are those of Lagrange, Routh, Kelvin and Chetaev.
 

@@ -57,7 +57,8 @@ class SubsystemStability(Shown):
     """``matrices`` M, D, G, K, N are those of the subsystem times the positive ``factor``, as they were judged.
 
     ``theory`` holds the characteristic polynomial, conditions, cases and verdict, as polynomials of ``ring`` (that of
-    the parameters, where nothing else occurs); the power of lambda is the position in a list of coefficients.
+    the parameters, where nothing else occurs); the power of lambda is the position in a list of coefficients.  ``system``
+    with what is ``known`` is what was judged.
     """
 
     coordinates: tuple[str, ...]
@@ -65,6 +66,8 @@ class SubsystemStability(Shown):
     factor: Formula
     ring: Ring
     theory: Theory
+    system: LinearSystem | None = None
+    known: Signs | None = None
 
     @property
     def characteristic(self) -> tuple[Formula, ...]:
@@ -137,7 +140,8 @@ class Stability(Shown):
     """``verdict`` for the whole system; ``numerical`` the verdict at the description's parameter values, if any.
 
     ``spectra`` are the eigenvalues there, subsystem by subsystem, where the motion exists.  ``presumed``: so many
-    conditions of problem 4 are presumed by all this.
+    conditions of problem 4 are presumed by all this.  ``before_higher_order``: the verdict there that was open, where
+    terms of higher order decide it.
     """
 
     subsystems: tuple[SubsystemStability, ...]
@@ -145,6 +149,7 @@ class Stability(Shown):
     numerical: Verdict | None
     spectra: tuple[Spectrum, ...] = ()
     presumed: int = 0
+    before_higher_order: Verdict | None = None
 
     @property
     def terms(self) -> int:
@@ -284,7 +289,7 @@ def _judge(scene: Scene, made: Prepared, values: Mapping[str, Fraction] | None, 
     theory = analyse(made.system, made.known)
     if values is not None and point is not None:
         theory = replace(theory, at_point=verdict_at(made.at(balance.at(values)), point))
-    return SubsystemStability(made.coordinates, made.matrices, made.factor, made.ring, theory)
+    return SubsystemStability(made.coordinates, made.matrices, made.factor, made.ring, theory, made.system, made.known)
 
 
 @dataclass(frozen=True)
@@ -395,7 +400,7 @@ def _prepared(
     )
     driven = tuple(i for i in cyclic if part.coordinates[i] in balance.driven)
     names, basis = part.coordinates, None
-    hidden = _displaced(scene, part, balance, signs, cyclic, equilibrium) if lagrangian else None
+    hidden = _displaced(scene, part, balance, signs, cyclic, equilibrium, bool(turned)) if lagrangian else None
     if hidden is not None:
         found, basis = hidden
         inner = basis.through(scene.ring, elimination)
@@ -420,11 +425,18 @@ def _prepared(
 
 
 def _displaced(
-    scene: Scene, part: Subsystem, balance: Balance, signs: Signs, cyclic: Sequence[int], equilibrium: Equilibrium
+    scene: Scene,
+    part: Subsystem,
+    balance: Balance,
+    signs: Signs,
+    cyclic: Sequence[int],
+    equilibrium: Equilibrium,
+    turned: bool,
 ) -> tuple[Displacements, Basis] | None:
     """Displacements that change no equation, and coordinates made of them; None where cyclic coordinates are all.
 
-    They are looked for where K + N is singular besides the cyclic coordinates, or forces act on several of these.
+    They are looked for where K + N is singular besides the cyclic coordinates, or forces act on several of these; those
+    that vary with the position where the others do not explain all zero roots, nor does a spin that may be ``turned``.
     """
     others = [i for i in range(len(part.coordinates)) if i not in cyclic]
     stiff = [[part.K.polynomials[i][j] + part.N.polynomials[i][j] for j in others] for i in others]
@@ -433,12 +445,23 @@ def _displaced(
     whole = len(cyclic) < 2 or free == len(cyclic)
     if scene.system.linear is not None or (whole and _somewhere_regular(scene, stiff)):
         return None
-    found = balance.displacements(part.coordinates)
-    if len(found.directions) < len(cyclic) or (len(found.directions) == len(cyclic) and found.constant <= free):
-        return None
     images = equilibrium.determined(scene)
-    chosen = basis_of(scene.ring, found, signs)
-    return None if chosen is None else (found, chosen.through(scene.ring, lambda x: scene.ring.substitute(x, images)))
+    every = [
+        [x + y for x, y in zip(*rows, strict=True)] for rows in zip(part.K.polynomials, part.N.polynomials, strict=True)
+    ]
+    told: tuple[Displacements, Basis] | None = None
+    most = (len(cyclic), free)
+    for looked_for in (balance.displacements, *(() if turned else (balance.symmetries,))):
+        found = looked_for(part.coordinates)
+        chosen = basis_of(scene.ring, found, signs) if (len(found.directions), found.constant) > most else None
+        if chosen is None:
+            continue
+        told = found, chosen.through(scene.ring, lambda x: scene.ring.substitute(x, images))
+        most, count = (len(found.directions), found.constant), len(found.directions)
+        left = [row[count:] for row in told[1].congruent(scene.ring, every)[count:]]
+        if _somewhere_regular(scene, left):
+            break
+    return told
 
 
 def _somewhere_regular(scene: Scene, rows: Sequence[Sequence[Polynomial]]) -> bool:

@@ -40,6 +40,12 @@ class Place(StrEnum):
 
     #: p > 0: where p < 0 the motion is unstable; where p = 0 the method leaves it open.
     NECESSARY = "necessary, but for the case of equality"
+    #: p > 0, p != 0 in exactly linear equations: where p = 0, too, the motion is unstable.
+    STRICTLY = "necessary: with equality the motion is unstable"
+    #: In exactly linear equations: where p = 0 and the other conditions hold the motion is unstable.
+    BESIDE = "with equality, the other conditions holding, the motion is unstable"
+    #: In exactly linear equations: where p = 0 and the other conditions hold the motion is stable.
+    EQUALITY = "with equality, the other conditions holding, the motion is stable, too"
     #: Without it the first approximation has solutions that grow (linearly in time); the motion may be stable.
     FIRST = "necessary in the first approximation"
     #: Without it not all roots are to the left; by terms of higher order the motion may be asymptotically stable.

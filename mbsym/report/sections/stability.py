@@ -32,6 +32,9 @@ ALONE = "(each of these while the others keep to the unperturbed motion)"
 #: What the coordinates of a verdict are; it is told beside every verdict.
 _OF_COORDINATES = (Because.DISPLACEMENTS, Because.OTHER_ANGLES)
 
+#: Whether a drift of coordinates counts, which makes two words for one motion: it is told with the verdict.
+_OF_DRIFTS = (Because.LINEAR_DRIFTS, Because.COASTING)
+
 #: More eigenvalues of a subsystem are left to the files.
 MOST_ROOTS = 10
 
@@ -140,6 +143,7 @@ def lines(found: Stability, analysis: Analysis) -> Iterator[str]:
                 shown.show(item)
         for item in items:
             yield f"  {_condition(item, shown)}"
+        yield from _of_drifts(part.theory.verdict)
     verdicts = [x for part in found.subsystems for x in (part.theory.verdict, *(y.verdict for y in part.theory.cases))]
     for one in dict.fromkeys(reason for x in verdicts for reason in x.reasons if reason.code in _OF_COORDINATES):
         yield _clause(sentence(one))
@@ -151,10 +155,16 @@ def lines(found: Stability, analysis: Analysis) -> Iterator[str]:
     if found.numerical is not None:
         why = found.numerical.explanation if found.numerical.word is Word.UNDECIDED else ""
         yield f"at the given values: {_verdict(found.numerical)}" + (f": {_clause(why)}" if why else "")
+        if not any(part.theory.verdict.reasons == found.numerical.reasons for part in found.subsystems):
+            yield from _of_drifts(found.numerical)
     elif lacking := _without_numbers(analysis):
         yield f"at the given values: nothing, {', '.join(lacking)} {'has' if len(lacking) == 1 else 'have'} none"
     for spectrum in found.spectra:
         yield f"eigenvalues there ({', '.join(spectrum.coordinates)}): {_roots(spectrum)}"
+
+
+def _of_drifts(verdict: Verdict) -> Iterator[str]:
+    return (f"  {_clause(sentence(one))}" for one in verdict.reasons if one.code in _OF_DRIFTS)
 
 
 def _without_numbers(analysis: Analysis) -> list[str]:

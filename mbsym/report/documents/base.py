@@ -1,0 +1,71 @@
+"""What every JSON file is made of: parts with documented fields.
+
+A field says what it is in its annotation, ``length: Annotated[float, "in metres"]``; where it says nothing, the
+docstring of its type stands for it.  A field of a type with ``UnsetType`` is left out of the file where nothing is
+given.  A name that is a word of Python has ``_`` behind it, which the file has not.
+
+Other remarks in annotations: bounds and patterns (``msgspec.Meta``), ``words`` that are the only ones, ``Named`` for a
+type that has a name in the schema, and those for ``mbsym.diff``: ``told_apart_by``, ``BY_COORDINATE``,
+``counted_from``, ``ASIDE``.
+"""
+
+from __future__ import annotations
+
+from enum import Enum
+from typing import Annotated, Literal
+
+from msgspec import Meta, Struct, field
+
+from mbsym.report.documents.writer import version
+
+
+class Part(Struct, frozen=True, forbid_unknown_fields=True, rename=lambda name: name.rstrip("_")):
+    """An object within a JSON file."""
+
+
+#: The version of every format, and of the program that wrote it.
+Format = Annotated[Literal[1], "version of this format"]
+Version = Annotated[str, "version of mbsym that wrote it", Meta(extra_json_schema={"x-aside": True})]
+SystemName = Annotated[str, "name of the description"]
+
+
+class Head(Part, frozen=True, kw_only=True):
+    """What most files begin with."""
+
+    format: Format = 1
+    version: Version = field(default_factory=version)
+    system: SystemName
+
+
+class Named(str):
+    """The name of a type in the schema."""
+
+
+def words(*of: type[Enum] | str | int) -> Meta:
+    """It is one of these; of an enumeration, one of its names in small letters."""
+    found = [word for one in of for word in ([x.name.lower() for x in one] if isinstance(one, type) else [one])]
+    return Meta(extra_json_schema={"enum": list(dict.fromkeys(found))})
+
+
+def told_apart_by(*properties: str) -> Meta:
+    """The items of a list are told apart by these properties."""
+    return Meta(extra_json_schema={"x-tell-apart": list(properties)})
+
+
+def counted_from(number: int) -> Meta:
+    """The items of a list are counted from this number."""
+    return Meta(extra_json_schema={"x-first": number})
+
+
+#: The items of a list belong to the coordinates, one each.
+BY_COORDINATE = Meta(extra_json_schema={"x-indices": "coordinates"})
+#: It is no result: versions, measured seconds, sentences beside codes.
+ASIDE = Meta(extra_json_schema={"x-aside": True})
+#: 256 bits in hexadecimal digits.
+SHA256 = Meta(pattern="^[0-9a-f]{64}$")
+
+
+class Hashed(Head, frozen=True, kw_only=True):
+    """What files begin with that belong to what a description means."""
+
+    description_sha256: Annotated[str, "SHA-256 of the description as 'mbsym convert' writes it in YAML", SHA256]

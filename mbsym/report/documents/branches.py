@@ -1,0 +1,119 @@
+"""``branches.json`` of ``mbsym equilibria --vary``."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from mbsym.maps.branches_events import Event
+from mbsym.maps.branches_result import Doubt
+from mbsym.report.documents.base import ASIDE, Hashed, Part
+from mbsym.report.documents.equilibria import CoordinateValue
+from mbsym.report.documents.parts import Axis, Number, Verdict
+
+
+class Remark(Part, frozen=True):
+    """a doubt"""
+
+    doubt: Annotated[Doubt, "which"]
+    about: Annotated[str, "a reason, or a value of the parameter"]
+
+
+class Equilibrium(Part, frozen=True):
+    """a relative equilibrium"""
+
+    coordinates: Annotated[list[CoordinateValue], "constant coordinates"]
+    angles_of: Annotated[str | None, "the body whose other angles these are; null for the description's own"]
+    stability: Verdict
+
+
+class Interval(Part, frozen=True):
+    """an interval"""
+
+    low: Annotated[Number, "its lower end"]
+    high: Annotated[Number, "its upper end"]
+    sample: Annotated[str, "the rational value at which the equilibria were solved"]
+    count: Annotated[int, "how many equilibria there are at the sample"]
+    stable: Annotated[int, "how many of them are stable there"]
+    constant: Annotated[bool, "whether the count is proved for the whole open interval"]
+    equilibria: Annotated[list[Equilibrium], "those at the sample"]
+
+
+class CriticalValueEquilibrium(Part, frozen=True):
+    """an equilibrium"""
+
+    coordinates: Annotated[list[CoordinateValue], "constant coordinates"]
+    angles_of: Annotated[str | None, "the body whose other angles these are; null for the description's own"]
+    event: Annotated[Event, "what it is on the curve of equilibria"]
+    below: Annotated[int | None, "equilibria near it at smaller values; null where it is not known"]
+    above: Annotated[int | None, "equilibria near it at larger values"]
+    derivatives: Annotated[
+        dict[str, float], "of the reduced equation g(y, p) = 0, rounded; their signs and zeros are exact"
+    ]
+    stability: Annotated[Verdict | None, "its stability at the critical value; null where it was not sought"]
+
+
+class CriticalValue(Part, frozen=True):
+    """a critical value"""
+
+    value: Annotated[Number, "exact"]
+    intervals: Annotated[list[int | None], "the intervals below and above, by number from 0; null beyond an end"]
+    events: Annotated[
+        list[
+            Literal[
+                "fold",
+                "vertical tangent",
+                "transcritical",
+                "isolated point",
+                "pitchfork",
+                "continuum",
+                "degenerate, not named",
+            ]
+        ],
+        "what happens, each as often as it does",
+    ]
+    verdict_changes: Annotated[bool, "whether a verdict differs on the two sides"]
+    continuum: Annotated[bool, "whether some equilibria there are not isolated"]
+    border: Annotated[
+        bool,
+        "whether on some solution an unknown is at infinity, a root or denominator zero, or the mass matrix singular",
+    ]
+    counts_agree: Annotated[
+        bool | None, "whether the events account for the counts on both sides; null where there is nothing to compare"
+    ]
+    equilibria: Annotated[
+        list[CriticalValueEquilibrium] | None, "the isolated equilibria there; null where they are not all solved"
+    ]
+
+
+class Branch(Part, frozen=True):
+    """a piece"""
+
+    interval: Annotated[int, "the interval, from 0"]
+    equilibrium: Annotated[int, "which of the equilibria at its sample, from 0"]
+    throughout: Annotated[bool, "whether the verdict at the sample is proved for the whole open interval"]
+    start: Annotated[
+        int | None,
+        "the equilibrium at the lower critical value that it tends to, from 0, as followed in floating point; null "
+        "where it is not told",
+    ]
+    end: Annotated[int | None, "the same at the upper one"]
+    parameter: Annotated[list[float], "values of the parameter, rounded", ASIDE]
+    points: Annotated[list[list[float]], "coordinates there, in the order of the equilibrium's, rounded", ASIDE]
+
+
+class Branches(Hashed, frozen=True, kw_only=True):
+    """All relative equilibria over an interval of one parameter: how many, where they bifurcate, how stable they
+    are.
+    """
+
+    parameter: Annotated[Axis, "the parameter that is varied, and its closed interval"]
+    values: Annotated[dict[str, str], "the other parameters and their exact values"]
+    coordinates: Annotated[list[str], "the coordinates in the order of the points of branches"]
+    proved: Annotated[bool, "whether the number of equilibria is proved in all open intervals"]
+    interrupted: Annotated[bool, "whether Ctrl-C ended the work early"]
+    remarks: Annotated[list[Remark], "what is not proved"]
+    intervals: Annotated[list[Interval], "the open intervals between critical values, ascending"]
+    critical_values: Annotated[
+        list[CriticalValue], "values at which equilibria bifurcate or stability may change, ascending"
+    ]
+    branches: Annotated[list[Branch], "pieces of branches over one interval each"]

@@ -1,0 +1,101 @@
+"""What ``mbsym expand --json`` prints, and the slow manifold of problem 12."""
+
+from __future__ import annotations
+
+from typing import Annotated, Generic, TypeVar
+
+from msgspec import UNSET, UnsetType, field
+
+from mbsym.problems.small_parameter.result import Outcome
+from mbsym.report.documents.base import ASIDE, Format, Part, SystemName, Version, told_apart_by
+from mbsym.report.documents.writer import version
+
+#: Text, or in results.json text or its length.
+F = TypeVar("F")
+
+
+class Coefficient(Part, Generic[F], frozen=True):
+    order: Annotated[int, "power of the small parameter"]
+    formula: Annotated[F, "in Python syntax"]
+
+
+class FastVariable(Part, Generic[F], frozen=True):
+    variable: Annotated[str, "name of the variable"]
+    residual: Annotated[
+        int | None, "order of what is left when it is put into the equations at a random rational state; null: nothing"
+    ]
+    coefficients: Annotated[
+        list[Coefficient[F]], "coefficients that are not zero, by powers of the small parameter", told_apart_by("order")
+    ]
+
+
+class SlowVariable(Part, Generic[F], frozen=True):
+    variable: Annotated[str, "name of the variable"]
+    coefficients: Annotated[
+        list[Coefficient[F]], "coefficients that are not zero, by powers of the small parameter", told_apart_by("order")
+    ]
+
+
+class Hurwitz(Part, Generic[F], frozen=True):
+    """the roots of the fast variables"""
+
+    outcome: Annotated[Outcome, "whether all roots have negative real parts for all sufficiently small positive values"]
+    positive: Annotated[list[F], "what has to be positive for that"]
+    nonzero: Annotated[list[F], "what must not vanish for that"]
+    polynomial: Annotated[
+        list[
+            Annotated[
+                list[Coefficient[F]],
+                "coefficients that are not zero, by powers of the small parameter",
+                told_apart_by("order"),
+            ]
+        ],
+        "characteristic polynomial, from the highest power down; what follows from the order of the expansion",
+    ]
+
+
+class Steady(Part, Generic[F], frozen=True):
+    """the first approximation about the unperturbed motion"""
+
+    zeros: Annotated[int, "roots that are exactly zero"]
+    divided_up_to: Annotated[int, "up to this order the polynomial of the flow is seen to divide that of all variables"]
+    attracts: Hurwitz[F]
+    flow: Annotated[Hurwitz[F], "the roots of the flow on the manifold but those that are zero"]
+
+
+class Measured(Part, frozen=True):
+    """the error measured against a simulation, in two digits: at eps, eps/2 and eps/4"""
+
+    reason: Annotated[str | UnsetType, "why it was not measured; the other properties are left out then"] = UNSET
+    time: Annotated[float | UnsetType, "how long the motions were compared"] = UNSET
+    parts: Annotated[list[str] | UnsetType, "of the given eps"] = UNSET
+    distances: Annotated[list[float] | UnsetType, "largest distances as a part of the size"] = UNSET
+    orders: Annotated[list[float] | UnsetType, "log2 of their ratios"] = UNSET
+    expected: Annotated[int | UnsetType, "the order that is expected where eps is small enough"] = UNSET
+
+
+class SlowManifold(Part, Generic[F], frozen=True, kw_only=True):
+    """the slow integral manifold"""
+
+    small: Annotated[str, "the small parameter"]
+    powers: Annotated[dict[str, int], "power of the small parameter by which a parameter is multiplied"]
+    order: Annotated[int, "order of the expansion"]
+    provided_nonzero: Annotated[list[F], "what was divided by: the expansion holds where these are not zero"]
+    manifold: Annotated[
+        list[FastVariable[F]], "the fast variables as functions of the slow ones", told_apart_by("variable")
+    ]
+    flow: Annotated[
+        list[SlowVariable[F]], "derivatives of the slow variables on the manifold", told_apart_by("variable")
+    ]
+    missing: Annotated[str | UnsetType, "why nothing is said of a steady state"] = UNSET
+    steady: Steady[F] | UnsetType = UNSET
+
+
+class Expansion(SlowManifold[str], frozen=True, kw_only=True):
+    """A slow integral manifold in powers of a small parameter."""
+
+    format: Format = 1
+    version: Version = field(default_factory=version)
+    system: SystemName
+    values: Annotated[dict[str, str], "numbers that were put in for parameters"]
+    measured: Annotated[Measured, ASIDE]

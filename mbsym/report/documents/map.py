@@ -1,0 +1,284 @@
+"""``map.json`` of ``mbsym map``."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from msgspec import UNSET, Meta, UnsetType
+
+from mbsym.maps.boundaries import Origin
+from mbsym.maps.boxes import Method
+from mbsym.maps.check import Mistake
+from mbsym.maps.result import Of, Standing
+from mbsym.maps.slices import Missing
+from mbsym.maps.soft_borders import Onset
+from mbsym.maps.subdivision import End
+from mbsym.maps.verdicts import Border
+from mbsym.report.documents.base import Hashed, Part, words
+from mbsym.report.documents.parts import Axis, Number, Verdict
+
+
+class Demand(Part, frozen=True):
+    """polynomial relation 0"""
+
+    origin: Annotated[Origin, "which condition it is"]
+    subsystem: Annotated[
+        int | None, "the subsystem it belongs to, by its place in subsystems; nothing for the whole system"
+    ]
+    about: Annotated[str, "which factor, assumption, parameter or body"]
+    reduced: Annotated[bool, "whether it belongs to the system that Routh's reduction leaves"]
+    polynomial: Annotated[str, "in the axes"]
+    relation: Annotated[str, words(">", ">=", "!="), "to zero"]
+
+
+class Vanishing(Part, frozen=True):
+    """a condition of which the curve is a border"""
+
+    origin: Annotated[Origin, "which condition it is"]
+    subsystem: Annotated[
+        int | None, "the subsystem it belongs to, by its place in subsystems; nothing for the whole system"
+    ]
+    about: Annotated[str, "which factor, assumption, parameter or body"]
+    reduced: Annotated[bool, "whether it belongs to the system that Routh's reduction leaves"]
+
+
+class Curve(Part, frozen=True):
+    """a curve"""
+
+    number: Annotated[int, "its place in this list"]
+    polynomial: Annotated[str, "in the axes"]
+    conditions: Annotated[list[Vanishing], "the conditions that it comes from"]
+
+
+class Finding(Part, frozen=True):
+    """a disagreement"""
+
+    mistake: Annotated[Mistake, "what does not agree"]
+    region: Annotated[int | None, "the region it is about"]
+    arc: Annotated[int | None, "the arc it is about"]
+    corner: Annotated[int | None, "the corner it is about"]
+    near: Annotated[list[float], "about where"]
+
+
+class MapCheck(Part, frozen=True):
+    """more points judged by a route without the boundary polynomials; nothing where that was not done"""
+
+    points: Annotated[int, "points in regions"]
+    arcs: Annotated[int, "points on arcs"]
+    enclosed: Annotated[int, "points in regions at which eigenvalues in balls decide all counts"]
+    findings: Annotated[list[Finding], "what did not agree"]
+
+
+class Region(Part, frozen=True):
+    """a region"""
+
+    number: Annotated[int, "its place in this list"]
+    point: Annotated[list[Number], "the exact point at which it was judged, a coordinate for each axis"]
+    standing: Annotated[Standing, "whether there is a verdict, and if not, why"]
+    broken: Annotated[list[str], "what is not kept there"]
+    stability: Annotated[Verdict | None, "the verdict of problem 6; nothing where none is given"]
+    unstable_roots: Annotated[int | None, "roots with a positive real part, with multiplicity, over all subsystems"]
+    real_unstable_roots: Annotated[int | None, "how many of them are real"]
+    negative_eigenvalues_of_K: Annotated[int | None, "Poincare's degree of instability"]
+    zero_eigenvalues_of_K: Annotated[int | None, "how many of K's eigenvalues vanish"]
+    border: Annotated[Border | None, "of arcs and corners: what is special about the roots there"]
+    signs: Annotated[list[int], "signs of the curves' polynomials there"]
+    arcs: Annotated[list[int], "the arcs that bound it"]
+    area: Annotated[float, "its area"]
+    area_error: Annotated[float, "an estimate of the area's error"]
+    ends: Annotated[
+        list[int | None] | UnsetType, "of an interval: the corners at which it ends; nothing: an end of the line"
+    ] = UNSET
+
+
+class Along(Part, frozen=True):
+    """a stretch"""
+
+    axis: Annotated[
+        int, words(0, 1), "by which axis the stretch is told: 0, or 1 along a line on which the first axis is constant"
+    ]
+    from_: Annotated[Number, "where it starts, by its axis"]
+    to: Annotated[Number, "where it ends"]
+    onset: Annotated[str, words("soft", "hard", "open"), "soft, hard or open"]
+
+
+class SoftOrHard(Part, frozen=True):
+    """what they decide"""
+
+    onset: Annotated[
+        Onset,
+        "at the exact point, where stability is lost: soft (asymptotically stable there; small oscillations arise "
+        "beyond), hard (unstable there), or open; neither, where it is not lost or that is not known",
+    ]
+    reason: Annotated[
+        str,
+        words(
+            "",
+            "zero-root",
+            "equal-frequencies",
+            "equal-more",
+            "more-pairs",
+            "mixed-roots",
+            "coefficient-open",
+            "constraints",
+            "given-by-matrices",
+            "unsolved-conditions",
+            "no-expansion",
+            "no-loss",
+            "one-side",
+        ),
+        "why it is open: of problem 11, or why there is no expansion; or why it is neither",
+    ]
+    frequency: Annotated[float | None, "w of the pair +-i w at the point"]
+    coefficient: Annotated[float | None, "a of r' = a r^3 at the point"]
+    amplitude_of: Annotated[str, "the coordinate whose amplitude r is"]
+    along: Annotated[
+        list[Along] | None,
+        "of an arc: its stretches with what holds on each but for its ends; one: it holds on the whole arc but for "
+        "its corners; nothing: only the point is decided",
+    ]
+
+
+class Arc(Part, frozen=True, kw_only=True):
+    """an arc"""
+
+    number: Annotated[int, "its place in this list"]
+    point: Annotated[list[Number], "the exact point at which it was judged, a coordinate for each axis"]
+    standing: Annotated[Standing, "whether there is a verdict, and if not, why"]
+    broken: Annotated[list[str], "what is not kept there"]
+    stability: Annotated[Verdict | None, "the verdict of problem 6; nothing where none is given"]
+    unstable_roots: Annotated[int | None, "roots with a positive real part, with multiplicity, over all subsystems"]
+    real_unstable_roots: Annotated[int | None, "how many of them are real"]
+    negative_eigenvalues_of_K: Annotated[int | None, "Poincare's degree of instability"]
+    zero_eigenvalues_of_K: Annotated[int | None, "how many of K's eigenvalues vanish"]
+    border: Annotated[Border | None, "of arcs and corners: what is special about the roots there"]
+    soft_or_hard: Annotated[SoftOrHard | UnsetType | None, "what terms of third order decide there"] = UNSET
+    curves: Annotated[list[int], "the curves that it is part of"]
+    regions: Annotated[
+        list[int | None],
+        "below and above its point, or left and right of a vertical line; nothing: outside of the plane",
+    ]
+    corners: Annotated[list[int | None], "where it starts and ends; nothing: it is closed"]
+    separates: Annotated[bool, "whether what the picture shows differs between its sides"]
+
+
+class Corner(Part, frozen=True, kw_only=True):
+    """a corner"""
+
+    number: Annotated[int, "its place in this list"]
+    point: Annotated[list[Number], "the exact point at which it was judged, a coordinate for each axis"]
+    standing: Annotated[Standing, "whether there is a verdict, and if not, why"]
+    broken: Annotated[list[str], "what is not kept there"]
+    stability: Annotated[Verdict | None, "the verdict of problem 6; nothing where none is given"]
+    unstable_roots: Annotated[int | None, "roots with a positive real part, with multiplicity, over all subsystems"]
+    real_unstable_roots: Annotated[int | None, "how many of them are real"]
+    negative_eigenvalues_of_K: Annotated[int | None, "Poincare's degree of instability"]
+    zero_eigenvalues_of_K: Annotated[int | None, "how many of K's eigenvalues vanish"]
+    border: Annotated[Border | None, "of arcs and corners: what is special about the roots there"]
+    soft_or_hard: Annotated[SoftOrHard | UnsetType | None, "what terms of third order decide there"] = UNSET
+    curves: Annotated[list[int], "the curves through it"]
+    arcs: Annotated[list[int], "the arcs that meet there"]
+    kind: Annotated[str, words("crossing", "singular", "isolated", "edge", "zero"), "what it is"]
+
+
+class Picture(Part, frozen=True):
+    """slices in which the same is shown, and all values of the third axis between them"""
+
+    slices: Annotated[list[int], "by their numbers"]
+    shown: Annotated[int, "the slice that stands for them"]
+    not_looked_at: Annotated[
+        list[int], "slices among them that were not looked at: nothing is said of these single values"
+    ]
+    low: Annotated[Number, "from this value of the third axis"]
+    low_belongs: Annotated[bool, "whether that value belongs to it"]
+    high: Annotated[Number, "to this value"]
+    high_belongs: Annotated[bool, "whether that value belongs to it"]
+
+
+class Slice(Part, frozen=True):
+    """a slice; between two critical values regions, with their verdicts, are deformed into each other"""
+
+    number: Annotated[int, "its place in this list"]
+    value: Annotated[Number, "the value of the third axis"]
+    critical: Annotated[bool, "whether the arrangement of the curves may be another one on its two sides"]
+    missing: Annotated[Missing | None, "why there is no map of it"]
+    broken: Annotated[list[str], "what no point of it keeps"]
+    further_curves: Annotated[
+        list[Curve],
+        "curves that bound something in this slice alone; others are those of the whole, which may vanish in the slice",
+    ]
+    second: Annotated[
+        str | None, "another value between the same critical ones, at which the slice was decomposed to be compared"
+    ]
+    confirmed: Annotated[bool, "whether that one corresponds to it, with the verdicts of its regions"]
+    interrupted: Annotated[bool, "whether some places were not reached"]
+    check: Annotated[MapCheck | None, "more points of this slice"]
+    regions: Annotated[
+        list[Region],
+        "connected regions of the slice; the signs are those of the curves, 1 for one that vanishes in the whole "
+        "slice; at an irrational value those of their norms, products over its conjugates",
+    ]
+    arcs: Annotated[list[Arc], "smooth arcs of curves in the slice"]
+    corners: Annotated[list[Corner], "points of the slice"]
+
+
+class Statement(Part, frozen=True):
+    """a statement"""
+
+    standing: Annotated[Standing, "whether there is a verdict, and if not, why"]
+    broken: Annotated[list[str], "what is not kept there"]
+    stability: Annotated[Verdict | None, "the verdict of problem 6; nothing where none is given"]
+    unstable_roots: Annotated[int | None, "roots with a positive real part, with multiplicity, over all subsystems"]
+    real_unstable_roots: Annotated[int | None, "how many of them are real"]
+    negative_eigenvalues_of_K: Annotated[int | None, "Poincare's degree of instability"]
+    zero_eigenvalues_of_K: Annotated[int | None, "how many of K's eigenvalues vanish"]
+    border: Annotated[Border | None, "of arcs and corners: what is special about the roots there"]
+
+
+class Box(Part, frozen=True):
+    """a box"""
+
+    edges: Annotated[list[str], "exact: left, right, lower, upper", Meta(min_length=4, max_length=4)]
+    statement: Annotated[int | None, "what is proved of it, by its place in statements; nothing: white"]
+
+
+class Subdivision(Part, frozen=True):
+    """of planes without an exact arrangement: boxes, each with what is proved at all of its points"""
+
+    because: Annotated[str | None, "why there is no exact arrangement; nothing where boxes were asked for"]
+    method: Annotated[Method, "how boxes are proved"]
+    end: Annotated[End, "why no more boxes were halved"]
+    white: Annotated[str, "exact share of the area of which nothing is proved"]
+    statements: Annotated[list[Statement], "what is proved of boxes, each once"]
+    boxes: Annotated[list[Box], "they fill the plane"]
+
+
+class Map(Hashed, frozen=True, kw_only=True):
+    """A plane of two parameters divided into regions, arcs and corners, or a line of one parameter divided into
+    intervals (regions) and points (corners), each with what was proved there; or a stack of slices over three
+    parameters, regions, arcs and corners within each.
+    """
+
+    of: Annotated[Of, "what the picture is coloured by"]
+    axes: Annotated[list[Axis], "to the right, upwards, and the one that is different in every slice"]
+    values: Annotated[dict[str, str], "exact numbers that were put in for parameters and symbols, by name"]
+    constant: Annotated[str | None, "an irrational number among the coefficients, if there is one"]
+    subsystems: Annotated[list[Annotated[list[str], "its coordinates"]], "coordinates of each subsystem"]
+    demands: Annotated[list[Demand], "what parameters have to keep: declared signs, assumptions, triangle inequalities"]
+    left_out: Annotated[list[str], "what they have to keep besides, but cannot be expressed in the axes"]
+    curves: Annotated[list[Curve], "irreducible polynomials whose zeros are the curves"]
+    vanishing: Annotated[list[Vanishing], "conditions that are equalities in the whole plane"]
+    interrupted: Annotated[bool, "whether some places were not reached"]
+    check: Annotated[MapCheck | None, "the map's check of itself"]
+    regions: Annotated[list[Region], "open regions of one verdict each"]
+    arcs: Annotated[list[Arc], "smooth arcs of curves between corners; what is told of one is found at its point"]
+    corners: Annotated[list[Corner], "points where curves cross, touch, are singular or isolated, or meet the edge"]
+    pictures: Annotated[
+        list[Picture] | UnsetType, "of maps over three axes: neighbouring slices in which the same is shown"
+    ] = UNSET
+    slices: Annotated[
+        list[Slice] | UnsetType,
+        "of maps over three axes: the slices at all critical values of the third, and at one value between any two, "
+        "ascending",
+    ] = UNSET
+    subdivision: Subdivision | UnsetType = UNSET

@@ -1,0 +1,208 @@
+"""``results.json`` of ``mbsym run``: the head and what is small; each problem has a module."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from msgspec import UNSET, Meta, UnsetType
+
+from mbsym.algebra.failures import Limit, Severity
+from mbsym.report.documents.base import ASIDE, Part, told_apart_by, words
+from mbsym.report.documents.parts import Formula
+from mbsym.report.documents.results.canonical import Brackets, Hamilton, Routh
+from mbsym.report.documents.results.claims import Claim
+from mbsym.report.documents.results.energy import Energy
+from mbsym.report.documents.results.equations import Equations, Reaction
+from mbsym.report.documents.results.invariant_sets import InvariantSets
+from mbsym.report.documents.results.kinematics import Kinematics
+from mbsym.report.documents.results.ledger import Ledger
+from mbsym.report.documents.results.linearisation import FirstOrder, Linearisation, StateSpace
+from mbsym.report.documents.results.normal_forms import NormalForms
+from mbsym.report.documents.results.polynomial_integrals import PolynomialIntegrals
+from mbsym.report.documents.results.small_parameters import SmallParameters
+from mbsym.report.documents.results.stabilisation import Stabilisation
+from mbsym.report.documents.results.stability import Stability
+
+
+class Described(Part, frozen=True):
+    """what the description is about"""
+
+    name: Annotated[str, "its name"]
+    description: Annotated[str, "its own words about it"]
+
+
+class Motion(Part, frozen=True):
+    """of one coordinate"""
+
+    value: Annotated[Formula, "at t = 0"]
+    rate: Annotated[Formula, "how fast it changes, a constant"]
+
+
+class Initial(Part, frozen=True):
+    """of one coordinate"""
+
+    position: Annotated[Formula | UnsetType, "its value"] = UNSET
+    velocity: Annotated[Formula | UnsetType, "its rate"] = UNSET
+
+
+class Input(Part, frozen=True):
+    """an input"""
+
+    name: Annotated[str, "its name"]
+    meaning: Annotated[str, "what it is"]
+    held: Annotated[Formula, "its constant value on the unperturbed motion, for which problems 4 to 6 hold"]
+
+
+class Output(Part, frozen=True):
+    """an output"""
+
+    name: Annotated[str, "its name"]
+    value: Annotated[Formula, "in coordinates, velocities, parameters and inputs"]
+
+
+class Parameter(Part, frozen=True):
+    """a parameter"""
+
+    name: Annotated[str, "its name"]
+    sign: Annotated[
+        str, words("real", "positive", "nonnegative", "negative", "nonpositive", "nonzero"), "what is known of its sign"
+    ]
+    value: Annotated[Formula | None, "its value, if the description gives one"]
+    meaning: Annotated[str | None, "what it is, in the description's words"]
+    unit: Annotated[str | UnsetType, "its unit, where that follows from the description; nothing for a pure number"] = (
+        UNSET
+    )
+
+
+class SelfCheck(Part, frozen=True):
+    """a comparison of two independent routes"""
+
+    name: Annotated[str, "what is compared"]
+    first: Annotated[str, "the first route"]
+    second: Annotated[str, "the second route"]
+    outcome: Annotated[
+        str,
+        words("exact", "verified numerically", "undecided", "singular", "FAILED"),
+        "how certain it is that they agree",
+    ]
+    detail: Annotated[str, "how they were compared, or what differs, in words", ASIDE]
+    states: Annotated[int | None, "at how many states they agree, where they are compared at states"]
+
+
+class Equilibrium(Part, frozen=True):
+    """problem 4: does the given motion satisfy the equations"""
+
+    satisfied: Annotated[bool, "whether it does identically"]
+    impossible: Annotated[bool, "whether it cannot"]
+    conditions: Annotated[list[Formula], "what has to vanish besides"]
+    solved: Annotated[dict[str, Formula], "parameters that the conditions fix"]
+
+
+class Integral(Part, frozen=True):
+    """a first integral"""
+
+    name: Annotated[str, "its name, in words"]
+    kind: Annotated[
+        str,
+        words(
+            "generalised energy",
+            "energy with the potential of the forces",
+            "cyclic momentum",
+            "linear momentum",
+            "angular momentum",
+            "speed momentum",
+            "unit vectors",
+            "quaternion",
+            "symmetry",
+            "polynomial",
+        ),
+        "its kind; generalised energy is T2 - T0 - U, that with the potential of the forces T2 - T0 - U - W, where "
+        "dW/dq are the forces without a force function; of unit vectors the length or a product is constant, of a "
+        "quaternion the norm; the last two only where problem 9 is asked for, too",
+    ]
+    of: Annotated[str, "the coordinate or axis; time for the energy; directions of a symmetry, weight of a polynomial"]
+    formula: Annotated[Formula, "I(q, q', t), constant on every motion"]
+    status: Annotated[str, words("proved", "verified numerically"), "how that is known"]
+
+
+class AcceptedInertia(Part, frozen=True):
+    """an inertia that no body has, accepted by the description"""
+
+    body: Annotated[str, "the body"]
+    violation: Annotated[str, "the inequality that it breaks, in words"]
+
+
+class Failure(Part, frozen=True):
+    """why a problem has no result"""
+
+    code: Annotated[
+        str, "the kind of failure: no-closed-form, singular, withdrawn, internal-error, ...", Meta(pattern="^[a-z-]+$")
+    ]
+    limit: Annotated[Limit | None, "the bound that was met, if any"]
+    severity: Annotated[Severity, "answer: that there is none is the answer; defect: the program is at fault"]
+    reason: Annotated[str, "the reason in a sentence"]
+    hint: Annotated[str, "what to try next, in a sentence; empty where nothing is known", ASIDE]
+
+
+class Results(Part, frozen=True, kw_only=True):
+    """Every result of mbsym run for one description. A problem that was not asked for has no property."""
+
+    format: Annotated[int, words(1), "version of this format"]
+    version: Annotated[str, "version of mbsym that wrote it", ASIDE]
+    problems: Annotated[list[Annotated[int, Meta(ge=1, le=12)]], "the problems that were asked for"]
+    terms: Annotated[int, "budget of terms of one closed formula", Meta(ge=1)]
+    system: Described
+    coordinates: Annotated[list[str], "generalised coordinates, in their order"]
+    units: Annotated[
+        dict[str, Annotated[str, "its unit"]] | UnsetType,
+        "where the description declares units: those of t, coordinates, rates, parameters, prescribed motions and "
+        "energies, by name; 1 for a pure number, nothing where a unit does not follow",
+    ] = UNSET
+    prescribed: Annotated[dict[str, Formula], "angles and lengths that are driven, with their rates"]
+    motion: Annotated[
+        dict[str, Motion] | UnsetType,
+        "the unperturbed motion value + rate*t, by coordinate, where the description gives one",
+    ] = UNSET
+    initial: Annotated[
+        dict[str, Annotated[Initial, Meta(extra_json_schema={"minProperties": 1})]] | UnsetType,
+        "state at t = 0 for simulations, by name of a coordinate, a declared variable or a prescribed motion, as far "
+        "as the description gives it",
+    ] = UNSET
+    inputs: Annotated[
+        list[Input] | UnsetType,
+        "functions of time that are chosen later, where the description has any",
+        told_apart_by("name"),
+    ] = UNSET
+    outputs: Annotated[
+        list[Output] | UnsetType, "what is measured, where the description says so", told_apart_by("name")
+    ] = UNSET
+    parameters: Annotated[list[Parameter], "parameters, in their order", told_apart_by("name")]
+    checks: Annotated[list[SelfCheck], "the self-check", told_apart_by("name")]
+    kinematics: Kinematics | UnsetType = UNSET
+    energy: Energy | UnsetType = UNSET
+    equations: Equations | UnsetType = UNSET
+    equilibrium: Equilibrium | UnsetType = UNSET
+    linearisation: Linearisation | UnsetType = UNSET
+    state_space: StateSpace | UnsetType = UNSET
+    stability: Stability | UnsetType = UNSET
+    integrals: Annotated[list[Integral] | UnsetType, "problem 7", told_apart_by("kind", "of")] = UNSET
+    stabilisation: Stabilisation | UnsetType = UNSET
+    normal_forms: NormalForms | UnsetType = UNSET
+    accepted_inertias: Annotated[
+        list[AcceptedInertia] | UnsetType, "inertias that are taken as given", told_apart_by("body")
+    ] = UNSET
+    claims: Annotated[list[Claim] | UnsetType, "the description's claims", told_apart_by("place", "title")] = UNSET
+    ledger: Annotated[Ledger | UnsetType, ASIDE] = UNSET
+    unavailable: Annotated[dict[str, Failure], "problems that were asked for and have no result, by their property"]
+    reactions: Annotated[
+        list[Reaction] | UnsetType,
+        "what the joints that 'reactions' names transmit to their bodies, about the connection point, in the axes of "
+        "the body: force + sum lambda_i force_i",
+    ] = UNSET
+    first_order: FirstOrder | UnsetType = UNSET
+    routh: Routh | UnsetType = UNSET
+    hamilton: Hamilton | UnsetType = UNSET
+    brackets: Brackets | UnsetType = UNSET
+    invariant_sets: InvariantSets | UnsetType = UNSET
+    polynomial_integrals: PolynomialIntegrals | UnsetType = UNSET
+    small_parameters: SmallParameters | UnsetType = UNSET

@@ -1,0 +1,104 @@
+"""Problem 3, with constraints and reactions."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from msgspec import UNSET, Meta, UnsetType
+
+from mbsym.report.documents.base import BY_COORDINATE, Part, words
+from mbsym.report.documents.parts import Formula
+
+
+class ConstraintRow(Part, frozen=True):
+    constraint: Annotated[int, "number of the constraint in the description, from 1"]
+    component: Annotated[int | None, "number of its row, from 1; null where it has one"]
+    kind: Annotated[str, "coincide, parallel, distance, relation, rolling or velocity"]
+    holonomic: Annotated[bool, "whether it is given as a relation between coordinates"]
+    position: Annotated[Formula | None, "f(q, t), which is zero; null of one that is given by velocities"]
+    velocity: Annotated[Formula, "J q' + j, which is zero"]
+    independent: Annotated[bool, "whether it is one of the independent rows"]
+
+
+class RedundantRow(Part, frozen=True):
+    row: Annotated[str, "which row"]
+    follows_from: Annotated[list[str], "the rows that it follows from"]
+    known: Annotated[str, words("proved", "verified numerically", "undecided"), "how that is known"]
+
+
+class Integrability(Part, frozen=True):
+    """of the velocity constraints (Frobenius); null where there are none"""
+
+    word: Annotated[str, words("holonomic", "partly", "nonholonomic", "undecided"), "the verdict"]
+    growth: Annotated[list[int], "dimensions spanned by the fields, with their first brackets, and so on"]
+    kept: Annotated[int | None, "relations between coordinates that follow besides those given"]
+    known: Annotated[str, words("proved", "verified numerically", "undecided"), "how that is known"]
+
+
+class IntegrableAlone(Part, frozen=True):
+    row: Annotated[str, "which row"]
+    integrable: Annotated[bool | None, "whether it has an integrating factor"]
+
+
+class Constraints(Part, frozen=True):
+    """of a system with constraints: M q'' = f + J^T lambda with J q'' + acceleration = 0"""
+
+    rows: Annotated[list[ConstraintRow], "the rows that say something"]
+    jacobian: Annotated[list[list[Formula]], "J, a row for each of rows, a column for each coordinate"]
+    acceleration: Annotated[list[Formula], "J' q' + j'"]
+    position_rank: Annotated[int, "independent constraints on positions"]
+    velocity_rank: Annotated[int, "independent constraints on velocities, derivatives of those on positions included"]
+    degrees_of_freedom: Annotated[int, "independent velocities"]
+    redundant: Annotated[list[RedundantRow], "rows that follow from others"]
+    parameter_conditions: Annotated[
+        int, "how many relations between the parameters the constraints on positions demand"
+    ]
+    integrability: Integrability | None
+    integrable_alone: Annotated[
+        list[IntegrableAlone], "of each independent velocity constraint by itself (proved; null: undecided)"
+    ]
+    dependent: Annotated[list[str], "coordinates whose velocities are expressed by the others"]
+    independent: Annotated[list[str], "the others, whose velocities are u"]
+    regular_where_not_zero: Annotated[
+        Formula | UnsetType, "the determinant by which the dependent velocities are solved for"
+    ] = UNSET
+    Y: Annotated[list[list[Formula]] | UnsetType, "q' = Y u + y0, a row for each coordinate"] = UNSET
+    y0: Annotated[list[Formula] | UnsetType, "see Y"] = UNSET
+    a0: Annotated[list[Formula] | UnsetType, "q'' = Y u' + a0"] = UNSET
+
+
+class Embedded(Part, frozen=True):
+    """the equations without multipliers, mass_matrix u' = forcing"""
+
+    mass_matrix: Annotated[list[list[Formula]], "Y^T M Y"]
+    forcing: Annotated[list[Formula], "Y^T (f - M a0) at q' = Y u + y0"]
+
+
+class Equations(Part, frozen=True):
+    """problem 3: M(q) q'' = f(q, q', t); with speeds of their own M u' = f"""
+
+    mass_matrix: Annotated[list[Annotated[list[Formula], BY_COORDINATE]], "M", BY_COORDINATE]
+    forcing: Annotated[list[Formula], "f", BY_COORDINATE]
+    speeds: Annotated[list[str] | UnsetType, "the speeds u, in the order of M and f, where they are not q'"] = UNSET
+    needed: Annotated[list[Formula] | UnsetType, "of each equation, what the motion needs", BY_COORDINATE] = UNSET
+    supplied: Annotated[list[Formula] | UnsetType, "what the loads supply: needed = supplied", BY_COORDINATE] = UNSET
+    positions: Annotated[
+        dict[str, Formula] | UnsetType,
+        "the rates of coordinates and components of unit vectors and quaternions, by name",
+    ] = UNSET
+    aside: Annotated[list[str] | UnsetType, "those on which no equation depends"] = UNSET
+    constraints: Constraints | UnsetType = UNSET
+    embedded: Embedded | UnsetType = UNSET
+
+
+class PerMultiplier(Part, frozen=True):
+    row: Annotated[str, "which row"]
+    force: Annotated[list[Formula], "its part of the force", Meta(min_length=3, max_length=3)]
+    moment: Annotated[list[Formula], "its part of the moment", Meta(min_length=3, max_length=3)]
+
+
+class Reaction(Part, frozen=True):
+    body: Annotated[str, "whose joint"]
+    force: Annotated[list[Formula], "without multipliers", Meta(min_length=3, max_length=3)]
+    moment: Annotated[list[Formula], "the same of the moment", Meta(min_length=3, max_length=3)]
+    per_multiplier: Annotated[list[PerMultiplier], "of each independent row of the constraints, for lambda = 1"]

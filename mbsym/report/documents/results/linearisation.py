@@ -1,0 +1,94 @@
+"""Problem 5, with its matrices of first order."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from msgspec import UNSET, UnsetType
+
+from mbsym.report.documents.base import BY_COORDINATE, Part, told_apart_by
+from mbsym.report.documents.parts import Formula
+
+
+class Reduction(Part, frozen=True, kw_only=True):
+    """of a system with constraints: what the matrices are about, and what became of the other coordinates"""
+
+    coordinates: Annotated[list[str], "the independent coordinates"]
+    speeds: Annotated[list[str], "the coordinates whose velocities are independent: rows and columns of the matrices"]
+    dependent_coordinates: Annotated[list[str], "expanded about the motion"]
+    dependent_speeds: Annotated[list[str], "the coordinates whose velocities follow"]
+    following: Annotated[
+        list[str] | UnsetType,
+        "felt coordinates whose velocities are dependent: each has an equation of first order of its own",
+    ] = UNSET
+    idle: Annotated[
+        list[str], "independent coordinates on which no equation of the speeds depends in the first approximation"
+    ]
+    rates: Annotated[dict[str, Formula], "velocities of the motion that follow from the constraints"]
+    assumed_nonzero: Annotated[list[Formula], "formulas that must not vanish on the motion"]
+    leaf: Annotated[
+        int | UnsetType,
+        "how many relations the velocity constraints keep, which are proved to be integrable; the first "
+        "approximation is that on the leaf of the motion",
+    ] = UNSET
+    holonomic: Annotated[
+        bool,
+        "whether there are no more constraints on velocities than on coordinates, or all of these are proved to be "
+        "integrable",
+    ]
+
+
+class LinearSubsystem(Part, frozen=True):
+    """a decoupled part, in dimensionless time and the description's notation"""
+
+    coordinates: Annotated[list[str], "its coordinates"]
+    M: Annotated[list[Annotated[list[Formula], BY_COORDINATE]], "mass matrix, symmetric", BY_COORDINATE]
+    D: Annotated[list[Annotated[list[Formula], BY_COORDINATE]], "damping matrix, symmetric", BY_COORDINATE]
+    G: Annotated[list[Annotated[list[Formula], BY_COORDINATE]], "gyroscopic matrix, skew", BY_COORDINATE]
+    K: Annotated[list[Annotated[list[Formula], BY_COORDINATE]], "stiffness matrix, symmetric", BY_COORDINATE]
+    N: Annotated[list[Annotated[list[Formula], BY_COORDINATE]], "circulatory matrix, skew", BY_COORDINATE]
+
+
+class Linearisation(Part, frozen=True, kw_only=True):
+    """problem 5: M x'' + (D + G) x' + (K + N) x = B v, with 0 on the right where there are no inputs; of a system with
+    constraints x are the coordinates of the independent speeds
+    """
+
+    reduction: Reduction | UnsetType = UNSET
+    M: Annotated[list[Annotated[list[Formula], BY_COORDINATE]], "mass matrix, symmetric", BY_COORDINATE]
+    D: Annotated[list[Annotated[list[Formula], BY_COORDINATE]], "damping matrix, symmetric", BY_COORDINATE]
+    G: Annotated[list[Annotated[list[Formula], BY_COORDINATE]], "gyroscopic matrix, skew", BY_COORDINATE]
+    K: Annotated[list[Annotated[list[Formula], BY_COORDINATE]], "stiffness matrix, symmetric", BY_COORDINATE]
+    N: Annotated[list[Annotated[list[Formula], BY_COORDINATE]], "circulatory matrix, skew", BY_COORDINATE]
+    B: Annotated[
+        list[list[Formula]] | UnsetType,
+        "input matrix: a column for each of the inputs, where there are any",
+        BY_COORDINATE,
+    ] = UNSET
+    subsystems: Annotated[list[LinearSubsystem], "decoupled parts", told_apart_by("coordinates")]
+    time: Annotated[Formula, "the time of the subsystems; t is physical time"]
+    notation: Annotated[dict[str, Formula], "the description's symbols and what they stand for"]
+
+
+class StateSpace(Part, frozen=True):
+    """first-order form x' = A x + B v, w = C x + D v of problem 5, in physical time, x, v, w the deviations of states,
+    inputs and outputs; for descriptions with inputs or outputs
+    """
+
+    states: Annotated[list[str], "coordinates and velocities"]
+    A: Annotated[list[list[Formula]], "2n rows and columns"]
+    B: Annotated[list[list[Formula]], "2n rows, a column for each input"]
+    C: Annotated[list[list[Formula]], "a row for each output, 2n columns"]
+    D: Annotated[list[list[Formula]], "a row for each output, a column for each input"]
+
+
+class FirstOrder(Part, frozen=True):
+    """problem 5 in speeds and positions: x' = A x"""
+
+    speeds: Annotated[list[str], "positions and speeds, in the order of x"]
+    values: Annotated[list[Formula], "their values on the motion", BY_COORDINATE]
+    A: Annotated[list[Annotated[list[Formula], BY_COORDINATE]], "A, in the order of x", BY_COORDINATE]
+    relations: Annotated[
+        int,
+        "zero roots of A that belong to no motion: unit vectors keep their lengths and angles, quaternions their norm",
+    ]

@@ -1,0 +1,99 @@
+"""Problem 11."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from msgspec import Meta
+
+from mbsym.problems.normal_forms.result import Outcome, Theorem, Why
+from mbsym.report.documents.base import Part, told_apart_by
+from mbsym.report.documents.nonlinear import Determinant
+from mbsym.report.documents.parts import Formula
+
+
+class Action_(Part, frozen=True):
+    """a coefficient"""
+
+    first: Annotated[int, "number of the one frequency", Meta(ge=1)]
+    second: Annotated[int, "number of the other one", Meta(ge=1)]
+    coefficient: Annotated[str, "a number: exactly where it is rational, else an enclosure, [mid +/- radius]"]
+
+
+class NormalFormAtValues(Part, frozen=True):
+    """at the given values"""
+
+    verdict: Annotated[Outcome, "what is said of the nonlinear system"]
+    theorem: Annotated[Theorem, "the theorem behind it; empty where none applies"]
+    reason: Annotated[Why, "why nothing, or no more, is decided; empty where that is not so"]
+    frequencies: Annotated[
+        list[Annotated[str, "a number: exactly where it is rational, else an enclosure, [mid +/- radius]"]],
+        "of Hamiltonian systems with the signs of their energies",
+    ]
+    actions: Annotated[
+        list[Action_],
+        "coefficients of products of two actions in the normal form of order 4",
+        told_apart_by("first", "second"),
+    ]
+    determinants: Annotated[list[Determinant], "D_4, and D_6 where it was needed", told_apart_by("order")]
+    resonances: Annotated[
+        list[Annotated[list[int], "k"]], "vectors k with k.w = 0 exactly, w the frequencies without signs"
+    ]
+    coefficient: Annotated[
+        str | None,
+        "a of r' = a r^3 on the centre manifold of one pair of imaginary roots; of a zero root the first coefficient "
+        "that is not zero; of equal frequencies delta A of Sokolskii's normal form; of a zero root of a Hamiltonian "
+        "system a of the energy a x^M along its direction",
+    ]
+    amplitude_of: Annotated[str, "the coordinate whose amplitude r is; empty without such a pair"]
+    along: Annotated[
+        str,
+        "of a zero root of a Hamiltonian system the coordinate x of the energy a x^M along its direction; else empty",
+    ]
+    degree: Annotated[int | None, "M of that energy"]
+
+
+class Resonance(Part, frozen=True):
+    """a resonance"""
+
+    ratio: Annotated[list[int], "of the frequencies, or of these exchanged"]
+    vanishes: Annotated[Formula, "vanishes where it holds"]
+
+
+class TwoFrequencies(Part, frozen=True):
+    """formulas"""
+
+    sum_of_squares: Annotated[Formula, "w1^2 + w2^2"]
+    product_of_squares: Annotated[Formula, "w1^2 w2^2"]
+    discriminant: Annotated[Formula, "(w1^2 - w2^2)^2"]
+    D4: Annotated[Formula, "the determinant of fourth order"]
+    D4_vanishes: Annotated[Formula, "its numerator"]
+    resonances: Annotated[list[Resonance], "resonances of orders 3 and 4", told_apart_by("ratio")]
+
+
+class Pair(Part, frozen=True):
+    """formulas"""
+
+    frequency_squared: Annotated[Formula, "w^2"]
+    coefficient: Annotated[Formula, "a of r' = a r^3"]
+    amplitude_of: Annotated[str, "the coordinate whose amplitude r is"]
+
+
+class NormalForms(Part, frozen=True):
+    """problem 11: what terms of higher order decide of the motion"""
+
+    coordinates: Annotated[list[str], "the coordinates that it is about"]
+    cyclic: Annotated[
+        list[str], "cyclic coordinates, left out: of Hamiltonian systems with their momenta at the unperturbed values"
+    ]
+    hamiltonian: Annotated[
+        bool, "whether Lagrange's function gives all forces: none is applied, or they have a generalized potential"
+    ]
+    generalized_potential: Annotated[
+        bool, "whether there are applied forces that Lagrange's function takes in (Helmholtz's conditions)"
+    ]
+    first_approximation: Annotated[str | None, "the verdict of problem 6 at the given values"]
+    at_values: Annotated[NormalFormAtValues | None, "what is decided at the given values; null without numbers"]
+    two_frequencies: Annotated[TwoFrequencies | None, "Hamiltonian systems of two frequencies, in parameters"]
+    pair: Annotated[Pair | None, "one pair of imaginary roots for all parameters"]
+    no_formula: Annotated[str, "why there is no formula in parameters; empty where there is one, or none is looked for"]
