@@ -1,7 +1,7 @@
 """The language of reports: sentences of templates, and the words of results, in another language.
 
-Messages are looked up by their English text (``mbsym.report.messages``).  ``[[name]]`` in those of templates is filled in
-afterwards.  What results say in sentences of their own is read sentence by sentence, with gaps ``{}`` for names and
+Messages are looked up by their English text (``mbsym.report.messages``).  ``[[name]]`` in those of templates is filled
+in afterwards.  What results say in sentences of their own is read sentence by sentence, with gaps ``{}`` for names and
 numbers; what is not listed stays English.
 """
 
