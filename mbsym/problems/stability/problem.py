@@ -58,8 +58,8 @@ class SubsystemStability(Shown):
     """``matrices`` M, D, G, K, N are those of the subsystem times the positive ``factor``, as they were judged.
 
     ``theory`` holds the characteristic polynomial, conditions, cases and verdict, as polynomials of ``ring`` (that of
-    the parameters, where nothing else occurs); the power of lambda is the position in a list of coefficients.  ``system``
-    with what is ``known`` is what was judged.
+    the parameters, where nothing else occurs); the power of lambda is the position in a list of coefficients.
+    ``system`` with what is ``known`` is what was judged.
     """
 
     coordinates: tuple[str, ...]

@@ -414,7 +414,7 @@ def test_matrices_say_whether_nothing_grows_but_a_drift(system, only) -> None:
 
 
 def test_one_motion_in_two_descriptions_is_told_alike() -> None:
-    """x'' = 0 of a free body and by its matrix: each verdict says what the other one is about, on screen as in files."""
+    """x'' = 0 of a free body and by its matrix: each verdict says what the other is about, on screen as in files."""
     body = "bodies: [{name: p, attached to: 0, mass: 1, connection point: [x, 0, 0], coordinates: [x]}]\nmotion: {x: 0}"
     free = mbsym.loads(LINE.format(body))
     given = mbsym.loads(LINE.format("linear system: {coordinates: [x], K: [[0]]}"))
