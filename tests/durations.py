@@ -18,7 +18,7 @@ import pytest
 FILE = Path(__file__).with_suffix(".json")
 
 #: Seconds of processor that no case of ``make test`` is to take.
-SLOW = 1.0
+SLOW = 0.8
 
 #: Who first asks for what many share pays for it, and who that is changes: so many times ``SLOW`` are not only that.
 CLEARLY = 3
