@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import json
+import os
 import shutil
 import subprocess
 from collections import OrderedDict
@@ -37,6 +38,9 @@ from mbsym.formulas.formula import Formula
 from mbsym.mechanics.variables import ring_environment
 from mbsym.model.system import System
 from mbsym.numerics.kernels.llvm import Library
+
+#: A width that somebody exported would wrap what is looked for in outputs.
+os.environ.pop("COLUMNS", None)
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 needs_chromium = pytest.mark.skipif(CHROMIUM is None, reason="no chromium")

@@ -17,7 +17,7 @@ from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.variables import has_linear_angles
 from mbsym.model.comparison import has_sign, holds
 from mbsym.model.speeds import Quaternion
-from mbsym.model.system import System
+from mbsym.model.system import System, rational
 
 #: Any fixed number will do; a fixed one makes reports reproducible byte for byte.
 SEED = 1788
@@ -33,7 +33,7 @@ FINE = 1 << 40
 def drawn(system: System, ring: Ring, source: random.Random, fine: int = 1) -> dict[str, fmpq]:
     """Between 1/24 and 40, quotients of multiples of 1/``fine``, of declared sign and as the assumptions have it.
 
-    Where no such numbers are met any are taken: what rests on no assumption holds for these, too.
+    Where no such numbers are met those that the description gives are taken, and others as they come.
     """
     for attempt in range(ATTEMPTS):
         values = {name: fmpq(source.randint(fine, 40 * fine), source.randint(fine, 24 * fine)) for name in ring.names()}
@@ -42,8 +42,9 @@ def drawn(system: System, ring: Ring, source: random.Random, fine: int = 1) -> d
             if flipped or (attempt and parameter.sign in ("real", "nonzero") and source.randrange(2)):
                 values[parameter.name] = -values[parameter.name]
         if not system.assumptions or is_allowed(system, Rationals({}, {}), values):
-            break
-    return values
+            return values
+    given = {one.name: rational(one.value) for one in system.parameters}
+    return values | {name: fmpq(x.numerator, x.denominator) for name, x in given.items() if x is not None}
 
 
 def is_allowed(system: System, numbers: Algebra[Any], values: Mapping[str, Any]) -> bool:

@@ -31,7 +31,8 @@ def in_angles(
 ) -> tuple[PolynomialField, Transfer]:
     """(q', sin, cos, q)' over QQ[parameters], det(M) a part of the denominator, and the way from the ring there.
 
-    ``images`` take the place of dependent parameters.  Raises NoClosedForm where the time, roots or functions occur, and where M is singular.
+    ``images`` take the place of dependent parameters.  Raises NoClosedForm where the time, roots or functions
+    occur, and where M is singular.
     """
     mass = equations.mass_matrix.polynomials
     forcing = [x.polynomial for x in equations.forcing]

@@ -415,6 +415,9 @@ class Balance:
         spinning = {x for name in turning(self.scene) for x in (name, velocity_name(name))}
         if any(spinning & self._names_of(load) for load in loads) and not self._same_along_motion():
             return EnergyLaw.UNKNOWN
+        given = [load for load in loads if load.given]
+        if len(given) < len(loads) and given and self._loss(given).is_zero():  # gyroscopic ones: the others decide
+            loads = [load for load in loads if not load.given]
         words = [word for load in loads for word in self._losses(load)]
         if {*words} <= {"zero"}:
             return EnergyLaw.CONSERVED
@@ -422,12 +425,16 @@ class Balance:
             return EnergyLaw.NOT_GROWING
         if {*words} <= {"zero", "negative", "nonpositive"}:
             return EnergyLaw.GROWS
+        return _Loss(self, self.scene.ring, tuple(system.coordinates), self._put(self._loss(loads))).law
+
+    def _loss(self, loads: Sequence[Load]) -> Polynomial:
+        """-P of some loads together."""
         ring = self.scene.ring
         loss = ring.zero
         for load in loads:
             for name, force in KINDS[type(load)].action(load, self.scene).generalized.items():
                 loss = loss - ring.times(force, ring.generator("velocity", name))
-        return _Loss(self, ring, tuple(system.coordinates), self._put(ring.reduce(loss))).law
+        return ring.reduce(loss)
 
     def _losses(self, load: Load) -> Iterator[str]:
         """The signs of parts of -P, product by product."""

@@ -109,7 +109,7 @@ def integrals(scene: Scene, energy: Energy, equations: Equations, programs: Prog
 
 
 def varies(scene: Scene, x: Polynomial) -> bool:
-    """Whether x depends on the state: what is the same at all states (the momentum of what has no inertia) says nothing."""
+    """Whether x depends on the state: what is the same at all states, as a momentum without inertia, says nothing."""
     return bool(scene.ring.dependencies(x, (*scene.system.coordinates, *scene.system.velocities)))
 
 

@@ -31,7 +31,8 @@ def in_speeds(
 
     Variables are the speeds and the positions on which the equations depend; parameters are those that occur in the
     equations and in ``also``, where ``images`` (by generator) take the place of dependent ones.  Raises NoClosedForm
-    where M is singular, the time, roots or functions occur, or angles do: their sines and cosines are no variables here.
+    where M is singular, the time, roots or functions occur, or angles do: their sines and cosines are no variables
+    here.
     """
     ring = form.ring
     field = Field(form, equations)

@@ -160,7 +160,7 @@ def test_a_sweep_on_workers_gives_the_bytes_of_one_here(cluster: Here) -> None:
 
 
 def test_a_server_of_another_kind_is_no_scheduler(tmp_path: Path) -> None:
-    """Eight bytes of what it says, "HTTP/1.1", are 3.5e18 as the number of frames of a message: not a lack of memory."""
+    """Eight bytes of what it says, "HTTP/1.1", are 3.5e18 as the number of frames of a message: no lack of memory."""
     CliRunner().invoke(main, ["examples", "ziegler", "--out", str(tmp_path / "s")])
     with socket.create_server(("127.0.0.1", 0)) as server:
 

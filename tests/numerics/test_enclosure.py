@@ -19,7 +19,7 @@ from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.enclosure import disc as discs
 from mbsym.numerics.enclosure import segment as segments
 from mbsym.numerics.enclosure.compare import certified
-from mbsym.numerics.enclosure.enclose import INTERRUPTED, NO_STEP, OUT_OF_TIME, Enclosure, enclosed
+from mbsym.numerics.enclosure.enclose import INTERRUPTED, NO_STEP, OUT_OF_TIME, TOO_DEAR, Enclosure, enclosed
 from mbsym.numerics.enclosure.field import Field, cap
 from mbsym.numerics.enclosure.model import Model, Ring
 from mbsym.numerics.scenario import scenario
@@ -136,8 +136,11 @@ def test_it_ends_before_a_blow_up_and_says_so() -> None:
         assert inside(found.at(found.reached), [1 / (1 - t) ** 2, 2 / (1 - t) ** 3])
 
 
-def test_its_time_and_ctrl_c_end_it() -> None:
+def test_its_time_its_work_and_ctrl_c_end_it() -> None:
     assert enclosure_of(KEPLER, 6.25, seconds=0.0).ended == OUT_OF_TIME
+    one, other = (enclosure_of(KEPLER, 6.25, limit=0.02) for _ in range(2))
+    assert one.ended == TOO_DEAR
+    assert 0 < one.reached == other.reached < 6.25  # counted, not timed: it ends at the same place
 
     def stop(t: float) -> None:
         if t > 1:

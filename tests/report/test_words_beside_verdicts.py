@@ -11,10 +11,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
 import mbsym
 from mbsym.algebra.failures import Failure
 from mbsym.report.sections import polynomial_integrals, stability
+from mbsym_cli.main import main
 
 STATEMENTS = Path(__file__).parents[1] / "cases" / "statements"
 
@@ -107,3 +109,43 @@ def test_what_problem_7_lists_is_not_told_to_be_no_function_of_it() -> None:
 def test_of_a_motion_that_cannot_be_nothing_else_is_said(stage: str) -> None:
     with pytest.raises(Failure, match="the given motion does not exist: -c\\*v = 0 is impossible"):
         getattr(mbsym.loads(DRAGGED), stage)
+
+
+FREE = """
+mbsym: 1
+name: free
+parameters: {m: positive, k: positive}
+bodies:
+  - {name: p, mass: m, connection point: [x, 0, 0], coordinates: [x]}
+  - {name: q, attached to: p, mass: m, connection point: [z, 0, 0], coordinates: [z]}
+loads:
+  - potential: k*z**2/2
+motion: {x: {value: 0, rate: 1}}
+values: {m: 1, k: 1}
+"""
+HOOP = """
+mbsym: 1
+name: hoop
+parameters: {l: positive, g: positive, w: positive}
+prescribed: {psi: w}
+bodies:
+  - {name: hoop, rotation: {axes: [3], angles: [psi]}, mass: 0}
+  - {name: bead, attached to: hoop, connection point: [l*sin(th), 0, -l*cos(th)], mass: 1, coordinates: [th]}
+loads:
+  - uniform gravity: {vector: [0, 0, -g]}
+motion: {th: 0}
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "command", "told", "untold"),
+    [
+        (FREE, "equilibria", "x moves at the rate 1", "turns"),  # a length
+        (HOOP, "average", "psi occurs in no equation of motion", "moves nothing"),  # the hoop turns with it
+    ],
+)
+def test_what_moves_is_said_to_move(tmp_path: Path, text: str, command: str, told: str, untold: str) -> None:
+    (tmp_path / "file.yaml").write_text(text, encoding="utf-8")
+    result = CliRunner().invoke(main, [command, str(tmp_path / "file.yaml")])
+    assert told in result.output + result.stderr
+    assert untold not in result.output + result.stderr

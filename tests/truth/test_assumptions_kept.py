@@ -28,7 +28,7 @@ def test_the_degree_of_instability_is_checked_where_the_assumptions_hold() -> No
     assert check.outcome == EXACT
 
 
-@pytest.mark.parametrize("name", ["assumed_roots", "assumed_opposite_signs"])
+@pytest.mark.parametrize("name", ["assumed_roots", "assumed_opposite_signs", "assumed_in_speeds"])
 def test_roots_of_squares_have_the_sign_that_is_assumed(name: str) -> None:
     for one in mbsym.load(CASES / f"{name}.yaml").claims:
         assert one.holds is one.claim.place.startswith("true"), one.claim
@@ -42,3 +42,22 @@ def test_states_keep_assumptions_and_declared_signs() -> None:
         assert 0 < values["a"] < values["b"]
         assert -1 < values["m"] < 0
         assert values["n"] < 0
+
+
+def test_a_motion_that_exists_under_the_assumptions_has_no_conditions() -> None:
+    """The spring pulls to sqrt((a - b)^2), which is b - a."""
+    found = mbsym.loads(
+        """
+mbsym: 1
+name: spring
+parameters: {a: positive, b: positive, k: positive}
+assumptions: [a < b]
+bodies:
+  - {name: p, mass: 1, connection point: [x, 0, 0], coordinates: [x]}
+loads:
+  - potential: k*(x - sqrt((a - b)**2))**2/2
+motion: {x: b - a}
+"""
+    )
+    assert found.equilibrium.satisfied
+    assert str(found.energy.force_function) == "-k*(x + a - b)**2/2"

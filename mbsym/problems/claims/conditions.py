@@ -314,7 +314,7 @@ def _sufficient(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimRes
 
 
 def _on_borders(region: Region, conditions: Sequence[Inequality]) -> list[Verdict] | None:
-    """The verdicts where one of p >= 0 is an equality, and the others hold; None where one is not stable or not known."""
+    """The verdicts where one of p >= 0 is an equality and the others hold; None where one is not stable or unknown."""
     found = []
     for one in conditions:
         if one.relation == ">=":

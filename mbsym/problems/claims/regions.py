@@ -32,6 +32,8 @@ from mbsym.problems.stability.theorems import Fact
 from mbsym.problems.stability.verdict import Verdict, combine, concluded, depends
 from mbsym.problems.stability.word import Word
 
+#: A condition that is longer is called by its label alone.
+_LONGEST = 60
 #: More labels than these are not listed.
 _MOST_LABELS = 4
 #: Words of ``Signs.sign`` under which p > 0, p >= 0, p != 0 (and their negations p <= 0, p < 0, p = 0) are certain.
@@ -88,16 +90,24 @@ class Region:
     # --- single conditions ---
 
     def conditions(self, left_out: Sequence[str] = ()) -> Iterator[tuple[Remark, Inequality]]:
-        """What a condition of problem 6 is called, and its inequality: as they stand, as they arise, and sufficient."""
+        """What a condition of problem 6 is called, and its inequality: as they stand, as they arise, and sufficient.
+
+        With its label stands what it is, where a list of the open conditions of problem 6 does not hold it.
+        """
         for part in self.parts:
             whose = ", ".join(part.coordinates)
             sufficient = () if "sufficient" in left_out else part.sufficient
+            # Of a motion that is proved to be stable no condition is listed.
+            listed = () if part.theory.verdict.stable else part.conditions
             for found, note in (
                 ((*part.conditions, *part.unreduced, *sufficient), ""),
                 (part.guaranteed, ": it holds, the kinetic energy is positive definite"),
             ):
                 for label, formula, relation in found:
-                    yield said(Said.IS, label, whose, note), Inequality(self.cleared(formula.polynomial), relation)
+                    text = f"{formula} {relation} 0"
+                    seen = (label, formula, relation) in listed or len(text) > _LONGEST
+                    of = whose if seen else f"{whose} ({text})"
+                    yield said(Said.IS, label, of, note), Inequality(self.cleared(formula.polynomial), relation)
 
     def labels(self, of: Sequence[str] = ()) -> str:
         """Names of the conditions that an implication rests on, those of one part where its coordinates are given."""

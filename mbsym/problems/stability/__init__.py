@@ -12,8 +12,10 @@ is made primitive (a factor of known sign is removed) and factored; the conditio
 Every condition has its logical place.  Where p > 0 is listed and p < 0, a root has a positive real part: p >= 0 is
 necessary for stability.  That p is not 0 either is necessary for exponential stability, all roots to the left (second
 kind): at p = 0 terms of higher order may make the motion stable, asymptotically even.  Of the first kind it is only
-this method that needs it, as it needs roots that do not coincide: there the motion may be stable.  In potential systems
-coinciding roots do no harm: their discriminants are listed, and needed for nothing.
+this method that needs it, as it needs roots that do not coincide: there the motion may be stable.  Of exactly linear
+equations linear theory decides what equality does, where a parameter can be solved for on p = 0, and it is told with
+the condition.  In potential systems coinciding roots do no harm: their discriminants are listed, and needed for
+nothing.
 K > 0 is sufficient where the energy does not grow.
 
 "Necessary conditions hold" is not "stable": the verdict is one of asymptotically stable; stable (the theorem is named);

@@ -65,7 +65,7 @@ def growing(first_order: Numbers) -> Verdict:
 def _still(first_order: Numbers) -> Numbers:
     """Rows v that span what A makes zero: positions that may be shifted, as x' = 0 there."""
     reduced, rank = first_order.rref()
-    rows, n = reduced.tolist()[:rank], first_order.ncols()
+    rows, n = reduced.tolist()[:rank], first_order.nrows()
     pivots = [next(i for i, x in enumerate(row) if x != 0) for row in rows]
     found = []
     for free in (k for k in range(n) if k not in pivots):

@@ -1,8 +1,8 @@
 """A linear form where a polynomial p in the parameters vanishes: one parameter is solved for, the rest judged as ever.
 
-Let p = c1 x + c0 be irreducible, x a parameter and c1 != 0 whatever the others are.  On p = 0 x = -c0/c1, and M, D, G, K,
-N times an even power of c1, positive, are polynomials in the other parameters: a linear form like any other, of which
-the signs are known that were known of x.  Where p has no such parameter nothing is claimed.
+Let p = c1 x + c0 be irreducible, x a parameter and c1 != 0 whatever the others are.  On p = 0 x = -c0/c1, and the
+matrices times an even power of c1, positive, are polynomials in the other parameters: a linear form like any other, of
+which the signs are known that were known of x.  Where p has no such parameter nothing is claimed.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _OF_WORD = {"positive": (1, ">"), "nonnegative": (1, ">="), "negative": (-1, ">"
 def where_zero(
     system: LinearSystem, signs: Signs, p: Polynomial, judge: Judge, further: Sequence[Fact] = ()
 ) -> Verdict | None:
-    """What is true of the form at all parameters at which p vanishes and ``further`` is so; None where nothing is known.
+    """What is true of the form wherever p vanishes and ``further`` is so; None where nothing is known.
 
     Nothing is known, either, where there are no such parameters.  A factor of p that cannot vanish is left out.
     """

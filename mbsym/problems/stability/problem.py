@@ -34,9 +34,10 @@ from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.knowledge import definition_in_parameters
 from mbsym.problems.linearisation import Linearisation, Subsystem, first_symbols
 from mbsym.problems.stability import nonholonomic
+from mbsym.problems.stability.algebraic_values import algebraic_point
 from mbsym.problems.stability.covering import Cell, Lift, cells_of, everywhere, joined
 from mbsym.problems.stability.enclosed import enclosed_verdict_with_cyclic
-from mbsym.problems.stability.exact import verdict_at
+from mbsym.problems.stability.exact import verdict_at, verdict_over
 from mbsym.problems.stability.linear_form import LinearSystem, NonholonomicForm, add, null_rows
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.requirements import Requirement
@@ -57,8 +58,8 @@ class SubsystemStability(Shown):
     """``matrices`` M, D, G, K, N are those of the subsystem times the positive ``factor``, as they were judged.
 
     ``theory`` holds the characteristic polynomial, conditions, cases and verdict, as polynomials of ``ring`` (that of
-    the parameters, where nothing else occurs); the power of lambda is the position in a list of coefficients.  ``system``
-    with what is ``known`` is what was judged.
+    the parameters, where nothing else occurs); the power of lambda is the position in a list of coefficients.
+    ``system`` with what is ``known`` is what was judged.
     """
 
     coordinates: tuple[str, ...]
@@ -190,7 +191,7 @@ def stability(
     if numerical is None and values is not None:
         spectra = tuple(x for part in judged if (x := _spectrum(scene, linear, part, values)) is not None)
         there = (
-            _enclosed(scene, linear, part, values, balance, found.theory)
+            _enclosed(scene, linear, part, values, balance, found.theory, equilibrium)
             if found.theory.at_point is None
             else found.theory.at_point.verdict
             for part, found in zip(prepared, judged, strict=True)
@@ -269,8 +270,33 @@ def _enclosed(
     values: Mapping[str, Fraction],
     balance: Balance,
     theory: Theory,
+    equilibrium: Equilibrium,
 ) -> Verdict:
-    """The verdict on a subsystem at values where its matrices hold irrational numbers (sqrt(3), a sine)."""
+    """The verdict on a subsystem at values where its matrices hold irrational numbers (sqrt(3), a sine).
+
+    By enclosures; where these leave it open and the numbers are in one field of a low degree, exactly.
+    """
+    found = _by_enclosures(scene, linear, part, values, balance, theory)
+    if not found.word.open or found.coordinates_singular:
+        return found
+    at = algebraic_point(scene, part.ring, (*part.system.matrices, [part.system.turned]), values, equilibrium)
+    if at is None:
+        return found
+    try:
+        exact = verdict_over(part.at(balance.at(values)), at).verdict
+    except Failure:
+        return found
+    return found if exact.word is Word.UNDECIDED else exact
+
+
+def _by_enclosures(
+    scene: Scene,
+    linear: Linearisation,
+    part: Prepared,
+    values: Mapping[str, Fraction],
+    balance: Balance,
+    theory: Theory,
+) -> Verdict:
     there = balance.at(values)
     cyclic = () if part.at(there).driven else part.system.cyclic
     matrices = matrices_at(scene, linear, part.coordinates, values, part.system.basis)
@@ -400,7 +426,10 @@ def _prepared(
     )
     driven = tuple(i for i in cyclic if part.coordinates[i] in balance.driven)
     names, basis = part.coordinates, None
-    hidden = _displaced(scene, part, balance, signs, cyclic, equilibrium, bool(turned)) if lagrangian else None
+    turns = bool(turned) and not all(
+        x.is_zero() for matrix in (part.D, part.N) for row in matrix.polynomials for x in row
+    )
+    hidden = _displaced(scene, part, balance, signs, cyclic, equilibrium, turns) if lagrangian else None
     if hidden is not None:
         found, basis = hidden
         inner = basis.through(scene.ring, elimination)
@@ -436,7 +465,7 @@ def _displaced(
     """Displacements that change no equation, and coordinates made of them; None where cyclic coordinates are all.
 
     They are looked for where K + N is singular besides the cyclic coordinates, or forces act on several of these; those
-    that vary with the position where the others do not explain all zero roots, nor does a spin that may be ``turned``.
+    that vary with the position where the others do not explain all zero roots, nor does a damped spin, ``turned``.
     """
     others = [i for i in range(len(part.coordinates)) if i not in cyclic]
     stiff = [[part.K.polynomials[i][j] + part.N.polynomials[i][j] for j in others] for i in others]
@@ -509,7 +538,9 @@ class ExactVerdicts:
         for part in self._parts:
             point = _point(self.scene, part.ring, part.system.matrices, values)
             if point is None:  # a number there is irrational
-                found.append(_enclosed(self.scene, self.linear, part, values, self.balance, part.theory))
+                found.append(
+                    _enclosed(self.scene, self.linear, part, values, self.balance, part.theory, self.equilibrium)
+                )
             else:
                 found.append(verdict_at(part.at(there), point).verdict)
         return combine(found, there.law.bounded)

@@ -74,8 +74,8 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
         "there are disturbances that grow like a power of t."
     ),
     Because.LINEAR_DRIFTS: (
-        "Nothing grows but a uniform drift along displacements that change no equation: coordinates count here, but for "
-        "that drift the motion is stable; of cyclic coordinates of bodies just that is said."
+        "Nothing grows but a uniform drift along displacements that change no equation: coordinates count here, but "
+        "for that drift the motion is stable; of cyclic coordinates of bodies just that is said."
     ),
     Because.LINEAR_GYROSCOPIC: (
         "K is not positive definite: gyroscopic forces alone stabilise the motion, and complete dissipation would make "
@@ -112,8 +112,8 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
     Because.UNLIKE_PARTS: "Some parts are asymptotically stable, others not; no theorem that was tried covers both.",
     Because.HIGHER_ORDER: HIGHER_ORDER,
     Because.COASTING: (
-        "All coordinates of this part are cyclic: their momenta are constant, so their velocities stay near theirs; the "
-        "coordinates drift away if these are disturbed, so that with them counted the motion is unstable."
+        "All coordinates of this part are cyclic: their momenta are constant, so their velocities stay near theirs; "
+        "the coordinates drift away if these are disturbed, so that with them counted the motion is unstable."
     ),
     Because.DRIFT: (
         "This is about the other coordinates and all velocities; a perturbation of the cyclic velocities can make "

@@ -4,9 +4,9 @@ By hand, of x'' + g y' + a x = 0, y'' - g x' + b y = 0 (a particle in a magnetic
 
 * a = b = 0: zero roots twice, +- i g.  The kernel of A has two dimensions where g != 0: bounded.  g = 0: x'' = y'' = 0,
   Jordan blocks: unstable.
-* a = b: mu^2 + (2 a + g^2) mu + a^2 = 0, discriminant g^2 (g^2 + 4 a).  a = 0 != g: stable, as above.  g^2 + 4 a = 0: mu =
-  -g^2/4 twice, the pencil has rank 1 there (its entry g lambda is not zero): Jordan blocks, unstable.  g = 0 < a:
-  two equal oscillators, stable.
+* a = b: mu^2 + (2 a + g^2) mu + a^2 = 0, discriminant g^2 (g^2 + 4 a).  a = 0 != g: stable, as above.
+  g^2 + 4 a = 0: mu = -g^2/4 twice, the pencil has rank 1 there (its entry g lambda is not zero): Jordan
+  blocks, unstable.  g = 0 < a: two equal oscillators, stable.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from conftest import at_values
 import mbsym
 from mbsym.problems.stability.requirements import Place
 from mbsym.report.conditions import statements
+from mbsym.report.summary import summary
 
 FIELD = """
 mbsym: 1
@@ -101,3 +102,29 @@ def test_the_judge_agrees_at_points_of_every_border(tmp_path) -> None:
                 assert stable is (x.place is Place.EQUALITY), (x, g, a)
                 seen.add(x.place)
     assert Place.EQUALITY in seen
+
+
+BODY = """
+mbsym: 1
+name: body
+parameters: {g: real}
+bodies:
+  - {name: p, attached to: 0, mass: 1, connection point: [x, y, 0], coordinates: [x, y]}
+loads:
+  - generalized force: {x: -g*y_dot, y: g*x_dot}
+motion: {x: 0, y: 0}
+claims:
+  - {claim: condition, that: g != 0}
+"""
+
+
+def test_a_condition_that_is_not_listed_is_named_as_what_it_is() -> None:
+    """The free particle is stable but for a drift whatever g is, so that no condition is listed for it."""
+    a = mbsym.loads(BODY)
+    lines = "\n".join(summary(a, (6,), []).problems[0].lines)
+    assert "v0" not in lines
+    (found,) = a.claims
+    assert found.remark.startswith("it is the condition v0 of x, y (g != 0)")
+    line = '  - {claim: condition, that: "g != 0"}'
+    (found,) = mbsym.loads(FIELD.format(sign="real", a="0", b="0", claims=line)).claims
+    assert found.remark == "it is the condition v0 of x, y"  # listed there

@@ -249,7 +249,14 @@ def _trap(axes, wc=3, wz=2):
         # lambda^2 = -s in the plane: s^2 - (wc^2 - wz^2) s + wz^4/4 = 0, disc. wc^2 (wc^2 - 2 wz^2) (Brown & Gabrielse)
         ("3", "2", Word.STABLE),
         ("29/20", "1", Word.STABLE),
-        ("sqrt(2)*2", "2", Word.UNDECIDED),  # on the border, by enclosures: a root that is double or nearly so
+        # on the border, at irrational numbers: lambda^2 = -wz^2/2 twice, at lambda = i wz/sqrt(2) the rank of
+        # lambda^2 + wc lambda J - wz^2/2 = -wz^2 + i wz^2 J is 1: a Jordan block, in the field of one root exactly
+        ("sqrt(2)*2", "2", Word.UNSTABLE),
+        ("4*cos(pi/4)", "2", Word.UNSTABLE),
+        ("sqrt(6)", "sqrt(3)", Word.UNSTABLE),
+        ("sqrt(2)*2 + 10**(-50)", "2", Word.STABLE),
+        ("sqrt(2)*2 - 10**(-60)/10**60", "2", Word.UNSTABLE),  # closer than enclosures tell
+        ("sqrt(2)*2 + 10**(-60)/10**60", "2", Word.STABLE),
         ("7/5", "1", Word.UNSTABLE),
     ],
 )
@@ -407,7 +414,7 @@ def test_matrices_say_whether_nothing_grows_but_a_drift(system, only) -> None:
 
 
 def test_one_motion_in_two_descriptions_is_told_alike() -> None:
-    """x'' = 0 of a free body and by its matrix: each verdict says what the other one is about, on screen as in files."""
+    """x'' = 0 of a free body and by its matrix: each verdict says what the other is about, on screen as in files."""
     body = "bodies: [{name: p, attached to: 0, mass: 1, connection point: [x, 0, 0], coordinates: [x]}]\nmotion: {x: 0}"
     free = mbsym.loads(LINE.format(body))
     given = mbsym.loads(LINE.format("linear system: {coordinates: [x], K: [[0]]}"))
