@@ -1,6 +1,7 @@
 # make          lint, types and tests: the same as CI
 # make demo     sets up an environment and runs the satellite of the paper
-# make test     sets up and runs the tests
+# make test     sets up and runs the tests, but those that are slow
+# make test-all the others as well, and properties on more examples: as CI
 # make systems  every description that comes with it, in one line each
 # make gallery  draws systems/figures again
 # make window   draws the README's pictures of the editor again (Chromium)
@@ -15,10 +16,13 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
 
-.PHONY: all lint types test demo systems gallery window outputs docs page robots robot-data consumers bench clean
+.PHONY: all lint types test test-slow test-all demo systems gallery window outputs docs page robots robot-data consumers bench clean
 .DEFAULT_GOAL := all
 
-all: lint types test
+# What Python has compiled is kept, whatever the environment says: tests start many processes.
+unexport PYTHONDONTWRITEBYTECODE
+
+all: lint types test-all
 
 $(READY): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
@@ -37,8 +41,17 @@ lint: $(READY)
 types: $(READY)
 	$(BIN)/mypy
 
+TESTS := $(BIN)/python -m pytest --numprocesses auto --dist worksteal
+
+# Which cases are slow stands in tests/durations.json.
 test: $(READY)
-	$(BIN)/python -m pytest --numprocesses auto --dist worksteal
+	$(TESTS) -m "not slow"
+
+# What `make test` leaves out, and every property once more, on more examples.
+test-slow: $(READY)
+	$(TESTS) -m "slow or hypothesis" --hypothesis-profile thorough
+
+test-all: test test-slow
 
 demo: $(READY)
 	$(BIN)/mbsym run systems/satellite.yaml
@@ -114,9 +127,9 @@ docs: $(READY)
 page:
 	cd editor && npm ci --ignore-scripts --no-audit --no-fund --silent && npm run --silent build
 
-# Four of them are among the tests already where the data are there.
+# They are among the slow tests where the data are there.
 robots: robot-data
-	MBSYM_ALL_ROBOTS=1 $(BIN)/python -m pytest --numprocesses auto --dist worksteal tests/robots
+	$(TESTS) tests/robots
 
 robot-data: $(READY)
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[robots]'

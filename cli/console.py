@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import logging
 import os
+import re
+import shutil
 import sys
 import traceback
 from collections.abc import Callable, Iterator
@@ -77,11 +79,67 @@ def listening() -> Iterator[Defects]:
 
 @cache
 def console(stderr: bool = False) -> Console:
-    """rich's console; plain text where the output is no terminal."""
+    """rich's console; plain text where the output is no terminal.  Lines of words are wrapped to ``asked_width``."""
     from rich.console import Console
+    from rich.text import Text
+
+    class Wrapping(Console):
+        def print(self, *objects: Any, soft_wrap: bool | None = None, markup: bool | None = None, **how: Any) -> None:
+            width = asked_width(stderr)
+            plain = len(objects) == 1 and isinstance(objects[0], Text | str) and not how and not soft_wrap
+            if width is None or not plain:
+                super().print(*objects, soft_wrap=soft_wrap, markup=markup, **how)
+                return
+            line = objects[0]
+            text = line if isinstance(line, Text) else Text(line) if markup is False else Text.from_markup(line)
+            for whole in text.split(allow_blank=True):
+                indent, at = _breaks(whole.plain, width)
+                for k, piece in enumerate(whole.divide(at)):
+                    if k < len(at):
+                        piece.rstrip()
+                    super().print(Text(indent if k else "") + piece, soft_wrap=True)
 
     terminal = (sys.stderr if stderr else sys.stdout).isatty()
-    return Console(stderr=stderr, highlight=False, soft_wrap=not terminal, width=None if terminal else 120)
+    return Wrapping(stderr=stderr, highlight=False, soft_wrap=not terminal, width=None if terminal else 120)
+
+
+#: What is left of a line stands so much further to the right.
+HANGING = 2
+
+
+def asked_width(stderr: bool = False) -> int | None:
+    """The width to which lines of words are wrapped: what COLUMNS says, else that of the terminal.
+
+    None in a file or pipe of which nothing is said: there a statement is one line, so that nothing is cut from a log.
+    """
+    asked = os.environ.get("COLUMNS", "")
+    if asked.isdecimal() and int(asked) > 0:
+        return max(int(asked), 30)
+    stream = sys.stderr if stderr else sys.stdout
+    return shutil.get_terminal_size().columns if stream.isatty() else None
+
+
+def wrapped(line: str, width: int | None, margin: int | None = None) -> str:
+    """A line of words on lines of that width, none cut within a word; as it is where no width is asked for.
+
+    ``margin``: where the further lines begin.
+    """
+    if width is None:
+        return line
+    indent, at = _breaks(line, width, margin)
+    ends = zip((0, *at), (*at, len(line)), strict=True)
+    return f"\n{indent}".join(line[first:last].rstrip() if at else line for first, last in ends)
+
+
+def _breaks(line: str, width: int, margin: int | None = None) -> tuple[str, list[int]]:
+    """What stands before the further lines, and where these begin: at words, so that none is wider that need not be."""
+    before = len(line) - len(line.lstrip(" "))
+    indent, at, start, room = " " * (before + HANGING if margin is None else margin), list[int](), 0, width
+    for word in re.finditer(r"\S+", line):
+        if word.end() - start > room and word.start() > max(start, before):
+            at.append(word.start())
+            start, room = word.start(), width - len(indent)
+    return indent, at
 
 
 #: What rich takes for a terminal though the output is none.
@@ -102,7 +160,8 @@ def tell(*parts: str | tuple[str, str], indent: int = 0) -> None:
             console().print(text)
         return
     words = " " * indent + "".join([part if isinstance(part, str) else part[0] for part in parts])
-    print("\n".join([line.expandtabs() for line in words.translate(_CONTROLS).split("\n")]))
+    width = asked_width()
+    print("\n".join([wrapped(line.expandtabs(), width) for line in words.translate(_CONTROLS).split("\n")]))
 
 
 def indented(text: Text, indent: int) -> None:
@@ -180,7 +239,7 @@ def printable(path: Path | str) -> str:
 
 def complain(path: Path | str, text: str) -> None:
     """A line about a file on standard error."""
-    print(f"{printable(path)}: {text}", file=sys.stderr)
+    print(wrapped(f"{printable(path)}: {text}", asked_width(stderr=True)), file=sys.stderr)
 
 
 def defect(error: BaseException, where: Path | str | None = None) -> None:

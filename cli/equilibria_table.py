@@ -11,6 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from mbsym.expressions.counting import counted
+from mbsym.expressions.tree import names
 from mbsym.model.quantities import unit_of, with_unit
 from mbsym.model.system import System
 from mbsym.problems.equilibria import CoordinateValue, Equilibria, EquilibriumFamily, RelativeEquilibrium
@@ -29,9 +30,11 @@ def show_equilibria(
     """Prints all that was found, and how far the list is complete."""
     out = console()
     out.print(Text.assemble((system.name, "bold"), (f"  {printable(file)}, {seconds:.2f} s", "dim")))
+    angles = {name for body in system.bodies for _, angle in body.rotation.turns() for name in names(angle)}
     for name, rate in found.turning:
         unit = pretty(system.units.rate_of(name))
-        out.print(Text(f"  {name} turns at the rate {with_unit(f'{rate:.10g}', unit)}"))
+        moves = "turns" if name in angles else "moves"
+        out.print(Text(f"  {name} {moves} at the rate {with_unit(f'{rate:.10g}', unit)}"))
     if found.equilibria:
         out.print(_table(system, found.equilibria))
     if found.singular:

@@ -21,7 +21,7 @@ from mbsym_cli.simulation_inputs import read_held
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Replace a value; repeatable.")
 @click.option("--sequences", is_flag=True, help="Rank the 12 rotation sequences of each body instead.")
-@click.option("--budget", default="60", show_default=True, metavar="S", help="About so many seconds at most.")
+@click.option("--budget", default="60", show_default=True, metavar="S", help="Counted work, worth some S seconds.")
 @click.option("--out", "-o", type=OutPath(path_type=Path, file_okay=False), help="Folder.  [default: reports/NAME]")
 @click.option("--quiet", "-q", is_flag=True, help="Print only the sentences.")
 def command(file: Path, settings: tuple[str, ...], sequences: bool, budget: str, out: Path | None, quiet: bool) -> None:

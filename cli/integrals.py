@@ -21,7 +21,7 @@ from mbsym_cli.options import Options
 )
 @click.option("--vary", "-v", metavar="NAME=LOW:HIGH", help="At which values of a parameter are there more?")
 @click.option("--cases", is_flag=True, help="Under which conditions on parameters are there more?")
-@click.option("--budget", metavar="S", help="Seconds after which --cases begins nothing more.  [default: 60]")
+@click.option("--budget", metavar="S", help="Counted work, worth some S seconds, that --cases may take.  [default: 60]")
 @click.option("--relations", is_flag=True, help="Invariant relations f = 0, and integrals where another one is zero.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON instead of a table.")
 def command(
@@ -87,7 +87,7 @@ def command(
             axis = request.axis
             line = None if axis is None else along_of(found, there.kinds, there.known, axis.low, axis.high)
             positive = [one.name for one in system.parameters if one.sign == "positive"]
-            special = cases_of(found, there.kinds, there.known, positive, request.seconds) if cases else None
+            special = cases_of(found, there.kinds, there.known, positive, request.budget) if cases else None
             special = special and allowed(analysis, there, request.values, special)
             invariant = invariant_relations(there, found, positive) if relations else None
             at = special_relations(there, found, axis.low, axis.high) if relations and axis is not None else None

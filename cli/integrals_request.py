@@ -17,19 +17,19 @@ if TYPE_CHECKING:
 #: More than any budget of monomials allows.
 MOST_DEGREE = 60
 MOST_WEIGHT = 12
-#: Seconds for ``--cases``.
+#: For ``--cases``: counted work, worth about so many seconds.
 BUDGET = 60.0
 
 
 @dataclass(frozen=True)
 class Request:
-    """Up to a weighted ``degree``, with ``values`` and ``weights``; ``seconds`` for cases; one parameter on an axis."""
+    """Up to a weighted ``degree``, with ``values`` and ``weights``; ``budget``: for cases; one parameter on an axis."""
 
     degree: int
     values: dict[str, Fraction]
     weights: dict[str, int]
     axis: Axis | None
-    seconds: float
+    budget: float
 
 
 def read_request(
@@ -51,12 +51,12 @@ def read_request(
         asked.complain("--cases", "not-together", "with --vary other parameters are numbers", "choose one of them")
     if axis is not None and axis.name in values:
         asked.complain("--set", "repeated-name", f"'{axis.name}' has an interval and a number", "leave one of them out")
-    seconds = BUDGET if budget is None else asked.number("--budget", budget)
+    paid = BUDGET if budget is None else asked.number("--budget", budget)
     if budget is not None and not cases:
         asked.complain("--budget", "missing-option", "--budget goes with --cases", "add --cases")
-    if most is None or seconds is None:
+    if most is None or paid is None:
         return None
-    return Request(most, values, given, axis, seconds)
+    return Request(most, values, given, axis, paid)
 
 
 def complain_unfit(there: Setting, request: Request, asked: Options) -> None:

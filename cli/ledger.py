@@ -42,7 +42,7 @@ def show_ledger(lines: Sequence[LedgerLine], unmeasured: Sequence[str]) -> None:
             out.print(Text(f"  {title}", style="bold red" if standing == "needed" else "bold cyan"))
             _show(own)
     if unmeasured:
-        indented(Text(f"not measured, for lack of time: {', '.join(unmeasured)}", style="yellow"), 4)
+        indented(Text(f"not measured, beyond the budget: {', '.join(unmeasured)}", style="yellow"), 4)
 
 
 def _show(lines: Sequence[LedgerLine]) -> None:

@@ -13,6 +13,8 @@ from mbsym_cli.console import complain, printable
 
 #: Of a file so many bytes are read to see what it is, and at all.
 _LOOK, _MOST = 20_000, 40_000_000
+#: Of angles that are read as parts of pi so many are told one by one; all of them stand in the description.
+SHOWN = 3
 
 
 @dataclass(frozen=True)
@@ -59,9 +61,13 @@ def described(file: Path, text: str, choices: Choices) -> str | None:
         return None
     for told in made.left_out:
         print(f"{printable(file)}: left out: {printable(told)}", file=sys.stderr)
-    for told in made.snapped:
-        hint = "leave it as it is with --angles exact"
-        print(f"{printable(file)}: printed angle read as a part of pi: {printable(told)} ({hint})", file=sys.stderr)
+    if made.snapped:
+        several = len(made.snapped) > 1
+        count = f"{counted(len(made.snapped), 'printed angle')} {'are' if several else 'is'} read as"
+        parts = "parts" if several else "a part"
+        first = ", ".join(map(printable, made.snapped[:SHOWN])) + (", ..." if len(made.snapped) > SHOWN else "")
+        where = " (all are listed in the head of the description)" if len(made.snapped) > SHOWN else ""
+        complain(file, f"{count} {parts} of pi: {first}{where}; --angles exact leaves them as they are")
     for joint in made.still:
         print(f"{printable(file)}: held still, because it moves no inertia: {printable(joint)}", file=sys.stderr)
     return made.yaml

@@ -18,22 +18,24 @@ if TYPE_CHECKING:
 USUAL, NARROWEST, WIDEST = "1e-10", 1e-100, 1e-3
 
 
-#: How long a proof may take unless asked for otherwise.
-SECONDS = "600"
+#: What a proof may cost where no seconds are given: counted work, worth about so many seconds.
+WORK = 600.0
 
 
 @dataclass(frozen=True)
 class Certifying:
-    """The width as it was typed, None where nothing is to be proved; and how many seconds that may take."""
+    """The width as it was typed, None where nothing is to be proved; and how many seconds that may take, if given."""
 
     width: str | None
-    certify_seconds: str
+    certify_seconds: str | None
 
     def added(self, request: Request, system: System | None, asked: Options) -> Request:
         """The request with what this group asks for."""
         width = asked.number("--certify", self.width, NARROWEST, WIDEST)
         seconds = asked.number("--certify-seconds", self.certify_seconds, 1e-3, 1e9)
-        return replace(request, certify=width, certify_seconds=seconds or request.certify_seconds)
+        if seconds is None:
+            return replace(request, certify=width, certify_limit=WORK)
+        return replace(request, certify=width, certify_seconds=seconds)
 
 
 certify_options = group(
@@ -51,8 +53,7 @@ certify_options = group(
     click.option(
         "--certify-seconds",
         metavar="S",
-        default=SECONDS,
-        show_default=True,
-        help="How long the proof may take; ends early where a tenth of it shows that ten times as much would not do.",
+        help="How long the proof may take; ends early where a tenth of it shows that ten times as much would not do.  "
+        f"[default: counted work, worth about {WORK:g} s]",
     ),
 )

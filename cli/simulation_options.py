@@ -95,7 +95,7 @@ way_options = group(
     click.option(
         "--estimate/--no-estimate",
         default=None,
-        help="Estimate the error by a better run.  [default: if the run was short, within seconds]",
+        help="Estimate the error by a better run.  [default: of short runs, as far as little work goes]",
     ),
     click.option(
         "--whole",

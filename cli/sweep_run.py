@@ -184,7 +184,9 @@ def _measured(file: Path, folder: Path, system: System, asked: Asked, measure: M
     digest = asked.digest(meaning(system), derivation())
     store = Folder(folder, digest, tuple(column.name for column in measure.columns))
     mine = every if wanted.shard is None else shard(every, *wanted.shard)
-    executor = _executor(system, asked, measure, wanted)
+    executor = _executor(file, system, asked, measure, wanted)
+    if executor is None:
+        return BAD_INPUT
     done = 0
     try:
         with _bar(wanted.quiet, file.name, len(mine)) as advance:
@@ -205,14 +207,20 @@ def _measured(file: Path, folder: Path, system: System, asked: Asked, measure: M
     return _written(file, folder, system, asked, measure, wanted, store, every)
 
 
-def _executor(system: System, asked: Asked, measure: Measure, wanted: Wanted) -> Executor:
+def _executor(file: Path, system: System, asked: Asked, measure: Measure, wanted: Wanted) -> Executor | None:
+    """None where there is no cluster, after a complaint."""
     from mbsym.sweeps.sweep import Threads
 
     if wanted.cluster is None:
         return Threads(lambda: measure, asked.points, wanted.jobs)
+    from mbsym.batch.cluster import NoCluster
     from mbsym.batch.swept import Workers
 
-    return Workers(wanted.cluster, wanted.jobs, system, asked)
+    try:
+        return Workers(wanted.cluster, wanted.jobs, system, asked)
+    except NoCluster as reason:
+        complain(file, f"--cluster: {reason}")
+        return None
 
 
 def _written(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,9 +21,6 @@ if TYPE_CHECKING:
 #: How columns are aligned that do not end on the right.
 SIDES = {"method": "left", "setting": "left", "front": "center"}
 
-#: Seconds that drawing and writing take.
-FIGURES = 2.5
-
 
 @dataclass(frozen=True)
 class Request:
@@ -36,12 +32,6 @@ class Request:
     fidelity: bool
     every_row: bool
     quiet: bool
-    started: float = 0.0
-
-    @property
-    def left(self) -> float:
-        """Seconds of the budget that are left for measuring, so that the figures are within it, too."""
-        return self.budget - min(FIGURES, 0.2 * self.budget) - (time.perf_counter() - self.started)
 
 
 def run(file: Path, folder: Path, found: Scenario, methods: Sequence[Method], request: Request) -> int:
@@ -59,7 +49,7 @@ def run(file: Path, folder: Path, found: Scenario, methods: Sequence[Method], re
             say(f"{file.name}: {text}")
 
         try:
-            study = studied(begun, methods, request.end, max(request.left, 0.0), request.fidelity, watch)
+            study = studied(begun, methods, request.end, request.budget, request.fidelity, watch)
         except Breakdown as error:
             complain(file, _without_reference(error, request))
             return BROKEN_DOWN
@@ -87,7 +77,7 @@ def _without_reference(error: Breakdown, request: Request) -> str:
         return f"there is no reference solution up to t = {request.end:g}: {why}; a shorter --time helps"
     if error.kind != STEP_LIMIT:
         return f"there is no reference solution up to t = {request.end:g}: {error}"
-    reached = f"the time ended at t = {error.time:.3g}; a shorter --time or a longer --budget helps"
+    reached = f"the budget ended at t = {error.time:.3g}; a shorter --time or a larger --budget helps"
     return f"no reference solution up to t = {request.end:g} was found: {reached}"
 
 

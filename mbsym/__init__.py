@@ -358,10 +358,12 @@ def tradeoff(
     methods: Iterable[str] | None = None,
     models: bool = True,
 ) -> TradeoffStudy:
-    """What accuracy costs from 0 to ``time`` on this machine, in about ``budget`` seconds: ``mbsym tradeoff``.
+    """What accuracy costs from 0 to ``time`` on this machine: ``mbsym tradeoff``.
 
     ``study.runs`` is a table (``study.runs["error"]``, the largest over the whole interval), ``study.advice`` the
     sentence about ``target``; ``study.reference_error`` is that of the reference, ``study.reference`` says what it is.
+    ``budget`` is counted work, worth so many seconds on a usual machine: the same runs are measured everywhere, and
+    only their seconds are those of this machine.
 
     Raises DescriptionError, ValueError, ``mbsym.numerics.scenario.Incomplete``; Breakdown where there is no reference
     solution up to ``time``.
@@ -378,7 +380,9 @@ def extremes(
     values: Mapping[str, Fraction | float | str] | None = None,
     budget: float = 60.0,
 ) -> ExtremesStudy:
-    """How many digits each quantity keeps at the extremes, in about ``budget`` seconds: ``mbsym extremes``.
+    """How many digits each quantity keeps at the extremes, as far as ``budget`` goes: ``mbsym extremes``.
+
+    ``budget`` is counted work, worth about so many seconds on a usual machine: the same rows come out everywhere.
 
     Raises DescriptionError, ValueError, ``mbsym.numerics.scenario.Incomplete``.
     """

@@ -253,9 +253,7 @@ def _label(one: SingularSet, number: int, name: str) -> str:
 
 def equilibria(system: System, values: Mapping[str, Fraction | int | str], within: float) -> EquilibriaStudy:
     """See ``mbsym.equilibria``."""
-    from mbsym.analysis import Analysis
-    from mbsym.analysis.stages import Unavailable
-    from mbsym.problems.equilibria import equilibria as listed
+    from mbsym.analysis.resting import relative_equilibria
 
     exact: dict[str, Fraction] = {}
     for name, value in values.items():
@@ -268,10 +266,7 @@ def equilibria(system: System, values: Mapping[str, Fraction | int | str], withi
     missing = missing_values(system, numbers)
     if missing:
         raise ValueError(f"no number for {', '.join(missing)}")
-    found = listed(system, numbers, within)
-    withdrawn = Analysis(system, ()).broken(Analysis.equilibria.stands_on)
-    if withdrawn is not None:
-        raise Unavailable("equilibria", withdrawn)
+    found = relative_equilibria(system, numbers, within)
     names = system.coordinates
 
     def row(one: Any) -> tuple[object, ...]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import json
+import os
 import shutil
 import subprocess
 from collections import OrderedDict
@@ -15,7 +16,16 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import properties  # noqa: F401  (before the command line asks for one of its profiles)
 import pytest
+from durations import (  # noqa: F401
+    pytest_addoption,
+    pytest_collection_modifyitems,
+    pytest_runtest_logreport,
+    pytest_runtest_makereport,
+    pytest_runtest_setup,
+    pytest_terminal_summary,
+)
 from flint import arb, ctx, fmpq
 
 import mbsym
@@ -28,6 +38,9 @@ from mbsym.formulas.formula import Formula
 from mbsym.mechanics.variables import ring_environment
 from mbsym.model.system import System
 from mbsym.numerics.kernels.llvm import Library
+
+#: A width that somebody exported would wrap what is looked for in outputs.
+os.environ.pop("COLUMNS", None)
 
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 needs_chromium = pytest.mark.skipif(CHROMIUM is None, reason="no chromium")

@@ -41,7 +41,7 @@ BELOW = {
     "cli": "expressions algebra model source mechanics formulas problems analysis numerics simulation report batch"
     " diff editing maps sweeps picture serving __init__",
 }
-MODULES = [*ROOT.rglob("*.py"), *COMMANDS.glob("*.py")]
+MODULES = sorted([*ROOT.rglob("*.py"), *COMMANDS.glob("*.py")])
 HEAVY = ("sympy", "numpy", "scipy", "jinja2", "rich", "matplotlib", "llvmlite")
 
 
@@ -50,9 +50,18 @@ def layer_of(path: Path) -> str:
     return "cli" if path.is_relative_to(COMMANDS) else path.relative_to(ROOT).with_suffix("").parts[0]
 
 
-def imported(tree: ast.AST) -> Iterator[str]:
-    """The layers that a module imports, anywhere in it."""
-    for node in ast.walk(tree):
+def statements(within: ast.AST) -> Iterator[ast.stmt]:
+    """All of them, at any depth; expressions, of which there are ten times as many, hold none."""
+    for name in ("body", "handlers", "orelse", "finalbody", "cases"):
+        for node in getattr(within, name, ()):
+            if isinstance(node, ast.stmt):
+                yield node
+            yield from statements(node)
+
+
+def imported(tree: ast.AST) -> Iterator[tuple[int, str]]:
+    """The layers that a module imports, anywhere in it, each with its line."""
+    for node in statements(tree):
         names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
         if isinstance(node, ast.ImportFrom):
             assert node.level == 0, "imports are absolute"
@@ -63,16 +72,42 @@ def imported(tree: ast.AST) -> Iterator[str]:
             if name == "mbsym.__version__":  # known before anything is imported
                 continue
             if top == "mbsym":
-                yield rest[0] if rest and rest[0] in BELOW else "__init__"
+                yield node.lineno, rest[0] if rest and rest[0] in BELOW else "__init__"
             elif top in ("mbsym_cli", "cli"):
-                yield "cli"
+                yield node.lineno, "cli"
 
 
-@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(ROOT.parent)))
-def test_imports_point_downwards(path: Path) -> None:
+def upward_imports(path: Path) -> Iterator[str]:
+    """``mbsym/algebra/ring.py:12: algebra imports report`` for each import that does not point downwards."""
     layer = layer_of(path)
-    upwards = set(imported(ast.parse(path.read_text(encoding="utf-8")))) - {layer, *BELOW[layer].split()}
-    assert not upwards, f"{layer} imports {', '.join(sorted(upwards))}"
+    for line, name in imported(ast.parse(path.read_text(encoding="utf-8"))):
+        if name not in (layer, *BELOW[layer].split()):
+            yield f"{path.relative_to(ROOT.parent)}:{line}: {layer} imports {name}"
+
+
+def test_imports_point_downwards() -> None:
+    """In every module; all breaches are listed at once."""
+    assert {layer_of(path) for path in MODULES} >= {"algebra", "cli"}
+    breaches = [breach for path in MODULES for breach in upward_imports(path)]
+    assert not breaches, "\n" + "\n".join(breaches)
+
+
+def test_an_upward_import_is_found_wherever_it_stands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Planted: on top of a module, in a function, and where only types are looked at."""
+    monkeypatch.setattr(f"{__name__}.ROOT", tmp_path / "mbsym")
+    module = tmp_path / "mbsym" / "algebra" / "ring.py"
+    module.parent.mkdir(parents=True)
+    module.write_text(
+        "from mbsym.expressions import tree\nfrom mbsym.report.html import page\n"
+        "def f():\n    import mbsym_cli.main\n"
+        "if TYPE_CHECKING:\n    from mbsym import model\nelse:\n    from mbsym import source\n"
+        "try:\n    import a\nexcept ImportError:\n    import mbsym.maps\nelse:\n    import mbsym.diff\n"
+        "finally:\n    with a:\n        import mbsym.batch\n"
+        "match a:\n    case 1:\n        import mbsym.picture\n"
+    )
+    found = ["2 report", "4 cli", "6 model", "8 source", "12 maps", "14 diff", "17 batch", "20 picture"]
+    expected = ["mbsym/algebra/ring.py:{}: algebra imports {}".format(*text.split()) for text in found]
+    assert list(upward_imports(module)) == expected
 
 
 @pytest.mark.parametrize("name", ["mbsym", "mbsym.source", "mbsym_cli.main"])

@@ -1,8 +1,8 @@
 """Processes that begin with everything loaded: each is forked from one that has imported mbsym and done nothing else.
 
 A call is a process of its own, with streams, folder, limits and exit code as ``python -c`` has them; only what every
-interpreter would import again, for most of a second, is there already.  Tests whose subject is how a process begins or
-ends start an interpreter instead.
+interpreter would import again, for most of a second, is there already.  Shells start them by the name ``mbsym`` where
+``script`` has put it.  Tests whose subject is how a process begins or ends start an interpreter instead.
 """
 
 from __future__ import annotations
@@ -14,7 +14,9 @@ import json
 import os
 import pkgutil
 import resource
+import select
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -32,6 +34,19 @@ USED = ("jinja2", "matplotlib.figure", "matplotlib.backends.backend_agg", "matpl
 
 #: They are processes of other kinds, or need what may not be installed.
 NOT_LOADED = ("mbsym.serving", "mbsym_cli.__main__")
+
+#: What a shell starts: it hands its streams, words, folder and environment on, and ends as the process ends.
+SCRIPT = """#!{python} -SE
+import json, os, socket, sys
+server = socket.socket(socket.AF_UNIX)
+server.connect({address!r})
+socket.send_fds(server, [b"s"], [0, 1, 2])
+asked = {{"arguments": ["mbsym", *sys.argv[1:]], "cwd": os.getcwd(), "environment": dict(os.environ)}}
+server.sendall(json.dumps(asked).encode())
+server.shutdown(socket.SHUT_WR)
+ended = int(server.recv(8) or b"1")
+os.kill(os.getpid(), -ended) if ended < 0 else sys.exit(ended)
+"""
 
 _SERVERS: list[subprocess.Popen[str]] = []
 
@@ -66,6 +81,21 @@ def run(
     return subprocess.CompletedProcess(arguments, ended, out, err)
 
 
+def script(folder: Path) -> None:
+    """Puts ``mbsym`` into a folder for programs."""
+    address = _address(_server().pid)
+    while not address.exists():  # it is loading
+        time.sleep(0.01)
+    file = folder / "mbsym"
+    file.write_text(SCRIPT.format(python=sys.executable, address=str(address)), encoding="utf-8")
+    file.chmod(0o755)
+
+
+def _address(server: int) -> Path:
+    """Where a server listens; short, as a socket's name has to be."""
+    return Path(tempfile.gettempdir()) / f"mbsym-warm-{server}"
+
+
 def _server() -> subprocess.Popen[str]:
     """One for all tests of this process, which ends with it."""
     if not _SERVERS:
@@ -94,12 +124,41 @@ def _serve() -> None:
     _load()
     gc.collect()
     gc.freeze()
-    for line in sys.stdin:
-        asked = json.loads(line)
-        child = os.fork()
-        if not child:
-            _become(asked)
-        print(json.dumps(_awaited(child, asked["seconds"])), file=answers, flush=True)
+    address, listener = _address(os.getpid()), socket.socket(socket.AF_UNIX)
+    listener.bind(str(address))
+    listener.listen()
+    running: list[int] = []
+    try:
+        while True:
+            if listener in select.select([sys.stdin, listener], [], [])[0]:
+                running = [process for process in running if os.waitpid(process, os.WNOHANG) == (0, 0)]
+                running.append(_begin_script(listener.accept()[0]))
+            elif line := sys.stdin.readline():
+                asked = json.loads(line)
+                child = os.fork()
+                if not child:
+                    _become(asked, _streams(asked["folder"]))
+                print(json.dumps(_awaited(child, asked["seconds"])), file=answers, flush=True)
+            else:
+                break
+    finally:
+        address.unlink()
+
+
+def _begin_script(client: socket.socket) -> int:
+    """A process that starts what a shell has asked for and says how it ended; others can begin meanwhile."""
+    if waiting := os.fork():
+        client.close()
+        return waiting
+    _, streams, _, _ = socket.recv_fds(client, 1, 3)
+    with client.makefile("r", encoding="utf-8") as told:
+        asked = {"code": COMMAND, "memory": None, **json.loads(told.read())}
+    child = os.fork()
+    if not child:
+        client.close()
+        _become(asked, streams)
+    client.sendall(str(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])).encode())
+    os._exit(0)
 
 
 def _awaited(child: int, seconds: float) -> int | None:
@@ -115,12 +174,16 @@ def _awaited(child: int, seconds: float) -> int | None:
     return None
 
 
-def _become(asked: dict[str, Any]) -> None:
+def _streams(folder: str) -> list[int]:
+    ways = {"in": os.O_RDONLY, "out": os.O_WRONLY, "err": os.O_WRONLY}
+    return [os.open(os.path.join(folder, name), way | os.O_CREAT) for name, way in ways.items()]
+
+
+def _become(asked: dict[str, Any], streams: list[int]) -> None:
     """The process that was asked for; never returns."""
     code = 1
     try:
-        for number, (name, how) in enumerate((("in", os.O_RDONLY), ("out", os.O_WRONLY), ("err", os.O_WRONLY))):
-            stream = os.open(os.path.join(asked["folder"], name), how | os.O_CREAT)
+        for number, stream in enumerate(streams):
             os.dup2(stream, number)
             os.close(stream)
         sys.stdin = os.fdopen(0, encoding="utf-8")

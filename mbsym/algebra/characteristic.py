@@ -11,7 +11,7 @@ instead of running for minutes.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from mbsym.algebra.factors import irreducible_factors
@@ -148,6 +148,21 @@ def is_semisimple(m: Matrix, c: Matrix, k: Matrix, factor: Coefficients, multipl
             if divmod(determinant(rows), needed)[1] != 0:
                 return False
     return True
+
+
+def first_minors(m: Matrix, c: Matrix, k: Matrix) -> Iterator[Coefficients]:
+    """The minors of order n - 1 of lambda^2 M + lambda C + K that are not zero, from low to high powers; n > 1.
+
+    Where one of them does not vanish at a root, the kernel there has one dimension: a multiple root has a Jordan block.
+    """
+    lam = _Variable(m[0][0].context())
+    pencil, n = _pencil(lam, m, c, k), len(m)
+    for i in range(n):
+        for j in range(n):
+            rows = [[entry for col, entry in enumerate(row) if col != j] for at, row in enumerate(pencil) if at != i]
+            minor = trimmed(lam.coefficients(determinant(rows), 2 * n - 2))
+            if minor[-1] != 0:
+                yield minor
 
 
 def _pencil(lam: _Variable, m: Matrix, c: Matrix, k: Matrix) -> list[list[Polynomial]]:

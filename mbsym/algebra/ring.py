@@ -29,7 +29,7 @@ from flint import Ordering, arb, ctx, fmpq, fmpq_mpoly_ctx, fmpz, fmpz_poly
 from flint.utils.flint_exceptions import DomainError
 
 from mbsym.algebra.base import Algebra
-from mbsym.algebra.factors import irreducible_factors
+from mbsym.algebra.factors import irreducible_factors, rational_ratio
 from mbsym.algebra.failures import Limit, NoClosedForm, SingularPoint
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.point import enclosed
@@ -145,6 +145,7 @@ class Ring(Algebra[Polynomial]):
         self._nonnegative = self._positive | {
             self._index["parameter", name] for name in nonnegative if ("parameter", name) in self._index
         }
+        self.assumed: list[Polynomial] = []  # what is known to be positive besides
         self._independent: set[int] = set()  # nested roots whose normal forms are unique
         self._jumps: dict[int, set[str]] = {}  # signs, and what they move with: they have no derivatives
         self._relations: list[tuple[tuple[tuple[int, int], ...], Polynomial]] = []
@@ -438,7 +439,7 @@ class Ring(Algebra[Polynomial]):
         if constant is not None and constant < 0:
             s, c = self._own_angle(-argument)
             return -s, c
-        if constant is None and (parts := self._arc_tangents(argument)):
+        if parts := self._arc_tangents(argument):
             return self._with_arc_tangents(argument, parts)
         index = self._adjoined("sine", argument)
         if index is None:
@@ -596,9 +597,11 @@ class Ring(Algebra[Polynomial]):
         content, factors = self.factored(x)
         outside, inside, numbers = self.one, self.one, Fraction(int(content.p), int(content.q))
         for factor, exponent in factors:
-            positive = self.is_positive(factor)
-            if positive:
-                outside = self.times(outside, self._power(factor, exponent // 2))
+            size = (
+                factor if self.is_positive(factor) else -factor if self.assumed and self.is_positive(-factor) else None
+            )
+            if size is not None:
+                outside = self.times(outside, self._power(size, exponent // 2))
                 exponent = exponent % 2
             inside = self.times(inside, self._power(factor, exponent))
         rational, radicand = _square_part(abs(numbers))
@@ -728,12 +731,18 @@ class Ring(Algebra[Polynomial]):
         return self._gens[index]
 
     def is_positive(self, x: Polynomial) -> bool:
-        """Whether x is a sum of terms that are not negative, one of them positive: sufficient, never wrong."""
+        """Whether x is a sum of terms that are not negative, one of them positive: sufficient, never wrong.
+
+        Or a positive multiple of something that is assumed to be positive.
+        """
         nonnegative = self._nonnegative | self._positive
-        return all(
-            coefficient > 0 and all(k in nonnegative or e % 2 == 0 for k, e in enumerate(monomial) if e)
-            for monomial, coefficient in x.terms()
-        ) and any(all(k in self._positive for k, e in enumerate(monomial) if e) for monomial in x.monoms())
+        return (
+            all(
+                coefficient > 0 and all(k in nonnegative or e % 2 == 0 for k, e in enumerate(monomial) if e)
+                for monomial, coefficient in x.terms()
+            )
+            and any(all(k in self._positive for k, e in enumerate(monomial) if e) for monomial in x.monoms())
+        ) or any((ratio := rational_ratio(x, one)) is not None and ratio > 0 for one in self.assumed)
 
     # --- derivation --------------------------------------------------------------------------------------------------
 
@@ -961,6 +970,7 @@ class ParameterRing(Ring):
         self._positive = {self.indices.index(k) for k in whole._positive if k in self.indices}
         self._nonnegative = {self.indices.index(k) for k in whole._nonnegative if k in self.indices}
         self._relations, self._derivatives, self.angles, self._independent = [], {}, {}, set()
+        self.assumed = [self.project(x) for x in whole.assumed if set(occurring([x])) <= set(self.indices)]
         self._jumps = {}
         self.typed = frozenset()
 

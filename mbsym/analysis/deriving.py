@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
 from mbsym.algebra.failures import Failure
+from mbsym.algebra.matrices import determinant
 from mbsym.analysis import constrained, given
+from mbsym.analysis.judge import Judge
 from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.mechanics.rest import given_values, missing_values
-from mbsym.mechanics.rotation_orders import rotation_orders
+from mbsym.mechanics.rotation_orders import Reordered, rotation_orders
 from mbsym.problems import dissipation, energy, equations, equilibrium, stability
 from mbsym.problems.dissipation import Balance
 from mbsym.problems.energy import Energy
@@ -68,6 +71,13 @@ def in_other_angles(analysis: Analysis) -> Stability | None:
 
     The unperturbed motion is the same: stability is a property of it, not of angles.
     """
+    for other, found in _in_other_angles(analysis):
+        axes = ", ".join(map(str, other.axes))
+        return stability.because(found, Because.OTHER_ANGLES, other.body, axes, ", ".join(other.angles))
+    return None
+
+
+def _in_other_angles(analysis: Analysis) -> Iterator[tuple[Reordered, Stability]]:
     for other in rotation_orders(analysis.system) if analysis.suggests else ():
         there = type(analysis)(other.system, (), analysis.terms, suggests=False)
         there.__dict__["ring"] = analysis.ring
@@ -77,9 +87,26 @@ def in_other_angles(analysis: Analysis) -> Stability | None:
         except Failure:
             continue
         if not found.verdict.coordinates_singular:
-            axes = ", ".join(map(str, other.axes))
-            return stability.because(found, Because.OTHER_ANGLES, other.body, axes, ", ".join(other.angles))
-    return None
+            yield other, found
+
+
+def _demand_regular(analysis: Analysis) -> None:
+    """Raises Unavailable where M is singular on the motion: K says nothing about stability there."""
+    ring, parts = analysis.ring, analysis.judgeable.subsystems
+    if analysis.system.linear is not None or all(
+        ring.is_zero(determinant(ring, x.M.polynomials)) is not True for x in parts
+    ):
+        return
+    reason = (
+        "the mass matrix is singular on the motion (coordinates are singular there, or what moves has no mass): "
+        "no theorem about stabilisation applies"
+    )
+    hint = ""
+    for other, _ in _in_other_angles(analysis):
+        axes, angles = ", ".join(map(str, other.axes)), ", ".join(other.angles)
+        hint = f"with 'rotation: {{axes: [{axes}], angles: [{angles}]}}' of body '{other.body}' it is derived"
+        break
+    raise Unavailable("stabilisation", NoResult(reason, hint, "singular coordinates", "singular-coordinates"))
 
 
 def _judged(analysis: Analysis) -> Stability:
@@ -89,25 +116,26 @@ def _judged(analysis: Analysis) -> Stability:
     divisor = "" if values is None or analysis.system.linear is not None else pole(analysis, values)
     if divisor:
         return replace(found, numerical=undecided(Because.POLE, divisor), spectra=())
-    if found.numerical is None or not found.numerical.word.open or analysis.system.constraints:
-        return found  # what looks further at open verdicts knows the open tree alone
-    from mbsym.problems import open_verdicts  # what equilibria are judged by is not imported for nothing
-
-    return open_verdicts.decided(found, scene, analysis.equilibrium)
+    if found.numerical is None or values is None or not found.numerical.word.open:
+        return found
+    judged = Judge(analysis).decided(found.numerical, values)
+    before = found.numerical if judged.because(Because.TERMS_OF_HIGHER_ORDER) else None
+    return replace(found, numerical=judged, before_higher_order=before)
 
 
 def stabilisation_of(analysis: Analysis) -> Stabilisation:
     """Problem 8, with numbers where the description gives all of them."""
     from mbsym.problems.stabilisation import problem  # few ask for it
 
-    found = analysis.equilibrium
+    found, linear = analysis.equilibrium, analysis.judgeable  # raises first where there is no such motion
     if len(found.conditions) > len(found.solved):
         reason = "the motion exists under conditions that were not solved: parameters are not independent then"
         raise Unavailable("conditions", NoResult(reason, "see problem 4", "conditions", "unsolved-conditions"))
+    _demand_regular(analysis)
     values = stability.parameter_values(analysis.parameters_scene, found)
     if values is not None and not problem.on_motion(analysis.parameters_scene, found, values):
         values = None
-    return problem.stabilisation(analysis.parameters_scene, analysis.judgeable, analysis.signs, values)
+    return problem.stabilisation(analysis.parameters_scene, linear, analysis.signs, values)
 
 
 def equilibrium_of(analysis: Analysis) -> Equilibrium:
@@ -173,6 +201,7 @@ def equilibria_of(analysis: Analysis) -> Equilibria:
     if missing:
         hint = f"add for example  values: {{{missing[0]}: 1, ...}}"
         raise Unavailable("values", NoResult(f"no number for {', '.join(missing)}", hint, "no values", "no-value"))
+    from mbsym.analysis import resting
     from mbsym.problems import equilibria
 
-    return equilibria.equilibria(analysis.system, values)
+    return resting.judged(analysis.system, values, equilibria.equilibria(analysis.system, values))

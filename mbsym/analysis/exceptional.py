@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from mbsym.algebra.failures import NOT_THERE
 from mbsym.analysis.higher import ignorable
+from mbsym.analysis.judge import Judge
 from mbsym.analysis.stages import NoResult, Unavailable
+from mbsym.problems.stability.word import Word
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
-    from mbsym.problems.normal_forms.along import Along
+    from mbsym.problems.normal_forms.along import Along, Special
 
 
 def exceptional(
@@ -41,4 +45,17 @@ def exceptional(
         raise Unavailable("conditions", NoResult(reason, "vary another one", "conditions", "solved"))
     conservative, cyclic = ignorable(analysis)
     numbers = {key: value for key, value in values.items() if key != name and key not in solved}
-    return along(analysis.parameters_scene, analysis.system, found, name, interval, numbers, conservative, cyclic)
+    listed = along(analysis.parameters_scene, analysis.system, found, name, interval, numbers, conservative, cyclic)
+    return replace(listed, specials=tuple(_judged(analysis, numbers, name, one) for one in listed.specials))
+
+
+def _judged(analysis: Analysis, values: Mapping[str, Fraction], name: str, special: Special) -> Special:
+    """With what problem 6 says at a rational value that terms of higher order leave open: an energy may decide it."""
+    if special.exactly is None or special.judged.outcome.value != Word.UNDECIDED.value:
+        return special
+    there = {**values, name: special.exactly}
+    try:
+        verdict = Judge(analysis)(there)
+    except NOT_THERE:
+        return special
+    return special if verdict.word.open else replace(special, verdict=verdict)

@@ -27,10 +27,10 @@ def normal_forms_of(analysis: Analysis) -> NormalForms:
     from mbsym.problems.stabilisation.problem import on_motion
 
     found, scene = analysis.equilibrium, analysis.parameters_scene
+    analysis.judgeable  # noqa: B018  raises where the first approximation, or time, says that no theorem applies
     if len(found.conditions) > len(found.solved):
         reason = "the motion exists under conditions that were not solved: parameters are not independent then"
         raise Unavailable("conditions", NoResult(reason, "see problem 4", "conditions", "unsolved-conditions"))
-    analysis.judgeable  # noqa: B018  raises where the first approximation, or time, says that no theorem applies
     values = stability.parameter_values(scene, found)
     nothing = Why.NONE
     if values is not None:
@@ -39,12 +39,17 @@ def normal_forms_of(analysis: Analysis) -> NormalForms:
     conservative, cyclic = ignorable(analysis)
     result = problem.normal_forms(scene, analysis.system, found, values, conservative, cyclic)
     judged = analysis.optional("stability")
-    first = None if judged is None or judged.numerical is None else judged.numerical.word
+    before = None if judged is None else judged.before_higher_order or judged.numerical
+    first = None if before is None else before.word
     if nothing is not Why.NONE:
         result = replace(result, at_values=Judged(Outcome.UNDECIDED, Theorem.NONE, nothing))
     if isinstance(result.in_symbols, InSymbols):
         result = replace(result, in_symbols=_told_by_signs(result.in_symbols, analysis.signs))
-    return replace(result, first=first, everywhere=None if judged is None else decided(judged.verdict.word))
+    return replace(
+        result,
+        first=first,
+        everywhere=None if judged is None else decided(judged.verdict.word),
+    )
 
 
 def judge(analysis: Analysis) -> Callable[[Mapping[str, Any]], Judged | None]:

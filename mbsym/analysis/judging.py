@@ -5,19 +5,16 @@ The results themselves do not depend on claims, and claims cost the reports noth
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import Defect, Failure
+from mbsym.analysis.judge import Judge
 from mbsym.mechanics.constraints.refusal import refuse_constraints, refused
 from mbsym.mechanics.variables import angle_denominators, angles_of
 from mbsym.model.claims import CLAIMS, Claim
-from mbsym.problems import claims, stability
+from mbsym.problems import claims
 from mbsym.problems.claims import ClaimResult
 from mbsym.problems.claims.counterexample import Trials
-from mbsym.problems.stability.verdict import Verdict
-from mbsym.problems.stability.word import Word
 
 if TYPE_CHECKING:
     from mbsym.analysis.expanding import Expansion
@@ -111,32 +108,7 @@ def _order(analysis: Analysis, kind: str) -> int:
 
 def trials(analysis: Analysis) -> Trials:
     """Parameters at which claimed conditions are tried, with exact verdicts."""
-    scene, linear = analysis.parameters_scene, analysis.judgeable
-    verdict_at = stability.ExactVerdicts(scene, analysis.balance, linear, analysis.equilibrium, analysis.signs)
+    judge = Judge(analysis)
     solved = {name: value.polynomial for name, value in analysis.equilibrium.solved}
-    return Trials(analysis.system, analysis.ring, linear.M, solved, verdict_at, decider(analysis))
-
-
-def decider(analysis: Analysis) -> Callable[[Verdict, Mapping[str, Fraction]], Verdict]:
-    """What the nonlinear system adds to an open verdict at exact values: as problem 6 adds it, then problem 11."""
-    from mbsym.analysis import higher
-    from mbsym.problems import open_verdicts
-
-    scene, system = analysis.parameters_scene, analysis.system
-    of_higher_order = higher.judge(analysis)
-
-    def decided(verdict: Verdict, values: Mapping[str, Fraction]) -> Verdict:
-        if system.linear is not None or system.constraints or system.speeds:
-            return verdict
-        verdict = open_verdicts.decided_at(verdict, scene, values)
-        if not verdict.word.open or verdict.coordinates_singular:
-            return verdict
-        found = of_higher_order(values)
-        word = None if found is None else _WORDS.get(found.outcome.value)
-        return verdict if word is None or found is None else Verdict(word, (found.theorem.value,))
-
-    return decided
-
-
-#: What problem 11 may say, as the words of problem 6.
-_WORDS = {"stable": Word.STABLE, "asymptotically stable": Word.ASYMPTOTIC, "unstable": Word.UNSTABLE}
+    mass_matrix = analysis.judgeable.M
+    return Trials(analysis.system, analysis.ring, mass_matrix, solved, judge.first_approximation, judge.decided)

@@ -6,6 +6,7 @@ same values; files are written here.  What a lost worker had begun is begun agai
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import uuid
 from contextlib import suppress
@@ -46,7 +47,9 @@ class Connection:
         logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what is lost is told in rows
         self._own = None
         try:
-            if address == LOCAL:
+            if address != LOCAL:
+                _speak_with(distributed, address)
+            else:
                 self._own = distributed.LocalCluster(
                     n_workers=jobs, threads_per_worker=1, dashboard_address=None, host="127.0.0.1"
                 )
@@ -120,6 +123,26 @@ def _distributed() -> Any:
     except ImportError:
         raise NoCluster("--cluster needs Dask: pip install 'mbsym[cluster]'") from None
     return distributed
+
+
+def _speak_with(distributed: Any, address: str) -> None:
+    """Raises NoCluster where something else answers, OSError where nothing does, ValueError for no address.
+
+    A client that fails later leaves threads behind, and takes what a server of another kind says for the length of a
+    message, for which it has no memory.
+    """
+
+    async def spoken() -> None:
+        secured = distributed.security.Security().get_connection_args("client")
+        comm = await distributed.comm.connect(address, timeout=CONNECT, **secured)
+        await comm.close()
+
+    try:
+        asyncio.run(spoken())
+    except (OSError, ValueError, ImportError):
+        raise
+    except (Exception, MemoryError) as error:
+        raise NoCluster(f"what answers at {address} is no Dask scheduler of this version") from error
 
 
 def _first_line(error: BaseException) -> str:

@@ -44,8 +44,8 @@ from mbsym.algebra.characteristic import (
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.signs import Signs
-from mbsym.maps.constant import Constant
 from mbsym.maps.section import Section
+from mbsym.problems.stability.constant import Constant
 from mbsym.problems.stability.linear_form import LinearSystem, add, is_potential, is_zero
 from mbsym.problems.stability.routh import ignoring_cyclic, momenta_are_constant
 

@@ -35,12 +35,12 @@ from mbsym.algebra.plane.numbers import Rational, between_simply, high, low, sig
 from mbsym.algebra.plane.points import Point
 from mbsym.algebra.plane.projection import nothing
 from mbsym.algebra.plane.stacks import column
-from mbsym.maps.constant import Constant
 from mbsym.maps.constant_points import beside
 from mbsym.maps.continuity import jumps
 from mbsym.maps.on_curves import ExactVerdicts
 from mbsym.maps.section import Section
 from mbsym.maps.verdicts import Judged, verdict_at
+from mbsym.problems.stability.constant import Constant
 from mbsym.problems.stability.enclosed import eigenvalues, on_axis, spectrum
 from mbsym.problems.stability.exact import RationalPoint, evaluated
 from mbsym.problems.stability.linear_form import LinearSystem, Matrix

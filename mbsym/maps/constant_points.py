@@ -18,7 +18,7 @@ from mbsym.algebra.plane.fields import Over
 from mbsym.algebra.plane.line import univariate
 from mbsym.algebra.plane.numbers import sign
 from mbsym.algebra.plane.point_field import LineField, PointField
-from mbsym.maps.constant import Constant
+from mbsym.problems.stability.constant import Constant
 
 #: The degree of the field of an algebraic coordinate and the constant, beyond which no verdict is sought there.
 MOST_DEGREE = 16

@@ -14,9 +14,9 @@ from flint import fmpq
 from mbsym.algebra.failures import Failure, NoValue, SingularPoint
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.maps.constant import Constant
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import relations
+from mbsym.problems.stability.constant import Constant
 
 #: n/d, both polynomials in the axes.
 Image = tuple[Polynomial, Polynomial]

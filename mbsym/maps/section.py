@@ -22,10 +22,10 @@ from mbsym.algebra.failures import Failure, NoValue, SingularPoint
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial
 from mbsym.analysis import Analysis
-from mbsym.maps.constant import Constant, constant_of, context_of
 from mbsym.maps.given import Complaint, Fault, Unfit, numbers_given
 from mbsym.maps.images import Image, Images, Irrational, common_denominator
 from mbsym.model.system import System
+from mbsym.problems.stability.constant import Constant, constant_of, context_of
 from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.problem import Prepared, prepared_parts
 

@@ -34,13 +34,13 @@ from mbsym.algebra.plane.space import critical_levels, flattened, levels_of
 from mbsym.analysis import Analysis
 from mbsym.maps.admissible import Admissibility, Demand, admissibility
 from mbsym.maps.boundaries import Boundaries, boundaries, norm_of_factors
-from mbsym.maps.constant import Constant, context_of
 from mbsym.maps.given import Complaint, Fault, Unfit
 from mbsym.maps.mapping import Judge, Watch, asked, box_of, ends, mapped, unwatched, with_borders
 from mbsym.maps.result import Of, PlaneMap, Shape, Shown
 from mbsym.maps.section import Axis, Law, Section, section
 from mbsym.maps.seen import seen
 from mbsym.maps.soft_borders import SoftBorders
+from mbsym.problems.stability.constant import Constant, context_of
 
 #: Slices take seconds each: with more critical values than this none is begun.
 MOST_LEVELS = 120

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping
 from weakref import WeakKeyDictionary
 
 from mbsym.algebra.failures import Failure
+from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.tree import ZERO, Expression, divide, number
 from mbsym.mechanics.kinematics import Scene
@@ -137,12 +138,13 @@ def steadied(scene: Scene, x: Polynomial) -> Polynomial:
     """x on the unperturbed motion, without what runs there if it does not vary: k (q - v t) where q' = v.
 
     What has no rate on the motion has the value of t = 0 (a prescribed quantity that starts nowhere starts at 0).
-    Angles stay as they are.
+    Sines and cosines of angles stay as they are.
     """
     ring: Ring = scene.ring
     running = {*turning(scene), *(item.name for item in scene.system.prescribed), "t"}
     varying = unsteady(scene, x)
-    if not varying or not running.issuperset(varying) or {*varying} & {*ring.angles} or not is_steady(scene, x):
+    turned = {ring.index(kind, name) for name in {*varying} & {*ring.angles} for kind in ("sine", "cosine")}
+    if not varying or not running.issuperset(varying) or turned & {*occurring([x])} or not is_steady(scene, x):
         return x
     values = motion_values(scene.system)
     images = {ring.index("time", "t"): ring.zero}

@@ -3,7 +3,7 @@
 A body that turns steadily about one axis of its joint, its other angles being zero, stands the same way whatever the
 order of the turns, and about whichever axes the others are.  The deviations do not: small angles that follow the spin
 turn with it, those that come before it stay behind, and with a body that is not symmetric the coefficients then vary
-with time; with two turns about one axis the angles are singular there.
+with time; with two turns about one axis the angles are singular there, at rest, too.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def rotation_orders(system: System) -> Iterator[Reordered]:
     """The other sequences of every joint that spins about one axis, those first in which the spin comes first.
 
     The joint's angles must be coordinates that occur nowhere else, in no constraint either, at rest at zero but for the
-    one that spins.
+    one that spins; all of them may rest where two turns are about one axis.
     """
     for body in system.bodies:
         spin = _spin(system, body)
@@ -48,10 +48,13 @@ def rotation_orders(system: System) -> Iterator[Reordered]:
 
 
 def _orders(body: Body, spin: str) -> list[tuple[tuple[int, Expression], ...]]:
-    """The turns in other orders; about the three different axes where one of them occurs twice."""
+    """The turns in other orders; about the three different axes where one of them occurs twice.
+
+    What spins, or the first turn at rest, keeps its axis.
+    """
     turns = given = tuple(zip(body.rotation.axes, body.rotation.angles, strict=True))
     if len({axis for axis, _ in turns}) < len(turns) == 3:
-        (first,) = (turn for turn in turns if angle_name(turn[1]) == spin)
+        first = next(turn for turn in turns if angle_name(turn[1]) == spin)
         others = [angle for _, angle in turns if angle_name(angle) != spin]
         left = [axis for axis in (1, 2, 3) if axis != first[0]]
         turns = (first, *zip(left, others, strict=True))
@@ -60,7 +63,10 @@ def _orders(body: Body, spin: str) -> list[tuple[tuple[int, Expression], ...]]:
 
 
 def _spin(system: System, body: Body) -> str | None:
-    """The only angle of a joint that turns steadily, the others being zero; None where it is not so."""
+    """The only angle of a joint that turns steadily, the others being zero; None where it is not so.
+
+    The first angle where all are zero at rest and two turns are about one axis.
+    """
     angles = [angle_name(angle) for angle in body.rotation.angles]
     if len(angles) < 2 or not {*angles} <= {*body.coordinates} or len({*angles}) < len(angles):
         return None
@@ -75,4 +81,6 @@ def _spin(system: System, body: Body) -> str | None:
     motion = motion_values(system)
     spinning = [name for name in own if motion[name][1] != ZERO]
     at_zero = all(motion[name][0] == ZERO for name in own if name not in spinning)
+    if not spinning and len({*body.rotation.axes}) < len(angles):
+        spinning = [name for name in angles[:1] if name is not None]
     return spinning[0] if len(spinning) == 1 and at_zero else None

@@ -3,20 +3,26 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cached_property
+from typing import Any
 
 from flint import arb, fmpq
 
+from mbsym.algebra.base import Algebra, Lowering
+from mbsym.algebra.failures import NOT_THERE
 from mbsym.algebra.point import Balls, BallsAtRationals, Rationals
 from mbsym.algebra.ring import Ring
 from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.variables import has_linear_angles
+from mbsym.model.comparison import has_sign, holds
 from mbsym.model.speeds import Quaternion
-from mbsym.model.system import System
+from mbsym.model.system import System, rational
 
 #: Any fixed number will do; a fixed one makes reports reproducible byte for byte.
 SEED = 1788
+#: So many draws look for numbers that keep the assumptions.
+ATTEMPTS = 100
 
 
 #: Of numbers so fine one state tells more than several of coarse ones: a polynomial of total degree d that is not zero
@@ -24,20 +30,44 @@ SEED = 1788
 FINE = 1 << 40
 
 
-def _values(system: System, ring: Ring, source: random.Random, fine: int = 1) -> dict[str, fmpq]:
-    """Between 1/24 and 40, quotients of multiples of 1/``fine``."""
-    values = {name: fmpq(source.randint(fine, 40 * fine), source.randint(fine, 24 * fine)) for name in ring.names()}
-    for parameter in system.parameters:
-        if parameter.sign in ("negative", "nonpositive"):
-            values[parameter.name] = -values[parameter.name]
-    return values
+def drawn(system: System, ring: Ring, source: random.Random, fine: int = 1) -> dict[str, fmpq]:
+    """Between 1/24 and 40, quotients of multiples of 1/``fine``, of declared sign and as the assumptions have it.
+
+    Where no such numbers are met those that the description gives are taken, and others as they come.
+    """
+    for attempt in range(ATTEMPTS):
+        values = {name: fmpq(source.randint(fine, 40 * fine), source.randint(fine, 24 * fine)) for name in ring.names()}
+        for parameter in system.parameters:
+            flipped = parameter.sign in ("negative", "nonpositive")
+            if flipped or (attempt and parameter.sign in ("real", "nonzero") and source.randrange(2)):
+                values[parameter.name] = -values[parameter.name]
+        if not system.assumptions or is_allowed(system, Rationals({}, {}), values):
+            return values
+    given = {one.name: rational(one.value) for one in system.parameters}
+    return values | {name: fmpq(x.numerator, x.denominator) for name, x in given.items() if x is not None}
+
+
+def is_allowed(system: System, numbers: Algebra[Any], values: Mapping[str, Any]) -> bool:
+    """Whether declared signs and assumptions are kept; the relations between parameters are no matter here."""
+    if not all(has_sign(values[one.name], one.sign) for one in system.parameters if one.name in values):
+        return False
+    if not system.assumptions:
+        return True
+    try:
+        values = dict(values)
+        for symbol in system.notation:
+            values[symbol.name] = Lowering(numbers, values)(symbol.value)
+        lower = Lowering(numbers, values)
+        return all(holds(lower(one.left) - lower(one.right), one.relation) for one in system.assumptions)
+    except NOT_THERE:
+        return True
 
 
 def rational_states(system: System, ring: Ring, count: int) -> Iterator[State]:
     """States whose sines and cosines are rational; a plain coordinate is an independent number there."""
     source = random.Random(SEED)
     for _ in range(count):
-        values = _values(system, ring, source) | {"pi": fmpq(355, 113)}
+        values = drawn(system, ring, source) | {"pi": fmpq(355, 113)}
         yield State(Rationals(_tangents(system, ring, source), ring.angles), values)
 
 
@@ -56,7 +86,7 @@ def ball_states(system: System, ring: Ring, count: int, fine: int = 1) -> Iterat
     """States in which irrational functions have rigorous enclosures."""
     source = random.Random(SEED)
     for _ in range(count):
-        values = {name: arb(value) for name, value in _values(system, ring, source, fine).items()} | {"pi": arb.pi()}
+        values = {name: arb(value) for name, value in drawn(system, ring, source, fine).items()} | {"pi": arb.pi()}
         yield State(Balls(values), values)
 
 
@@ -72,7 +102,7 @@ def enclosed_states(system: System, ring: Ring, count: int, fine: int = 1) -> It
         return
     source = random.Random(SEED)
     for _ in range(count):
-        exact = _values(system, ring, source, fine)
+        exact = drawn(system, ring, source, fine)
         numbers = BallsAtRationals(_tangents(system, ring, source, fine), ring.angles, exact)
         yield State(numbers, {**numbers.values, "pi": arb.pi()})
 

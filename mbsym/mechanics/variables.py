@@ -8,7 +8,7 @@ from fractions import Fraction
 from math import lcm
 from typing import Any
 
-from mbsym.algebra.base import Scalar
+from mbsym.algebra.base import Lowering, Scalar
 from mbsym.algebra.program import Program
 from mbsym.algebra.ring import TERM_BUDGET, Ring
 from mbsym.expressions.angles import LinearForm, linear_form
@@ -213,7 +213,32 @@ def ring_of(
     )
     if system.speeds:
         ring.leading = frozenset(ring.index("coordinate", speed.name) for speed in system.speeds)
+    ring.assumed += _assumed(system, ring)
     return ring
+
+
+def _assumed(system: System, ring: Ring) -> Iterator[Any]:
+    """What is declared or assumed to be positive, as polynomials: sqrt((a - b)**2) is b - a under a < b."""
+    yield from (-ring.generator("parameter", one.name) for one in system.parameters if one.sign == "negative")
+    lower = Lowering(ring, ring_environment(system, ring))
+    for one in system.assumptions:
+        if one.relation in ("<", ">") and all(map(_is_polynomial, (one.left, one.right))):
+            gap = lower(one.left) - lower(one.right)
+            yield gap if one.relation == ">" else -gap
+
+
+def _is_whole(power: Expression) -> bool:
+    return isinstance(power, Number) and power.value.denominator == 1 and power.value > 0
+
+
+def _is_polynomial(expression: Expression) -> bool:
+    """Whether it needs no generator of its own."""
+    return all(
+        not isinstance(node, Call)
+        and not (isinstance(node, Operation) and node.operator == "/" and names(node.right))
+        and not (isinstance(node, Operation) and node.operator == "**" and not _is_whole(node.right))
+        for node in walk(expression)
+    )
 
 
 def _own_generators(node: Expression) -> int:

@@ -97,6 +97,7 @@ class LinearModel:
         for name, matrix in zip("MDGKN", linear.matrices, strict=True):
             nodes = [carry(x) for row in matrix.polynomials for x in row]
             self.codes[name] = Code(program, self.names, tuple(stabilised(program, nodes)))
+        self.operations = sum(code.operations for code in self.codes.values())
         self._truth = {name: precise(code, PRECISIONS[-1]) for name, code in self.codes.items()}
         self._kernels = {scalar: kernels(self.codes, scalar) for scalar in (FLOAT32, FLOAT64)}
         self.shown = [name for name, m in zip("MDGKN", linear.matrices, strict=True) if any(x for x in _entries(m))]

@@ -90,7 +90,7 @@ def _at_first(dynamics: Dynamics, tolerance: float, time_: float, scalar: str) -
         if found is not None and found < least:
             best, least = METHODS[name], found
     if best is explicit:
-        why = f"motions die out at rates up to {decay:.3g}, yet explicit steps are quicker here"
+        why = f"motions die out at rates up to {decay:.3g}, yet explicit steps cost less here, by counted work"
         return Choice(best, why, decay, frequency, f"about {first:.2g} s by the counted work of a short trial")
     why = f"stiff: motions die out at rates up to {decay:.3g}, which would cost an explicit method {steps:.2g} steps"
     return Choice(

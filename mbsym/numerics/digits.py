@@ -153,6 +153,11 @@ class Truth:
         return [*values, ball(time), *(ball(x) for x in state)]
 
     @property
+    def evaluations(self) -> int:
+        """How many evaluations one quantity in one state takes, about: its value, its sizes and its condition."""
+        return 4 + len(self.varied)
+
+    @property
     def _driven(self) -> tuple[Any, ...]:
         return self.system.prescribed
 
@@ -218,6 +223,7 @@ class Arithmetic:
 
     def __init__(self, scenario: Scenario, found: Sequence[Quantity], compiled: bool = True) -> None:
         self.found, self.scenario = tuple(found), scenario
+        self.compiled = compiled
         self.slopes_of: Sequence[Node] | None = None
         fresh = bound(scenario)
         names = ("t", *scenario.system.coordinates, *scenario.system.velocities)

@@ -38,12 +38,18 @@ from mbsym.numerics.singular_positions import SingularPositions, singular_positi
 #: A quantity is left out where its program is longer than this, linear matrices where they have more terms.
 MOST_OPERATIONS = 20_000
 
-#: Steps of polynomial arithmetic that a second of the budget allows the linear equations; a second holds two to four
-#: times as many.  Counted steps make the same thing come out on every machine.
-STEPS_PER_SECOND = 1_000_000
+#: Steps of polynomial arithmetic that a unit of the budget allows the linear equations.
+STEPS_PER_UNIT = 1_000_000
 
-#: Programs with more operations than this for a second of the budget are not compiled but taken step by step.
-COMPILED_PER_SECOND = 1_000
+#: Programs with more operations than this for a unit of the budget are not compiled but taken step by step.
+COMPILED_PER_UNIT = 1_000
+
+#: What is counted, with the seconds that it takes on a usual machine, about (``mbsym.numerics.prices``): a quantity on
+#: a rung, and one of its operations in balls; an operation that is compiled, or made ready to be taken step by step; an
+#: entry of the linear equations' matrices on a rung.
+QUANTITY, IN_BALLS = 2e-4, 2.5e-7
+COMPILED, STEPWISE = 2.5e-4, 2e-5
+ENTRY = 7e-4
 
 #: Eigenvalues of larger linear systems are not enclosed.
 MOST_ENCLOSED = 12
@@ -51,7 +57,7 @@ MOST_ENCLOSED = 12
 #: The part of the budget in which positions are sought in which constraints lose their rank.
 SEARCH = 0.15
 
-#: So many names are listed where time was short.
+#: So many names are listed where the budget was short.
 LISTED = 8
 
 
@@ -131,7 +137,8 @@ def extremes(
     budget: float = 60.0,
     watch: Watch = lambda text: None,
 ) -> Extremes:
-    """Everything that applies to a scenario, in about ``budget`` seconds.
+    """Everything that applies to a scenario, as far as ``budget`` goes: counted work, about as many
+    seconds on a usual machine, and the same rows on every one.
 
     With constraints every state is one of theirs.  Raises NoClosedForm or SingularPoint where the equations have no
     program at all, NotClosed where no state satisfies the constraints.
@@ -147,15 +154,17 @@ def extremes(
     where = _singularities(given, units, left_out)
     positions: SingularPositions | None = None
     positive: tuple[bool | None, ...] = ()
+    left = budget
     if given.system.constraints:
         watch("positions in which constraints lose their rank")
         positions = singular_positions(given, [float(x) for x in units.sizes], SEARCH * budget)
         positive = positive_there(given, where, units)
+        left -= SEARCH * budget
     watch("linear equations")
     linear = _linear(given, budget, left_out)
     watch("kernels")
-    compiled = sum(q.code.operations for q in found) <= COMPILED_PER_SECOND * budget
-    rungs = _Rungs(given, Arithmetic(given, found, compiled), truth, linear, started + budget)
+    compiled = _operations(found) <= COMPILED_PER_UNIT * budget
+    rungs = _Rungs(given, Arithmetic(given, found, compiled), truth, linear, left)
     late = []
     for ladder in _all(given, overrides, found, linear, where, units, positions):
         watch(ladder.title)
@@ -168,7 +177,7 @@ def extremes(
             late.append(ladder.title)
     if late:
         shown = late if len(late) <= LISTED + 1 else [*late[:LISTED], f"and {len(late) - LISTED} more"]
-        left_out.append(f"out of time, raise --budget: {', '.join(shown)}")
+        left_out.append(f"beyond the budget, raise --budget: {', '.join(shown)}")
     joined = falling(given, ring, found, truth)
     seconds = time.perf_counter() - started
     enclosed = _enclosed(given, linear)
@@ -180,12 +189,13 @@ def extremes(
 
 
 class _Rungs:
-    """Takes measurements, one rung after another, until the clock shows ``end``."""
+    """Takes measurements, one rung after another, until they have cost ``limit``."""
 
     def __init__(
-        self, given: Scenario, usual: Arithmetic, truth: Truth, linear: LinearModel | None, end: float
+        self, given: Scenario, usual: Arithmetic, truth: Truth, linear: LinearModel | None, limit: float
     ) -> None:
-        self.given, self.usual, self.truth, self.linear, self.end = given, usual, truth, linear, end
+        self.given, self.usual, self.truth, self.linear, self.limit = given, usual, truth, linear, limit
+        self.spent = _operations(usual.found) * (COMPILED if usual.compiled else STEPWISE)
         self.found = usual.found
         self.lean = tuple(q for q in self.found if q.name != "Jacobian")
         self.rows: list[Row] = []
@@ -194,10 +204,10 @@ class _Rungs:
 
     @property
     def late(self) -> bool:
-        return time.perf_counter() > self.end
+        return self.spent > self.limit
 
     def climb(self, ladder: Ladder) -> bool:
-        """Whether there was time for every rung."""
+        """Whether the budget was enough for every rung."""
         for probe in ladder.probes:
             if self.late:
                 return False
@@ -216,15 +226,23 @@ class _Rungs:
         if not usual:
             place = (ladder.kind, ladder.subject, probe.size)
             self.compensated += [Compensated(*place, one) for one in _rates(arithmetic)]
+            self.spent += STEPWISE * _operations(self.lean)
         for q in self.found if usual else self.lean:
+            self.spent += QUANTITY + IN_BALLS * q.code.operations * self.truth.evaluations
             digits = measured(self.truth, arithmetic, q.name, probe.scenario, probe.state)
             self.rows.append(Row(ladder.kind, ladder.subject, probe.size, q.name, digits))
 
     def _linear(self, ladder: Ladder, probe: Probe, linear: LinearModel) -> None:
         place = (ladder.kind, ladder.subject, probe.size)
+        balls = IN_BALLS * linear.operations * (len(linear.names) + 1)
+        self.spent += ENTRY * (2 + linear.size**2) + balls
         self.rows += [Row(*place, name, digits) for name, digits in linear.digits(probe.scenario).items()]
         if probe.assumed:
             self.verdicts.append(VerdictRow(*place, linear.judged(probe.scenario)))
+
+
+def _operations(found: Sequence[Quantity]) -> int:
+    return sum(q.code.operations for q in found)
 
 
 def _enclosed(given: Scenario, linear: LinearModel | None) -> tuple[Any, ...]:
@@ -282,7 +300,7 @@ def _linear(given: Scenario, budget: float, left_out: list[str]) -> LinearModel 
         left_out.append(f"{what}: those of systems with constraints are not measured")
         return None
     analysis = Analysis(given.system)
-    analysis.ring.limit_work(int(budget * STEPS_PER_SECOND))
+    analysis.ring.limit_work(int(budget * STEPS_PER_UNIT))
     try:
         terms = sum(len(x) for matrix in analysis.linearisation.matrices for row in matrix.polynomials for x in row)
         if terms > MOST_OPERATIONS:

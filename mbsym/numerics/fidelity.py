@@ -23,9 +23,11 @@ import numpy as np
 from mbsym.algebra.failures import Failure
 from mbsym.model.loads import EXACT, GRAVITY_ORDERS, NewtonianGravity
 from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels.interface import FLOAT64
 from mbsym.numerics.ledger.described import relative_size
 from mbsym.numerics.linearised import LinearisedDynamics
 from mbsym.numerics.methods.interface import Breakdown, Method, Setting
+from mbsym.numerics.prices import cost
 from mbsym.numerics.reduction import Reduction, resting
 from mbsym.numerics.scenario import Scenario
 
@@ -35,8 +37,8 @@ TIGHT, RESOLVED = 1e-13, 1e-11
 #: The label of the model that the description gives.
 DESCRIBED = "as described"
 
-#: Runs timed for each variant.
-REPEATS = 5
+#: Runs timed for each variant, and what they may cost together (``mbsym.numerics.prices``).
+REPEATS, MOST = 5, 2.0
 
 
 @dataclass(frozen=True)
@@ -57,7 +59,8 @@ class Variant:
 class ModelError:
     """A variant with the error of its model against the most faithful one, and what it costs.
 
-    ``operations`` are those of one right-hand side; ``seconds`` the median for the same tolerance.
+    ``operations`` are those of one right-hand side; ``seconds`` of the processor the median for the same
+    tolerance.
     """
 
     variant: Variant
@@ -152,22 +155,21 @@ def _run(
     scenario: Scenario, variant: Variant, method: Method, times: Sequence[float]
 ) -> tuple[Any, int, int, float, str]:
     operations = variant.dynamics.right_hand_side.operations
-    seconds = []
-    evaluations = 0
+    seconds: list[float] = []
+    evaluations, dear = 0, 0.0
     states: Any = None
-    for _ in range(REPEATS):
+    while not seconds or len(seconds) < min(REPEATS, MOST / dear):
         run = method.start(variant.dynamics, Setting(tolerance=TIGHT))
         found = [np.array(run.state, dtype=float)]
-        started = time.perf_counter()
+        started = time.thread_time()
         try:
             for t in times[1:]:
                 found.append(np.array(run.advance(float(t)), dtype=float))
         except Breakdown as reason:
-            return None, operations, run.work.evaluations, time.perf_counter() - started, str(reason)
-        seconds.append(time.perf_counter() - started)
+            return None, operations, run.work.evaluations, time.thread_time() - started, str(reason)
+        seconds.append(time.thread_time() - started)
         states, evaluations = np.array(found).T, run.work.evaluations
-        if sum(seconds) > 2.0:
-            break
+        dear = cost(variant.dynamics, method.traits.name, FLOAT64, run.work)
     if variant.free is not None:
         whole = np.tile(np.array([float(x) for x in scenario.state])[:, np.newaxis], (1, len(times)))
         whole[list(variant.free)] = states

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import isfinite
+from math import inf, isfinite
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.model.loads import GRAVITY_ORDERS
@@ -24,9 +24,9 @@ from mbsym.numerics.kinds import (
     SCALAR,
     WELDED,
 )
-from mbsym.numerics.model_choice import ModelChoice, Scene, Tried
+from mbsym.numerics.model_choice import PART, ModelChoice, Scene, Tried
 from mbsym.numerics.models import Model, described, parted
-from mbsym.numerics.pilot import WASTEFUL, Bench, Trial
+from mbsym.numerics.pilot import ALIKE, WASTEFUL, Bench, Trial
 from mbsym.numerics.plan import SECONDS, Item, Refused
 from mbsym.numerics.reduced import Reduced
 from mbsym.numerics.separable import Part
@@ -40,7 +40,7 @@ DIGITS = (FLOAT32, FLOAT64, EXTENDED)
 class Settled:
     """Everything that was found out; ``pinned`` names the kinds that the user settled.
 
-    ``enough``: the error of ``found``, and the bound beside it, are within what was asked for.
+    ``goal`` is what rho had to be; ``enough``: it is, and the bound beside it is within what was asked for.
     """
 
     scene: Scene
@@ -53,6 +53,12 @@ class Settled:
     found: Trial
     pinned: frozenset[str]
     enough: bool
+    goal: float
+
+    @property
+    def fitting(self) -> list[Trial]:
+        """Whatever was tried and is good enough."""
+        return [one for one in self.bench.trials if one.ratio <= self.goal]
 
 
 def items_of(settled: Settled) -> tuple[Item, ...]:
@@ -95,7 +101,9 @@ def _models(settled: Settled) -> Iterator[Item]:
 def _why_model(model: ModelChoice) -> str:
     if model.taken.model == model.faithful:
         return "nothing simpler is good enough" if len(model.tried) > 1 else "nothing simpler is known"
-    return "the cheapest that is good enough"
+    able = [one.operations for one in model.tried if one.ratio <= PART and one.how is not Certainty.UNDECIDED]
+    fewest = model.taken.operations <= min(able, default=0)
+    return "good enough, with the fewest operations of those tried" if fewest else "good enough, with fewer operations"
 
 
 def _other_order(one: Model, taken: Model) -> bool:
@@ -135,9 +143,8 @@ def _settings(settled: Settled) -> Iterator[Item]:
     found, pinned = settled.found, settled.pinned
     name = found.method.traits.name
     others = _cheapest_others(settled)
-    cheapest = "the cheapest here whose measured error, doubled, is small enough" if others else "none other fits"
-    closest = "none tried is accurate enough: the cheapest of those within twice the least error"
-    why = "as asked for" if METHOD in pinned else cheapest if settled.enough else closest
+    chosen = _why_method(settled, bool(others)) if settled.enough else _closest(settled)
+    why = "as asked for" if METHOD in pinned else chosen
     if FINENESS in pinned:
         why = f"as asked for{_fitting(found)}"
     if settled.choice.method.traits.implicit and METHOD not in pinned:
@@ -145,8 +152,7 @@ def _settings(settled: Settled) -> Iterator[Item]:
     yield Item(
         METHOD, (found.method.traits.title,), name, why, None, Certainty.MEASURED, found.seconds, SECONDS, others
     )
-    coarsest = "the coarsest tried that is good enough" if settled.enough else "none tried is good enough"
-    why = "as asked for" if FINENESS in pinned else coarsest
+    why = "as asked for" if FINENESS in pinned else _why_fineness(settled)
     word = f"tolerance {found.fineness:g}" if found.setting.step is None else f"step {found.fineness:g}"
     yield Item(FINENESS, (), word, why, None, Certainty.MEASURED, found.seconds, SECONDS)
     refused = tuple(_other_scalars(settled))
@@ -154,6 +160,37 @@ def _settings(settled: Settled) -> Iterator[Item]:
     why = "as asked for" if SCALAR in pinned else fits
     yield Item(SCALAR, (), found.scalar, why, None, Certainty.MEASURED, found.seconds, SECONDS, refused)
     yield Item(KERNEL, (), "scalar", "one motion: nothing to lay side by side", 0.0, Certainty.PROVED)
+
+
+def _why_method(settled: Settled, others: bool) -> str:
+    """What is called the cheapest is that by counted work, and is so."""
+    fits = "its measured error, doubled, is small enough"
+    if not others:
+        return f"{fits}; no other method came to the end here"
+    least = min((one.cost for one in settled.fitting), default=inf)
+    if settled.found.cost > ALIKE * least:
+        return fits
+    return "by counted work the cheapest tried here whose measured error, doubled, is small enough"
+
+
+def _closest(settled: Settled) -> str:
+    """Of a plan that is not accurate enough."""
+    found, none = settled.found, "none tried is accurate enough"
+    least = min((one.ratio for one in settled.bench.trials), default=inf)
+    near = [one.cost for one in settled.bench.trials if one.ratio <= 2 * least]
+    if found.ratio > 2 * least or found.cost > ALIKE * min(near, default=0.0):
+        return none
+    return f"{none}: by counted work the cheapest of those within twice the least error"
+
+
+def _why_fineness(settled: Settled) -> str:
+    if not settled.enough:
+        return "none tried is good enough"
+    found = settled.found
+    same = [one for one in settled.fitting if (one.method, one.scalar) == (found.method, found.scalar)]
+    if any(one.fineness > found.fineness for one in same):
+        return "good enough, and cheaper by counted work than what is coarser"
+    return "the coarsest tried that is good enough"
 
 
 def _fitting(found: Trial) -> str:
@@ -164,7 +201,7 @@ def _fitting(found: Trial) -> str:
 
 def _why_scalar(found: Trial) -> str:
     if found.scalar == FLOAT32:
-        return "its rounding stays below the error, and it is quicker here"
+        return "its rounding stays below the error, and it costs less by counted work"
     return "its rounding stays below the error" if found.scalar == FLOAT64 else "float64 does not reach the error"
 
 

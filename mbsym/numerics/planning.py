@@ -119,7 +119,7 @@ def planned(
             break
         goal *= 0.7 / over
     enough = found.ratio <= goal and (over <= 1 or bool(too_simple))
-    settled = Settled(scene, model, choice, resting, parts, bench, stick, found, pins.kinds, enough)
+    settled = Settled(scene, model, choice, resting, parts, bench, stick, found, pins.kinds, enough, goal)
     more, less = alternatives(bench, found, model.tried, model.taken, accuracy, goal)
     return Plan(
         accuracy,

@@ -22,6 +22,10 @@ CALL, OPERATION = 15e-9, 6e-10
 #: Arithmetic beside float64.
 DEARER = {FLOAT64: 1.0, FLOAT32: 0.8, EXTENDED: 10.0}
 
+#: What a method costs before its first step, an operation of the right-hand side: once, but for those that are compiled
+#: for each setting.
+STARTED, STARTED_EACH = 1e-3, ("taylor",)
+
 #: A coefficient of a Taylor series beside an operation of the right-hand side.
 COEFFICIENT = 6.0
 

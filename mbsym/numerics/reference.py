@@ -37,7 +37,7 @@ class Reference:
     """``states`` at ``times``, shape (2n, m), rounded to float64; ``error`` is the estimated error of the solution:
 
     the largest difference from a second solution, each component relative to ``scale``, shape (2n,).  ``method`` says
-    what the two are, ``way`` of which kind.
+    what the two are, ``way`` of which kind, ``cost`` what finding it has cost (``mbsym.numerics.prices``).
     """
 
     times: Any
@@ -47,6 +47,7 @@ class Reference:
     method: str
     scale: Any
     way: str = EXTRAPOLATION
+    cost: float = 0.0
 
 
 class Extrapolation:
@@ -85,7 +86,7 @@ class Extrapolation:
             if not self.step_size > 1e-12 * max(1.0, self.time):
                 raise Breakdown(BLOW_UP, "the reference solution cannot go on", self.time, self.floats())
             if self.spent > self.limit:
-                raise Breakdown(STEP_LIMIT, "out of time", self.time, self.floats())
+                raise Breakdown(STEP_LIMIT, "it costs more than it may", self.time, self.floats())
             if accepted:
                 return
 

@@ -1,4 +1,4 @@
-"""The best reference solution over a whole interval that can be had in a given time.
+"""The best reference solution over a whole interval that can be had for a given cost (``mbsym.numerics.prices``).
 
 Three ways, each with two solutions that share neither steps nor order, nor method where that is possible; how far they
 differ is the error that the reference is said to have.
@@ -8,14 +8,15 @@ extrapolation    in 160 bits, twice, with other columns and steps; between its s
 explicit         two methods in extended arithmetic that agree
 implicit         two methods of different order in float64 that agree (stiff scenes)
 
-Two solutions that do not agree are no reference, whatever each of them says of itself.
+Two solutions that do not agree are no reference, whatever each of them says of itself.  What a search may cost is
+counted work: no clock decides which way is taken.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 from math import inf
 from typing import Any
 
@@ -28,6 +29,7 @@ from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.kernels.llvm import available
 from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Method, Setting, Unusable
 from mbsym.numerics.methods.table import METHODS
+from mbsym.numerics.prices import Meter, Working, precise_cost
 from mbsym.numerics.reference import (
     BITS,
     COLUMNS,
@@ -52,14 +54,17 @@ EVERY = 4
 #: Two solutions that differ by more than this are no reference.
 AGREE = 1e-3
 
-#: Nothing is given up as too slow before so many seconds.
-SOME_SECONDS = 1.0
+#: Nothing is given up as too slow before it has cost so much.
+SOME = 1.0
 
 #: No step of an explicit or implicit reference is longer than this part of the whole.
 PARTS = 2_000
 
 #: Where switches and narrow loads are looked for in every step, steps are few, and dear.
 FEW_PARTS = 100
+
+#: Why there is none yet.
+TOO_DEAR = "it costs more than it may"
 
 #: Why there is no reference although solutions came to the end.
 DISAGREE = "no two solutions agree"
@@ -68,31 +73,31 @@ DISAGREE = "no two solutions agree"
 def whole_reference(
     dynamics: Dynamics,
     end: float,
-    seconds: float,
+    budget: float,
     watch: Callable[[str], None] = lambda text: None,
     at_most: float | None = None,
 ) -> Reference:
-    """A solution over the whole interval, known at thousands of places, in about so many seconds.
+    """A solution over the whole interval, known at thousands of places, for about what ``budget`` allows.
 
-    Where that is too short for any way, the explicit one goes on for ``at_most`` seconds in all.  Raises Breakdown
-    where the solution does not exist up to the end, where none is found in time (kind STEP_LIMIT), or where no two
-    solutions agree (kind DISAGREE).
+    Where that is too little for any way, the explicit one goes on up to ``at_most`` in all.  Raises Breakdown where the
+    solution does not exist up to the end, where none is found for that (kind STEP_LIMIT), or where no two solutions
+    agree (kind DISAGREE).
     """
-    started = time.perf_counter()
+    started, spent = time.perf_counter(), 0.0
     failed: Breakdown | None = None
-    limits = [*((way, share, seconds) for way, share in WAYS), (_explicit, 1.0, at_most or seconds)]
+    limits = [*((way, share, budget) for way, share in WAYS), (_explicit, 1.0, at_most or budget)]
     # Steps in many bits know nothing of switches, and would pass what is narrow: others end, or are short, there.
     if not dynamics.features.none:
         limits = [(way, share, limit) for way, share, limit in limits if way is not _extrapolated]
     for way, share, limit in limits:
-        now = time.perf_counter()
-        left = limit - (now - started)
+        left = limit - spent
         if left <= 0 or (failed is not None and failed.kind == DISAGREE):
             continue
         if way is _extrapolated and dynamics.switches.outputs:
             continue  # its steps do not land at switches: it would end at the first and call that a blow-up
+        search = _Search(dynamics, end, share * left, watch)
         try:
-            found = way(_Search(dynamics, end, now, now + share * left, watch))
+            found = way(search)
         except Breakdown as reason:
             if way is _extrapolated and reason.kind != STEP_LIMIT:
                 if dynamics.constraints is None:
@@ -100,19 +105,22 @@ def whole_reference(
                 continue  # where constraints lose their rank the motion goes on, and others carry it over
             failed = reason if failed is None or reason.time > failed.time or reason.kind == DISAGREE else failed
         else:
-            return replace(found, seconds=time.perf_counter() - started)
-    raise failed or Breakdown(STEP_LIMIT, "out of time", 0.0, np.empty(0))
+            return replace(found, seconds=time.perf_counter() - started, cost=spent + search.spent)
+        finally:
+            spent += search.spent
+    raise failed or Breakdown(STEP_LIMIT, TOO_DEAR, 0.0, np.empty(0))
 
 
-@dataclass(frozen=True)
+@dataclass
 class _Search:
-    """What is sought, until when, and who is told."""
+    """What is sought, what it may cost, and who is told; ``before`` is what solutions cost that are there already."""
 
     dynamics: Dynamics
     end: float
-    begun: float
-    deadline: float
+    limit: float
     watch: Callable[[str], None]
+    before: float = 0.0
+    meter: Callable[[], float] = field(default=float)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -123,19 +131,29 @@ class _Search:
         """No step of an explicit or implicit reference is longer."""
         return self.end / (PARTS if self.dynamics.features.none else FEW_PARTS)
 
-    def reached(self, t: float) -> None:
-        """Tells, and raises Breakdown where the time is over, or will be long before the end."""
-        self.watch(f"reference solution, t = {t:.4g} of {self.end:g}")
-        now, allowed = time.perf_counter(), self.deadline - self.begun
-        spent = now - self.begun
-        far_too_long = 4.0 if spent < allowed / 2 else 1.5
-        some = max(allowed / 4, SOME_SECONDS)
-        if now > self.deadline or (spent > some and spent * self.end > far_too_long * allowed * t):
-            raise Breakdown(STEP_LIMIT, "out of time", t, np.empty(0))
+    @property
+    def spent(self) -> float:
+        """What all solutions cost so far."""
+        return self.before + self.meter()
 
-    def next(self) -> _Search:
-        """The time that is left for another solution from 0 to the end."""
-        return replace(self, begun=time.perf_counter())
+    def reached(self, t: float) -> None:
+        """Tells, and raises Breakdown where the limit is spent, or will be long before the end."""
+        self.watch(f"reference solution, t = {t:.4g} of {self.end:g}")
+        spent, allowed = self.meter(), self.limit - self.before
+        far_too_long = 4.0 if spent < allowed / 2 else 1.5
+        some = max(allowed / 4, SOME)
+        if spent > allowed or (spent > some and spent * self.end > far_too_long * allowed * t):
+            raise Breakdown(STEP_LIMIT, TOO_DEAR, t, np.empty(0))
+
+    def next(self, meter: Callable[[], float]) -> None:
+        """Begins another solution from 0 to the end, which costs what ``meter`` shows."""
+        self.before, self.meter = self.spent, meter
+
+    def next_of(self, runs: Sequence[tuple[Working, str, str]], looked_at: bool = False) -> None:
+        """The same for runs, with the names of their methods and arithmetics."""
+        meter = Meter(self.dynamics, looked_at)
+        meter.start(runs)
+        self.next(lambda: meter.spent)
 
     def usual(self, times: Any, states: Any) -> Any:
         return sizes_of_scene(self.dynamics, times, states)
@@ -167,6 +185,7 @@ def _extrapolated(search: _Search) -> Reference:
 def _knots(search: _Search) -> tuple[list[float], list[list[arb]]]:
     """The steps of the first extrapolation."""
     run = Extrapolation(search.dynamics, FINE, COLUMNS, inf)
+    search.next(lambda: precise_cost(search.dynamics, run.evaluations))
     times, states = [0.0], [list(run.state)]
     while run.time < search.end:
         run.step(search.end)
@@ -178,8 +197,8 @@ def _knots(search: _Search) -> tuple[list[float], list[list[arb]]]:
 
 def _second(search: _Search, times: list[float], states: list[list[arb]]) -> Any:
     """Largest |x_i - y_i| of an extrapolation with fewer columns, larger errors, and so with other steps."""
-    search = search.next()
     run = Extrapolation(search.dynamics, ROUGH, COLUMNS - 3, inf)
+    search.next(lambda: precise_cost(search.dynamics, run.evaluations))
     worst = np.zeros(len(states[0]))
     for place in sorted({*range(EVERY, len(times), EVERY), len(times) - 1}):
         run.advance(times[place])
@@ -192,7 +211,7 @@ def _between(search: _Search, times: Any, knots: Any) -> tuple[Any, Any, Any]:
     """(places, states there, by how much the explicit method misses the next knot, (2n,))."""
     scalar = EXTENDED if available(EXTENDED) else FLOAT64
     run = METHODS["dop853"].start(search.dynamics, Setting(BETWEEN, longest=search.end / PARTS), scalar)
-    search = search.next()
+    search.next_of([(run, "dop853", scalar)])
     inside = max(len(SHARES), -(-PLACES // (len(times) - 1)))
     places, states, missed = [times[:1]], [knots[:, :1]], np.zeros(len(knots))
     for k in range(len(times) - 1):
@@ -243,10 +262,11 @@ def _agreeing(search: _Search, first: _Way, second: _Way, scalar: str, way: str)
     try:
         with np.errstate(all="ignore"):
             run, beside = (m.start(search.dynamics, setting, scalar) for m, setting in (first, second))
-            search = search.next()  # compiling is no sign of a slow solution
+            names = (one.traits.name, other.traits.name)
+            search.next_of([(run, names[0], scalar), (beside, names[1], scalar)], looked_at=True)
             found = compared(beside, run, search.end, search.names, search.usual, watch=search.reached)
             places = np.union1d(found.times, uneven(0.0, search.end, PLACES))
-            states, beside = (_filled(search, m.start(search.dynamics, s, scalar), places) for m, s in (first, second))
+            states, beside = (_filled(search, m, s, scalar, places) for m, s in (first, second))
             missed = np.max(np.abs(states - beside), axis=1).astype(float)
     except Ended as ended:
         raise ended.breakdown from None
@@ -258,9 +278,10 @@ def _agreeing(search: _Search, first: _Way, second: _Way, scalar: str, way: str)
 _Way = tuple[Method, Setting]
 
 
-def _filled(search: _Search, run: Any, places: Any) -> Any:
-    """The states (2n, m) of a run that stands at the first of the places."""
-    search = search.next()
+def _filled(search: _Search, method: Method, setting: Setting, scalar: str, places: Any) -> Any:
+    """The states (2n, m) of a run from the first of the places on."""
+    run = method.start(search.dynamics, setting, scalar)
+    search.next_of([(run, method.traits.name, scalar)])
     states = [np.asarray(run.state)[:, None]]
     for some in np.array_split(places[1:], 64):
         states.append(run.fill(some))
@@ -268,5 +289,5 @@ def _filled(search: _Search, run: Any, places: Any) -> Any:
     return np.hstack(states)
 
 
-#: The ways, and the part of the time that is left which each of them may take.
+#: The ways, and the part of what is left which each of them may cost.
 WAYS = ((_extrapolated, 0.35), (_explicit, 0.85), (_implicit, 1.0))

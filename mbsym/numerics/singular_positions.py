@@ -13,7 +13,6 @@ Source: Gosselin & Angeles, Singularity analysis of closed-loop kinematic chains
 
 from __future__ import annotations
 
-import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -33,6 +32,9 @@ from mbsym.numerics.scenario import Scenario
 
 #: Starts of the search, steps from each, and distinct positions that are kept.
 STARTS, STEPS, MOST = 120, 60, 12
+
+#: What a step costs, and what it costs more for the square of the number of unknowns (``mbsym.numerics.prices``).
+STEP, UNKNOWNS = 2e-4, 3e-6
 
 #: A residual that counts as zero, and the part of the largest singular value below which one counts as lost.
 SETTLED, LOST = 1e-11, 1e-8
@@ -79,8 +81,8 @@ class SingularPositions:
     moving: bool  # rows depend on the time: at t = 0
 
 
-def singular_positions(given: Scenario, sizes: Sequence[float], seconds: float) -> SingularPositions | None:
-    """Those that a search finds in about so many seconds; None without constraints.
+def singular_positions(given: Scenario, sizes: Sequence[float], limit: float) -> SingularPositions | None:
+    """Those that a search finds for a cost of about ``limit`` (``mbsym.numerics.prices``); None without constraints.
 
     ``sizes`` of the coordinates: those that are no angles are begun within twice that.
     """
@@ -88,13 +90,17 @@ def singular_positions(given: Scenario, sizes: Sequence[float], seconds: float) 
     if constraints is None or not constraints.kept:
         return None
     search = Search(given, constraints, np.asarray(sizes, dtype=float))
-    return search.found(time.perf_counter() + seconds)
+    return search.found(limit)
 
 
 class Search:
-    """Gauss-Newton steps to singular positions, with the time held at ``time`` (0 unless said otherwise)."""
+    """Gauss-Newton steps to singular positions, with the time held at ``time`` (0 unless said otherwise).
+
+    ``steps`` counts them.
+    """
 
     time = 0.0
+    steps = 0
 
     def __init__(self, given: Scenario, constraints: Constraints, sizes: Any) -> None:
         self.given, self.constraints, self.sizes = given, constraints, sizes
@@ -120,11 +126,16 @@ class Search:
         """By how much positions differ, angles by the shorter way, in parts of the coordinates' sizes."""
         return self._wrapped(one - other) / self.scales
 
-    def found(self, until: float) -> SingularPositions:
+    @property
+    def spent(self) -> float:
+        """What all steps have cost."""
+        return self.steps * (STEP + UNKNOWNS * (self.n + len(self.kept)) ** 2)
+
+    def found(self, limit: float) -> SingularPositions:
         places: list[Any] = []
         starts = 0
         for number in range(STARTS):
-            if number and time.perf_counter() > until:
+            if number and self.spent > limit:
                 break
             starts += 1
             place = self._from(self._start(number))
@@ -187,6 +198,7 @@ class Search:
             x, damping = np.concatenate([q, left]), 1e-3
             residual = self._residual(x[:, None], rows, lengths)[:, 0]
             for _ in range(STEPS):
+                self.steps += 1
                 size = float(np.linalg.norm(residual))
                 if not np.isfinite(size):
                     return None

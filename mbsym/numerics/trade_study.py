@@ -1,8 +1,10 @@
-"""The trade of one scenario as a whole: reference, simpler models, ladders of settings, in the time that there is."""
+"""The trade of one scenario as a whole: reference, simpler models, ladders of settings, for what the budget pays.
+
+A budget is one of counted work (``mbsym.numerics.prices``), so that the same is measured on every machine.
+"""
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -19,8 +21,8 @@ from mbsym.numerics.reference_search import whole_reference
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.tradeoff import Tradeoff, tradeoff
 
-#: The part of the budget that the search for a reference may take, where nothing is found that much more, and the
-#: seconds that it has in any case.
+#: The part of the budget that the search for a reference may cost, where nothing is found that much more, and what it
+#: may cost in any case.
 FOR_REFERENCE, MOST_FOR_REFERENCE, LEAST_FOR_REFERENCE = 0.6, 0.9, 15.0
 
 #: Places at which models are compared; they differ smoothly.
@@ -43,7 +45,7 @@ def studied(
     with_models: bool,
     watch: Callable[[str], None] = lambda text: None,
 ) -> Study:
-    """The study from 0 to ``end``, in ``budget`` seconds (some more where these are too few for a reference).
+    """The study from 0 to ``end``, for what ``budget`` pays (some more where that is too little for a reference).
 
     Of a system with constraints the initial state is the closest one that satisfies them, and no simpler models are
     compared, which would begin beside them.
@@ -51,15 +53,14 @@ def studied(
     Raises NotClosed, Breakdown where there is no reference solution up to ``end``, Failure where the equations have no
     program.
     """
-    until = time.perf_counter() + budget
     scenario = closed(scenario).scenario
     dynamics = Dynamics(scenario)
     watch("reference solution")
-    seconds, at_most = (max(LEAST_FOR_REFERENCE, part * budget) for part in (FOR_REFERENCE, MOST_FOR_REFERENCE))
-    truth = whole_reference(dynamics, end, seconds, watch, at_most)
+    usual, at_most = (max(LEAST_FOR_REFERENCE, part * budget) for part in (FOR_REFERENCE, MOST_FOR_REFERENCE))
+    truth = whole_reference(dynamics, end, usual, watch, at_most)
     models: tuple[ModelError, ...] = ()
     if with_models and not scenario.system.constraints:
         places = np.unique(np.linspace(0, len(truth.times) - 1, PLACES).astype(int))
         method = METHODS["lsoda" if truth.way == IMPLICIT else "dop853"]
         models = fidelity.measured(scenario, method, truth.times[places].tolist(), watch, truth.scale)
-    return Study(tradeoff(dynamics, methods, truth, max(until - time.perf_counter(), 0.0), watch), models)
+    return Study(tradeoff(dynamics, methods, truth, max(budget - truth.cost, 0.0), watch), models)

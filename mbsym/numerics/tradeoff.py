@@ -5,7 +5,11 @@ error    largest |x_i(t) - reference_i(t)| over all coordinates, velocities and 
 drift    largest change of the energy h at the same times, relative to the largest kinetic energy
 strayed  largest drift of positions and of velocities from constraints at the same times, where there are any
          (``mbsym.numerics.constrained``: in parts of the motion's size)
-seconds  median of the integration from 0 to the end; compiling is not counted (it happens once), nor are rows
+seconds  median processor time of the integration from 0 to the end; compiling is not counted (it happens once), nor
+         are rows
+
+Which settings are measured is a matter of counted work (``mbsym.numerics.prices``): on every machine, however busy, the
+same rows come out with the same errors and counts.  Seconds, and the front that they make, are those of this machine.
 
 An error is measured against a reference solution of a different method and arithmetic, never against a tolerance; what
 is smaller than a hundred times the reference's own error is not called an error at all.
@@ -28,17 +32,21 @@ from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
 from mbsym.numerics.kernels.llvm import available, kernels
 from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Method, Setting, Unusable, Work
+from mbsym.numerics.prices import STARTED, STARTED_EACH, cost
 from mbsym.numerics.reference import Reference
 
 #: A reference must be so much better than what it judges.
 MARGIN = 100.0
 
-#: Runs shorter than this are repeated, and the median taken.
+#: Runs that cost less than this are repeated, and the median of their seconds taken.
 SHORT = 0.25
 REPEATS = 5
 
-#: A run is stopped after so many seconds at the earliest, and looked at in so many places meanwhile.
+#: A run is stopped when it has cost so much at the earliest, and looked at in so many places meanwhile.
 LEAST, BLOCKS = 0.05, 64
+
+#: What comparing one row costs.
+COMPARED = 1e-6
 
 
 @dataclass(frozen=True)
@@ -122,19 +130,19 @@ def tradeoff(
     budget: float = 60.0,
     watch: Callable[[str], None] = lambda label: None,
 ) -> Tradeoff:
-    """Measures every method's ladder against ``reference`` (whose times are the sampled ones), in ``budget`` seconds.
+    """Measures every method's ladder against ``reference`` (whose times are the sampled ones), as ``budget`` allows.
 
-    The budget is one of everything that happens here, compiling included, and is shared evenly between the ladders; a
-    ladder stops where its next rung would cost too much, or where a finer setting no longer gives a smaller error.
-    Ctrl-C ends the measuring and keeps the rows that there are.
+    The budget is one of counted work, of everything that happens here, compiling included, about as many seconds on a
+    usual machine.  It is shared evenly between the ladders; a ladder stops where its next rung would cost too much, or
+    where a finer setting no longer gives a smaller error.  Ctrl-C ends the measuring and keeps the rows that there are.
     """
     judge = _Judge(dynamics, reference)
     rows: list[Measured] = []
     unusable = []
     pairs = [(method, scalar) for method in methods for scalar in method.traits.scalars if available(scalar)]
-    interrupted, until = False, time.perf_counter() + budget
+    interrupted = False
     for place, (method, scalar) in enumerate(pairs):
-        share = (until - time.perf_counter()) / (len(pairs) - place)
+        share = (budget - judge.spent) / (len(pairs) - place)
         try:
             for row in _ladder(judge, method, scalar, max(share, 0.0), watch):
                 rows.append(row)
@@ -148,54 +156,70 @@ def tradeoff(
 
 
 class _Judge:
-    """Runs candidates and compares them with the reference."""
+    """Runs candidates and compares them with the reference; ``spent`` is what all have cost."""
 
     def __init__(self, dynamics: Dynamics, reference: Reference) -> None:
         self.dynamics = dynamics
         self.reference = reference
         self.scale = np.asarray(reference.scale)[:, np.newaxis]
         self.energy = kernels({"energy": dynamics.relative_energy})["energy"]
-        self.starting = 0.0
+        self.spent = self.starting = 0.0
+        self._ladders: set[tuple[str, str]] = set()
 
-    def measure(self, candidate: Candidate, deadline: float = inf) -> Measured:
-        """Error, drift and median seconds of a candidate; a breakdown is a result too, and so is a ``deadline``."""
+    def measure(self, candidate: Candidate, limit: float = inf) -> Measured:
+        """Error, drift and median seconds of a candidate; a breakdown is a result too, so is a ``limit`` of cost."""
         with np.errstate(over="ignore"):  # extended numbers beyond the range of float64
-            return self._measure(candidate, deadline)
+            return self._measure(candidate, limit)
 
-    def _measure(self, candidate: Candidate, deadline: float) -> Measured:
-        times, before = self.reference.times, time.perf_counter()
+    def _measure(self, candidate: Candidate, limit: float) -> Measured:
+        times = self.reference.times
         run = candidate.method.start(self.dynamics, candidate.setting, candidate.scalar)
-        self.starting = time.perf_counter() - before
+        self.starting = self._compiling(candidate)
+        self.spent += self.starting
         states = [np.array(run.state, dtype=float)[:, np.newaxis]]
-        started = time.perf_counter()
+        started, before = time.thread_time(), self.spent
         try:
             for some in np.array_split(times[1:], min(BLOCKS, len(times) - 1)):
                 states.append(np.asarray(run.fill(some), dtype=float))
-                if time.perf_counter() > deadline and some[-1] < times[-1]:
-                    raise Breakdown(STEP_LIMIT, "no time left to measure it", float(some[-1]), states[-1][:, -1])
-            seconds = self._seconds(candidate, time.perf_counter() - started, run.work, deadline)
+                self.spent = before + self._cost(candidate, run.work)
+                if self.spent - before > limit and some[-1] < times[-1]:
+                    raise Breakdown(STEP_LIMIT, "too dear to be measured", float(some[-1]), states[-1][:, -1])
+            work, typical = self._seconds(candidate, time.thread_time() - started, run.work, before + limit)
         except Breakdown as found:
-            wasted = time.perf_counter() - started
+            wasted = time.thread_time() - started
+            self.spent = max(self.spent, before + self._cost(candidate, run.work))
             return Measured(candidate, inf, inf, run.work.evaluations, run.work.steps, wasted, str(found))
         matrix = np.hstack(states)
-        work, typical = seconds
+        self.spent += COMPARED * len(times)
         error, changed, strayed = self._error(matrix), self._drift(times, matrix), self._strayed(times, matrix)
         carried = len(run.work.singular)
         return Measured(
             candidate, error, changed, work.evaluations, work.steps, typical, strayed=strayed, carried=carried
         )
 
-    def _seconds(self, candidate: Candidate, with_rows: float, work: Work, deadline: float) -> tuple[Work, float]:
-        """What the run costs without the places at which it was compared, where these count."""
-        taken: list[float] = []
-        if with_rows > SHORT:
+    def _cost(self, candidate: Candidate, work: Work) -> float:
+        return cost(self.dynamics, candidate.method.traits.name, candidate.scalar, work)
+
+    def _compiling(self, candidate: Candidate) -> float:
+        """What a method costs before its first step: once, but for those that compile every setting."""
+        traits = candidate.method.traits
+        ladder = (traits.name, candidate.scalar)
+        again = ladder in self._ladders and traits.name not in STARTED_EACH
+        self._ladders.add(ladder)
+        return 0.0 if again else STARTED * self.dynamics.right_hand_side.operations
+
+    def _seconds(self, candidate: Candidate, with_rows: float, work: Work, until: float) -> tuple[Work, float]:
+        """What the run takes without the places at which it was compared, where these count."""
+        if self._cost(candidate, work) > SHORT:
             return work, with_rows
-        end = float(self.reference.times[-1])
-        while not taken or (sum(taken) < SHORT and len(taken) < REPEATS and time.perf_counter() < deadline):
+        end, taken, spent = float(self.reference.times[-1]), list[float](), 0.0
+        while not taken or (spent < SHORT and len(taken) < REPEATS and self.spent < until):
             run = candidate.method.start(self.dynamics, candidate.setting, candidate.scalar)
-            started = time.perf_counter()
+            started = time.thread_time()
             run.advance(end)
-            taken.append(time.perf_counter() - started)
+            taken.append(time.thread_time() - started)
+            own = self._cost(candidate, run.work)
+            spent, self.spent = spent + own, self.spent + own
         return run.work, statistics.median(taken)
 
     def _error(self, states: Any) -> float:
@@ -224,21 +248,21 @@ def _ladder(
     judge: _Judge, method: Method, scalar: str, share: float, watch: Callable[[str], None]
 ) -> Iterator[Measured]:
     """From coarse to fine, until the next rung costs too much or brings nothing."""
-    begun = time.perf_counter()
-    idle, best, cost = 0, inf, 0.0
+    begun = judge.spent
+    idle, best, dearest = 0, inf, 0.0
     for setting in _settings(method, scalar, float(judge.reference.times[-1])):
         candidate = Candidate(method, scalar, setting)
         watch(candidate.label)
-        started = time.perf_counter()
-        row = judge.measure(candidate, begun + max(share, LEAST))
+        before = judge.spent
+        row = judge.measure(candidate, max(share - (before - begun), LEAST))
         yield row
-        now = time.perf_counter()
+        now = judge.spent
         idle = 0 if row.error < 0.5 * best else idle + (best < inf)
         best = min(best, row.error)
+        growth = max(1.3, (now - before) / dearest) if dearest else 1.3
         # What was compiled for the first rung is there for the next one, but for methods that compile every setting.
-        growth = max(1.3, (now - started) / cost) if cost else 1.3
-        cost = now - started - (0.0 if cost else judge.starting)
-        if idle >= 3 or now - begun + min(growth, 4.0) * cost > share:
+        dearest = now - before - (0.0 if dearest else judge.starting)
+        if idle >= 3 or now - begun + min(growth, 4.0) * dearest > share:
             return
 
 
@@ -286,7 +310,7 @@ def _orders(rows: Sequence[Measured]) -> Iterator[Order]:
 
 
 def advice(found: Tradeoff, target: float) -> str:
-    """One sentence: which setting reaches the target at the least cost, and what a digit more or less would cost.
+    """One sentence: which setting reaches the target in the least time, and what a digit more or less would cost.
 
     Nothing is said to be reached but what was measured, with the reference's own error added.
     """
@@ -308,8 +332,8 @@ def advice(found: Tradeoff, target: float) -> str:
     judged = best.error > found.smallest_judged
     error = f"{best.error:.1e}" if judged else f"below {found.smallest_judged:.0e}"
     return (
-        f"{best.candidate.label} reaches {target:.0e} at the least cost: error {error} over the whole interval (the "
-        f"reference is good to {known:.1e}), in {duration(best.seconds)}; one digit more "
+        f"{best.candidate.label} reaches {target:.0e} in the least time measured here: error {error} over the whole "
+        f"interval (the reference is good to {known:.1e}), in {duration(best.seconds)}; one digit more "
         f"{_more(found, best, target / 10)}, one digit less {_less(found, best, target * 10)}."
     )
 

@@ -10,11 +10,12 @@ from typing import Any
 from msgspec import to_builtins
 
 from mbsym.algebra.failures import NoValue
-from mbsym.analysis import Analysis
+from mbsym.analysis.resting import relative_equilibria
+from mbsym.analysis.stages import Unavailable
 from mbsym.mechanics.rest import given_values, missing_values
 from mbsym.model.system import System
 from mbsym.picture.encode import number
-from mbsym.problems.equilibria import CoordinateValue, equilibria
+from mbsym.problems.equilibria import CoordinateValue
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.report.sections.stability import verdict_data
 
@@ -52,10 +53,10 @@ def at_rest(system: System, overrides: Mapping[str, Fraction] | None = None) -> 
     values = given_values(system, overrides or {})
     for name in missing_values(system, values):
         raise NoValue(name)
-    found = equilibria(system, values)
-    withdrawn = Analysis(system, ()).broken(Analysis.equilibria.stands_on)
-    if withdrawn is not None:
-        return AtRest((), False, (withdrawn.reason,), {})
+    try:
+        found = relative_equilibria(system, values)
+    except Unavailable as withdrawn:
+        return AtRest((), False, (withdrawn.failure.reason,), {})
     listed = [_resting(x.values, x.free, x.verdict, x.proof, x.coordinates_of) for x in found.equilibria]
     listed += [_resting(x.sample, x.free, x.verdict, "", x.coordinates_of, True) for x in found.families]
     return AtRest(tuple(listed), found.complete, found.remarks, dict(found.turning))

@@ -13,12 +13,13 @@ from typing import Any
 
 from flint import fmpq
 
+from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.matrices import determinant
 from mbsym.algebra.polynomial_field import PolynomialField, in_lowest_terms
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.problems.equations import Equations
-from mbsym.problems.vector_field import NOTHING, Transfer, put_in, transfer_of
+from mbsym.problems.vector_field import NOTHING, SINGULAR, Transfer, put_in, transfer_of
 
 
 def in_angles(
@@ -30,11 +31,14 @@ def in_angles(
 ) -> tuple[PolynomialField, Transfer]:
     """(q', sin, cos, q)' over QQ[parameters], det(M) a part of the denominator, and the way from the ring there.
 
-    ``images`` take the place of dependent parameters.  Raises NoClosedForm where the time, roots or functions occur.
+    ``images`` take the place of dependent parameters.  Raises NoClosedForm where the time, roots or functions
+    occur, and where M is singular.
     """
     mass = equations.mass_matrix.polynomials
     forcing = [x.polynomial for x in equations.forcing]
     whole = determinant(ring, mass)
+    if ring.vanishes(whole):
+        raise NoClosedForm(SINGULAR)
     scaled = [
         determinant(ring, [[*row[:k], f, *row[k + 1 :]] for row, f in zip(mass, forcing, strict=True)])
         for k in range(len(coordinates))

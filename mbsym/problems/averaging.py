@@ -392,7 +392,7 @@ def orders_of(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str) -
         (m, what) for what, p in loads.items() for m in (p - means[what]).to_dict() if not any(m[k] for k in shaken)
     ]
     if not (waves or left):
-        raise NoClosedForm(f"{phase} moves nothing and acts in no load: nothing oscillates with it")
+        raise NoClosedForm(f"{phase} occurs in no equation of motion: nothing oscillates with it")
     if not left:
         return orders
     hidden = _hidden(ring, (*kinetic, *loads.values()))

@@ -14,12 +14,21 @@ is constant if that sum vanishes: Noether.
 
 Coefficients are solved for over the field of the parameters, by comparing those of equal monomials: every direction is
 one, some may be missing where formulas have other normal forms.
+
+Directions that vary with the position are fields c(q) with, besides,
+
+    sum c_i dT/dq_i + c_i' dT/dq'_i = 0,    sum c_i dF_j/dq_i + c_i' dF_j/dq'_i + F_i dc_i/dq_j = 0,
+
+F_j = dU/dq_j + Q_j:
+then the flow of c takes motions into motions (a particle's x, y turned about an axis, a body turned in space).  Near a
+position at which c is not 0 there are coordinates, made by that flow, of which one changes along c alone: a cyclic one.
+Matrices of the first approximation become P^T A P with the columns c of P at the motion, if c is constant along it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from itertools import combinations
 
 from mbsym.algebra.matrices import determinant
@@ -39,13 +48,15 @@ Direction = tuple[Polynomial, ...]
 class Displacements:
     """``directions`` by ``coordinates``, of which the first ``constant`` ones have constant momenta.
 
-    ``driven``: numbers of those on which forces of higher order act.
+    ``driven``: numbers of those on which forces of higher order act.  ``fields`` tell in words those that vary with the
+    position, by their numbers.
     """
 
     coordinates: tuple[str, ...]
     directions: tuple[Direction, ...] = ()
     constant: int = 0
     driven: tuple[int, ...] = ()
+    fields: Mapping[int, str] = field(default_factory=dict)
 
 
 def displacements(
@@ -114,6 +125,141 @@ def _is_linear(ring: Ring, x: Polynomial, coordinates: Sequence[str], moving: Se
     return not any(ring.dependencies(slope, moving) for slope in slopes)
 
 
+# --- that vary with the position ---
+
+#: Fields that are combined, and terms of what their combinations have to leave unchanged.
+MOST_FIELDS, MOST_FIELD_TERMS = 40, 4_000
+
+
+def linear_fields(ring: Ring, coordinates: Sequence[str]) -> list[Direction]:
+    """q_j e_i of the coordinates that are no angles."""
+    plain = [i for i, name in enumerate(coordinates) if name not in ring.angles]
+    return [
+        tuple(ring.generator("coordinate", coordinates[j]) if k == i else ring.zero for k in range(len(coordinates)))
+        for i in plain
+        for j in plain
+    ]
+
+
+def turned_fields(
+    ring: Ring,
+    coordinates: Sequence[str],
+    angles: Sequence[str],
+    rates: Sequence[Sequence[Polynomial]],
+    axes: Sequence[Sequence[Polynomial]],
+) -> list[Direction]:
+    """How three angles a change when a body is turned about some axes: a' = W^-1 e.
+
+    ``rates``: W of omega = W a', where ``axes`` e have their components, too.  () where W is singular everywhere.
+    """
+    size = determinant(ring, rates)
+    if size.is_zero():
+        return []
+    inverse = ring.reciprocal(size)
+    found = []
+    for axis in axes:
+        turned = {}
+        for j, name in enumerate(angles):
+            rows = [[*row[:j], x, *row[j + 1 :]] for row, x in zip(rates, axis, strict=True)]
+            turned[name] = ring.reduce(ring.times(determinant(ring, rows), inverse))
+        found.append(tuple(turned.get(name, ring.zero) for name in coordinates))
+    return found
+
+
+def symmetries(
+    ring: Ring,
+    coordinates: Sequence[str],
+    kinetic: Polynomial,
+    forces: Sequence[Polynomial],
+    fields: Sequence[Direction],
+    here: Callable[[Polynomial], Polynomial],
+    standing: Sequence[str],
+) -> list[tuple[Direction, Direction, bool]]:
+    """(c, its value on the motion, whether p is constant) for the combinations of fields that change no equation.
+
+    ``here`` puts the motion in; only fields of ``standing`` coordinates are told, and those with independent values
+    that are not 0.  Of fields that do not commute it is not said that p is constant: they are no cyclic coordinates of
+    one description, so that Routh's reduction is not theirs; energies and families of equilibria ask for less.
+    Raises NoClosedForm beyond the bounds.
+    """
+    from mbsym.problems.symmetries.kernel import kernel
+
+    units = [tuple(ring.one if k == i else ring.zero for k in range(len(coordinates))) for i in range(len(coordinates))]
+    tried = [*units, *fields][:MOST_FIELDS]
+    if len(kinetic) + sum(map(len, forces)) > MOST_FIELD_TERMS:
+        return []
+    lists = [[_lie(ring, coordinates, c, kinetic) for c in tried]]
+    for j, name in enumerate(coordinates):
+        lists.append(
+            [
+                _lie(ring, coordinates, c, forces[j])
+                + sum((ring.times(f, ring.derivative(x, name)) for f, x in zip(forces, c, strict=True)), ring.zero)
+                for c in tried
+            ]
+        )
+    told: list[tuple[Direction, Direction, bool]] = []
+    combined = [
+        tuple(
+            ring.reduce(sum((ring.times(w, tried[k][i]) for k, w in weights.items()), ring.zero))
+            for i in range(len(coordinates))
+        )
+        for weights in kernel(ring, *[[ring.reduce(x) for x in row] for row in lists])
+    ]
+    for c in sorted(combined, key=lambda c: any(ring.dependencies(x, coordinates) for x in c)):
+        if any(not set(ring.dependencies(x, coordinates)) <= {*standing} for x in c):
+            continue
+        value = tuple(here(x) for x in c)
+        if all(x.is_zero() for x in value) or not _completing(ring, [v for _, v, _ in told], [value]):
+            continue
+        told.append((c, value, _along(ring, c, forces).is_zero()))
+    if all(_commute(ring, coordinates, a, b) for (a, _, _), (b, _, _) in combinations(told, 2)):
+        return told
+    return [(c, value, False) for c, value, _ in told]
+
+
+def _lie(ring: Ring, coordinates: Sequence[str], c: Direction, x: Polynomial) -> Polynomial:
+    """The rate of a function of q and q' along the flow of c."""
+    total = ring.zero
+    for name, component in zip(coordinates, c, strict=True):
+        if component.is_zero():
+            continue
+        total = total + ring.times(component, ring.derivative(x, name))
+        rate = _rate(ring, coordinates, component)
+        if not rate.is_zero():
+            total = total + ring.times(rate, ring.velocity_derivative(x, name))
+    return total
+
+
+def _rate(ring: Ring, coordinates: Iterable[str], x: Polynomial) -> Polynomial:
+    known = ring.dependencies(x, coordinates)
+    slopes = ((ring.derivative(x, name), ring.generator("velocity", name)) for name in known)
+    return ring.reduce(sum((ring.times(a, b) for a, b in slopes), ring.zero))
+
+
+def _commute(ring: Ring, coordinates: Sequence[str], a: Direction, b: Direction) -> bool:
+    for x, y in zip(a, b, strict=True):
+        parts = (
+            ring.times(u, ring.derivative(y, name)) - ring.times(v, ring.derivative(x, name))
+            for name, u, v in zip(coordinates, a, b, strict=True)
+        )
+        if ring.is_zero(ring.reduce(sum(parts, ring.zero))) is not True:
+            return False
+    return True
+
+
+def among(
+    ring: Ring, found: Sequence[tuple[Direction, Direction, bool]], every: Sequence[str], coordinates: Sequence[str]
+) -> Displacements:
+    """Those whose values lie along some of ``every`` coordinates, those with constant momenta first."""
+    places = [every.index(name) for name in coordinates]
+    own = [one for one in found if not any(x and i not in places for i, x in enumerate(one[1]))]
+    own.sort(key=lambda one: not one[2])
+    constant = sum(one[2] for one in own)
+    fields = {k: _displacement(ring, c, every, "d") for k, (c, value, _) in enumerate(own) if c != value}
+    directions = tuple(tuple(value[i] for i in places) for _, value, _ in own)
+    return Displacements(tuple(coordinates), directions, constant, tuple(range(constant, len(own))), fields)
+
+
 # --- as coordinates ---
 
 
@@ -168,7 +314,9 @@ def basis(ring: Ring, found: Displacements, signs: Signs) -> Basis | None:
         return None
     others = [i for i in range(size) if i not in places]
     units = [tuple(ring.one if i == k else ring.zero for i in range(size)) for k in others]
-    told = tuple(_displacement(ring, c, found.coordinates) for c in found.directions)
+    told = tuple(
+        found.fields.get(k) or _displacement(ring, c, found.coordinates) for k, c in enumerate(found.directions)
+    )
     kept = tuple(_left(ring, found, places, i) for i in others)
     return Basis(found.coordinates, (*found.directions, *units), (*told, *kept), told)
 
@@ -190,10 +338,10 @@ def _left(ring: Ring, found: Displacements, places: Sequence[int], i: int) -> st
     return f"{times(c[place], name)} - {times(c[i], found.coordinates[place])}".replace(" - -", " + ")
 
 
-def _displacement(ring: Ring, direction: Direction, coordinates: Sequence[str]) -> str:
-    """``a``, or ``(a, b) = (r, -1)``: how coordinates move together."""
-    moved = [(name, c) for name, c in zip(coordinates, direction, strict=True) if not c.is_zero()]
-    if len(moved) == 1:
+def _displacement(ring: Ring, direction: Direction, coordinates: Sequence[str], mark: str = "") -> str:
+    """``a``, or ``(a, b) = (r, -1)``: how coordinates move together; ``(da, db) = (-b, a)`` with a mark."""
+    moved = [(mark + name, c) for name, c in zip(coordinates, direction, strict=True) if not c.is_zero()]
+    if len(moved) == 1 and not mark:
         return moved[0][0]
     rates = ", ".join(str(Formula(ring, c)) for _, c in moved)
     return f"({', '.join(name for name, _ in moved)}) = ({rates})"

@@ -36,6 +36,8 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs, sign_of_product
+from mbsym.algebra.vectors import axis_vector
+from mbsym.expressions.angles import angle_name
 from mbsym.expressions.tree import (
     Expression,
     Name,
@@ -44,16 +46,25 @@ from mbsym.expressions.tree import (
     multiply,
     names,
 )
+from mbsym.mechanics.frames import forward
 from mbsym.mechanics.generalized import generalized_forces
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import KINDS
-from mbsym.mechanics.motion import relations, turning, unperturbed_with
+from mbsym.mechanics.motion import motion_values, relations, turning, unperturbed_with
 from mbsym.mechanics.variables import expressions
 from mbsym.model.loads import (
     Load,
 )
-from mbsym.model.system import INERTIAL, rational, velocity_name
-from mbsym.problems.displacements import Displacements, displacements
+from mbsym.model.system import INERTIAL, Body, rational, velocity_name
+from mbsym.problems.displacements import (
+    Direction,
+    Displacements,
+    among,
+    displacements,
+    linear_fields,
+    symmetries,
+    turned_fields,
+)
 from mbsym.problems.energy import Energy
 from mbsym.problems.exact_linearity import Excess, excess
 
@@ -158,6 +169,53 @@ class Balance:
         """Displacements along some coordinates that change no equation; none where there are no closed formulas."""
         return self._displacements(coordinates)
 
+    def symmetries(self, coordinates: Sequence[str]) -> Displacements:
+        """The same with those that vary with the position; of systems without constraints."""
+        return among(self.scene.ring, self._fields, self.scene.system.coordinates, coordinates)
+
+    @cached_property
+    def _fields(self) -> list[tuple[Direction, Direction, bool]]:
+        system, ring = self.scene.system, self.scene.ring
+        if self.energy is None or self.somewhere or self._forces is None or system.constraints:
+            return []
+        try:
+            names, moving = system.coordinates, {*turning(self.scene)}
+            fields = linear_fields(ring, names)
+            for body in system.bodies:
+                fields += self._turned(body)
+            if not fields:
+                return []
+            forces = [
+                ring.reduce(ring.derivative(self.energy.force_function.polynomial, name) + self._forces[name])
+                for name in names
+            ]
+            standing = [name for name in names if name not in moving]
+            return symmetries(
+                ring,
+                names,
+                self.energy.kinetic_energy.polynomial,
+                forces,
+                fields,
+                lambda x: ring.substitute(x, self._here),
+                standing,
+            )
+        except Failure:
+            return []
+
+    def _turned(self, body: Body) -> list[Direction]:
+        """Turns of a body about axes of the frame that it hangs on, and about its own, by three angles."""
+        names = [angle_name(angle) for angle in body.rotation.angles]
+        own = [name for name in names if name is not None and name in self.scene.system.coordinates]
+        if len({*own}) < 3 or len(names) > 3 or body.name not in self.scene.motions:
+            return []
+        ring, motion = self.scene.ring, self.scene.motions[body.name]
+        spin = motion.relative_angular_velocity.components
+        rates = [[ring.velocity_derivative(x, name) for name in own] for x in spin]
+        fixed = [forward(motion.turns, axis_vector(ring, k, ring.one, body.attached_to), body.name) for k in (1, 2, 3)]
+        carried = [axis_vector(ring, k, ring.one, body.name) for k in (1, 2, 3)]
+        axes = [axis.components for axis in (*fixed, *carried)]
+        return turned_fields(ring, self.scene.system.coordinates, own, rates, axes)
+
     def _displacements(
         self, coordinates: Sequence[str], rows: Sequence[tuple[Polynomial, Sequence[Polynomial]]] = ()
     ) -> Displacements:
@@ -250,7 +308,7 @@ class Balance:
             forces = {name: self._put(x) for name, x in generalized_forces(self.scene, loads).items()}
             if any(ring.dependencies(x, (*system.velocities, *self._running)) for x in forces.values()):
                 return False
-            if any(not forces[name].is_zero() for name in turning(self.scene)):
+            if not self._along_motion(forces).is_zero():
                 return False
             return all(
                 ring.is_zero(ring.derivative(forces[a], b) - ring.derivative(forces[b], a)) is True
@@ -276,10 +334,42 @@ class Balance:
 
     @property
     def _turns_freely(self) -> bool:
-        """Whether steadily turning coordinates are cyclic, so that a reduced energy exists."""
+        """Whether the steady motion goes on along a symmetry of L, so that a reduced energy exists.
+
+        A cyclic coordinate turns, or several so that sum of rate_i dL/dq_i = 0: h - sum of rate_i p_i is constant.
+        """
         if self.energy is None:
             return not turning(self.scene)
-        return not any(self.scene.ring.depends_on(self._lagrangian, name) for name in turning(self.scene))
+        ring, running = self.scene.ring, turning(self.scene)
+        if not any(ring.depends_on(self._lagrangian, name) for name in running):
+            return True
+        slopes = {name: ring.derivative(self._lagrangian, name) for name in running}
+        return ring.is_zero(self._along_motion(slopes)) is True
+
+    def _along_motion(self, covector: Mapping[str, Polynomial]) -> Polynomial:
+        """The sum of rate_i times the i-th component over what turns steadily."""
+        ring, rates = self.scene.ring, motion_values(self.scene.system)
+        images = relations(self.scene)
+        parts = (
+            ring.times(ring.substitute(self.scene.lower(rates[name][1]), images), covector[name])
+            for name in turning(self.scene)
+        )
+        return self._put(ring.reduce(sum(parts, ring.zero)))
+
+    def _same_along_motion(self) -> bool:
+        """Whether the forces do no work along the steady motion and are the same functions wherever it has gone to.
+
+        Then their power is that of the velocities beside those of the motion.
+        """
+        ring, running, forces = self.scene.ring, turning(self.scene), self._forces
+        if forces is None or not self._along_motion(forces).is_zero():
+            return False
+        for x in forces.values():
+            moved = self._along_motion({name: ring.derivative(x, name) for name in running})
+            faster = self._along_motion({name: ring.velocity_derivative(x, name) for name in running})
+            if not moved.is_zero() or not faster.is_zero():
+                return False
+        return True
 
     @property
     def _lagrangian(self) -> Polynomial:
@@ -323,8 +413,11 @@ class Balance:
         system = self.scene.system
         loads = [load for load in self._acting if _is_formula(load)]
         spinning = {x for name in turning(self.scene) for x in (name, velocity_name(name))}
-        if any(spinning & self._names_of(load) for load in loads):
+        if any(spinning & self._names_of(load) for load in loads) and not self._same_along_motion():
             return EnergyLaw.UNKNOWN
+        given = [load for load in loads if load.given]
+        if len(given) < len(loads) and given and self._loss(given).is_zero():  # gyroscopic ones: the others decide
+            loads = [load for load in loads if not load.given]
         words = [word for load in loads for word in self._losses(load)]
         if {*words} <= {"zero"}:
             return EnergyLaw.CONSERVED
@@ -332,12 +425,16 @@ class Balance:
             return EnergyLaw.NOT_GROWING
         if {*words} <= {"zero", "negative", "nonpositive"}:
             return EnergyLaw.GROWS
+        return _Loss(self, self.scene.ring, tuple(system.coordinates), self._put(self._loss(loads))).law
+
+    def _loss(self, loads: Sequence[Load]) -> Polynomial:
+        """-P of some loads together."""
         ring = self.scene.ring
         loss = ring.zero
         for load in loads:
             for name, force in KINDS[type(load)].action(load, self.scene).generalized.items():
                 loss = loss - ring.times(force, ring.generator("velocity", name))
-        return _Loss(self, ring, tuple(system.coordinates), self._put(ring.reduce(loss))).law
+        return ring.reduce(loss)
 
     def _losses(self, load: Load) -> Iterator[str]:
         """The signs of parts of -P, product by product."""

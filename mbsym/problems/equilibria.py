@@ -162,7 +162,14 @@ def _described(group: Sequence[Solution]) -> RelativeEquilibrium:
     )
     judged = best.chart.verdict(best.place)
     return RelativeEquilibrium(
-        best.values, best.proof, judged, best.chart.chart.label, best.free, len(group), best.beyond
+        best.values,
+        best.proof,
+        judged,
+        best.chart.chart.label,
+        best.free,
+        len(group),
+        best.beyond,
+        {x.name: best.place.balls[x.name] for x in best.values},
     )
 
 

@@ -100,11 +100,17 @@ def identifiers(found: Iterable[Integral], taken: Iterable[str] = ()) -> list[st
 def integrals(scene: Scene, energy: Energy, equations: Equations, programs: Programs) -> tuple[Integral, ...]:
     """All first integrals of the kinds above (scene over the ring); ``programs`` is used to rule candidates out."""
     found = [*_generalised_energy(scene, energy, equations), *_cyclic_momenta(scene, energy, equations)]
+    found = [item for item in found if varies(scene, item.formula.polynomial)]
     conserved = _constant_momenta(scene.system, scene.ring, programs)
     found += _momenta(
         scene, equations, conserved, [item.formula.polynomial for item in found if item.kind not in ENERGIES]
     )
     return tuple(found)
+
+
+def varies(scene: Scene, x: Polynomial) -> bool:
+    """Whether x depends on the state: what is the same at all states, as a momentum without inertia, says nothing."""
+    return bool(scene.ring.dependencies(x, (*scene.system.coordinates, *scene.system.velocities)))
 
 
 def by_structure(system: System, programs: Programs) -> tuple[str, ...]:
@@ -124,7 +130,9 @@ def by_structure(system: System, programs: Programs) -> tuple[str, ...]:
     live = program.live([programs.kinetic_energy, programs.force_function])
     read = {str(x.payload) for x in map(program.instructions.__getitem__, live) if x.operation == "input"}
     if not given & rates:
-        found += [f"the momentum of {name}" for name in system.coordinates if name not in read]
+        pairs = zip(system.coordinates, system.velocities, strict=True)
+        # What L does not read at all has no inertia: its momentum is zero.
+        found += [f"the momentum of {name}" for name, rate in pairs if name not in read and rate in read]
     return tuple(found)
 
 

@@ -8,7 +8,6 @@ order of the potential energy (``stability.degenerate``) and by combinations of 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -19,32 +18,20 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import motion_values
 from mbsym.mechanics.rest import Rest, at_numbers, rest
 from mbsym.model.system import System
-from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.rest_candidates import candidate_at
 from mbsym.problems.rest_place import exact_rates
 from mbsym.problems.rest_verdict import linear_at_rest
-from mbsym.problems.stability import Stability, parameter_values
 from mbsym.problems.stability.verdict import Verdict
 
 #: Larger systems are not derived again at their numbers.
 MOST_COORDINATES = 8
 
 
-def decided(found: Stability, scene: Scene, equilibrium: Equilibrium) -> Stability:
-    """``found`` with its verdict at the values decided where that is possible; values have to be rational."""
-    if found.numerical is None or not found.numerical.word.open:
-        return found
-    values = parameter_values(scene, equilibrium)
-    return found if values is None else replace(found, numerical=decided_at(found.numerical, scene, values))
-
-
 def decided_at(verdict: Verdict, scene: Scene, values: Mapping[str, Any]) -> Verdict:
-    """The verdict at values of all parameters, decided where it is open and that is possible."""
+    """An open verdict at rational values of all parameters of an open tree, decided where that is possible."""
     system = scene.system
-    if not verdict.word.open or len(system.coordinates) > MOST_COORDINATES or system.linear is not None:
+    if len(system.coordinates) > MOST_COORDINATES:
         return verdict
-    if system.constraints or not all(isinstance(x, Fraction) for x in values.values()):
-        return verdict  # what looks further at open verdicts knows the open tree alone
     try:
         there = rest(at_numbers(system, values))
         forms = _motion(system, there, values)

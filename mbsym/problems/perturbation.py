@@ -28,7 +28,7 @@ from mbsym.expressions.tree import ZERO, Expression
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.oracle import Dual, FirstOrder, Oracle, State, TaylorSeries
 from mbsym.mechanics.programs import Programs, accelerated
-from mbsym.mechanics.states import SEED, Oracles
+from mbsym.mechanics.states import SEED, Oracles, drawn
 from mbsym.mechanics.variables import ring_environment
 from mbsym.model.system import System, acceleration_name, velocity_name
 from mbsym.problems.checks import D_ALEMBERT, Check, Pair, compare, decide
@@ -160,10 +160,7 @@ def unperturbed_state(
     """The motion at random values of the parameters; ``turning`` coordinates turn although none says how fast."""
     source = random.Random(SEED)
     kind: Any = arb if balls else fmpq
-    values: dict[str, Scalar] = {
-        name: kind(fmpq(source.randint(1, 40), source.randint(1, 24))) for name in ring.names()
-    }
-    values |= {p.name: -values[p.name] for p in system.parameters if p.sign in ("negative", "nonpositive")}
+    values: dict[str, Scalar] = {name: kind(value) for name, value in drawn(system, ring, source).items()}
     values["pi"] = arb.pi() if balls else fmpq(355, 113)
     motion = _given_motion(system)
     tangents = {name: fmpq(source.randint(1, 9), source.randint(1, 9)) for name in ring.angles}
@@ -179,9 +176,8 @@ def unperturbed_state(
     values |= {one.name: lower(one.held) for one in system.inputs}
     running = {one.name: (one.initial or ZERO, one.rate) for one in system.prescribed}
     running |= {name: motion[name] for name in system.coordinates if name not in (*at_rest, *turning)}
-    for name, (value, rate) in running.items():
-        if name not in ring.angles:  # of angles the check knows no time: they have any values
-            values[name] = lower(value) + lower(rate) * values["t"]
+    for name, (value, rate) in running.items():  # sines and cosines of rational states are any, whatever the time
+        values[name] = lower(value) + lower(rate) * values["t"]
     for name, (value, rate) in motion.items():
         if name in at_rest:
             values[name] = lower(value)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
 
 from mbsym.problems.stability.verdict import Verdict
 
@@ -30,7 +32,8 @@ class RelativeEquilibrium:
     ``proof``: exact (f vanishes in a number field), or proved in a box.  ``coordinates_of``: which joints have other
     angles than the description's, because those are singular here (empty: none).  ``free``: coordinates that do not
     occur in f, so that every value of them does.  ``described``: how many sets of coordinates mean this configuration.
-    ``beyond``: the negative lengths of polar coordinates, behind their singularity.
+    ``beyond``: the negative lengths of polar coordinates, behind their singularity.  ``enclosures``: balls that hold
+    the coordinates.
     """
 
     values: tuple[CoordinateValue, ...]
@@ -40,6 +43,7 @@ class RelativeEquilibrium:
     free: tuple[str, ...] = ()
     described: int = 1
     beyond: tuple[str, ...] = ()
+    enclosures: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
 
 
 @dataclass(frozen=True)

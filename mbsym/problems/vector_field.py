@@ -17,6 +17,8 @@ from mbsym.problems.speeds import SpeedEquations
 
 #: No relations between parameters.
 NOTHING: Mapping[int, Polynomial] = {}
+#: Why there is no field x' = f(x).
+SINGULAR = "the mass matrix is singular everywhere, so that the equations do not determine all accelerations"
 
 
 def in_speeds(
@@ -29,10 +31,13 @@ def in_speeds(
 
     Variables are the speeds and the positions on which the equations depend; parameters are those that occur in the
     equations and in ``also``, where ``images`` (by generator) take the place of dependent ones.  Raises NoClosedForm
-    where the time, roots or functions occur, or angles do: their sines and cosines are no variables here.
+    where M is singular, the time, roots or functions occur, or angles do: their sines and cosines are no variables
+    here.
     """
     ring = form.ring
     field = Field(form, equations)
+    if ring.vanishes(field.determinant):
+        raise NoClosedForm(SINGULAR)
     positions = [one for one in form.positions if one.name not in equations.aside]
     numerators = [*field.scaled, *(ring.times(field.determinant, form.rates[one.name]) for one in positions)]
     scaled = [put_in(ring, p, images) for p in (field.determinant, *numerators)]
@@ -128,8 +133,8 @@ def transfer_of(
 
 def _told(ring: Ring, k: int) -> str:
     g = ring.generators[k]
-    if g.kind == "prescribed":
-        return f"the prescribed {g.name}"
+    if g.kind == "prescribed":  # an input, too
+        return f"{g.name}, a function of the time,"
     return (
         "the time" if g.kind == "time" else f"{g.kind} of {g.name}" if g.name and not g.name.startswith("#") else g.kind
     )

@@ -26,7 +26,6 @@ from mbsym.report.drawing import pictures
 from mbsym.report.language import Language
 from mbsym.report.map_figure import HEIGHT, RESOLUTION, SMALL, TEXT, WIDTH, hatch_of, legend, look, named, partial
 from mbsym.report.map_json import check_data, head, judged_data
-from mbsym.report.map_language import say
 from mbsym.report.map_located import VERDICT, WHERE, Points
 from mbsym.report.map_tex import caption_of, escaped, figure_lines
 from mbsym.report.map_words import judged_words, look_words, signature_words
@@ -68,7 +67,7 @@ def _drawn(system: System, found: BoxMap, language: Language) -> Figure:
         patch = Patch(facecolor=seen.colour, edgecolor=hatch_of(seen), linewidth=0.3, hatch=seen.hatch or None)
         entries.append((patch, words))
     if found.subdivision.white:
-        words = f"{say(language, 'white: nothing is proved')} ({percent(found, language)})"
+        words = f"{language.say('white: nothing is proved')} ({percent(found, language)})"
         entries.append((Patch(facecolor="#ffffff", edgecolor="#777777", linewidth=0.4), words))
     entries += partial(found, language)
     figure = Figure(figsize=(WIDTH, HEIGHT + 0.35 + 0.155 * len(entries)), dpi=RESOLUTION, layout="constrained")
@@ -102,8 +101,8 @@ def _drawn(system: System, found: BoxMap, language: Language) -> Figure:
 
 def percent(found: BoxMap, language: Language) -> str:
     """``12.50 % of the area``."""
-    told = share(found.subdivision.white).replace("less than", say(language, "less than"))
-    return f"{told} {say(language, 'of the area')}"
+    told = share(found.subdivision.white).replace("less than", language.say("less than"))
+    return f"{told} {language.say('of the area')}"
 
 
 def box_json(system: System, found: BoxMap) -> str:
@@ -146,9 +145,9 @@ def box_tex(system: System, found: BoxMap, language: Language) -> str:
     """Needs graphicx; the picture is map.pdf in the same folder."""
     names = LatexNames([axis.name for axis in found.section.axes])
     axes = ", ".join(f"${names[axis.name]}$" for axis in found.section.axes)
-    told = f" {say(language, 'Every coloured box is proved as a whole')}"
+    told = f" {language.say('Every coloured box is proved as a whole')}"
     if found.subdivision.white:
-        told += f"; {say(language, 'white: nothing is proved')} ({escaped(percent(found, language))})"
+        told += f"; {language.say('white: nothing is proved')} ({escaped(percent(found, language))})"
     return "\n".join(figure_lines("map.pdf", caption_of(system, found, f"({axes})", language) + told + ".")) + "\n"
 
 

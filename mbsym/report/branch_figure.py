@@ -20,7 +20,7 @@ from mbsym.maps.branches_events import Event
 from mbsym.maps.branches_result import Branches, Piece
 from mbsym.model.quantities import unit_of
 from mbsym.model.system import System
-from mbsym.report.branch_words import EVENTS, say
+from mbsym.report.branch_words import EVENTS
 from mbsym.report.drawing import pictures
 from mbsym.report.language import Language
 from mbsym.report.map_figure import RESOLUTION, SMALL, TEXT, WIDTH, named
@@ -73,7 +73,7 @@ def _drawn(system: System, found: Branches, language: Language) -> Figure:
     panels[-1].set_xlim(float(found.axis.low), float(found.axis.high))
     name = found.axis.name
     panels[-1].set_xlabel(labelled(named(LatexNames([name]), name), unit_of(system, name)), fontsize=TEXT)
-    entries = [(handle, say(language, words)) for words, handle in used.items()]
+    entries = [(handle, language.say(words, "branches of equilibria")) for words, handle in used.items()]
     figure.set_figheight(sum(heights) + 0.6 + LINE * len(entries))
     if entries:
         handles, labels = zip(*entries, strict=True)
@@ -157,7 +157,7 @@ def _counts(axes: Axes, found: Branches, language: Language) -> None:
         axes.fill_between([low, high], 0, one.stable, color=STABLE, alpha=0.35, linewidth=0)
     axes.set_ylim(0, top * 1.15 + 0.5)
     axes.yaxis.set_major_locator(MaxNLocator(3, integer=True))
-    axes.set_ylabel(say(language, "equilibria"), fontsize=SMALL)
+    axes.set_ylabel(language.say("equilibria"), fontsize=SMALL)
 
 
 def _lines(axes: Axes, found: Branches, used: dict[str, Any]) -> None:

@@ -10,7 +10,7 @@ from mbsym.algebra.plane.numbers import enclosure
 from mbsym.formulas.latex import LatexNames
 from mbsym.maps.branches_result import Branches
 from mbsym.model.system import System
-from mbsym.report.branch_words import critical_words, say
+from mbsym.report.branch_words import critical_words
 from mbsym.report.language import Language
 from mbsym.report.map_tex import escaped
 
@@ -23,7 +23,7 @@ def branch_tex(system: System, found: Branches, language: Language) -> str:
     name = LatexNames([found.axis.name])[found.axis.name]
     fixed = LatexNames(list(found.given))
     values = ", ".join(f"${fixed[key]} = {value}$" for key, value in found.given.items())
-    caption = f"{say(language, 'Relative equilibria of')} {escaped(system.name)}" + (f"; {values}" if values else "")
+    caption = f"{language.say('Relative equilibria of')} {escaped(system.name)}" + (f"; {values}" if values else "")
     lines = [
         "% needs \\usepackage{graphicx}; written by mbsym equilibria --vary",
         r"\begin{figure}",
@@ -32,18 +32,18 @@ def branch_tex(system: System, found: Branches, language: Language) -> str:
         rf"\caption{{{caption}.}}",
         r"\end{figure}",
         "",
-        r"\noindent " + say(language, "Numbers of equilibria:"),
+        r"\noindent " + language.say("Numbers of equilibria:"),
         r"\begin{itemize}",
     ]
     for one, last in found.spans():
         low, high = number_tex(one.low), number_tex(last.high)
-        doubt = "" if one.constant else f" ({say(language, 'not proved to be constant')})"
-        stable = f"{say(language, 'of them stable')} {one.stable}"
+        doubt = "" if one.constant else f" ({language.say('not proved to be constant')})"
+        stable = f"{language.say('of them stable')} {one.stable}"
         lines.append(rf"\item ${low} < {name} < {high}$: {len(one.equilibria)}, {stable}{doubt}")
     lines.append(r"\end{itemize}")
     told = [(one, words) for one in found.criticals if (words := critical_words(found, one, language))]
     if told:
-        lines += ["", r"\noindent " + say(language, "Critical values:"), r"\begin{itemize}"]
+        lines += ["", r"\noindent " + language.say("Critical values:"), r"\begin{itemize}"]
         lines += [rf"\item ${name} = {number_tex(one.number)}$: {escaped(words)}" for one, words in told]
         lines.append(r"\end{itemize}")
     return "\n".join(lines) + "\n"

@@ -10,7 +10,7 @@ from mbsym.expressions.counting import counted
 from mbsym.model.quantities import marked, time_unit, unit_of, with_unit
 from mbsym.model.system import System
 from mbsym.numerics.enclosure.compare import Certificate
-from mbsym.numerics.enclosure.enclose import INTERRUPTED, NO_STEP, OUT_OF_TIME, TOO_WIDE
+from mbsym.numerics.enclosure.enclose import INTERRUPTED, NO_STEP, OUT_OF_TIME, TOO_DEAR, TOO_WIDE
 from mbsym.report.documents import simulation as doc
 from mbsym.report.trajectory_csv import written
 from mbsym.report.unit_text import pretty
@@ -20,6 +20,7 @@ WHY = {
     NO_STEP: "no step could be proved there: a singularity of the equations is near, or their balls grow too fast",
     TOO_WIDE: "neighbouring motions part too fast",
     OUT_OF_TIME: "its time is too short",
+    TOO_DEAR: "it takes more work than it may (as many seconds as --certify-seconds says, whatever the work)",
     INTERRUPTED: "interrupted",
 }
 
@@ -57,7 +58,7 @@ def certificate_lines(found: Certificate, system: System, rows: int) -> Iterator
 def _pace(found: Certificate) -> str:
     """How long the whole would take, where that is why it ended."""
     enclosure = found.enclosure
-    if found.ended != OUT_OF_TIME or not isfinite(enclosure.whole_seconds):
+    if found.ended not in (OUT_OF_TIME, TOO_DEAR) or not isfinite(enclosure.whole_seconds):
         return ""
     steps = counted(len(enclosure.segments), "step", "steps")
     whole = spelled(enclosure.whole_seconds)

@@ -13,6 +13,9 @@ from mbsym.problems.stability.requirements import Case, Place, Requirement
 from mbsym.problems.stability.word import Word
 from mbsym.report.coefficients import InCoefficients, in_coefficients, names_in
 
+#: Places that are told with the condition: the others are those of the list as a whole.
+_TOLD = (Place.METHOD, Place.FIRST, Place.HARMLESS, Place.STRICTLY, Place.BESIDE, Place.EQUALITY)
+
 
 @dataclass(frozen=True)
 class Statement:
@@ -34,7 +37,7 @@ class Statement:
     @property
     def remark(self) -> str:
         """What is to be said of its place where it is not that of the others."""
-        return self.place.value if self.place in (Place.METHOD, Place.FIRST, Place.HARMLESS) else ""
+        return self.place.value if self.place in _TOLD else ""
 
 
 @dataclass(frozen=True)

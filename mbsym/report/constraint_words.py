@@ -123,13 +123,13 @@ def _integrable(found: Integrability, dimension: int, write: Writer) -> Iterator
     if found.word == "holonomic" and found.rheonomic:
         yield (
             "The velocity constraints are integrable (Frobenius; [[sure]]): the system is holonomic, and the "
-            "configurations that can be reached at any one time have [[k]] dimensions.",
+            "configurations that can be reached at any one time are of dimension [[k]].",
             {"sure": sure, "k": dimension - found.kept},
         )
     elif found.word == "holonomic":
         yield (
             "The velocity constraints are integrable (Frobenius; [[sure]]): the system is holonomic, and the "
-            "configurations that can be reached have [[k]] dimensions.",
+            "configurations that can be reached are of dimension [[k]].",
             {"sure": sure, "k": dimension - found.kept},
         )
     elif found.word == "partly":

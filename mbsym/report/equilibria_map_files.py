@@ -23,7 +23,7 @@ from mbsym.report.documents import branches, parts
 from mbsym.report.documents import equilibria_map as doc
 from mbsym.report.documents.writer import written
 from mbsym.report.drawing import pictures
-from mbsym.report.equilibria_map_words import ORIGINS, cell_words, say
+from mbsym.report.equilibria_map_words import ORIGINS, cell_words
 from mbsym.report.language import Language
 from mbsym.report.map_figure import HEIGHT, NODES, RESOLUTION, SMALL, TEXT, TOLERANCE, WIDTH, named
 from mbsym.report.map_tex import equation, escaped
@@ -179,7 +179,7 @@ def equilibria_map_tex(system: System, found: EquilibriaMap, language: Language)
     fixed = LatexNames(list(found.given))
     axes = ", ".join(f"${names[axis.name]}$" for axis in found.axes)
     values = ", ".join(f"${fixed[key]} = {value}$" for key, value in found.given.items())
-    head = say(language, "Numbers of relative equilibria of")
+    head = language.say("Numbers of relative equilibria of")
     caption = f"{head} {escaped(system.name)}: ({axes})" + (f"; {values}" if values else "")
     lines = [
         "% needs \\usepackage{graphicx}; written by mbsym map --of equilibria",
@@ -190,8 +190,8 @@ def equilibria_map_tex(system: System, found: EquilibriaMap, language: Language)
         r"\end{figure}",
     ]
     if found.arrangement.factors:
-        lines += ["", r"\noindent " + say(language, "The curves of the map:"), r"\begin{itemize}"]
+        lines += ["", r"\noindent " + language.say("The curves of the map:"), r"\begin{itemize}"]
         for p, of in zip(found.arrangement.factors, found.origins, strict=True):
-            lines.append(rf"\item {equation(p, names, language)} \quad ({escaped(say(language, ORIGINS[of[0]]))})")
+            lines.append(rf"\item {equation(p, names, language)} \quad ({escaped(language.say(ORIGINS[of[0]]))})")
         lines.append(r"\end{itemize}")
     return "\n".join(lines) + "\n"

@@ -10,6 +10,8 @@ from flint import arb
 from mbsym.model.system import System
 from mbsym.problems.normal_forms import Judged, Outcome, Theorem
 from mbsym.problems.normal_forms.along import Along, Special
+from mbsym.problems.stability.sentences import with_theorem
+from mbsym.problems.stability.verdict import Verdict
 from mbsym.report.documents import nonlinear as doc
 from mbsym.report.documents.writer import written
 from mbsym.report.normal_form_words import REASONS, decimal
@@ -43,9 +45,11 @@ def lines(found: Along) -> Iterator[str]:
         if k < len(found.specials):
             special = found.specials[k]
             what = ", ".join(VANISHING[key] for key in special.vanishing)
-            yield f"{found.name} = {ends[k + 1]}: {_said(special.judged)}"
+            yield f"{found.name} = {ends[k + 1]}: {_told(special)}"
             yield f"  {what}; {found.name} is a root of {_polynomial(special.polynomial, found.name)}"
             yield from (f"  {one}" for one in _numbers(special.judged))
+            if special.verdict is not None:
+                continue
             if special.judged.outcome is Outcome.UNDECIDED and special.judged.why in REASONS:
                 yield f"  {REASONS[special.judged.why]}"
     yield "Between these values each verdict holds throughout (proved); the ends of the interval are left out."
@@ -55,12 +59,23 @@ def _number(special: Special) -> str:
     return str(special.exactly) if special.exactly is not None else special.enclosure.str(DIGITS, radius=False)
 
 
+def _told(special: Special) -> str:
+    if special.verdict is None:
+        return _said(special.judged)
+    return with_theorem(special.verdict.word, special.verdict.theorem)
+
+
 def _said(judged: Judged) -> str:
     return judged.outcome.value + (f" ({judged.theorem.value})" if judged.theorem is not Theorem.NONE else "")
 
 
 def _numbers(judged: Judged) -> Iterator[str]:
-    if judged.coefficient is not None and judged.amplitude_of:
+    if judged.coefficient is not None and judged.amplitude_of and _is_zero(judged.coefficient):
+        yield (
+            f"a pair of imaginary roots of frequency {decimal(judged.frequencies[0])}, the growth of the amplitude of "
+            f"{judged.amplitude_of} is without a term of third order, or it is not told from zero"
+        )
+    elif judged.coefficient is not None and judged.amplitude_of:
         borders = {Outcome.ASYMPTOTIC: "a soft border: ", Outcome.UNSTABLE: "a hard border: "}
         yield (
             f"{borders.get(judged.outcome, '')}a pair of imaginary roots of frequency {decimal(judged.frequencies[0])}"
@@ -112,13 +127,18 @@ def as_text(system: System, found: Along) -> str:
                 enclosure=enclosure(one.enclosure),
                 root_of=list(map(str, one.polynomial)),
                 vanishing=[VANISHING[key] for key in one.vanishing],
-                **_judged(one.judged),
+                **_judged(one.judged) | _of_problem_6(one.verdict),
             )
             for one in found.specials
         ],
         between=[doc.Between(sample=str(one.sample), **_judged(one.judged)) for one in found.between],
     )
     return written(whole)
+
+
+def _of_problem_6(verdict: Verdict | None) -> dict[str, Any]:
+    """In place of what terms of higher order leave open."""
+    return {} if verdict is None else {"verdict": verdict.word, "theorem": verdict.theorem, "reason": ""}
 
 
 def _judged(judged: Judged) -> dict[str, Any]:

@@ -1,30 +1,19 @@
-"""The language of a LaTeX report: its fixed sentences, and the words of its results, in another language.
+"""The language of reports: sentences of templates, and the words of results, in another language.
 
-Sentences stand in English in the templates and are looked up by themselves; ``[[name]]`` in them is filled in
-afterwards.  What the results say in sentences of their own is read sentence by sentence (``explained_ru`` and so on),
-with gaps for names and numbers; what is not listed stays English.
+Messages are looked up by their English text (``mbsym.report.messages``).  ``[[name]]`` in those of templates is filled
+in afterwards.  What results say in sentences of their own is read sentence by sentence, with gaps ``{}`` for names and
+numbers; what is not listed stays English.
 """
 
 from __future__ import annotations
 
 import re
 from functools import cached_property
-from importlib import import_module
-from typing import Any
+
+from mbsym.report.messages import messages
 
 #: What may follow ``--language``, and what it is called.
 LANGUAGES = {"en": "English", "ru": "Russian", "es": "Spanish"}
-
-#: Problems whose sentences stand in modules of their own, ``stabilisation_ru`` and so on.
-FURTHER = (
-    "stabilisation",
-    "invariant_sets",
-    "normal_forms",
-    "polynomial_integrals",
-    "symmetries",
-    "small_parameters",
-    "oscillations",
-)
 
 _BABEL = {"en": "", "ru": "russian", "es": "spanish,es-noquoting,es-noshorthands,es-nodecimaldot"}
 
@@ -35,36 +24,31 @@ class Language:
     def __init__(self, name: str = "") -> None:
         self.name = name or "en"
         self.babel = _BABEL[self.name]
-        catalogue: Any = None if self.name == "en" else import_module(f"mbsym.report.language_{self.name}")
-        self._sentences: dict[str, str] = dict(getattr(catalogue, "SENTENCES", {}))
-        self._words: dict[str, str] = dict(getattr(catalogue, "WORDS", {}))
-        for problem in FURTHER if catalogue else ():
-            further = import_module(f"mbsym.report.{problem}_{self.name}")
-            self._sentences |= getattr(further, "SENTENCES", {})
-            self._words |= getattr(further, "WORDS", {})
+        self._messages = {} if self.name == "en" else messages(self.name)
 
     @cached_property
     def _explained(self) -> list[tuple[re.Pattern[str], str]]:
         """What is read, and what is said for it: first what has no gaps, then the longest: it leaves least to them."""
-        if self.name == "en":
-            return []
-        catalogue: dict[str, str] = import_module(f"mbsym.report.explained_{self.name}").EXPLAINED
+        read = [(english, other) for (_, english), other in self._messages.items() if "[[" not in english]
         return [
             (re.compile(_reading(english)), other)
-            for english, other in sorted(catalogue.items(), key=lambda item: ("{}" in item[0], -len(item[0])))
+            for english, other in sorted(read, key=lambda item: ("{}" in item[0], -len(item[0])))
         ]
 
     def sentence(self, english: str, **values: object) -> str:
         """A sentence of the templates, in TeX, with its values filled in."""
-        text = self._sentences.get(english, english)
+        text = self._known(english, "template")
         for name, value in values.items():
             text = text.replace(f"[[{name}]]", str(value))
         return text
 
-    def say(self, english: str) -> str:
+    def say(self, english: str, context: str = "") -> str:
         """A word, a clause or the sentences of a result, as plain text; English where there is no other."""
         text = str(english)
-        return self._words[text] if text in self._words else self._read(text)
+        return self._known(text, context) if ("", text) in self._messages else self._read(text)
+
+    def _known(self, english: str, context: str) -> str:
+        return self._messages.get((context, english)) or self._messages.get(("", english), english)
 
     def _read(self, text: str) -> str:
         said: list[str] = []

@@ -30,7 +30,6 @@ from mbsym.model.quantities import unit_of
 from mbsym.model.system import System
 from mbsym.report.drawing import pictures
 from mbsym.report.language import Language
-from mbsym.report.map_language import say
 from mbsym.report.map_words import INTERRUPTED, arcs_of, condition_words, look_words, onset_words, telling
 from mbsym.report.unit_text import labelled
 from mbsym.report.verdict_colours import NONE, Look, look_of_degree, look_of_roots
@@ -297,7 +296,7 @@ def _entries(found: PlaneMap, told: Mapping[int, str], language: Language) -> li
 
 def partial(found: Shown, language: Language) -> list[tuple[Any, str]]:
     """What a legend says of a map that was interrupted."""
-    return [("!", say(language, INTERRUPTED))] if found.partial else []
+    return [("!", language.say(INTERRUPTED))] if found.partial else []
 
 
 def entries_of(shown: Sequence[tuple[PlaneMap, Mapping[int, str]]], language: Language) -> list[tuple[Any, str]]:
@@ -327,11 +326,11 @@ def entries_of(shown: Sequence[tuple[PlaneMap, Mapping[int, str]]], language: La
         patch = Patch(facecolor=seen.colour, edgecolor=hatch_of(seen), linewidth=0.3, hatch=seen.hatch or None)
         entries.append((patch, words))
     if counted:
-        entries.append(("2", say(language, "number of roots with positive real part")))
+        entries.append(("2", language.say("number of roots with positive real part")))
     entries += [(", ".join(names), fill(words, WIDEST)) for words, names in by_condition.items()]
     if dashed:
         line = Line2D([], [], color=_DARK, linewidth=0.8, linestyle=_DASHES)
-        entries.append((line, say(language, "dashed: another verdict on the curve alone")))
+        entries.append((line, language.say("dashed: another verdict on the curve alone")))
     return entries
 
 

@@ -12,7 +12,6 @@ from mbsym.model.system import System
 from mbsym.report.language import Language
 from mbsym.report.line_figure import changes
 from mbsym.report.map_figure import lettered
-from mbsym.report.map_language import say
 from mbsym.report.map_words import INTERRUPTED, arcs_of, condition_words, onset_words, telling
 
 #: Longer polynomials are told by their degrees and number of terms.
@@ -40,7 +39,7 @@ def map_tex(system: System, found: PlaneMap | LineMap, language: Language) -> st
     items = _zeros(found, names, language) if isinstance(found, LineMap) else _curves(found, names, language)
     if items:
         head = "The points of the map:" if isinstance(found, LineMap) else "The curves of the map:"
-        lines += ["", r"\noindent " + say(language, head), r"\begin{itemize}", *items, r"\end{itemize}"]
+        lines += ["", r"\noindent " + language.say(head), r"\begin{itemize}", *items, r"\end{itemize}"]
     return "\n".join(lines) + "\n"
 
 
@@ -49,8 +48,8 @@ def caption_of(system: System, found: PlaneMap | LineMap | Stack | BoxMap, plane
     fixed = LatexNames(list(found.section.told))
     values = ", ".join(f"${fixed[name]} = {_rational(value)}$" for name, value in found.section.told.items())
     what = "Degree of instability of" if found.of is Of.SIGNATURE else "Stability of"
-    told = f"{say(language, what)} {escaped(system.name)}: {plane}" + (f"; {values}" if values else "") + "."
-    return told + f" {say(language, INTERRUPTED)}." if found.interrupted else told
+    told = f"{language.say(what)} {escaped(system.name)}: {plane}" + (f"; {values}" if values else "") + "."
+    return told + f" {language.say(INTERRUPTED)}." if found.interrupted else told
 
 
 def figure_lines(file: str, caption: str) -> list[str]:
@@ -87,8 +86,8 @@ def equation(p: Any, names: LatexNames, language: Language) -> str:
     """p = 0, or how long it is."""
     if len(p) > MOST_TERMS:
         symbols = [names[name] for name in p.context().names()]
-        degrees = ", ".join(f"{d} ({say(language, 'in')} ${s}$)" for s, d in zip(symbols, p.degrees(), strict=True))
-        return f"{say(language, 'degrees')} {degrees}, {say(language, 'terms')}: {len(p)}, map.json"
+        degrees = ", ".join(f"{d} ({language.say('in')} ${s}$)" for s, d in zip(symbols, p.degrees(), strict=True))
+        return f"{language.say('degrees')} {degrees}, {language.say('terms')}: {len(p)}, map.json"
     terms: list[str] = []
     for exponents, coefficient in p.terms():
         powers = "".join(

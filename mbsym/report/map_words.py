@@ -12,7 +12,6 @@ from mbsym.maps.soft_borders import Onset
 from mbsym.maps.verdicts import Judged
 from mbsym.problems.stability.word import Word
 from mbsym.report.language import Language
-from mbsym.report.map_language import say
 
 ENGLISH = Language()
 
@@ -67,7 +66,7 @@ def telling(conditions: Sequence[Condition], outside: bool = False) -> Condition
 
 def condition_words(condition: Condition, section: Section, language: Language = ENGLISH) -> str:
     """``double root: discriminant (psi, phi, sigma)``."""
-    words = say(language, _CONDITIONS[condition.origin])
+    words = language.say(_CONDITIONS[condition.origin])
     if condition.origin in (Origin.ASSUMPTION, Origin.SIGN, Origin.INERTIA):
         return f"{words}: {condition.about}" if condition.about else words
     if condition.part is None or len(section.parts) == 1:
@@ -96,13 +95,13 @@ def onset_words(strata: Sequence[Stratum], language: Language = ENGLISH) -> str:
         return ""
     only = next(iter(seen)) if len(seen) == 1 else None
     words = {Onset.SOFT: "soft border", Onset.HARD: "hard border", None: "soft border in parts, hard in others"}
-    return f", {say(language, words[only])}"
+    return f", {language.say(words[only])}"
 
 
 def look_words(found: Shown, stratum: Stratum, language: Language = ENGLISH) -> str:
     """What is shown of a stratum, for a legend."""
     if stratum.judged is None:
-        return say(language, STANDINGS[stratum.standing])
+        return language.say(STANDINGS[stratum.standing])
     if found.of is Of.SIGNATURE:
         return signature_words(stratum.judged, language)
     return judged_words(stratum.judged, language)
@@ -112,18 +111,18 @@ def judged_words(judged: Judged, language: Language = ENGLISH) -> str:
     """``unstable: flutter`` or the verdict's word."""
     word = judged.verdict.word
     if word is not Word.UNSTABLE or not judged.right or judged.real_right is None:
-        return say(language, word)  # unstable by terms of higher order, too
+        return language.say(word)  # unstable by terms of higher order, too
     pairs = judged.right - judged.real_right
     how = "divergence" if not pairs else "divergence and flutter" if judged.real_right else "flutter"
-    return f"{say(language, word)}: {say(language, how)}"
+    return f"{language.say(word)}: {language.say(how)}"
 
 
 def signature_words(judged: Judged, language: Language = ENGLISH) -> str:
     """``degree of instability 2``; where K is singular, its nullity as well."""
     if judged.degree is None:
-        return say(language, Word.UNDECIDED)
-    told = f"{say(language, 'degree of instability')} {judged.degree}"
-    return told + (f", {say(language, 'null directions')} {judged.null}" if judged.null else "")
+        return language.say(Word.UNDECIDED)
+    told = f"{language.say('degree of instability')} {judged.degree}"
+    return told + (f", {language.say('null directions')} {judged.null}" if judged.null else "")
 
 
 def broken_words(stratum: Stratum) -> str:

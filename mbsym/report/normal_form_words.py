@@ -118,7 +118,10 @@ def sentences(found: NormalForms, write: Medium) -> Iterator[Said]:
             {},
         )
     if found.first is not None:
-        yield "At the given values problem 6 says: [[word]].", {"word": write.word(found.first.value)}
+        yield (
+            "At the given values problem 6 says without terms of higher order: [[word]].",
+            {"word": write.word(found.first.value)},
+        )
     if found.at_values is not None:
         yield from _judged(found.at_values, found, write)
     if isinstance(found.in_symbols, InSymbols):

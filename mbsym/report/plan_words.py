@@ -130,7 +130,7 @@ def share_words(share: Share) -> str:
 
 
 def item_words(item: Item, plan: Plan) -> str:
-    """``dop853, tolerance 3.3e-08, 91 µs: the cheapest here ...; rk45 3.3e-08: error 6.6e-07, about 110 µs``."""
+    """``dop853, tolerance 3.3e-08, 91 µs a run: ...; rk45 3.3e-08: error 6.6e-07, about 110 µs``."""
     chosen = item.chosen
     if item.kind == METHOD:
         fineness = next(one for one in plan.items if one.kind == FINENESS)
@@ -151,14 +151,13 @@ def refused_words(one: Refused, unit: str) -> str:
 
 
 def alternative_words(other: Alternative, plan: Plan) -> str:
-    """``1e-07: about 110 µs, 1.2 times as much (dop853 5e-09)``."""
+    """``1e-07: about 110 µs, 1.2 times as much work (dop853 5e-09)``: by counted work, and seconds in proportion."""
     model = f", {other.model}" if other.model else ""
     if other.seconds is None:
         return f"{other.target:.0e}: {other.why}"
-    about = "" if other.measured else "about "
     times = other.times
-    same = "as much" if 0.95 < times < 1.05 else f"{times:.2g} times as much"
-    return f"{other.target:.0e}: {about}{duration(other.seconds)}, {same} ({other.label}{model})"
+    same = "as much work" if 0.95 < times < 1.05 else f"{times:.2g} times as much work"
+    return f"{other.target:.0e}: about {duration(other.seconds)}, {same} ({other.label}{model})"
 
 
 def repeating_options(request: Request) -> list[str]:

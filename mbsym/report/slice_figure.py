@@ -35,7 +35,6 @@ from mbsym.report.map_figure import (
     letters,
     named,
 )
-from mbsym.report.map_language import say
 from mbsym.report.unit_text import pretty
 
 #: Panels beside each other, and rows of them on one page.
@@ -103,7 +102,7 @@ def _page(
     told = [{k: letters[curve_name(found, plane, k)] for k in sorted(drawn_curves(plane))} for _, plane in page]
     entries = entries_of([(plane, own) for (_, plane), own in zip(page, told, strict=True)], language)
     if any(one.unseen for one, _ in page):
-        entries.append(("*", say(language, "but for single values not looked at")))
+        entries.append(("*", language.say("but for single values not looked at")))
     rows = -(-len(page) // ACROSS)
     size = (WIDTH, _ROW * rows + 0.3 + _LINE * len(entries))
     near = ConstrainedLayoutEngine(w_pad=0.02, h_pad=0.02, wspace=0.03, hspace=0.03)

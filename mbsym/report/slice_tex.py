@@ -7,7 +7,6 @@ from mbsym.maps.result import PlaneMap
 from mbsym.maps.slices import Stack
 from mbsym.model.system import System
 from mbsym.report.language import Language
-from mbsym.report.map_language import say
 from mbsym.report.map_tex import caption_of, equation, escaped, figure_lines
 from mbsym.report.map_words import condition_words, telling
 from mbsym.report.slice_figure import curve_name, letters_of, page_names, panels
@@ -24,7 +23,7 @@ def slices_tex(system: System, found: Stack, language: Language) -> str:
         lines += figure_lines(f"{name}.pdf", caption)
     items = _curves(found, names, language)
     if items:
-        head = say(language, "The curves of the map:")
+        head = language.say("The curves of the map:")
         lines += ["", r"\noindent " + head, r"\begin{itemize}", *items, r"\end{itemize}"]
     return "\n".join(lines) + "\n"
 

@@ -14,7 +14,7 @@ OPENING = (
 )
 KNOWN = "The field [[field]] gives an integral that is known ([[name]])."
 DEPENDS = "The field [[field]] gives no further integral ([[name]]; verified at a random state)."
-GIVES = "The field [[field]] gives a further integral, no function of those of problem 7 (proved):"
+GIVES = "The field [[field]] gives a further integral, no function of those known without it (proved):"
 OPEN = "The field [[field]] gives an integral of which it is undecided whether it is a function of those of problem 7:"
 
 HEADING = "Symmetries with fields of degree one in the positions and Gamma of degree two, both free of the time"
@@ -39,7 +39,7 @@ def title(one: Symmetry) -> str:
     """What its integral is called."""
     if one.name:
         return one.name
-    return "new: no function of the integrals of problem 7 and those before it (proved)" if one.is_new else "integral"
+    return "new: no function of those known without it (proved)" if one.is_new else "integral"
 
 
 def second_route(one: Symmetry) -> str:

@@ -34,7 +34,8 @@ class Request:
     name or ``auto``; a ``tolerance`` or, for methods of fixed step, a ``step``; ``invariants``: first integrals as
     well; ``estimate``: whether the error is estimated (None: if the run was short); ``whole``: what rests is
     integrated, too, all parts in one, and no body is lumped into another; ``certify``: the exact solution is enclosed
-    so narrowly, as a part of each quantity's size, within ``certify_seconds``; ``events``: what is watched for;
+    so narrowly, as a part of each quantity's size, within ``certify_seconds`` and for the counted work
+    ``certify_limit`` (``mbsym.numerics.prices``); ``events``: what is watched for;
     ``model``: how much of the mechanics is in the equations; no step is longer than ``longest``; ``earlier``: the run
     that it goes on from, whose rows come first; ``store``: a file of nobody else's, open to be written and read, for
     the rows where they are very many: the result then has some of them, and the table of all;
@@ -56,6 +57,7 @@ class Request:
     whole: bool = False
     certify: float | None = None
     certify_seconds: float = inf
+    certify_limit: float = inf
     events: Watch = Watch()
     model: Model = Model()
     longest: float | None = None

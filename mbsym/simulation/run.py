@@ -122,7 +122,7 @@ def simulate(
     if request.certify is not None:
         with stage(CERTIFYING):
             seen = None if happened is None else happened.occurrences
-            asked = (request.certify, request.certify_seconds)
+            asked = (request.certify, request.certify_seconds, request.certify_limit)
             certificate = certified(dynamics, found.times, found.states, *asked, watch, seen)
     return Simulation(
         *(scenario, dynamics, request, chosen, found, *both, kept, error, missing),

@@ -27,7 +27,7 @@ from mbsym.model.momenta import momentum_names
 from mbsym.model.system import INERTIAL, System, rational
 from mbsym.source.bodies import read_body_name
 from mbsym.source.keys import CLAIM
-from mbsym.source.oscillation_symbols import OSCILLATION_KINDS, VARIABLES, kind_of_abbreviation
+from mbsym.source.oscillation_symbols import INPUT_KINDS, OSCILLATION_KINDS, VARIABLES, kind_of_abbreviation
 from mbsym.source.placed import Mapping, Node, Scalar
 from mbsym.source.reading import Fields, Reading
 from mbsym.source.scope import NUMBER, Allowed, closest, did_you_mean
@@ -36,7 +36,7 @@ from mbsym.source.settings import read_comparisons
 _CONSTANTS = ("parameter", "notation", "abbreviation")
 #: An integral of a system with inputs holds none of them: nobody knows how they change.
 _WITHOUT_INPUTS = ("coordinate", "velocity", "speed", "unit vector", "quaternion", "prescribed", "time", *_CONSTANTS)
-_PLACES = (*_WITHOUT_INPUTS, "input")
+_PLACES = (*_WITHOUT_INPUTS, *INPUT_KINDS)
 _STATE = Allowed("the key of a state", ("coordinate", "velocity", "prescribed", "parameter", "time", "input"))
 _DECIMAL = re.compile(r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]{1,3})?\Z")
 #: Kinds that are about constants alone.
@@ -53,7 +53,7 @@ _MISSPELT = 0.8
 def read_abbreviations(node: Node | None, reading: Reading) -> tuple[Abbreviation, ...]:
     """Symbols in order: each may use every name of the system and the symbols above it."""
     found = []
-    allowed = Allowed("an abbreviation", (*_WITHOUT_INPUTS, "acceleration", *OSCILLATION_KINDS))
+    allowed = Allowed("an abbreviation", (*_PLACES, "acceleration", *OSCILLATION_KINDS))
     entries = [] if node is None else list(reading.entries(node, "'abbreviations'"))
     reading.scope.later, reading.scope.ordered = {entry.key.text for entry in entries}, "abbreviations are"
     for entry in entries:

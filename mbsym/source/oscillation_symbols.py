@@ -11,6 +11,8 @@ from mbsym.source.reading import Reading
 
 #: What such names are in a scope, and abbreviations that hold some.
 SYMBOL, ABBREVIATION = OSCILLATION_KINDS = "oscillation", "oscillation abbreviation"
+#: What inputs are in a scope, and abbreviations that hold some.
+INPUT_KINDS = ("input", "input abbreviation")
 
 #: What may oscillate.
 VARIABLES = ("coordinate", "velocity", "speed", "unit vector", "quaternion")
@@ -34,9 +36,11 @@ def leave_symbols(reading: Reading) -> None:
 
 
 def kind_of_abbreviation(value: Expression, reading: Reading) -> str:
-    """One that holds symbols of an oscillation, be it in another abbreviation, stands in claims about these only."""
-    held = any(reading.scope.kinds.get(name) in OSCILLATION_KINDS for name in names(value))
-    return ABBREVIATION if held else "abbreviation"
+    """One that holds symbols of an oscillation, or inputs, be it in another one, stands only where these may."""
+    held = {reading.scope.kinds.get(name) for name in names(value)}
+    if held.intersection(OSCILLATION_KINDS):
+        return ABBREVIATION
+    return INPUT_KINDS[1] if held.intersection(INPUT_KINDS) else "abbreviation"
 
 
 def _about_oscillations(claims: Node | None) -> bool:

@@ -50,6 +50,7 @@ _KINDS = {
     "quaternion": "a component of a quaternion",
     "momentum": "a momentum",
     "oscillation": "a symbol of an oscillation",
+    "input abbreviation": "an abbreviation that holds an input",
     "oscillation abbreviation": "an abbreviation that holds symbols of an oscillation",
 }
 _PLURALS = {
@@ -70,10 +71,19 @@ _PLURALS = {
     "quaternion": "components of quaternions",
     "momentum": "momenta",
     "oscillation": "symbols of an oscillation",
+    "input abbreviation": "abbreviations that hold them",
     "oscillation abbreviation": "abbreviations of them",
 }
 #: Kinds of names that are told where the description has some.
-_RARE = ("input", "unit vector", "quaternion", "momentum", "oscillation", "oscillation abbreviation")
+_RARE = (
+    "input",
+    "input abbreviation",
+    "unit vector",
+    "quaternion",
+    "momentum",
+    "oscillation",
+    "oscillation abbreviation",
+)
 
 
 @dataclass(frozen=True, slots=True)

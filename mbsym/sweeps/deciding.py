@@ -29,8 +29,8 @@ from mbsym.algebra.point import Rationals
 from mbsym.algebra.program import Program
 from mbsym.algebra.root_signs import changes, real_roots, routh_column, sturm_ends
 from mbsym.algebra.running_error import Approximate, RunningErrors, certain_sign
-from mbsym.maps.constant import Constant
 from mbsym.numerics.kernels.interface import Code
+from mbsym.problems.stability.constant import Constant
 from mbsym.problems.stability.linear_form import LinearSystem, add, is_zero
 from mbsym.problems.stability.routh import ignoring_cyclic, momenta_are_constant, only_momenta
 from mbsym.sweeps.polynomials import Horner

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 from flint import arb, ctx, fmpq
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from properties import settings
 
 from mbsym.algebra import compensated as module
 from mbsym.algebra.compensated import compensated
@@ -24,7 +25,7 @@ FINITE = st.floats(-1e60, 1e60).filter(lambda x: x == 0 or abs(x) > 1e-60)
 
 
 @pytest.mark.parametrize("made", [kernel, stepwise])
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 @given(a=FINITE, b=FINITE)
 def test_roundings_are_exact(made: Any, a: float, b: float) -> None:
     """fl(a + b) + rounding = a + b and fl(a b) + rounding = a b, in fractions."""

@@ -10,8 +10,9 @@ from typing import Any
 import pytest
 from conftest import WITH_BODIES
 from flint import arb, arb_series, ctx, fmpq
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
+from properties import settings
 from random_systems import Description, analysed, orbiting, systems
 
 import mbsym
@@ -189,7 +190,7 @@ def test_the_cheaper_direction_is_taken(wide: bool, monkeypatch: pytest.MonkeyPa
 # --- mechanics ---
 
 
-@settings(max_examples=25, deadline=None, derandomize=True)
+@settings(max_examples=25, derandomize=True)
 @given(st.one_of(systems(), orbiting()))
 def test_derivatives_of_the_lagrangian_are_those_of_the_ring(description: Description) -> None:
     analysis = analysed(description, (1, 2, 3))

@@ -6,8 +6,9 @@ from fractions import Fraction
 from itertools import combinations_with_replacement
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from properties import settings
 from test_ring import lower, lowering, new_ring, parsed
 
 from mbsym.algebra.base import Lowering
@@ -89,7 +90,7 @@ expressions = st.recursive(
 bases = st.sampled_from([{}, {"x": "0", "y": "0"}, {"x": "pi/2", "y": "l"}, {"x": "2*chi", "y": "w**2"}, {"y": "0"}])
 
 
-@settings(max_examples=80, deadline=None, derandomize=True)
+@settings(max_examples=80, derandomize=True)
 @given(expressions, bases)
 def test_jets_are_taylor_polynomials(expression: Expression, base: dict[str, str]) -> None:
     ring = new_ring()

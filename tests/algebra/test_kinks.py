@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 from flint import arb, arb_series, ctx, fmpq
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from properties import settings
 from test_ring import is_zero, lower, lowering, new_ring, parsed
 
 from mbsym.algebra.base import Lowering
@@ -61,7 +62,7 @@ def test_values_in_every_algebra(written: str, x: Any, y: Any) -> None:
     radius=st.integers(0, 64).map(lambda k: Fraction(k, 64)),
     inside=st.fractions(-1, 1),
 )
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_balls_over_a_kink_hold_every_value(written: str, middle: Fraction, radius: Fraction, inside: Fraction) -> None:
     ball = arb(fmpq(middle.numerator, middle.denominator), fmpq(radius.numerator, radius.denominator))
     point = middle + radius * inside

@@ -8,8 +8,9 @@ from typing import Any
 
 import pytest
 from flint import arb, fmpq
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from properties import settings
 from random_systems import Description, analysed, orbiting, state, systems
 
 from mbsym.algebra.base import Algebra
@@ -159,7 +160,7 @@ def run(algebra: Algebra, inputs: list[Any], script: Steps) -> list[Any]:
     return values
 
 
-@settings(max_examples=200, deadline=None, derandomize=True)
+@settings(max_examples=200, derandomize=True)
 @given(steps, st.lists(st.integers(-9, 9), min_size=4, max_size=4))
 def test_a_program_has_the_values_of_what_it_recorded(script: Steps, numbers: list[int]) -> None:
     program = Program()
@@ -169,7 +170,7 @@ def test_a_program_has_the_values_of_what_it_recorded(script: Steps, numbers: li
     assert program.evaluate(recorded, inputs, exact) == run(exact, [inputs[name] for name in "abc"], script)
 
 
-@settings(max_examples=50, deadline=None, derandomize=True)
+@settings(max_examples=50, derandomize=True)
 @given(steps, st.lists(st.integers(-9, 9), min_size=3, max_size=3))
 def test_floats_lie_where_balls_say(script: Steps, numbers: list[int]) -> None:
     program = Program()
@@ -185,7 +186,7 @@ def test_floats_lie_where_balls_say(script: Steps, numbers: list[int]) -> None:
 # --- programs of systems ---
 
 
-@settings(max_examples=20, deadline=None, derandomize=True)
+@settings(max_examples=20, derandomize=True)
 @given(st.one_of(systems(), orbiting()))
 def test_programs_of_systems_equal_the_closed_equations(description: Description) -> None:
     analysis = analysed(description)

@@ -8,8 +8,9 @@ from typing import Any
 import pytest
 import sympy
 from flint import arb, ctx, fmpq
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from properties import settings
 
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.failures import NoClosedForm, SingularPoint
@@ -20,7 +21,7 @@ from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import FUNCTIONS, Call, Expression, Name, Negative, Number, Operation, names, number
 
 PLAIN = ("x", "y", "chi", "l", "m", "w", "t", "x_dot")
-some = settings(max_examples=80, deadline=None, derandomize=True)
+some = settings(max_examples=80, derandomize=True)
 
 
 def new_ring(spare: int = 40, **options: Any) -> Ring:

@@ -8,8 +8,9 @@ from typing import Any
 
 import pytest
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from properties import settings
 
 from mbsym.algebra import signs as module
 from mbsym.algebra.signs import (
@@ -162,7 +163,7 @@ assumption = st.tuples(
 grid = [Fraction(n, 2) for n in range(-6, 7)]
 
 
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=120)
 @given(st.tuples(words, words, words), st.lists(assumption, max_size=3), polynomials, polynomials, st.randoms())
 def test_never_wrong(three: tuple[str, ...], given_: list[tuple[Any, str]], p: Any, q: Any, random: Any) -> None:
     """Every sampled point that satisfies the assumptions has one of the claimed signs and agrees with condition()."""
@@ -183,7 +184,7 @@ def test_never_wrong(three: tuple[str, ...], given_: list[tuple[Any, str]], p: A
             assert reduced == (value > 0)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(st.tuples(words, words, words), st.lists(assumption, max_size=4))
 def test_witnesses_keep_every_assumption(three: tuple[str, ...], given_: list[tuple[Any, str]]) -> None:
     """Points between bounds need not be put into these bounds: the same points as if they were put into all."""
@@ -201,7 +202,7 @@ WIDE = fmpq_mpoly_ctx.get([f"w{k}" for k in range(30)], Ordering.lex)
 knowledge = st.tuples(st.tuples(words, words, words), st.lists(assumption, max_size=2))
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(st.lists(st.tuples(knowledge, polynomials), min_size=2, max_size=6))
 def test_what_is_shared_is_what_would_be_found_alone(questions: list[tuple[Any, Any]]) -> None:
     """Whoever asks in a wide context gets the answer that they would get if nobody had asked before."""

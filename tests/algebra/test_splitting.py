@@ -6,8 +6,9 @@ from itertools import product
 
 import pytest
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from properties import settings
 
 from mbsym.algebra.splitting import SplitLimits, exchanged, split
 
@@ -33,7 +34,7 @@ _factor = st.one_of(_linear, st.builds(lambda p, q, a: p * q + a * A, _linear, _
 
 
 @given(st.lists(st.builds(lambda p, q: p * q, _factor, _linear), min_size=1, max_size=3))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_every_solution_lies_on_exactly_one_branch(equations):
     found = split(equations, (1, 2, 3), limits=SplitLimits(branches=400))
     if found.unfinished:

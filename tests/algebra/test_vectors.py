@@ -8,8 +8,9 @@ from typing import Any
 
 import pytest
 from flint import fmpq
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from properties import settings
 from test_ring import lowering, new_ring
 from test_self_check import RECURSIONS, Mistake, analysed, plant
 
@@ -21,7 +22,7 @@ from mbsym.expressions.tree import Name
 from mbsym.mechanics.frames import Turn, back, direction_cosines, forward
 from mbsym.problems.telling import told_system
 
-some = settings(max_examples=40, deadline=None, derandomize=True)
+some = settings(max_examples=40, derandomize=True)
 RING, RATIONALS = new_ring(), Rationals({}, {})
 SINE, COSINE = RING.sin_cos(LinearForm((("x", Fraction(1)),)))
 #: The relation sin^2 + cos^2 = 1 takes part.

@@ -9,8 +9,9 @@ from typing import Any
 
 import pytest
 from flint import fmpq_mat
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from properties import settings
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.matrices import determinant
@@ -120,7 +121,7 @@ def test_what_is_no_polynomial_is_refused() -> None:
         found(root + X)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.lists(st.integers(-4, 4), min_size=5, max_size=5))
 def test_zeros_in_one_angle_are_those_that_signs_show(c: list[int]) -> None:
     """p = c0 + c1 s + c2 c + c3 s c + c4 c^2: wherever the sign changes on a fine grid a zero is listed nearby."""
@@ -140,7 +141,7 @@ def test_zeros_in_one_angle_are_those_that_signs_show(c: list[int]) -> None:
 
 
 @given(st.lists(st.integers(-5, 5), min_size=16, max_size=16))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_determinants(entries: list[int]) -> None:
     rows = [[number(x) for x in entries[4 * i : 4 * i + 4]] for i in range(4)]
     assert determinant(RING, rows) == number(F(str(fmpq_mat(4, 4, entries).det())))

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import warm
 from warm import COMMAND
 
 #: Forked processes, signals and locks as POSIX has them.
@@ -77,9 +78,7 @@ def command(*arguments: object) -> list[str]:
 
 def batch(*arguments: object, cwd: Path | None = None, code: int = 0) -> subprocess.CompletedProcess[str]:
     """The command, which has to end with this exit code."""
-    done = subprocess.run(
-        command(*arguments), cwd=cwd, capture_output=True, text=True, encoding="utf-8", timeout=300, check=False
-    )
+    done = warm.run(["batch", *arguments], cwd=cwd)
     assert done.returncode == code, done.stdout + done.stderr
     return done
 

@@ -5,11 +5,15 @@ from __future__ import annotations
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -17,8 +21,10 @@ from click.testing import CliRunner
 
 from mbsym_cli.main import main
 
-pytest.importorskip("distributed", reason="needs the extra 'cluster'")
-pytestmark = [pytest.mark.slow, pytest.mark.skipif(os.name != "posix", reason="signals")]
+pytestmark = [
+    pytest.mark.skipif(find_spec("distributed") is None, reason="needs the extra 'cluster'"),
+    pytest.mark.skipif(os.name != "posix", reason="signals"),
+]
 
 SYSTEMS = ("simple-pendulum", "double-pendulum", "ziegler", "dumbbell", "spring-pendulum", "cart-pendulum")
 MBSYM = [sys.executable, "-m", "mbsym_cli"]
@@ -125,6 +131,18 @@ def test_no_cluster_is_a_complaint_with_what_to_do(tmp_path: Path, monkeypatch: 
     assert done.exit_code == 2
     assert "no scheduler answers at tcp://127.0.0.1:9" in done.stderr
     assert not (tmp_path / "b" / "ziegler").exists()
+    sweep = [
+        "sweep",
+        str(tmp_path / "s" / "ziegler.yaml"),
+        "--vary",
+        "P=0:1:3",
+        "--out",
+        str(tmp_path / "w"),
+        "--cluster",
+    ]
+    done = CliRunner().invoke(main, [*sweep, "tcp://127.0.0.1:9"])
+    assert done.exit_code == 2
+    assert "no scheduler answers at tcp://127.0.0.1:9" in done.stderr
     monkeypatch.setitem(sys.modules, "distributed", None)
     done = CliRunner().invoke(main, [*words, "local"])
     assert done.exit_code == 2
@@ -139,3 +157,24 @@ def test_a_sweep_on_workers_gives_the_bytes_of_one_here(cluster: Here) -> None:
         done = subprocess.run([*MBSYM, *common, "--out", str(folder), *more], cwd=root, capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
     assert (here / "sweep.csv").read_bytes() == (there / "sweep.csv").read_bytes()
+
+
+def test_a_server_of_another_kind_is_no_scheduler(tmp_path: Path) -> None:
+    """Eight bytes of what it says, "HTTP/1.1", are 3.5e18 as the number of frames of a message: no lack of memory."""
+    CliRunner().invoke(main, ["examples", "ziegler", "--out", str(tmp_path / "s")])
+    with socket.create_server(("127.0.0.1", 0)) as server:
+
+        def answer() -> None:
+            with suppress(OSError):
+                while True:
+                    connection, _ = server.accept()
+                    with connection:
+                        connection.sendall(b"HTTP/1.1 400 Bad Request\r\n\r\n" + b"x" * 64)
+                        connection.recv(1 << 16)
+
+        threading.Thread(target=answer, daemon=True).start()
+        address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
+        words = [*MBSYM, "batch", str(tmp_path / "s"), "--out", str(tmp_path / "b"), "--cluster", address]
+        done = subprocess.run(words, capture_output=True, text=True, check=False, timeout=60)
+    assert done.returncode == 2
+    assert done.stderr == f"--cluster: what answers at {address} is no Dask scheduler of this version\n"

@@ -9,7 +9,6 @@ from html.parser import HTMLParser
 from pathlib import Path
 from xml.etree import ElementTree
 
-import pytest
 from click.testing import CliRunner
 
 from mbsym.batch.findings import findings
@@ -164,7 +163,6 @@ def test_the_page_shows_everything_and_runs_nothing() -> None:
     assert all(f"what {one} says" in shown for one in Outcome if one not in (FULL.outcome, ERRORS.outcome))
 
 
-@pytest.mark.slow
 def test_the_command_writes_them(tmp_path: Path) -> None:
     systems, out = tmp_path / "systems", tmp_path / "build"
     systems.mkdir()

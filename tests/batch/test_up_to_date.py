@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from batches import QUICK, START, batch, cached, files_of, folder_of, outcomes, pendulum, summary
+from batches import QUICK, START, batch, cached, command, files_of, folder_of, outcomes, pendulum, summary
 
 from mbsym.batch import digests
 from mbsym.batch.coordinator import Place
@@ -129,7 +129,7 @@ def test_another_version_of_the_derivation_is_derived(place: Path, monkeypatch: 
     assert there() != digests.derivation()
     kept = place / "out" / "a" / "outcome.json"
     assert json.loads(kept.read_text(encoding="utf-8"))["derivation"] == digests.derivation()
-    batch("in", "-o", "out", *QUICK, cwd=place)
+    subprocess.run(command("in", "-o", "out", *QUICK), cwd=place, capture_output=True, check=True)
     assert cached(place / "out") == {"a": False}
     assert json.loads(kept.read_text(encoding="utf-8"))["derivation"] == there()
 

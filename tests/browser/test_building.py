@@ -18,7 +18,6 @@ from mbsym.model.system import System
 from mbsym.source import read
 
 browser, opened = windows.browser, windows.opened
-pytestmark = pytest.mark.slow
 
 
 def system_of(text: str) -> System:

@@ -5,14 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-import pytest
 import windows
 import yaml
 from windows import Window, serving
 
 browser, opened = windows.browser, windows.opened
-pytestmark = pytest.mark.slow
-
 CART = """mbsym: 1
 name: Cart
 bodies:

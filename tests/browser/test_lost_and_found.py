@@ -16,8 +16,6 @@ from conftest import SHIPPED
 from windows import Window, serving
 
 browser, opened = windows.browser, windows.opened
-pytestmark = pytest.mark.slow
-
 PENDULUM = (SHIPPED / "double-pendulum.yaml").read_text(encoding="utf-8")
 
 Open = Callable[..., Window]

@@ -11,8 +11,6 @@ import yaml
 from windows import Window, serving
 
 browser, opened = windows.browser, windows.opened
-pytestmark = pytest.mark.slow
-
 TEXT = """mbsym: 1
 name: Everything
 parameters: [m, l, g]   # a list of names

@@ -47,14 +47,12 @@ def sources(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.mark.slow
 @needs_node
 def test_the_sources_have_no_type_errors(sources: Path) -> None:
     done = subprocess.run(["npm", "run", "--silent", "types"], cwd=sources, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stdout
 
 
-@pytest.mark.slow
 @needs_node
 def test_the_shipped_page_is_what_the_sources_give(sources: Path, tmp_path: Path) -> None:
     """Byte for byte, after `npm ci` and a build in another folder."""

@@ -6,7 +6,6 @@ import random
 from collections.abc import Callable
 from pathlib import Path
 
-import pytest
 import windows
 import yaml
 from conftest import SHIPPED
@@ -15,8 +14,6 @@ from windows import Window, serving
 from mbsym.source import read
 
 browser, opened = windows.browser, windows.opened
-pytestmark = pytest.mark.slow
-
 PENDULUM = (SHIPPED / "double-pendulum.yaml").read_text(encoding="utf-8")
 STEPS = 14
 

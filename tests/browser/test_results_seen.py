@@ -10,8 +10,6 @@ import windows
 from windows import Window, serving
 
 browser, opened = windows.browser, windows.opened
-pytestmark = pytest.mark.slow
-
 NASTY = """\
 mbsym: 1
 name: "<img src=x onerror=alert(1)><script>alert(2)</script>"

@@ -15,8 +15,6 @@ from windows import Window, serving
 from mbsym.source import read
 
 browser, opened = windows.browser, windows.opened
-pytestmark = pytest.mark.slow
-
 PENDULUM = (SHIPPED / "double-pendulum.yaml").read_text(encoding="utf-8")
 SATELLITE = (SHIPPED / "satellite.yaml").read_text(encoding="utf-8")
 

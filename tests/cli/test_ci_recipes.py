@@ -6,12 +6,12 @@ import os
 import re
 import shutil
 import subprocess
-import sys
 import tomllib
 from pathlib import Path
 from typing import Any
 
 import pytest
+import warm
 import yaml
 
 ROOT = Path(__file__).parents[2]
@@ -28,8 +28,7 @@ def project(tmp_path: Path) -> Path:
     (systems / "notes.yaml").write_text("just: notes\n", encoding="utf-8")
     commands = tmp_path / "bin"
     commands.mkdir()
-    (commands / "mbsym").write_text(f'#!/bin/sh\nexec "{sys.executable}" -m mbsym_cli "$@"\n')
-    (commands / "mbsym").chmod(0o755)
+    warm.script(commands)
     return tmp_path
 
 
@@ -54,7 +53,6 @@ def own_steps(steps: list[dict[str, Any]]) -> list[str]:
     return [step["run"] for step in steps if step.get("run", "").startswith("mbsym ")]
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="a shell")
 def test_the_github_workflow_runs(project: Path) -> None:
     workflow = recipe("github-actions.yml")
@@ -82,7 +80,6 @@ def test_the_github_workflow_runs(project: Path) -> None:
     assert done.stdout.startswith("::error file=systems/ziegler.yaml,line=3,")
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="a shell")
 def test_the_gitlab_job_runs_and_leaves_what_it_names(project: Path) -> None:
     (job,) = recipe("gitlab-ci.yml").values()
@@ -118,7 +115,6 @@ def test_the_image_holds_every_package() -> None:
     assert packages | {"pyproject.toml", project["project"]["readme"]} <= set(names)
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="a shell")
 def test_the_job_array_derives_each_system_once(project: Path) -> None:
     script = RECIPES / "job-array.sh"

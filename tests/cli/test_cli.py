@@ -298,7 +298,6 @@ def test_the_explanations_are_doctests(number: int, monkeypatch: pytest.MonkeyPa
     assert (failed, tried > 1) == (0, True)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "path", sorted(path for path in SYSTEMS.iterdir() if path.suffix in {".yaml", ".txt"}), ids=lambda path: path.name
 )

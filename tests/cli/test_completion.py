@@ -5,10 +5,10 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+import warm
 
 pytestmark = pytest.mark.skipif(os.name != "posix" or shutil.which("bash") is None, reason="no bash")
 
@@ -23,15 +23,13 @@ printf '%s\\n' "${{COMPREPLY[@]}}"
 
 def offered(line: str, folder: Path) -> list[str]:
     """What bash offers at the end of a line."""
-    command = folder / "bin" / "mbsym"
-    if not command.exists():
-        command.parent.mkdir()
-        main = "from mbsym_cli.main import main; main(prog_name='mbsym')"
-        command.write_text(f'#!/bin/sh\nexec "{sys.executable}" -c "{main}" "$@"\n')
-        command.chmod(0o755)
+    commands = folder / "bin"
+    if not commands.exists():
+        commands.mkdir()
+        warm.script(commands)
     words = line.split(" ")
     script = ASK.format(words=" ".join(f"'{word}'" for word in words), last=len(words) - 1)
-    path = f"{command.parent}{os.pathsep}{os.environ['PATH']}"
+    path = f"{commands}{os.pathsep}{os.environ['PATH']}"
     done = subprocess.run(
         ["bash", "-c", script], env={**os.environ, "PATH": path}, capture_output=True, text=True, timeout=60, cwd=folder
     )

@@ -14,8 +14,6 @@ from conftest import SHIPPED
 import mbsym_cli
 from mbsym_cli.main import COMMANDS, main
 
-SLOW = pytest.mark.slow
-
 #: Command, its words without --out, and one of the files that it writes into the folder.
 FOLDERS = [
     ("run", "simple-pendulum", ["-f", "json"], "results.json"),
@@ -26,15 +24,14 @@ FOLDERS = [
     ("map", "ziegler", ["--x", "P=0:4"], "map.json"),
     ("sweep", "ziegler", ["-v", "P=0:4:5"], "sweep.json"),
     ("equilibria", "simple-pendulum", ["--vary", "l=1:2"], "branches.json"),
-    pytest.param(
+    (
         *("orbit", "spherical-pendulum"),
         ["--period", "1.57", "--turns", "psi=1", "-s", "psi_dot=4", "-s", "theta=0.9"],
         "orbit.json",
-        marks=SLOW,
     ),
-    pytest.param("oscillations", "spring-pendulum", ["--of", "theta", "--format", "svg"], "*.svg", marks=SLOW),
-    pytest.param("tradeoff", "simple-pendulum", ["--time", "0.1", "--budget", "1"], "tradeoff.csv", marks=SLOW),
-    pytest.param("extremes", "simple-pendulum", ["--budget", "1"], "extremes.csv", marks=SLOW),
+    ("oscillations", "spring-pendulum", ["--of", "theta", "--format", "svg"], "*.svg"),
+    ("tradeoff", "simple-pendulum", ["--time", "0.1", "--budget", "1"], "tradeoff.csv"),
+    ("extremes", "simple-pendulum", ["--budget", "1"], "extremes.csv"),
 ]
 
 #: Commands that write one file, or copies, and their words.

@@ -201,7 +201,7 @@ def test_systems_in_angles_have_rates_sines_and_cosines():
     assert data["complete"] is True
     driven = run("systems/cart-pole.yaml")
     assert driven.exit_code == 1
-    assert "the prescribed F occurs" in driven.stderr
+    assert "F, a function of the time, occurs" in driven.stderr
 
 
 def test_a_root_of_what_is_known_is_one_more():

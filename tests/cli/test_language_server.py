@@ -14,8 +14,6 @@ import pytest
 from mbsym.source.examples import example_text
 
 pytest.importorskip("pygls", reason="needs the extra 'lsp'")
-pytestmark = pytest.mark.slow
-
 URI = "file:///tmp/pendulum.yaml"
 
 

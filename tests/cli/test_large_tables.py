@@ -27,7 +27,6 @@ def peak(folder: Path, rows: int) -> int:
     return int(done.stderr.split()[-1])
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="kilobytes on Linux")
 def test_a_row_costs_little_memory(tmp_path: Path) -> None:
     """Five columns are 40 bytes as numbers and about 90 as text: less than 120 bytes a row, so no text is held."""

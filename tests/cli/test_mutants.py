@@ -107,14 +107,12 @@ def test_every_file_is_taken_by_its_language(number: int, tmp_path: Path) -> Non
     check_files(number, tmp_path)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("block", range(1, 15))
 def test_every_file_of_some_hundred_is_taken_by_its_language(block: int, tmp_path: Path) -> None:
     for number in range(10 * block, 10 * block + 10):
         check_files(number, tmp_path)
 
 
-@pytest.mark.slow
 def test_wolfram_reads_mutated_reports(tmp_path: Path) -> None:
     """Mathics, where it is installed, takes them as they are."""
     pytest.importorskip("mathics")

@@ -380,7 +380,6 @@ def words(items: Iterable[str], described: Path, folder: Path, end: float = TIME
 COVER = cover()
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("place", range(len(COVER)))
 def test_options_that_go_together_have_their_effect(place: int, described: Path, tmp_path: Path) -> None:
     items = COVER[place]

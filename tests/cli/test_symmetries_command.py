@@ -86,7 +86,6 @@ def simulated(*words):
     return done.stdout
 
 
-@pytest.mark.slow
 def test_a_run_watches_what_is_found_at_its_numbers(tmp_path):
     """Kovalevskaya's integral at A = B = 2 C, of weight 4; none at A = 3; T - U - F x of a cart that is pushed."""
     told = simulated("systems/euler-poisson.yaml", "-o", str(tmp_path))

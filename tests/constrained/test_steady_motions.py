@@ -47,7 +47,6 @@ SPEEDS = [
 ]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("speed", "word"), SPEEDS)
 def test_the_bicycle_is_stable_between_weave_and_capsize(speed: str, word: Word) -> None:
     found = changed(
@@ -59,7 +58,6 @@ def test_the_bicycle_is_stable_between_weave_and_capsize(speed: str, word: Word)
     assert found.numerical.theorem == theorem
 
 
-@pytest.mark.slow
 def test_the_bicycle_has_its_conditions_in_symbols() -> None:
     """A polynomial of degree 4 in lambda; of the Hurwitz determinant there is the form in its coefficients."""
     roll_and_steer, speed = mbsym.load(SYSTEMS / "bicycle.yaml").stability.subsystems

@@ -15,8 +15,9 @@ from typing import Any
 import pytest
 from click.testing import CliRunner, Result
 from conftest import SHIPPED
-from hypothesis import given, settings
+from hypothesis import given
 from jsonschema import Draft202012Validator
+from properties import settings
 from random_systems import systems
 
 import mbsym
@@ -62,7 +63,7 @@ def command(*arguments: object) -> Result:
 # --- nothing changed --------------------------------------------------------------------------------------------------
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 @given(systems())
 def test_a_system_is_itself(description: dict[str, Any]) -> None:
     found = results(json.dumps(description))

@@ -1,7 +1,7 @@
 """Random sequences of operations on one description: after each its three views agree, and undo gives back the bytes.
 
 What an operation means is written here a second time, for plain data, and what a text says is read by PyYAML.
-MBSYM_EDIT_SEQUENCES=1000 tries so many sequences of each spelling.
+MBSYM_EDIT_SEQUENCES=1000 with --hypothesis-profile=thorough tries so many sequences of each spelling.
 """
 
 from __future__ import annotations
@@ -14,8 +14,9 @@ from typing import Any
 
 import pytest
 import yaml
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
+from properties import settings
 
 from mbsym.editing.document import changes, look
 from mbsym.source import read, to_text
@@ -387,10 +388,9 @@ def _same_meaning(before: Json, after: Json, op: Json) -> None:
 
 
 STEP = st.tuples(st.integers(0, KINDS - 1), st.integers(0, 11), st.integers(0, 11))
-MANY = int(os.environ.get("MBSYM_EDIT_SEQUENCES", "4"))
+MANY = int(os.environ.get("MBSYM_EDIT_SEQUENCES", "16"))
 LAW = settings(
     max_examples=MANY,
-    deadline=None,
     derandomize=MANY < 50,
     database=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture],

@@ -5,8 +5,9 @@ from __future__ import annotations
 from fractions import Fraction
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from properties import settings
 
 from mbsym.expressions.parser import parse_expression
 from mbsym.expressions.place import Complaints, Span
@@ -91,7 +92,7 @@ def _grow(inner: st.SearchStrategy[Expression]) -> st.SearchStrategy[Expression]
     )
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(st.recursive(leaves, _grow, max_leaves=12))
 def test_parsing_what_was_printed_gives_the_same_tree(tree: Expression) -> None:
     parsed, complaints = parse(text(tree))
@@ -102,7 +103,7 @@ def test_parsing_what_was_printed_gives_the_same_tree(tree: Expression) -> None:
     assert parsed == tree
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(st.text(alphabet="ab1.2e+-*/()^, sincoθ\x00'_", max_size=40))
 def test_any_text_gives_a_tree_or_complaints(written: str) -> None:
     tree, complaints = parse(written)

@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 from flint import arb, fmpq
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from properties import settings
 from scipy.interpolate import CubicSpline
 
 from mbsym.algebra.base import Lowering
@@ -29,7 +30,7 @@ tables = st.builds(
     points, st.sampled_from((LINEAR, CUBIC)), st.sampled_from((HOLD, OUTSIDE_ZERO)),
 )  # fmt: skip
 F = Fraction
-some = settings(max_examples=80, deadline=None, derandomize=True)
+some = settings(max_examples=80, derandomize=True)
 
 
 def searched(table: Table, x: Fraction) -> Fraction:

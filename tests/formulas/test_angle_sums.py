@@ -5,8 +5,9 @@ from __future__ import annotations
 import random
 from fractions import Fraction
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from properties import settings
 
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.angles import LinearForm
@@ -87,7 +88,7 @@ def products(source: random.Random, terms: int) -> Polynomial:
     return RING.reduce(total)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(seed=st.integers(0, 10**9), terms=st.integers(0, 6), choice=st.sampled_from(["sums", "shorter"]))
 def test_sums_of_angles_are_the_same_element_of_the_ring(seed, terms, choice):
     source = random.Random(seed)

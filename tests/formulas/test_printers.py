@@ -10,8 +10,9 @@ from functools import partial
 
 import pytest
 from flint import arb, ctx, fmpq
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from properties import settings
 
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas import shape
@@ -100,7 +101,7 @@ def _precise():
         yield
 
 
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=120)
 @given(seed=st.integers(0, 10**9), terms=st.integers(0, 14))
 def test_python_text_reads_back_to_the_same_value(seed, terms):
     source = random.Random(seed)
@@ -171,7 +172,7 @@ def test_a_sine_is_seen_again():
     assert python_text(RING, 1 - cosine**2) == "sin(psi)**2"
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 @given(seed=st.integers(0, 10**9), terms=st.integers(0, 14), breaks=st.booleans())
 def test_latex_and_wolfram_are_balanced(seed, terms, breaks):
     polynomial = random_polynomial(random.Random(seed), terms)
@@ -205,7 +206,7 @@ def test_nothing_follows_a_sine_that_could_be_its_argument():
     assert wolfram_text(RING, cosine * theta) == r"Cos[\[Psi][t]]*\[Theta][t]"
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 @given(seed=st.integers(0, 10**9), terms=st.integers(1, 14))
 def test_sines_stand_last_in_every_product(seed, terms):
     latex = latex_text(RING, random_polynomial(random.Random(seed), terms))
@@ -261,7 +262,7 @@ NAMES = st.lists(
 ).map(lambda names: [name for name in names if name not in ("t", "pi")])
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(names=NAMES)
 def test_different_names_stay_different(names):
     latex = LatexNames(names)

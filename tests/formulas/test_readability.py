@@ -9,8 +9,9 @@ from fractions import Fraction
 import pytest
 from conftest import SHIPPED, derived
 from flint import arb, ctx, fmpq
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from properties import settings
 from test_angle_sums import RING, element, fourier, products, waves
 from tex_reader import read
 
@@ -56,7 +57,7 @@ def agree(ring: Ring, latex: str, polynomial: Polynomial, source: random.Random)
     return bool((read(latex, symbols(ring, values), arb) - truth).contains(0))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(seed=st.integers(0, 10**9), terms=st.integers(0, 6), choice=st.sampled_from(["products", "sums", "shorter"]))
 def test_nothing_is_misread(seed, terms, choice):
     source = random.Random(seed)

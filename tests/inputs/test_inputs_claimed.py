@@ -31,8 +31,29 @@ def test_claims_hold_and_are_refuted_whatever_the_input() -> None:
 def test_an_integral_holds_no_input() -> None:
     _, complaints = read(TEXT.replace('equals: "m*y_dot"', 'equals: "u*m"'), "x")
     assert [one.code for one in complaints.items] == ["misplaced-name"]
-    _, complaints = read(TEXT + "abbreviations: {w: u*m}\n", "x")
-    assert [one.code for one in complaints.items] == ["misplaced-name"]
+    # nor does one that holds some, be it in another abbreviation
+    held = TEXT.replace("claims:", "abbreviations: {w: u*m, v: 2*w}\nclaims:")
+    _, complaints = read(held.replace('equals: "m*y_dot"', "equals: v"), "x")
+    assert [one.message.split(",")[0] for one in complaints.items] == ["'v' is an abbreviation that holds an input"]
+
+
+def test_abbreviations_hold_inputs() -> None:
+    """m x'' = k u: with S = k u/m the acceleration is S; what a wrong equation has too much is told as 2 S."""
+    text = (
+        TEXT[: TEXT.index("claims:")]
+        + """
+abbreviations: {S: k*u/m}
+claims:
+  - {claim: acceleration, of: x, equals: S}
+  - {claim: equation of motion, of: x, equals: "x_ddot - S"}
+  - {claim: equation of motion, of: x, equals: "x_ddot + S"}
+  - {claim: acceleration, of: x, equals: 2*S}
+"""
+    )
+    found = mbsym.loads(text).claims
+    outcomes = ["holds exactly", "holds up to a factor", "differs", "differs by a factor"]
+    assert [claim.outcome for claim in found] == outcomes
+    assert [part.same_as for part in found[2].parts] == ["2*S"]
 
 
 def test_what_an_input_does_is_no_part_of_an_energy() -> None:

@@ -24,8 +24,8 @@ from mbsym.maps.result import Of, Standing
 from mbsym.maps.section import Axis
 from mbsym.maps.subdivision import ByBoundaries, End
 from mbsym.problems.stability.word import Word
+from mbsym.report.language import Language
 from mbsym.report.latex_reading import read_latex
-from mbsym.report.map_language import WORDS
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main
 
@@ -186,7 +186,7 @@ def test_files_and_words(tmp_path: Path, language: str) -> None:
     tex = (out / "map.tex").read_text()
     read_latex("fragments/map.tex", tex)
     word = "white: nothing is proved"
-    assert WORDS.get(language, {}).get(word, word) in tex
+    assert Language(language).say(word) in tex
 
 
 def test_signature_in_boxes(tmp_path: Path) -> None:

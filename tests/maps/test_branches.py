@@ -188,7 +188,6 @@ def gyrostat() -> Branches:
     return found(SHIPPED / "orbital-gyrostat.yaml", "h", "0", "10")
 
 
-@pytest.mark.slow
 def test_the_gyrostat_with_its_rotor_along_the_normal_of_the_orbit() -> None:
     """A, B, C = 4, 5, 3: h = B - A, B - C, 4(B - A), 4(B - C); Sarychev & Mirer: 24, 20, 16, 12 and 8 equilibria."""
     there = gyrostat()

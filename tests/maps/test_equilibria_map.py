@@ -100,7 +100,6 @@ def test_infinitely_many_are_not_counted(tmp_path: Path) -> None:
     assert {cell.standing for cell in found.cells} == {Standing.FAMILIES}
 
 
-@pytest.mark.slow
 def test_the_gyrostat_has_eight_to_twenty_four() -> None:
     """B, C = 5, 3: pairs end where |h| = |B - A|, 4 |B - A|, B - C, 4 (B - C); A = C apart (Sarychev & Mirer)."""
     found = mapped(SHIPPED / "orbital-gyrostat.yaml", ("h", "1/2", "9"), ("A", "6", "7"))

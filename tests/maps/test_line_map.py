@@ -14,11 +14,11 @@ from flint import fmpq, fmpz_poly
 from jsonschema import Draft202012Validator
 
 import mbsym
-from mbsym.maps.constant import constant_of
 from mbsym.maps.line_map import line_map
 from mbsym.maps.result import LineMap, Standing
 from mbsym.maps.section import Axis
 from mbsym.maps.verdicts import Border
+from mbsym.problems.stability.constant import constant_of
 from mbsym.problems.stability.word import Word
 from mbsym.report.map_located import located, stratum_at
 from mbsym.report.schemas import schema

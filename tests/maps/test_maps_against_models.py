@@ -304,7 +304,6 @@ def test_maps_agree_with_exact_counts(case: Case) -> None:
     assert seen == {Word.UNSTABLE, *case.stable}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("case", CASES, ids=NAMES)
 def test_maps_agree_at_many_points(case: Case) -> None:
     """Twenty thousand; fewer where one count takes more than a millisecond."""

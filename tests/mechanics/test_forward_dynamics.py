@@ -9,8 +9,9 @@ from typing import Any
 import pytest
 from conftest import WITH_BODIES
 from flint import fmpq, fmpq_mat
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
+from properties import settings
 from random_systems import Description, analysed, orbiting, systems
 from test_self_check import PROGRAM, Mistake, failing, failing_without_a_mistake, plant
 
@@ -87,7 +88,7 @@ def check_routes(analysis: Analysis, states: int = 1) -> None:
             assert product == determinant
 
 
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(max_examples=40, derandomize=True)
 @given(st.one_of(systems(), systems(), orbiting()))
 def test_every_route_gives_the_same_accelerations(description: Description) -> None:
     analysis = analysed(description)
@@ -185,7 +186,7 @@ def test_the_mass_matrix_of_the_program_is_lean_and_right_for_absolute_angles() 
 # --- gravity ---
 
 
-@settings(max_examples=25, deadline=None, derandomize=True)
+@settings(max_examples=25, derandomize=True)
 @given(systems(loads=False), st.lists(st.integers(-3, 3), min_size=3, max_size=3))
 def test_gravity_as_an_accelerated_base_equals_weights_at_the_mass_centres(
     description: Description, field: list[int]

@@ -7,8 +7,9 @@ from typing import Any
 
 import pytest
 from flint import fmpq_mat
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
+from properties import settings
 from random_systems import (
     Description,
     analysed,
@@ -34,8 +35,8 @@ from mbsym.mechanics.states import rational_states
 from mbsym.problems import checks, linearisation, perturbation
 from mbsym.problems.checks import EXACT, NUMERICAL
 
-law = settings(max_examples=20, deadline=None, derandomize=True)
-some = settings(max_examples=10, deadline=None, derandomize=True)
+law = settings(max_examples=20, derandomize=True)
+some = settings(max_examples=10, derandomize=True)
 
 
 def passed(analysis: Analysis, *allowed: str) -> bool:

@@ -9,8 +9,9 @@ from typing import Any
 import pytest
 from click.testing import CliRunner
 from conftest import TESTS
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from properties import settings
 from scipy.optimize import linprog
 
 import mbsym
@@ -96,7 +97,7 @@ def test_a_contradiction_that_is_not_linear_is_no_crash(assumptions: list[str]) 
 numbers = st.integers(-3, 3)
 
 
-@settings(max_examples=150, deadline=None, derandomize=True)
+@settings(max_examples=150, derandomize=True)
 @given(st.lists(st.tuples(numbers, numbers, numbers, numbers), min_size=1, max_size=6))
 def test_elimination_agrees_with_linear_programming(rows: list[tuple[int, int, int, int]]) -> None:
     """p a + q b + r c + s > 0 for every row, b > 0: possible exactly where the largest common margin is positive."""

@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from properties import settings
 
 from mbsym.numerics.comparison import Comparison, Ended, compared
 from mbsym.numerics.methods.interface import BLOW_UP, Breakdown
@@ -74,7 +75,7 @@ def of(first: Known, second: Known, end: float = END, **more: Any) -> Comparison
 steps = st.lists(st.sampled_from([0.01, 0.05, 0.3, 1.0, 3.0, 20.0]), min_size=1, max_size=4).map(tuple)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(steps, steps, st.sampled_from([3, 40, 4000]))
 def test_equal_solutions_do_not_differ_whatever_their_steps(mine: Any, others: Any, most: int) -> None:
     found = of(Known(oscillation, mine), Known(oscillation, others), most=most)
@@ -83,7 +84,7 @@ def test_equal_solutions_do_not_differ_whatever_their_steps(mine: Any, others: A
     assert found.points > 4
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(steps, steps, st.floats(0.01, 7.9))
 def test_a_difference_within_one_step_is_seen(mine: Any, others: Any, place: float) -> None:
     """A bump as long as the step it stands in; it is zero at the ends of every step."""
@@ -100,7 +101,7 @@ def test_a_difference_within_one_step_is_seen(mine: Any, others: Any, place: flo
     assert found.quantities[1].largest == 0
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(steps, steps)
 def test_differences_are_symmetric(mine: Any, others: Any) -> None:
     other = plus(lambda t: 1e-3 * np.sin(3 * t))
@@ -109,7 +110,7 @@ def test_differences_are_symmetric(mine: Any, others: Any) -> None:
     assert [(q.largest, q.final, q.when) for q in one] == [(q.largest, q.final, q.when) for q in two]
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(steps, steps, st.integers(-20, 20), st.integers(-20, 20))
 def test_units_of_time_and_length_change_nothing(mine: Any, others: Any, time: int, length: int) -> None:
     """t -> t 2^a, x -> x 2^b: relative differences stay the same to the last bit, absolute ones are scaled."""
@@ -128,7 +129,7 @@ def test_units_of_time_and_length_change_nothing(mine: Any, others: Any, time: i
     assert found.quantities[0].largest == plain.quantities[0].largest * large
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(steps, st.integers(2, 200))
 def test_rows_asked_for_change_nothing(mine: Any, rows: int) -> None:
     other = plus(lambda t: 1e-3 * np.sin(3 * t))

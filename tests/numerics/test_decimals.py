@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
+from properties import settings
 
 from mbsym.numerics.kernels import decimals
 from mbsym.report.trajectory_csv import written
@@ -40,7 +41,7 @@ def test_every_digit_is_that_of_the_c_library(name: str) -> None:
     assert decimals.lines(table) == by_python(table)
 
 
-@settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])  # the first example compiles
+@settings(suppress_health_check=[HealthCheck.too_slow])  # the first example compiles
 @given(st.lists(st.floats(), min_size=1, max_size=20))
 def test_numbers_of_any_kind(numbers: list[float]) -> None:
     table = np.array([numbers])

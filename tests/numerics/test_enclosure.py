@@ -10,15 +10,16 @@ import mpmath
 import numpy as np
 import pytest
 from flint import acb, arb, arb_series, ctx
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from properties import settings
 
 import mbsym
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.enclosure import disc as discs
 from mbsym.numerics.enclosure import segment as segments
 from mbsym.numerics.enclosure.compare import certified
-from mbsym.numerics.enclosure.enclose import INTERRUPTED, NO_STEP, OUT_OF_TIME, Enclosure, enclosed
+from mbsym.numerics.enclosure.enclose import INTERRUPTED, NO_STEP, OUT_OF_TIME, TOO_DEAR, Enclosure, enclosed
 from mbsym.numerics.enclosure.field import Field, cap
 from mbsym.numerics.enclosure.model import Model, Ring
 from mbsym.numerics.scenario import scenario
@@ -135,8 +136,11 @@ def test_it_ends_before_a_blow_up_and_says_so() -> None:
         assert inside(found.at(found.reached), [1 / (1 - t) ** 2, 2 / (1 - t) ** 3])
 
 
-def test_its_time_and_ctrl_c_end_it() -> None:
+def test_its_time_its_work_and_ctrl_c_end_it() -> None:
     assert enclosure_of(KEPLER, 6.25, seconds=0.0).ended == OUT_OF_TIME
+    one, other = (enclosure_of(KEPLER, 6.25, limit=0.02) for _ in range(2))
+    assert one.ended == TOO_DEAR
+    assert 0 < one.reached == other.reached < 6.25  # counted, not timed: it ends at the same place
 
     def stop(t: float) -> None:
         if t > 1:
@@ -194,7 +198,7 @@ def test_a_derivative_without_its_motion_is_found(monkeypatch: pytest.MonkeyPatc
     assert radius() < 1e-8
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     st.lists(st.floats(-1, 1), min_size=3, max_size=3),
     st.floats(0.05, 0.6),

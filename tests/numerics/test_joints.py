@@ -89,7 +89,6 @@ def test_nothing_dies_out_fast_because_a_force_jumps() -> None:
     assert "stiff:" not in mbsym.simulate(mbsym.loads(text(DRY)), 10, estimate=False).chosen.why
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("force", [PUSH, SMOOTH, DRY])
 def test_references_know_of_switches_and_narrow_loads(force: str) -> None:
     found = whole_reference(dynamics(force), 20.0, 60.0)

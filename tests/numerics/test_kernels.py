@@ -23,8 +23,9 @@ import numpy as np
 import pytest
 from conftest import OWN, SHIPPED
 from flint import arb, ctx, fmpq
-from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import HealthCheck, assume, given
 from hypothesis import strategies as st
+from properties import settings
 from random_systems import systems
 
 import mbsym
@@ -140,7 +141,7 @@ def test_every_code_of_a_scenario_is_within_the_bound(name: str) -> None:
 
 
 @given(description=systems(most=3, most_coordinates=4, solid=True), seed=st.integers(0, 2**32))
-@settings(max_examples=20, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=20, suppress_health_check=list(HealthCheck))
 def test_random_systems_are_within_the_bound(description: dict[str, Any], seed: int) -> None:
     source = random.Random(seed)
     system = mbsym.loads(json.dumps(description)).system

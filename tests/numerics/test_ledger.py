@@ -98,7 +98,7 @@ def savings(analysis: Analysis) -> dict[str, list[Saving]]:
     for number in analysis.problems:
         analysis.stage(number)
     found: dict[str, list[Saving]] = {}
-    for item in ledger(analysis, seconds=120).savings:
+    for item in ledger(analysis, budget=120).savings:
         found.setdefault(item.kind, []).append(item)
     return found
 
@@ -381,10 +381,10 @@ def test_without_numbers_the_order_of_gravity_is_undecided() -> None:
 # --- bounds ---
 
 
-def test_no_counterfactual_is_begun_without_time_for_it() -> None:
+def test_no_counterfactual_is_begun_beyond_the_budget() -> None:
     analysis = mbsym.load(SHIPPED / "satellite.yaml", (5,))
     analysis.stage(5)
-    found = ledger(analysis, seconds=0.0)
+    found = ledger(analysis, budget=0.0)
     assert "point masses" in found.unmeasured
     assert "point masses" not in {item.kind for item in found.savings}
 
@@ -392,7 +392,7 @@ def test_no_counterfactual_is_begun_without_time_for_it() -> None:
 def test_a_counterfactual_beyond_the_budget_costs_more_than_what_was_spent() -> None:
     analysis = Analysis(mbsym.load(SHIPPED / "satellite.yaml").system, (2,), terms=600)
     analysis.stage(2)
-    lines = {line.kind: line for line in ledger_lines(ledger(analysis, seconds=60))}
+    lines = {line.kind: line for line in ledger_lines(ledger(analysis, budget=60))}
     assert any("instead of more than" in text for text in lines["unused axes"].saved)
 
 

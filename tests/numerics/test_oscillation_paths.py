@@ -95,7 +95,6 @@ def test_titles_and_legends_follow_the_language():
     assert "motion" not in drawn
 
 
-@pytest.mark.slow
 def test_the_command_draws(tmp_path):
     file = tmp_path / "duffing.yaml"
     file.write_text(DUFFING + NUMBERS, encoding="utf-8")

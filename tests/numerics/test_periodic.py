@@ -170,7 +170,6 @@ def test_a_damped_oscillator_has_the_real_parts_of_its_roots() -> None:
     assert found.parting is Parting.POSITIVE
 
 
-@pytest.mark.slow
 def test_henon_and_heiles_at_an_eighth() -> None:
     """E = 1/8, x = 0, y = -0.25, py = 0, a chaotic orbit: near 0.045 (Benettin, Galgani & Strelcyn 1976).
 

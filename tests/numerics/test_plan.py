@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from math import inf
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.models import Model
 from mbsym.numerics.plan import ENERGY, Accuracy, Bound, Share
+from mbsym.numerics.plan_items import Settled, _closest, _why_method
 from mbsym.numerics.planning import Pins, planned
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.numerics.yardstick import Yardstick
@@ -223,7 +225,19 @@ def test_nothing_is_called_good_enough_where_the_bound_is_beyond_the_target() ->
     assert plan.bounds[0].total > 1e-12
     easy = planned(described(PUSHED), Accuracy(1e-4), np.linspace(0, 2, 41))
     assert easy.reached
-    assert {item.kind: item.why for item in easy.items}["method"].startswith("the cheapest here")
+    assert {item.kind: item.why for item in easy.items}["method"].startswith("by counted work the cheapest tried here")
+
+
+@pytest.mark.parametrize(("cheaper", "told"), [(2.0, True), (1.0, True), (0.95, True), (0.5, False)])
+def test_what_is_called_the_cheapest_is_so_by_counted_work(cheaper: float, told: bool) -> None:
+    """Costs within a tenth are alike; beside a run that costs half and is good enough, too, nothing is the cheapest."""
+    one, other = (SimpleNamespace(cost=cost, ratio=0.1) for cost in (1.0, cheaper))
+    unused: Any = None
+    bench: Any = SimpleNamespace(trials=[one, other])
+    found: Any = one
+    beside = Settled(*[unused] * 5, bench, unused, found, frozenset(), True, 0.4)
+    words = [_why_method(beside, True), _closest(beside)]
+    assert ["by counted work the cheapest" in text for text in words] == [told, told]
 
 
 def test_quantities_by_name_have_errors_of_their_own() -> None:

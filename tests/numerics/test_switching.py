@@ -117,7 +117,6 @@ def test_a_change_to_a_wrong_state_is_caught(monkeypatch: pytest.MonkeyPatch) ->
     assert right < 1e-6 < 1e-2 < error()
 
 
-@pytest.mark.slow
 def test_half_a_relaxation_oscillation_of_van_der_pol_at_a_hundred_thousand() -> None:
     """T = (3 - 2 ln 2) mu + 7.01432 mu**(-1/3) + O(ln mu / mu) (Haag; Dorodnitsyn), from zero to zero half of it."""
     mu = 1e5

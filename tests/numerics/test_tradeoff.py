@@ -247,7 +247,7 @@ def test_the_command_writes_a_table_and_a_figure_and_gives_advice(tmp_path: Path
     )
     assert found.exit_code == 0, found.output
     assert "estimated error" in found.output
-    assert "reaches 1e-06 at the least cost" in found.output
+    assert "reaches 1e-06 in the least time measured here" in found.output
     rows = list(csv.DictReader((tmp_path / "tradeoff.csv").read_text().splitlines()))
     assert {"rk4", "dop853"} <= {row["method"] for row in rows}
     assert any(row["front"] == "yes" for row in rows)
@@ -343,7 +343,7 @@ def test_what_rests_by_symmetry_spoils_no_error() -> None:
     found = studied(dynamics.scenario, [METHODS["dop853"]], 6.0, 60.0, False).trade
     assert found.reference.error < 1e-15
     assert min(row.error for row in found.rows) < 1e-11
-    assert "reaches 1e-09 at the least cost" in advice(found, 1e-9)
+    assert "reaches 1e-09 in the least time measured here" in advice(found, 1e-9)
 
 
 def test_errors_at_whole_periods_are_parts_of_the_motion() -> None:

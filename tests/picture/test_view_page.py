@@ -218,7 +218,6 @@ SHOWN = "([told, state]) => { const v = mbsymViewer; v.show(told); v.stage.rende
 v.stage.eye.camera); return Array.from(v.poses.at(state)); }"
 
 
-@pytest.mark.slow
 def test_every_system_is_drawn_where_the_library_says(still: Window) -> None:
     """Each shipped system on one page: no complaint, and the page's poses are those of the library's interpreter."""
     source = np.random.default_rng(4)
@@ -232,7 +231,6 @@ def test_every_system_is_drawn_where_the_library_says(still: Window) -> None:
         assert not still.complaints, (path.stem, still.complaints)
 
 
-@pytest.mark.slow
 def test_without_three_dimensions_a_motion_is_told_all_the_same(browser: Any, tmp_path: Path) -> None:
     """A browser without WebGL: time goes on, energy and positions are told, and no button is for a picture."""
     out = tmp_path / "page.html"
@@ -257,7 +255,6 @@ def test_without_three_dimensions_a_motion_is_told_all_the_same(browser: Any, tm
     page.close()
 
 
-@pytest.mark.slow
 def test_the_page_by_keys(show: Callable[[Path], Window], tmp_path: Path) -> None:
     """Sliders, time, modes and equilibria without a pointer; nothing moves by itself where that is not wanted."""
     out = tmp_path / "page.html"
@@ -288,7 +285,6 @@ def test_the_page_by_keys(show: Callable[[Path], Window], tmp_path: Path) -> Non
     assert all(url.startswith(("file:", "blob:", "data:")) for url in window.asked)
 
 
-@pytest.mark.slow
 def test_a_loop_follows_its_slider_or_says_that_it_is_open(still: Window) -> None:
     """The crank of the four-bar linkage on the page, by the page's own Newton steps."""
     found = as_json(picture(mbsym.load(SYSTEMS / "four-bar.yaml").system))
@@ -310,7 +306,6 @@ def test_a_loop_follows_its_slider_or_says_that_it_is_open(still: Window) -> Non
     assert "open" in said
 
 
-@pytest.mark.slow
 def test_markup_stays_text_in_a_browser(show: Callable[[Path], Window], tmp_path: Path) -> None:
     out = tmp_path / "page.html"
     out.write_text(viewed(mbsym.loads(HOSTILE).system, {}, 1.0, modes=True)[0], encoding="utf-8")

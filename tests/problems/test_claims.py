@@ -229,7 +229,6 @@ def test_a_condition_that_is_not_necessary_gets_a_counterexample() -> None:
     assert verdict.word.startswith(("stable", "gyroscopically")), verdict
 
 
-@pytest.mark.slow
 def test_the_printed_formulas_of_the_satellite_hold() -> None:
     analysis = mbsym.load(SHIPPED / "satellite.yaml")
     assert len(analysis.claims) == 39
@@ -277,7 +276,6 @@ def test_explain_lists_the_kinds_of_claim() -> None:
     assert "difference = claimed - derived" in done.stdout
 
 
-@pytest.mark.slow
 @needs_pdflatex
 def test_the_appendix_with_claims_compiles(tmp_path: Path) -> None:
     analysis = analysed(

@@ -330,7 +330,6 @@ def test_the_restriction_is_in_every_report(tmp_path: Path) -> None:
 # --- the appendix ---
 
 
-@pytest.mark.slow
 @needs_pdflatex
 def test_the_appendix_with_refuted_claims_compiles(tmp_path: Path) -> None:
     analysis = analysed(

@@ -14,8 +14,9 @@ import numpy as np
 import pytest
 import sympy
 from conftest import TESTS, at_values
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from properties import settings
 from scipy.integrate import solve_ivp
 
 import mbsym
@@ -99,7 +100,7 @@ TERMS = ["x_dot**2", "y_dot**2", "x_dot*y_dot", "x_dot**4", "x_dot**3", "(x_dot 
 TERMS += ["x*x_dot**2", "x**2*y_dot**2", "(1 + x)*y_dot**2", "x_dot**2*y_dot**2", "(x_dot + y)**2", "y*x_dot*y_dot"]
 
 
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=60, derandomize=True)
 @given(st.lists(st.tuples(st.integers(-2, 3), st.sampled_from(TERMS)), min_size=1, max_size=4))
 def test_what_is_proved_of_the_power_holds_near_the_motion(terms: list[tuple[int, str]]) -> None:
     text = " + ".join(f"{number}*{term}" for number, term in terms)
@@ -188,7 +189,7 @@ def test_a_free_coordinate_that_a_force_of_higher_order_drives_does_not_coast() 
 
 def test_a_force_that_holds_a_cyclic_coordinate_takes_it_off_the_cyclic_ones() -> None:
     """x'' = -x^3: L does not contain x, but the force does.  x'^2/2 + x^4/4 keeps x near 0; x'' = x^3 runs away."""
-    for force, at_numbers in (("-x**3", "stable but for a drift of cyclic coordinates"), ("x**3", "undecided")):
+    for force, at_numbers in (("-x**3", "stable but for a drift of cyclic coordinates"), ("x**3", "unstable")):
         analysis = point({"generalized force": {"x": force}}, spring=False)
         assert analysis.energy.cyclic == ("x", "y")
         assert analysis.balance.ignorable == ("y",)

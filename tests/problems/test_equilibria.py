@@ -23,6 +23,7 @@ from mbsym.algebra import krawczyk
 from mbsym.algebra.failures import Constrained
 from mbsym.algebra.polynomial_systems import Limits, Solutions, context, solve
 from mbsym.analysis import Analysis, Unavailable
+from mbsym.analysis.resting import relative_equilibria
 from mbsym.mechanics.charts import joints
 from mbsym.mechanics.rest import given_values, missing_values
 from mbsym.numerics.scenario import exact
@@ -681,7 +682,7 @@ def test_the_described_motion_is_listed_and_judged_as_problem_6_does(path: Path)
     assert judged is not None
     assert values is not None
     motion = {entry.coordinate: float(exact(entry.value, values)) for entry in a.system.motion}
-    found = equilibria(a.system, values)
+    found = relative_equilibria(a.system, values)
 
     def is_described(one: RelativeEquilibrium) -> bool:
         apart = [(item.value - motion.get(item.name, 0.0), item.angle) for item in one.values]

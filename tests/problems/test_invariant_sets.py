@@ -208,7 +208,6 @@ def test_orbital_equilibria_in_quaternions():
         assert one.gap is Gap.FOUND
 
 
-@pytest.mark.slow
 def test_pieces_of_the_sets_of_kovalevskayas_top_are_no_defect():
     """Zeros of Kovalevskaya's integral, a sum of two squares, are stationary: r = gamma3 = 0 is no set of its own."""
     found = mbsym.load("systems/kovalevskaya.yaml").invariant_sets

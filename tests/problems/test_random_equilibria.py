@@ -69,7 +69,6 @@ def zeros(slope: Any, curvature: Any, angles: Sequence[bool], seed: int) -> list
 KINDS = ["polynomial", "angles", "springs", "hoop", "length and angle"]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("seed", range(3))
 def test_every_rest_in_a_random_potential(kind: str, seed: int) -> None:
@@ -179,7 +178,6 @@ def most_definite(J: Any, h: Any, r: Any, W: float, n: Any) -> float:
     return max(float(np.linalg.eigvalsh(sum(c * S for c, S in zip(w_, forms, strict=True)))[0]) for w_ in directions)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(14))
 def test_every_permanent_rotation_of_a_random_body(seed: int) -> None:
     """In a turning frame, where the azimuth is any, or with the azimuth itself turning."""

@@ -8,7 +8,8 @@ from fractions import Fraction
 import mbsym
 from mbsym.analysis import Analysis
 from mbsym.problems.invariant_sets import Definiteness, Gap, Kind
-from mbsym.report import invariant_sets_es, invariant_sets_ru, invariant_words
+from mbsym.report import invariant_words
+from mbsym.report.messages import messages
 from mbsym.report.sections import invariant_sets as section
 
 PLANE = """
@@ -33,6 +34,10 @@ bodies:
     {orientation}
 {loads}
 """
+
+
+def is_translated(english):
+    return all(("", english) in messages(language) for language in ("ru", "es"))
 
 
 def _sets(text):
@@ -133,9 +138,8 @@ def test_roots_that_are_not_listed_are_counted():
     assert "among the others" in listed
     (left,) = [text for text in said if text.startswith("Roots of factors that are not even")]
     assert said[left] == {"n": 3}
-    for catalogue in (invariant_sets_ru.SENTENCES, invariant_sets_es.SENTENCES):
-        assert listed in catalogue
-        assert left in catalogue
+    assert is_translated(listed)
+    assert is_translated(left)
 
 
 def test_integrals_that_are_functions_of_others_are_named():
@@ -149,8 +153,7 @@ def test_integrals_that_are_functions_of_others_are_named():
     assert found.left_out == ("momentum of y",)
     text = "Left out of the families, as functions of these (verified at a random state): [[names]]."
     assert text in dict(invariant_words.opening(found, section.plain(found)))
-    assert text in invariant_sets_ru.SENTENCES
-    assert text in invariant_sets_es.SENTENCES
+    assert is_translated(text)
 
 
 def test_roots_of_the_geometry_are_told():
@@ -160,8 +163,7 @@ def test_roots_of_the_geometry_are_told():
     said = dict(invariant_words.opening(found, section.plain(found)))
     text = "Of the zero roots of a first approximation so many belong to these relations, and to no motion: [[n]]."
     assert said[text] == {"n": 1}
-    assert text in invariant_sets_ru.SENTENCES
-    assert text in invariant_sets_es.SENTENCES
+    assert is_translated(text)
 
 
 def test_precessions_that_are_unstable_are_not_called_stable():
@@ -190,8 +192,7 @@ def test_precessions_that_are_unstable_are_not_called_stable():
         said = dict(invariant_words.of_set(one, 1, section.plain(found)))
         assert text in said
         assert not any(x.startswith(("Stable", "Sufficient")) for x in said)
-        assert text in invariant_sets_ru.SENTENCES
-        assert text in invariant_sets_es.SENTENCES
+        assert is_translated(text)
 
 
 def test_of_a_set_it_is_said_that_stability_is_its_own():
@@ -202,5 +203,4 @@ def test_of_a_set_it_is_said_that_stability_is_its_own():
     said = dict(invariant_words.of_set(replace(plane, variation=conditional), 1, section.plain(found)))
     (text,) = [x for x in said if x.startswith("Sufficient")]
     assert "as a set" in text
-    assert text in invariant_sets_ru.SENTENCES
-    assert text in invariant_sets_es.SENTENCES
+    assert is_translated(text)

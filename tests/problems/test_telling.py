@@ -12,7 +12,8 @@ from pathlib import Path
 
 import pytest
 from conftest import SHIPPED, WITH_BODIES, derived
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
+from properties import settings
 from random_systems import Description, analysed, orbiting, systems
 
 import mbsym
@@ -32,7 +33,7 @@ from mbsym.problems.telling import ToldSystem, Untold
 FILES = WITH_BODIES
 SYSTEMS = pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 #: Enough draws that every kind of joint and load comes up.
-some = settings(max_examples=25, deadline=None, derandomize=True)
+some = settings(max_examples=25, derandomize=True)
 
 
 def pairs(analysis: Analysis, found: ToldSystem) -> Iterator[tuple[str, Formula, Formula]]:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+import warm
 from conftest import SHIPPED, derived
 
 import mbsym
@@ -123,8 +123,7 @@ def test_a_line_tells_what_is_not_exact(monkeypatch: pytest.MonkeyPatch) -> None
 
 
 def run(*arguments: object) -> subprocess.CompletedProcess[str]:
-    start = [sys.executable, "-c", "from mbsym_cli.main import main; main(prog_name='mbsym')", "run"]
-    return subprocess.run([*start, *map(str, arguments)], capture_output=True, text=True, timeout=120, check=False)
+    return warm.run(["run", *arguments], timeout=120)
 
 
 def test_brief_prints_one_line_a_file_and_keeps_the_exit_codes(tmp_path: Path) -> None:

@@ -631,7 +631,6 @@ def test_model_py_names_what_it_lacks(tmp_path: Path) -> None:
     assert "no value for the parameters N, K" in done.stderr
 
 
-@pytest.mark.slow
 def test_types_of_model_py_hold_in_strict_mode(tmp_path: Path) -> None:
     pytest.importorskip("mypy")
     path = tmp_path / "model.py"

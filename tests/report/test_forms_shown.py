@@ -120,7 +120,6 @@ def test_numbers_agree_with_lagranges_equations(name: str) -> None:
 
 
 @needs_pdflatex
-@pytest.mark.slow
 def test_long_denominators_are_written_once_and_stay_on_the_page(tmp_path: Path) -> None:
     """The determinant of the ignored coordinates' inertia is wider than any line."""
     analysis = mbsym.load(SHIPPED / "satellite-with-damper.yaml", (3,))

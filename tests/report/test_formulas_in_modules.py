@@ -18,7 +18,7 @@ from mbsym.report.targets import TARGETS
 #: A system and a problem that has many formulas of it.
 CASES = [
     ("gyrostat-poisson", 9),
-    pytest.param("clebsch-poisson", 10, marks=pytest.mark.slow),
+    ("clebsch-poisson", 10),
     ("three-bodies", 11),
     ("satellite-with-damper-slow", 12),
     ("shaken-pendulum", 12),

@@ -521,7 +521,6 @@ def mathics():
     return MathicsSession(add_builtin=True, character_encoding="UTF-8")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["nasty", "ziegler-damped.yaml"])
 def test_wolfram_reads_the_report_and_gets_the_same_numbers(name, mathics):
     from mbsym.formulas.wolfram import wolfram_names
@@ -629,7 +628,6 @@ def test_every_velocity_has_an_initial_value():
     assert latex.count("(0) = ") == 2 * len(analysis.system.coordinates)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["spatial-arm.yaml", "satellite.yaml", "double-pendulum.yaml"])
 def test_the_suggested_ndsolve_has_numbers_for_everything(name, mathics):
     """2 n numerical initial conditions; with them the equations hold accelerations alone, and so NDSolve can start."""

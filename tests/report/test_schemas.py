@@ -17,6 +17,7 @@ import mbsym
 from mbsym.algebra.failures import Limit
 from mbsym.numerics.conservation import Doubt
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL, SINGULAR, UNDECIDED
+from mbsym.problems.normal_forms import Theorem
 from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.theorems import THEOREMS
 from mbsym.problems.stability.word import Word
@@ -163,7 +164,8 @@ def test_the_words_of_the_schemas_are_those_of_the_code() -> None:
     """Of each way in which words come into a schema: an enumeration, its names, a list, a list with null."""
     stability = RESULTS["properties"]["stability"]["properties"]
     assert set(stability["verdict"]["enum"]) == set(Word)
-    assert set(stability["theorems"]["items"]["enum"]) == {theorem.name for theorem in THEOREMS}
+    names = {theorem.name for theorem in THEOREMS} | {item.value for item in Theorem if item is not Theorem.NONE}
+    assert set(stability["theorems"]["items"]["enum"]) == names
     assert set(RESULTS["$defs"]["reason"]["properties"]["code"]["enum"]) == {item.name.lower() for item in Because}
     failure = RESULTS["properties"]["unavailable"]["additionalProperties"]["properties"]
     assert set(failure["limit"]["enum"]) == {None, *(item.value for item in Limit)}

@@ -18,8 +18,6 @@ from mbsym.analysis import Analysis
 from mbsym.numerics.scenario import scenario
 from mbsym.report.targets import TARGETS
 
-pytestmark = pytest.mark.slow
-
 
 @pytest.fixture(scope="module")
 def mathics() -> Any:

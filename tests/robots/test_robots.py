@@ -6,13 +6,12 @@ Needs the extra ``robots`` (``make robots`` installs it); without it these tests
 from __future__ import annotations
 
 import json
-import os
 import time
 from pathlib import Path
 
 import pytest
 import warm
-from robots import QUICK, ROBOTS
+from robots import ROBOTS
 
 from mbsym.source.robots.numbers import angle, is_of_a_body, multiple_of_pi, number
 
@@ -35,12 +34,8 @@ REPORTS = {
 }
 
 
-@pytest.mark.parametrize(
-    "name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in ROBOTS]
-)
+@pytest.mark.parametrize("name", ROBOTS)
 def test_a_robot(name: str, tmp_path: Path) -> None:
-    if name not in QUICK and not os.environ.get("MBSYM_ALL_ROBOTS"):
-        pytest.skip("make robots runs them all")
     file, floating = ROBOTS[name]
     text = agreement.urdf_files()[file].read_text(encoding="utf-8")
     converted = convert(text, floating)

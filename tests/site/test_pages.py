@@ -15,8 +15,8 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+import warm
 from pages import DOCS, Block, blocks, differs, pages
-from warm import COMMAND
 
 CONTINUED = " (continued)"
 #: Lines that a test cannot run, and why.
@@ -39,10 +39,9 @@ def folder(tmp_path: Path) -> Path:
     """A reader's folder, and mbsym on the path."""
     commands = tmp_path / "bin"
     commands.mkdir()
-    (commands / "mbsym").write_text(f'#!/bin/sh\nexec "{sys.executable}" -c "{COMMAND}" "$@"\n')
+    warm.script(commands)
     (commands / "python").write_text(f'#!/bin/sh\nexec "{sys.executable}" "$@"\n')
-    for command in commands.iterdir():
-        command.chmod(0o755)
+    (commands / "python").chmod(0o755)
     (tmp_path / "here").mkdir()
     return tmp_path / "here"
 
@@ -67,7 +66,6 @@ def shell(block: Block, folder: Path) -> tuple[str, int]:
     return run(["bash", "-ec", "\n".join(lines)], folder)
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="a shell")
 @pytest.mark.parametrize("page", pages())
 def test_every_block_of_a_page_is_true(page: str, folder: Path) -> None:

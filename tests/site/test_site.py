@@ -22,10 +22,7 @@ from mbsym.report.schemas import names, schema
 from mbsym.source import keys
 from mbsym_cli.main import COMMANDS, main
 
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(find_spec("material") is None, reason="no mkdocs-material: pip install '.[docs]'"),
-]
+pytestmark = pytest.mark.skipif(find_spec("material") is None, reason="no mkdocs-material: pip install '.[docs]'")
 
 
 def build(folder: Path, site: Path) -> subprocess.CompletedProcess[str]:

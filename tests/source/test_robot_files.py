@@ -432,3 +432,29 @@ def test_named_sites_and_bodies_without_mass_are_frames_and_other_sites_are_list
     assert (
         complaints_of('<mujoco><worldbody><site name="home" pos="0 0 1"/></worldbody></mujoco>')[0][0] == "missing-key"
     )
+
+
+def test_angles_that_are_read_as_parts_of_pi_are_told_in_one_line(tmp_path: Path) -> None:
+    """Five of them: a count and the first three on the terminal, all five in the description."""
+    angles = ("1.5708", "0.7854", "-1.5708", "0.5236", "1.0472")
+    parts = ("pi/2", "pi/4", "-pi/2", "pi/6", "pi/3")
+    body = '<body name="b{0}"><joint name="q{0}" axis="0 0 1"/><geom size="1" mass="1" euler="{1} 0 0"/>'
+    inside = "".join(body.format(k, angle) for k, angle in enumerate(angles)) + "</body>" * len(angles)
+    file = tmp_path / "r.xml"
+    file.write_text(f'<mujoco><compiler angle="radian"/><worldbody>{inside}</worldbody></mujoco>', encoding="utf-8")
+    done = CliRunner().invoke(main, ["convert", str(file), "--out", str(tmp_path / "r.yaml")])
+    told = [line for line in done.stderr.split("\n") if "of pi" in line]
+    assert len(told) == 1
+    assert "5 printed angles are read as parts of pi: 1.5708 as pi/2, 0.7854 as pi/4, -1.5708 as -pi/2, ..." in told[0]
+    head = (tmp_path / "r.yaml").read_text(encoding="utf-8").partition("name:")[0]
+    assert all(f"{angle} as {part}" in " ".join(head.split()) for angle, part in zip(angles, parts, strict=True))
+
+
+@pytest.mark.parametrize("tag", ["replicate", "frame"])
+def test_what_stands_for_other_elements_is_refused_with_what_to_do(tag: str) -> None:
+    complaints = Complaints()
+    inside = f'<{tag}><body name="b"><geom size="1" mass="1"/></body></{tag}>'
+    assert convert(f"<mujoco><worldbody>{inside}</worldbody></mujoco>", complaints) is None
+    (found,) = complaints.errors
+    assert found.message.startswith(f"<{tag}> is not read: ")
+    assert "mj_saveLastXML" in found.hint

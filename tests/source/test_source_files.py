@@ -6,13 +6,15 @@ import subprocess
 import sys
 import time
 from fractions import Fraction
+from functools import cache
 from pathlib import Path
 
 import jsonschema
 import pytest
 import yaml
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
+from properties import settings
 
 from mbsym.expressions.place import Complaint, Span
 from mbsym.expressions.safe import safe
@@ -284,15 +286,19 @@ def test_too_many_complaints_are_cut_off() -> None:
     assert complaints.items[-1].code == "too-many"
 
 
-EXAMPLES = [path.read_text(encoding="utf-8") for path in GOOD]
-EXAMPLES += [to_text(loaded(path)) for path in GOOD]
 TOKENS = [*"[]{}:#\n\t\"'0(),é", "- ", "&a ", "*a", "!!x ", "---\n", "**"]
+
+
+@cache
+def examples() -> list[str]:
+    """The good files in both spellings."""
+    return [path.read_text(encoding="utf-8") for path in GOOD] + [to_text(loaded(path)) for path in GOOD]
 
 
 @st.composite
 def mutated(draw: st.DrawFn) -> str:
     """A good file with characters, tokens or lines deleted, doubled, exchanged or put in."""
-    text = draw(st.sampled_from(EXAMPLES))
+    text = draw(st.sampled_from(examples()))
     for _ in range(draw(st.integers(1, 3))):
         start = draw(st.integers(0, max(0, len(text) - 1)))
         length = draw(st.sampled_from([0, 1, 1, 5, 30]))
@@ -308,7 +314,7 @@ def mutated(draw: st.DrawFn) -> str:
     return text
 
 
-@settings(max_examples=250, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=250, suppress_health_check=[HealthCheck.too_slow])
 @given(mutated(), st.sampled_from(["x.yaml", "x.txt", "<string>"]))
 def test_mutations_give_a_system_or_complaints(text: str, filename: str) -> None:
     system, complaints = read(text, filename)
@@ -322,7 +328,7 @@ def test_mutations_give_a_system_or_complaints(text: str, filename: str) -> None
         assert good(to_text(system), "x.txt") == system
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(st.one_of(st.text(max_size=200), st.binary(max_size=200).map(lambda data: data.decode("latin-1"))))
 def test_noise_gives_complaints(text: str) -> None:
     for filename in ("x.yaml", "x.txt", "<string>"):

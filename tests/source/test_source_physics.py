@@ -5,8 +5,9 @@ from __future__ import annotations
 from fractions import Fraction
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from properties import settings
 
 import mbsym
 from mbsym.expressions.parser import parse_expression
@@ -48,7 +49,7 @@ def inertia_of(cloud: list[tuple[Fraction, tuple[Fraction, Fraction, Fraction]]]
     return first, second, third
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(clouds)
 def test_point_masses_are_admissible_about_any_point(cloud: list) -> None:
     mass = sum((one for one, _ in cloud), Fraction(0))
@@ -60,7 +61,7 @@ def test_point_masses_are_admissible_about_any_point(cloud: list) -> None:
     assert inertia_violation(about_mass_centre(tensor, mass, centre)) is None
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(clouds)
 def test_a_little_less_than_nothing_is_not_admissible(cloud: list) -> None:
     """Second moments with a negative eigenvalue belong to no body: here all masses count as negative."""

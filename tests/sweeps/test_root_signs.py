@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 from flint import fmpq, fmpq_poly
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from properties import settings
 
 from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.point import Rationals
@@ -20,7 +21,7 @@ def signs(values: list[fmpq]) -> np.ndarray:
     return np.array([[int(x > 0) - int(x < 0)] for x in values])
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(COEFFICIENTS, st.integers(0, 3))
 def test_rouths_column_counts_the_roots_on_the_right(cs: list[int], shift: int) -> None:
     numbers = [fmpq(c) for c in cs]
@@ -32,7 +33,7 @@ def test_rouths_column_counts_the_roots_on_the_right(cs: list[int], shift: int) 
         assert changes(column)[0] == count_roots(numbers).right
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(COEFFICIENTS, st.integers(0, 3))
 def test_sturms_ends_count_the_real_roots(cs: list[int], shift: int) -> None:
     numbers = [fmpq(c) for c in cs]

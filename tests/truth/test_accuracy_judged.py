@@ -50,14 +50,8 @@ def true_errors(name: str, computed: Any) -> Any:
     return np.max(np.abs(computed - truth), axis=1) / np.where(size > 0, size, 1)
 
 
-#: Scenes of seconds are planned for a coarse error, too.
-SHORT = ("atwood", "kepler", "elastic", "furuta", "top")
-
 FINE = [pytest.param(scene, 1e-8, id=f"{scene.name} 1e-8") for scene in SCENES]
-COARSE = [
-    pytest.param(scene, 1e-4, id=f"{scene.name} 1e-4", marks=[] if scene.name in SHORT else [pytest.mark.slow])
-    for scene in SCENES
-]
+COARSE = [pytest.param(scene, 1e-4, id=f"{scene.name} 1e-4") for scene in SCENES]
 
 
 def judged(scene: Scene, found: Any) -> float:

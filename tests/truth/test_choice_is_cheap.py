@@ -9,7 +9,6 @@ from bench.choice_bench import outcome
 FACTOR = 1.5
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("name", "target"), [("kepler", 1e-8), ("furuta", 1e-4), ("atwood", 1e-4)])
 def test_no_measured_setting_is_much_cheaper(name: str, target: float) -> None:
     """Ratios of processor times, taken in turn in one process; the error is that against equations by hand.

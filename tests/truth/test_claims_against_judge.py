@@ -24,7 +24,7 @@ import pytest
 
 import mbsym
 from mbsym.analysis import Analysis
-from mbsym.analysis.judging import decider
+from mbsym.analysis.judge import Judge
 from mbsym.problems import stability
 from mbsym.problems.claims import BORDERS, FAILS, ClaimResult
 from mbsym.problems.claims.regions import Inequality, Region
@@ -98,7 +98,7 @@ class Case:
         """The verdict of the exact judge at the given values, and on the grid where the declared signs allow that."""
         a = self.analysis
         judge = stability.ExactVerdicts(a.parameters_scene, a.balance, a.judgeable, a.equilibrium, a.signs)
-        beyond, left = decider(a), 12  # so many open ones are looked into
+        beyond, left = Judge(a).decided, 12  # so many open ones are looked into
         positive = a.system.parameters[0].sign == "positive"
         found = []
         for x, y in [(Fraction(1), Fraction(1)), *product(GRID, GRID)]:

@@ -28,7 +28,7 @@ from mbsym.algebra.ring import Ring
 from mbsym.mechanics.constraints.programs import ConstrainedPrograms
 from mbsym.mechanics.constraints.ranks import eliminated, is_certain
 from mbsym.mechanics.oracle import State
-from mbsym.mechanics.states import SEED
+from mbsym.mechanics.states import SEED, drawn, is_allowed
 from mbsym.model.system import System, acceleration_name, velocity_name
 
 #: Bits of enclosures, and how small a box is that a root is proved in.
@@ -82,7 +82,7 @@ class Manifold:
         """
         source = random.Random(SEED)
         rational, found = True, 0
-        for _ in range(_ATTEMPTS * count):
+        for attempt in range(_ATTEMPTS * count):
             try:
                 one = self._rational(source) if rational else self._enclosed(source)
             except NotRational:
@@ -93,6 +93,8 @@ class Manifold:
             if one is None:
                 rational = False
                 continue
+            if attempt < _ATTEMPTS * count // 2 and not is_allowed(self.system, one.state.numbers, one.state.values):
+                continue  # parameters may have been solved for
             found += 1
             yield one
             if found == count:
@@ -124,9 +126,8 @@ class Manifold:
         values: dict[str, Any] = {
             name: fmpq(source.randint(-40, 40) or 1, source.randint(1, 24)) for name in self.ring.names()
         }
-        for name in (*self.system.parameter_names, "t"):
-            if name in values:
-                values[name] = fmpq(source.randint(1, 40), source.randint(1, 24))
+        known = drawn(self.system, self.ring, source)
+        values |= {name: known[name] for name in (*self.system.parameter_names, "t") if name in values}
         tangents = {name: fmpq(source.randint(-9, 9) or 1, source.randint(1, 9)) for name in self.ring.angles}
         return Rationals(tangents, self.ring.angles), values | {"pi": fmpq(355, 113)}
 

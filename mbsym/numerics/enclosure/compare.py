@@ -83,6 +83,7 @@ def certified(
     states: Any,
     width: float,
     seconds: float = inf,
+    limit: float = inf,
     watch: Callable[[float], None] = lambda t: None,
     happened: Occurrences | None = None,
 ) -> Certificate:
@@ -96,7 +97,8 @@ def certified(
     # An event at the end needs a little of what comes after it.
     end = float(times[-1]) * (1.0 if happened is None else AFTER)
     state = dynamics.scenario.state
-    found = enclosed(dynamics.right_hand_side, dynamics.jacobian, state, end, width, scale.tolist(), seconds, watch)
+    equations = dynamics.right_hand_side, dynamics.jacobian
+    found = enclosed(*equations, state, end, width, scale.tolist(), seconds, watch, limit)
     rows = int(np.searchsorted(times, found.reached, side="right")) if found.segments else 0
     centre, radius, error = (np.zeros((len(states), rows)) for _ in range(3))
     with ctx.workprec(found.bits + GUARD):

@@ -38,6 +38,12 @@ FIRST_LOOK, HOPELESS = 0.1, 10.0
 
 #: Why an enclosure ends before the time asked for.
 NO_STEP, TOO_WIDE, OUT_OF_TIME, INTERRUPTED = "no step proved", "too wide", "out of time", "interrupted"
+TOO_DEAR = "too dear"
+CUT = (OUT_OF_TIME, TOO_DEAR, INTERRUPTED)
+
+#: What a step costs, an operation of rates and Jacobian and as many for all else, times the square of the bits: about
+#: seconds of a usual machine (``mbsym.numerics.prices``).
+STEP, BESIDES = 2.5e-8, 30
 
 
 @dataclass(frozen=True)
@@ -96,27 +102,29 @@ def enclosed(
     scales: Sequence[float],
     seconds: float = inf,
     watch: Callable[[float], None] = lambda t: None,
+    limit: float = inf,
 ) -> Enclosure:
     """The solution of x' = rates(t, x) from ``state`` (exact numbers, or balls) at 0 to ``end``.
 
     ``width`` is the radius wanted of every component at the end, as a part of its ``scale``.  The enclosure that comes
-    furthest within ``seconds`` is given; its ``ended`` says what was missing.  Raises NotAnalytic where the equations
-    have no power series.
+    furthest within ``seconds``, and for a cost of ``limit`` (counted work), is given; its ``ended`` says what was
+    missing.  Raises NotAnalytic where the equations have no power series.
     """
-    began = perf_counter()
+    began, spent = perf_counter(), 0.0
     bits = FIRST + max(8, int(-log2(width)))
     exact = all(not isinstance(value, arb) or value.is_exact() for value in state)
     best: Enclosure | None = None
     while True:
         left = seconds - (perf_counter() - began)
-        found = _once(rates, jacobian, state, end, bits, left, width, scales, watch)
+        found = _once(rates, jacobian, state, end, bits, left, width, scales, watch, limit - spent)
+        spent += _price(rates, jacobian, bits) * len(found.segments)
         if best is None or (found.reached, not found.ended) >= (best.reached, not best.ended):
             best = found
         missing = _missing(found, width, scales) if exact else 0
-        finished = not missing or found.ended in (OUT_OF_TIME, INTERRUPTED) or bits >= MOST
+        finished = not missing or found.ended in CUT or bits >= MOST
         if finished:
             # A try with more bits that was cut short is why there is no more, however far an earlier one came.
-            cut = best.ended and found.ended in (OUT_OF_TIME, INTERRUPTED)
+            cut = best.ended and found.ended in CUT
             ended = found.ended if cut else best.ended
             return Enclosure(best.segments, best.bits, best.reached, ended, perf_counter() - began, end)
         bits = min(MOST, bits + missing)
@@ -141,8 +149,9 @@ def _once(
     width: float,
     scales: Sequence[float],
     watch: Callable[[float], None],
+    limit: float,
 ) -> Enclosure:
-    began = perf_counter()
+    began, price = perf_counter(), _price(rates, jacobian, bits)
     segments: list[Segment] = []
     guess, ended = FIRST_GUESS * end, ""
     with ctx.workprec(bits + GUARD):
@@ -161,6 +170,8 @@ def _once(
                     ended = NO_STEP
                 elif _late(perf_counter() - began, seconds, float(now.time) / end):
                     ended = OUT_OF_TIME if now.time < goal else ""
+                elif _late(price * len(segments), limit, float(now.time) / end):
+                    ended = TOO_DEAR if now.time < goal else ""
                 if ended:
                     break
                 watch(float(now.time))
@@ -172,9 +183,14 @@ def _once(
     return Enclosure(tuple(segments), bits, reached, ended, perf_counter() - began, end)
 
 
-def _late(taken: float, seconds: float, part: float) -> bool:
-    """Whether the time is over, or a tenth of it has shown that it is far too short."""
-    return taken > seconds or (taken > FIRST_LOOK * seconds and taken > HOPELESS * seconds * part)
+def _price(rates: Code, jacobian: Code, bits: int) -> float:
+    """What a step costs."""
+    return STEP * (rates.operations + jacobian.operations + BESIDES) * bits**2
+
+
+def _late(taken: float, allowed: float, part: float) -> bool:
+    """Whether seconds, or what it may cost, are over, or a tenth of that has shown that it is far too little."""
+    return taken > allowed or (taken > FIRST_LOOK * allowed and taken > HOPELESS * allowed * part)
 
 
 def _ball(value: Fraction | arb) -> arb:

@@ -35,7 +35,7 @@ def steady_operations(work: Work) -> Iterator[Saving]:
 def dead_operations(work: Work) -> Iterator[Saving]:
     """What the recursions wrote down on the way and q'' does not need."""
     forward = work.forward
-    work.require(work.cost[1])
+    work.begin(work.price)
     alone = forward_dynamics(work.system, ring_of(work.system), forward.method)
     given = work.given
     every = [alone.program.node(k) for k in range(len(alone.program.instructions))]
@@ -54,7 +54,7 @@ def route(work: Work) -> Iterator[Saving]:
     costs = dict(forward.operations)
     bound_only = other in forward.estimated
     if bound_only and len(work.system.coordinates) <= MOST_COUNTED:
-        work.require(work.cost[1])
+        work.begin(work.price)
         costs[other] = forward_dynamics(work.system, ring_of(work.system), other).operations[other]
         bound_only = False
     quantity = "operations of q'' and the pivots for one state"
@@ -107,7 +107,7 @@ def _factorised(work: Work) -> Programs | None:
     """M and f as nodes, where q'' is found by factorising M."""
     if work.forward.method != FACTORISED:
         return None
-    work.require(work.cost[1])
+    work.begin(work.price)
     return programs(work.system, ring_of(work.system))
 
 

@@ -45,7 +45,7 @@ def welded_bodies(work: Work) -> Iterator[Saving]:
     found = lumped(work.system)
     if not found:
         return
-    work.require(work.cost[1])
+    work.begin(work.price)
     apart, spent = work.timed(lambda: forward_dynamics(work.system, ring_of(work.system), apart=True))
     every = apart.program.operations(apart.accelerations, work.given)
     measures = (

@@ -79,7 +79,7 @@ class Saving:
 
 @dataclass(frozen=True)
 class Ledger:
-    """Every saving that saves something; ``unmeasured`` names kinds that there was no time left to measure."""
+    """Every saving that saves something; ``unmeasured`` names kinds that the budget was too small to measure."""
 
     savings: tuple[Saving, ...]
     unmeasured: tuple[str, ...] = ()

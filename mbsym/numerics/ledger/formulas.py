@@ -17,6 +17,9 @@ from mbsym.numerics.ledger.entry import COUNT, Measure, Saving
 from mbsym.numerics.ledger.work import Counted, Work
 from mbsym.problems.linearisation import Linearisation, components
 
+#: What characteristic polynomials of all parts and of the whole cost, about.
+CHARACTERISTIC = 1.0
+
 #: Bounds that end a derivation because its result is too large, not because there is none.
 TOO_LARGE = (Limit.TERMS, Limit.WORK, Limit.MEMORY)
 
@@ -45,9 +48,9 @@ def problems_not_asked(work: Work) -> Iterator[Saving]:
 def _given_up(work: Work, number: int) -> Counted:
     """What a problem costs by itself until the budgets end it."""
     alone = work.fresh(work.system)
-    started = time.perf_counter()
+    started = time.thread_time()
     alone.stage(number)
-    return Counted(None, alone.ring.work, time.perf_counter() - started)
+    return Counted(None, alone.ring.work, time.thread_time() - started)
 
 
 def _terms(found: Any) -> int:
@@ -78,7 +81,7 @@ def subsystems(work: Work) -> Iterator[Saving]:
     parts = components(found.matrices) if found is not None else []
     if found is None or len(parts) < 2 or 6 not in work.analysis.problems:
         return
-    work.require(1.0)
+    work.begin(CHARACTERISTIC)
     divided = [_characteristic(work, found, part) for part in parts]
     if any(item.terms is None for item in divided):
         return

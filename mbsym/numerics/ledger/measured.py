@@ -68,7 +68,7 @@ def _scene(work: Work, wanted: Wanted) -> Scene | None:
     """The motion in outline; None without numbers, or where it does not come to the end."""
     if work.scenario is None:
         return None
-    work.require(work.cost[1])
+    work.begin(work.price)
     try:
         return outlined(work.scenario, Accuracy(wanted.accuracy), np.linspace(0, wanted.time, TIMES))[0]
     except Breakdown:

@@ -18,7 +18,7 @@ from mbsym.model.system import INERTIAL, System
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kinds import CYCLIC, DROPPED, PARTS, PLANE, RESTING
 from mbsym.numerics.ledger.entry import COUNT, OPERATIONS, SECONDS, TERMS, Measure, Saving
-from mbsym.numerics.ledger.work import Work, holds
+from mbsym.numerics.ledger.work import INSTRUCTION, Work, holds
 from mbsym.numerics.reduced import reduced
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.separable import separated
@@ -37,7 +37,7 @@ def resting_coordinates(work: Work) -> Iterator[Saving]:
     if scenario is None:
         return
     whole, seconds = work.timed(lambda: _written(scenario))
-    work.require(seconds)
+    work.begin(INSTRUCTION * len(whole.right_hand_side.program.instructions))
     found = reduced(whole)
     if found is None:
         return
@@ -61,8 +61,8 @@ def separate_parts(work: Work) -> Iterator[Saving]:
     scenario = work.scenario
     if scenario is None:
         return
-    whole, seconds = work.timed(lambda: _written(scenario))
-    work.require(seconds)
+    whole = _written(scenario)
+    work.begin(INSTRUCTION * len(whole.right_hand_side.program.instructions))
     parts = separated(whole)
     if len(parts) < 2:
         return

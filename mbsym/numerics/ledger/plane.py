@@ -36,7 +36,7 @@ def skew_plane(work: Work) -> Iterator[Saving]:
     """Motion normal to a direction that is no axis of inertial space, until the time of the accuracy asked for."""
     if work.wanted is None or work.scenario is None:
         return
-    work.require(work.cost[1])
+    work.begin(work.price)
     dynamics = Dynamics(work.scenario)
     times = np.linspace(0.0, work.wanted.time, TIMES)
     try:

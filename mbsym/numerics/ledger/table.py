@@ -31,7 +31,7 @@ from mbsym.numerics.kinds import (
 )
 from mbsym.numerics.ledger import code, described, formulas, measured, motion, plane
 from mbsym.numerics.ledger.entry import Ledger, Saving
-from mbsym.numerics.ledger.work import BUDGET, OutOfTime, Wanted, Work
+from mbsym.numerics.ledger.work import BUDGET, TooDear, Wanted, Work
 
 #: What each function looks for; the order is that of the ledger.
 KINDS: Mapping[str, Callable[[Work], Iterator[Saving]]] = {
@@ -63,13 +63,13 @@ KINDS: Mapping[str, Callable[[Work], Iterator[Saving]]] = {
 OF_ANY_SYSTEM = frozenset((MASSLESS, POINTS, AXES, TURNS, ENTRIES, SUBSYSTEMS, NOT_ASKED))
 
 
-def ledger(analysis: Analysis, seconds: float = BUDGET, wanted: Wanted | None = None) -> Ledger:
+def ledger(analysis: Analysis, budget: float = BUDGET, wanted: Wanted | None = None) -> Ledger:
     """What this run left out, why that is safe, and what it saved; call it when the run itself is over.
 
-    ``seconds`` bound the counterfactuals together: none is begun that would probably exceed them.  What the
-    equations leave out is held against ``wanted``, an accuracy over a time.
+    ``budget`` bounds the counterfactuals together: counted work, and none is begun that would probably exceed it.  What
+    the equations leave out is held against ``wanted``, an accuracy over a time.
     """
-    work = Work(analysis, seconds, wanted)
+    work = Work(analysis, budget, wanted)
     found: list[Saving] = []
     unmeasured = []
     tied = bool(analysis.system.constraints or analysis.system.speeds)
@@ -78,7 +78,7 @@ def ledger(analysis: Analysis, seconds: float = BUDGET, wanted: Wanted | None = 
             continue
         try:
             found += [saving for saving in savings(work) if saving.saves]
-        except OutOfTime:
+        except TooDear:
             unmeasured.append(kind)
         except Failure:
             continue

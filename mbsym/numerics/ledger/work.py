@@ -27,8 +27,12 @@ from mbsym.model.system import Body, Parameter, System
 from mbsym.numerics.ledger.entry import COUNT, OPERATIONS, SECONDS, TERMS, Measure
 from mbsym.numerics.scenario import Incomplete, Scenario, scenario
 
-#: Seconds that all counterfactuals together may take, and steps of polynomial arithmetic that one may take.
+#: What all counterfactuals together may cost (``mbsym.numerics.prices``), and steps of polynomial arithmetic that one
+#: may take.
 BUDGET, WORK = 20.0, 20_000_000
+
+#: What an instruction that is written costs, and a step of polynomial arithmetic.
+INSTRUCTION, STEP = 1e-5, 2e-7
 
 #: What is built faster than this is built again, so many times at most, and the shortest time counts.
 SOON, REPEATS = 0.2, 5
@@ -36,8 +40,8 @@ SOON, REPEATS = 0.2, 5
 Made = TypeVar("Made")
 
 
-class OutOfTime(Exception):
-    """The next counterfactual would take more time than is left."""
+class TooDear(Exception):
+    """The next counterfactual would cost more than is left."""
 
 
 @dataclass(frozen=True)
@@ -68,11 +72,12 @@ class Wanted:
 class Work:
     """The model of an analysis and its counterfactuals."""
 
-    def __init__(self, analysis: Analysis, seconds: float = BUDGET, wanted: Wanted | None = None) -> None:
+    def __init__(self, analysis: Analysis, budget: float = BUDGET, wanted: Wanted | None = None) -> None:
         self.analysis = analysis
         self.wanted = wanted
         self.system = analysis.system
-        self._end = time.perf_counter() + seconds
+        self._budget, self._spent = budget, 0.0
+        self._rings: list[Ring] = []
 
     # --- numbers ---
 
@@ -100,6 +105,11 @@ class Work:
         return self.timed(lambda: forward_dynamics(self.system, ring_of(self.system)))
 
     @property
+    def price(self) -> float:
+        """What writing a program like that costs."""
+        return INSTRUCTION * len(self.forward.program.instructions)
+
+    @property
     def forward(self) -> ForwardDynamics:
         """The accelerations as they are computed."""
         return self.cost[0]
@@ -124,7 +134,7 @@ class Work:
         ``changing`` are parameters of the other system that count as if they changed with the state.
         """
         here, seconds = self.operations(self.forward.accelerations), self.cost[1]
-        self.require(seconds)
+        self.begin(self.price)
         found, spent = self.timed(lambda: forward_dynamics(other, ring_of(other)))
         there = found.program.operations(found.accelerations, constants(other) - set(changing))
         return (
@@ -142,6 +152,7 @@ class Work:
     def fresh(self, system: System) -> Analysis:
         found = Analysis(system, (), self.analysis.terms, suggests=False)
         found.ring.limit_work(WORK)
+        self._rings.append(found.ring)
         return found
 
     def result(self, stage: str) -> Any:
@@ -155,6 +166,7 @@ class Work:
     def kinetic_energy(self, system: System) -> Counted:
         """T in the ring, within the budgets."""
         (terms, steps), seconds = self.timed(lambda: self._kinetic_energy(system))
+        self._spent += STEP * steps
         return Counted(terms, steps, seconds)
 
     def _kinetic_energy(self, system: System) -> tuple[int | None, int]:
@@ -174,23 +186,33 @@ class Work:
         here = self.own_kinetic_energy
         if here.terms is None:
             return ()
-        self.require(here.seconds)
+        self.require(STEP * here.steps)
         return self.kinetic_energy(other).measures(here, "T")
 
     # --- bounds ---
 
-    def require(self, seconds: float) -> None:
-        """Raises OutOfTime unless something that takes about twice these seconds may still be begun."""
-        if time.perf_counter() + 2 * seconds > self._end:
-            raise OutOfTime
+    @property
+    def spent(self) -> float:
+        """What all counterfactuals have cost: no clock decides which of them there are."""
+        return self._spent + STEP * sum(ring.work for ring in self._rings)
+
+    def require(self, price: float) -> None:
+        """Raises TooDear unless something that costs about twice the price may still be begun."""
+        if self.spent + 2 * price > self._budget:
+            raise TooDear
+
+    def begin(self, price: float) -> None:
+        """The same of something whose price is spent then."""
+        self.require(price)
+        self._spent += price
 
     def timed(self, build: Callable[[], Made]) -> tuple[Made, float]:
-        """What is built, and the seconds that took: the least of several times where it is soon done."""
+        """What is built, and the processor seconds that took: the least of several times where it is soon done."""
         best, total = float("inf"), 0.0
         for _ in range(REPEATS):
-            started = time.perf_counter()
+            started = time.thread_time()
             found = build()
-            spent = time.perf_counter() - started
+            spent = time.thread_time() - started
             best, total = min(best, spent), total + spent
             if total > SOON:
                 break

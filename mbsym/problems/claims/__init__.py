@@ -41,7 +41,7 @@ from mbsym.model.claims import CLAIMS, Claim
 from mbsym.problems.claims.comparison import examined_formula
 from mbsym.problems.claims.conditions import examined_condition
 from mbsym.problems.claims.equations import examined_equation
-from mbsym.problems.claims.forms import in_parameters
+from mbsym.problems.claims.forms import in_parameters, scene_of_claims
 from mbsym.problems.claims.in_momenta import with_momenta
 from mbsym.problems.claims.integrals import examined_integral
 from mbsym.problems.claims.numbers import examined_number
@@ -121,7 +121,7 @@ def examine(derived: Derived, claim: Claim) -> ClaimResult:
     if claim.right is not None:
         return examined_condition(derived, claim, about)
     symbols = Symbols.of(derived)
-    scene = derived.scene if derived.system.inputs else derived.parameters_scene  # the latter holds no inputs
+    scene = scene_of_claims(derived)
     with_momenta(derived, scene, symbols)
     claimed = symbols.polynomial(scene, claim)
     if claim.kind == "first integral":

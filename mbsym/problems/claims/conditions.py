@@ -37,7 +37,7 @@ from mbsym.problems.claims.remarks import Remark, Said, said, words
 from mbsym.problems.claims.result import BORDERS, EXACT, FAILS, UNDECIDED, ClaimResult, Derived
 from mbsym.problems.claims.symbols import Symbols
 from mbsym.problems.stability.sentences import with_theorem
-from mbsym.problems.stability.verdict import Flaw, Verdict
+from mbsym.problems.stability.verdict import Flaw, Verdict, weakest
 from mbsym.problems.stability.word import Word
 
 _BODIES = ", with the triangle inequalities of the inertias"
@@ -131,6 +131,8 @@ def _need(region: Region, claim: Claim) -> Need:
             and region.without(closed, bodies).word is Word.UNSTABLE
             and not is_certain(region.signs_of_bodies, closed)  # else there is nothing beyond
         )
+        if not everywhere and (beyond or wanted.relation == "!="):
+            everywhere = region.on_border(wanted).word is Word.UNSTABLE
         exponential = region.exponential(wanted, bodies) if exponential is None else exponential
         bodies_used = bodies
         if everywhere or beyond or exponential is not None:
@@ -238,7 +240,8 @@ def one_of_problem_6(region: Region, claim: Claim, result: ClaimResult) -> Claim
         return None
     if not equality:
         return _told(result, EXACT, what)
-    outcome = EXACT if region.without(wanted).word is Word.UNSTABLE else BORDERS
+    needed = region.without(wanted).word is Word.UNSTABLE or region.on_border(wanted).word is Word.UNSTABLE
+    outcome = EXACT if needed else BORDERS
     label, whose, note = what.data
     return _told(result, outcome, said(Said.IS, label, whose, f"{note}, but for the case of equality"))
 
@@ -294,6 +297,12 @@ def _sufficient(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimRes
             inner = region.verdict(strict, bodies) if strict != conditions else found
             if inner.stable and strict != conditions:
                 told = with_theorem(inner.word, inner.theorem)
+                borders = _on_borders(region, conditions)
+                if borders is not None:
+                    whole = weakest([inner, *borders])
+                    return _told(
+                        result, EXACT, said(Said.WITH_IT, number, note, with_theorem(whole.word, whole.theorem))
+                    )
                 inside = said(Said.WITH_IT, number, f"{note}, but for the case of equality,", told)
                 return _told(result, UNDECIDED, inside, _with_equality(derived, claim))
     by_integrals = _by_integrals(derived, claim, together)
@@ -302,6 +311,17 @@ def _sufficient(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimRes
         return _told(result, EXACT, said(Said.WITH_IT, number, "", told))
     remarks = open_words or (said(Said.NOT_PROVED_SUFFICIENT, number), _tried(tried, Said.NONE_UNSTABLE))
     return _told(result, UNDECIDED, *remarks)
+
+
+def _on_borders(region: Region, conditions: Sequence[Inequality]) -> list[Verdict] | None:
+    """The verdicts where one of p >= 0 is an equality and the others hold; None where one is not stable or unknown."""
+    found = []
+    for one in conditions:
+        if one.relation == ">=":
+            found.append(region.on_border(one, [other for other in conditions if other is not one]))
+            if not found[-1].stable:
+                return None
+    return found
 
 
 def _with_equality(derived: Derived, claim: Claim) -> Remark:

@@ -31,7 +31,7 @@ from mbsym.problems.claims.comparison import examined_formula
 from mbsym.problems.claims.conditions import examined_condition
 from mbsym.problems.claims.counterexample import Counterexample, shown
 from mbsym.problems.claims.equations import NOTHING, power_of
-from mbsym.problems.claims.forms import in_parameters
+from mbsym.problems.claims.forms import in_parameters, scene_of_claims
 from mbsym.problems.claims.in_momenta import IN_MOMENTA
 from mbsym.problems.claims.numbers import examined_number
 from mbsym.problems.claims.quantities import derived_quantity, of_first_approximation
@@ -68,7 +68,7 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     if claim.kind == "coefficient" and claim.of not in SUMS:
         raise NoClosedForm("a coefficient of an equation, which multipliers complete: not judged under constraints")
     symbols = Symbols.of(derived)
-    scene = derived.scene if derived.system.inputs else derived.parameters_scene  # the latter holds no inputs
+    scene = scene_of_claims(derived)
     claimed = symbols.polynomial(scene, claim)
     if claim.kind == "first integral":
         return _integral(derived, ClaimResult(claim, about, EXACT, Formula(derived.ring, claimed)))

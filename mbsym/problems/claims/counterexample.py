@@ -284,7 +284,10 @@ class Trials:
         return Counterexample(at, (*shows, ("the motion", word)), verdict.word, bool(gaps[0][1] == 0), border)
 
     def where_zero(self, x: Polynomial) -> Iterator[Trial]:
-        """Parameters at which a polynomial in free parameters vanishes: one of them is solved for, rationally."""
+        """Parameters at which a polynomial in free parameters vanishes: one of them is solved for, rationally.
+
+        At some of them another one vanishes, too: what is stable on a border may be unstable at single points of it.
+        """
         ring = self.ring
         free = {name for name in self.system.parameter_names if name not in self._dependent}
         for factor, _ in [] if x.is_constant() else ring.factored(x)[1]:
@@ -295,9 +298,11 @@ class Trials:
                 if g.kind == "parameter" and g.name in free and degrees[k]
             )
             for degree, name in names[:SOLVED_FOR]:
-                for trial in islice(self, BORDER_POINTS):
+                for number, trial in enumerate(islice(self, BORDER_POINTS)):
                     values = {other: Fraction(int(y.p), int(y.q)) for other, y in trial.values.items() if other in free}
                     yield from self._zeros_along(values, factor, name, degree)
+                    for other in sorted({*values} - {name})[: 0 if number else SOLVED_FOR]:
+                        yield from self._zeros_along(values | {other: Fraction(0)}, factor, name, degree)
 
     def _zeros_along(self, free: Mapping[str, Fraction], factor: Polynomial, name: str, degree: int) -> Iterator[Trial]:
         """Where ``factor`` vanishes at rational values of the parameter ``name``, the others as they are."""

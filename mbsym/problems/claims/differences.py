@@ -17,7 +17,7 @@ from mbsym.expressions.tree import (
 )
 from mbsym.formulas.formula import Formula
 from mbsym.model.claims import Claim
-from mbsym.problems.claims.forms import by_motion, by_place, in_parameters
+from mbsym.problems.claims.forms import by_motion, by_place, in_parameters, scene_of_claims
 from mbsym.problems.claims.result import DIFFERS, ClaimResult, Derived, Part
 from mbsym.problems.claims.symbols import Symbols
 
@@ -65,7 +65,7 @@ def _parts(derived: Derived, claim: Claim, symbols: Symbols, difference: Polynom
 
 def _values(derived: Derived, symbols: Symbols, expressions: list[Expression]) -> dict[str, Polynomial]:
     """The abbreviations that occur, as polynomials in declared parameters."""
-    scene = derived.parameters_scene
+    scene = scene_of_claims(derived)
     wanted = symbols.occurring(expressions)
     lower = symbols.in_scene(scene)
     return {name: in_parameters(derived, lower(Name(name))) for name in symbols.values if name in wanted}
@@ -83,7 +83,7 @@ def _same_as(coefficient: Polynomial, values: Mapping[str, Polynomial]) -> str:
 
 def _slopes(derived: Derived, claim: Claim, symbols: Symbols) -> dict[str, Polynomial]:
     """What stands before each abbreviation in the claim, for those that enter it linearly."""
-    scene = derived.parameters_scene
+    scene = scene_of_claims(derived)
     found = {}
     for name in symbols.values:
         if name not in names(claim.equals):

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import relations
 from mbsym.model.claims import Claim
 from mbsym.problems.claims.result import Derived
@@ -15,6 +16,11 @@ from mbsym.problems.knowledge import definition_in_parameters
 _OF_THE_MOTION = ("linear", "subsystem", "state", "characteristic", "condition", "normal form", "lyapunov")
 
 _MOTION = ("velocity", "acceleration")
+
+
+def scene_of_claims(derived: Derived) -> Scene[Any]:
+    """Where claims and their abbreviations are lowered: over parameters, and with the inputs where there are some."""
+    return derived.scene if derived.system.inputs else derived.parameters_scene
 
 
 def in_parameters(derived: Derived, x: Polynomial) -> Polynomial:

@@ -23,7 +23,7 @@ from mbsym.problems import speeds
 from mbsym.problems.claims.comparison import examined_formula
 from mbsym.problems.claims.conditions import examined_condition
 from mbsym.problems.claims.equations import NOT_LINEAR, NOTHING, SAME_ACCELERATIONS, Dynamics, along_motion
-from mbsym.problems.claims.forms import in_parameters
+from mbsym.problems.claims.forms import in_parameters, scene_of_claims
 from mbsym.problems.claims.quantities import derived_quantity, of_first_approximation
 from mbsym.problems.claims.result import (
     ALONG,
@@ -58,7 +58,7 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
         return examined_condition(derived, claim, about)  # problem 6 is told in coordinates
     if claim.kind.startswith(_LINEAR) and not claim.kind.endswith("B"):
         return _linear(derived, claim, about)
-    scene = derived.scene if derived.system.inputs else derived.parameters_scene  # the latter holds no inputs
+    scene = scene_of_claims(derived)
     claimed = in_parameters(derived, Symbols.of(derived).polynomial(scene, claim))
     if claim.kind == "first integral":
         return _integral(derived, form, claim, about, claimed)

@@ -13,6 +13,7 @@ from typing import Any
 
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import Failure
+from mbsym.algebra.generators import occurring
 from mbsym.algebra.point import Rationals
 from mbsym.algebra.ring import ParameterRing, Polynomial
 from mbsym.algebra.semialgebraic import atom, where
@@ -26,10 +27,13 @@ from mbsym.problems.stability import SubsystemStability
 from mbsym.problems.stability.covering import Cell, Lift, atoms, cells_of, everywhere, joined
 from mbsym.problems.stability.problem import in_parameters as of_parameters
 from mbsym.problems.stability.requirements import Case, Place, Requirement, against
+from mbsym.problems.stability.symbolic import on_border
 from mbsym.problems.stability.theorems import Fact
-from mbsym.problems.stability.verdict import Verdict, concluded, depends
+from mbsym.problems.stability.verdict import Verdict, combine, concluded, depends
 from mbsym.problems.stability.word import Word
 
+#: A condition that is longer is called by its label alone.
+_LONGEST = 60
 #: More labels than these are not listed.
 _MOST_LABELS = 4
 #: Words of ``Signs.sign`` under which p > 0, p >= 0, p != 0 (and their negations p <= 0, p < 0, p = 0) are certain.
@@ -86,16 +90,24 @@ class Region:
     # --- single conditions ---
 
     def conditions(self, left_out: Sequence[str] = ()) -> Iterator[tuple[Remark, Inequality]]:
-        """What a condition of problem 6 is called, and its inequality: as they stand, as they arise, and sufficient."""
+        """What a condition of problem 6 is called, and its inequality: as they stand, as they arise, and sufficient.
+
+        With its label stands what it is, where a list of the open conditions of problem 6 does not hold it.
+        """
         for part in self.parts:
             whose = ", ".join(part.coordinates)
             sufficient = () if "sufficient" in left_out else part.sufficient
+            # Of a motion that is proved to be stable no condition is listed.
+            listed = () if part.theory.verdict.stable else part.conditions
             for found, note in (
                 ((*part.conditions, *part.unreduced, *sufficient), ""),
                 (part.guaranteed, ": it holds, the kinetic energy is positive definite"),
             ):
                 for label, formula, relation in found:
-                    yield said(Said.IS, label, whose, note), Inequality(self.cleared(formula.polynomial), relation)
+                    text = f"{formula} {relation} 0"
+                    seen = (label, formula, relation) in listed or len(text) > _LONGEST
+                    of = whose if seen else f"{whose} ({text})"
+                    yield said(Said.IS, label, of, note), Inequality(self.cleared(formula.polynomial), relation)
 
     def labels(self, of: Sequence[str] = ()) -> str:
         """Names of the conditions that an implication rests on, those of one part where its coordinates are given."""
@@ -211,6 +223,27 @@ class Region:
         ring = self.derived.ring
         return self.cleared(part.ring.lift(x) if isinstance(part.ring, ParameterRing) else ring.reduce(x))
 
+    def on_border(self, wanted: Inequality, others: Sequence[Inequality] = ()) -> Verdict:
+        """What holds of exactly linear equations where ``wanted`` is an equality and ``others`` hold.
+
+        "depends on the parameters" also where that was not found.
+        """
+        if not (self.own and self.derived.balance.exactly_linear):
+            return depends()
+        found = []
+        try:
+            for part in self.parts:
+                if part.system is None or part.known is None:
+                    return depends()
+                small = part.ring if isinstance(part.ring, ParameterRing) else None
+                p = _in(small, wanted.polynomial)
+                further = [(x, one.relation) for one in others if (x := _in(small, one.polynomial)) is not None]
+                there = None if p is None else on_border(part.system, part.known, p, further)
+                found.append(there or part.theory.verdict)
+        except (ContradictionError, Failure):
+            return depends()
+        return combine(found, self.derived.balance.law.bounded)
+
     def makes_stiffness_singular(self, x: Polynomial) -> bool:
         """Whether x = 0 implies det K = 0 in a part M q'' + K q = 0: then q = q0 + q1 t solves it."""
         ring = self.derived.ring
@@ -224,6 +257,13 @@ class Region:
         factors = (factor for factor, _ in ring.factored(x)[1])
         may_vanish = [f for f in factors if not self.signs.never_zero(f)]
         return all(any(ring.quotient(k, factor) is not None for k in stiff) for factor in may_vanish)
+
+
+def _in(small: ParameterRing | None, x: Polynomial) -> Polynomial | None:
+    """The polynomial in a part's ring; None where it holds what does not occur there."""
+    if small is None:
+        return x
+    return small.project(x) if {*occurring([x])} <= {*small.indices} else None
 
 
 def _needed(requirements: Sequence[Requirement]) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Mapping, Sequence
+from fractions import Fraction
 from itertools import product as combinations_of
 from typing import Any
 
@@ -13,6 +14,9 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.states import SEED
+from mbsym.model.admissibility import number_of
+from mbsym.model.assumptions import broken
+from mbsym.model.system import System
 from mbsym.problems.claims.counterexample import PRECISION
 from mbsym.problems.claims.result import DIFFERS, EXACT, NUMERICAL, UNDECIDED, Derived
 
@@ -20,6 +24,10 @@ from mbsym.problems.claims.result import DIFFERS, EXACT, NUMERICAL, UNDECIDED, D
 ROUNDING = arb(2) ** -60
 #: Quantities of undeclared sign under roots for which both signs are tried, points with each, and attempts per point.
 MOST_SIGNS, POINTS, ATTEMPTS = 4, 8, 40
+#: The answer that counts where several choices of signs are possible, last.
+_WORST = (EXACT, NUMERICAL, UNDECIDED, DIFFERS)
+#: By what is known of a quantity: r sqrt(p) stands for sqrt(r^2 p), or -r sqrt(p).
+_SIGN = {"positive": 1, "nonnegative": 1, "zero": 1, "negative": -1, "nonpositive": -1}
 #: What may stand under a root and have either sign.
 _SIGNED = ("coordinate", "velocity", "acceleration", "time", "prescribed", "parameter", "sine", "cosine")
 
@@ -40,10 +48,12 @@ def decided(derived: Derived, x: Polynomial) -> tuple[str, str]:
     known, unknown = signs_under_roots(derived, numerator)
     tried = unknown[:MOST_SIGNS]
     answers = {
-        pattern: _decided_for(derived, numerator, known | dict(zip(tried, pattern, strict=True)))
+        pattern: _decided_for(derived, numerator, known, dict(zip(tried, pattern, strict=True)))
         for pattern in combinations_of((1, -1), repeat=len(tried))
     }
-    found = answers[(1,) * len(tried)] or UNDECIDED
+    found = answers[(1,) * len(tried)]
+    if found is None:  # no parameters that are allowed have all these signs
+        found = max((x for x in answers.values() if x), key=_WORST.index, default=UNDECIDED)
     if found not in (EXACT, NUMERICAL):
         return found, ""
     if all(other in (EXACT, NUMERICAL, None) for other in answers.values()) and tried == unknown:
@@ -93,32 +103,35 @@ def signs_under_roots(derived: Derived, *values: Polynomial) -> tuple[dict[int, 
     known = {}
     for parameter in system.parameters:
         index = ring.index("parameter", parameter.name)
-        if parameter.sign in ("positive", "nonnegative"):
-            known[index] = 1
-        elif parameter.sign in ("negative", "nonpositive"):
-            known[index] = -1
+        sign = _SIGN.get(derived.signs.sign(ring.context.gen(index)))
+        if sign is not None:
+            known[index] = sign
     return known, [k for k in sorted(under) if k not in known]
 
 
-def _decided_for(derived: Derived, x: Polynomial, signs: Mapping[int, int]) -> str | None:
+def _decided_for(derived: Derived, x: Polynomial, known: Mapping[int, int], tried: Mapping[int, int]) -> str | None:
     """Whether x vanishes where these generators have these signs; None where there is no such point.
 
     All others take both signs, and angles all quadrants.
     """
-    ring = derived.ring
+    ring, signs = derived.ring, {**known, **tried}
+    opened, identical = x, False
     try:
-        opened = _opened_roots(ring, x, signs)
-        if ring.is_zero(opened):
-            return EXACT
+        opened = _opened_roots(derived, x, signs)
+        identical = ring.is_zero(opened) is True
     except Failure:
-        opened = x
+        pass
+    if identical and not (tried and derived.system.assumptions):
+        return EXACT
     source = random.Random(SEED)
     finite, narrow, found = 0, True, 0
     with ctx.workprec(PRECISION):
         for _ in range(POINTS * ATTEMPTS):
             values = _point(ring, signs, source)
-            if not _has_signs(ring, signs, values):
+            if not _has_signs(ring, signs, values) or not _is_allowed(derived.system, values):
                 continue
+            if identical:
+                return EXACT
             found += 1
             value = ring.evaluate(opened, values)
             if not value.is_finite():
@@ -147,8 +160,22 @@ def _has_signs(ring: Ring, signs: Mapping[int, int], values: Mapping[str, Any]) 
     return all(ring.evaluate(ring.context.gen(k), values) * sign > 0 for k, sign in open_)
 
 
-def _opened_roots(ring: Ring, x: Polynomial, signs: Mapping[int, int]) -> Polynomial:
+def _is_allowed(system: System, values: Mapping[str, fmpq]) -> bool:
+    """Whether the assumptions hold at the point: sqrt((a - b)**2) is b - a under a < b."""
+    if not system.assumptions:
+        return True
+    known = {name: Fraction(int(x.p), int(x.q)) for name, x in values.items()}
+    for one in system.relations:
+        value = number_of(one.value, known)
+        if value is None:
+            return True
+        known[one.name] = value
+    return next(broken(system, known), None) is None
+
+
+def _opened_roots(derived: Derived, x: Polynomial, signs: Mapping[int, int]) -> Polynomial:
     """x with sqrt(r^2 p) = +-r sqrt(p) for every root, r of known sign."""
+    ring = derived.ring
     images, degrees = {}, x.degrees()
     for k, g in enumerate(ring.generators[: ring.spare]):
         if g.kind != "root" or degrees[k] <= 0 or g.argument.is_constant():
@@ -157,8 +184,9 @@ def _opened_roots(ring: Ring, x: Polynomial, signs: Mapping[int, int]) -> Polyno
         outside, inside = ring.one, ring.context.constant(content)
         for factor, exponent in factors:
             index = _generator(factor)
-            if index in signs:
-                outside = ring.times(outside, (factor * signs[index]) ** (exponent // 2))
+            sign = signs[index] if index in signs else _SIGN.get(derived.signs.sign(factor), 0)
+            if sign:
+                outside = ring.times(outside, (factor * sign) ** (exponent // 2))
                 exponent %= 2
             inside = ring.times(inside, factor**exponent)
         if not outside.is_one():

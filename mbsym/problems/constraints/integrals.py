@@ -37,7 +37,7 @@ from mbsym.problems.constraints.along import STATES, AlongMotion
 from mbsym.problems.constraints.result import Constraints
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
-from mbsym.problems.integrals import ENERGY, Integral, residual, total_rate, whole_momenta
+from mbsym.problems.integrals import ENERGY, Integral, residual, total_rate, varies, whole_momenta
 
 
 def integrals(
@@ -79,7 +79,11 @@ class _Known:
         ring = self.ring
         still = {ring.index("velocity", name): ring.zero for name in self.names}
         drifts = [ring.substitute(self.tied.velocity[i].polynomial, still) for i in self.tied.independent]
-        if all(ring.is_zero(x) is True for x in drifts) and self._is(self.energy, self.speeds):
+        if (
+            all(ring.is_zero(x) is True for x in drifts)
+            and self._is(self.energy, self.speeds)
+            and varies(self.scene, self.energy)
+        ):
             yield Integral(ENERGY, ENERGY, "time", Formula(ring, self.energy), Certainty.PROVED)
 
     def momenta(self) -> Iterator[Integral]:
@@ -87,7 +91,7 @@ class _Known:
         done: list[str] = []
         for i, name in enumerate(self.names):
             xi = [self.ring.one if k == i else self.ring.zero for k in range(len(self.names))]
-            if self._allowed(xi) and self._is(self.momentum[i], xi) and not self.ring.vanishes(self.momentum[i]):
+            if self._allowed(xi) and self._is(self.momentum[i], xi) and varies(self.scene, self.momentum[i]):
                 done.append(name)
                 yield Integral(
                     f"momentum of {name}",
@@ -103,7 +107,7 @@ class _Known:
             if name in done or any(self._moves(x) for x in xi):
                 continue
             along = self.ring.dot(self.momentum, xi)
-            if self._allowed(xi) and self._is(along, xi):
+            if self._allowed(xi) and self._is(along, xi) and varies(self.scene, along):
                 title = f"momentum along the displacement of {name} that the constraints allow"
                 yield Integral(title, "cyclic momentum", name, Formula(self.ring, along), Certainty.PROVED)
 

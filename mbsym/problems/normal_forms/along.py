@@ -34,6 +34,7 @@ from mbsym.problems.normal_forms.generalized_potential import taken_in
 from mbsym.problems.normal_forms.pairs import judged_on_border
 from mbsym.problems.normal_forms.problem import ORDER, PRECISION, at_numbers, at_zero_root, enclosed, twist
 from mbsym.problems.normal_forms.result import Judged
+from mbsym.problems.stability.verdict import Verdict
 
 
 class NotAlong(Failure):
@@ -45,13 +46,15 @@ class NotAlong(Failure):
 @dataclass(frozen=True, repr=False)
 class Special(Shown):
     """A value of the parameter: a root of the irreducible ``polynomial`` (low to high), enclosed; ``exactly`` if it is
-    rational.  ``vanishing`` names what is zero there."""
+    rational.  ``vanishing`` names what is zero there; ``verdict``: of problem 6, where terms of higher order leave it
+    open and it does not."""
 
     enclosure: Any
     exactly: Fraction | None
     polynomial: tuple[int, ...]
     vanishing: tuple[str, ...]
     judged: Judged
+    verdict: Verdict | None = None
 
 
 @dataclass(frozen=True, repr=False)

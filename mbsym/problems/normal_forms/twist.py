@@ -26,6 +26,8 @@ Notes 1 (1967) 216; K. R. Meyer & D. S. Schmidt, J. Diff. Eq. 62 (1986) 222 (ord
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
+from fractions import Fraction
 from itertools import product
 from typing import Any
 
@@ -42,6 +44,9 @@ from mbsym.problems.normal_forms.result import Judged, Outcome, Resonance, Theor
 Decides = Callable[[tuple[int, ...], Sequence[arb]], bool | None]
 #: Whether the resonant term of a vector k is zero exactly, the frequencies Omega given with their signs.
 Vanishes = Callable[[tuple[int, ...], Sequence[arb]], bool]
+
+#: Roots are isolated to these parts of the working precision; the coefficients themselves may be enclosures.
+PARTS = (Fraction(2, 3), Fraction(1, 4), Fraction(1, 10))
 
 
 class NotVerified(Failure):
@@ -61,7 +66,15 @@ def _size(x: acb) -> float:
 def squares(hamiltonian: Truncated) -> list[acb]:
     """lambda^2 for each pair of roots, isolated.  Raises ValueError where enclosures do not tell them apart."""
     _, coefficients = faddeev(matrix_of(hamiltonian), acb(0), acb(1))
-    found: list[acb] = acb_poly(coefficients[::2]).roots(tol=arb(2) ** (-(ctx.prec * 2 // 3)))
+    polynomial = acb_poly(coefficients[::2])
+    for part in PARTS[:-1]:
+        with suppress(ValueError):
+            return _isolated(polynomial, part)
+    return _isolated(polynomial, PARTS[-1])
+
+
+def _isolated(polynomial: acb_poly, part: Fraction) -> list[acb]:
+    found: list[acb] = polynomial.roots(tol=arb(2) ** -int(ctx.prec * part))
     return found
 
 

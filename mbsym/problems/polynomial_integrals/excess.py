@@ -47,10 +47,14 @@ class Block:
 
 
 class Excess:
-    """Of a quasi-homogeneous field with the integrals ``usual`` for almost all parameters."""
+    """Of a quasi-homogeneous field with the integrals ``usual`` for almost all parameters.
+
+    ``columns`` counts those of all matrices so far.
+    """
 
     def __init__(self, usual: PolynomialIntegrals) -> None:
         self.usual = usual
+        self.columns = 0
         weights = range(1, usual.degree + 1)
         chosen = [None, *(usual.generators.index(one) for one in levels(usual))]
         self.blocks = [Block(weight, level) for level in chosen for weight in weights]
@@ -71,11 +75,14 @@ class Excess:
 
         def images(there: ModularField) -> list[Any]:
             if block.level is None:
-                return [there.derivative(m) for m in monomials(weights, block.weight)]
+                columns = list(monomials(weights, block.weight))
+                self.columns += len(columns)
+                return [there.derivative(m) for m in columns]
             zero = self._zero(there, block.level)
             if not zero.terms:
                 return []
             columns = standard(weights, block.weight, zero)
+            self.columns += len(columns)
             return images_on(there, columns, cofactors(self.usual, block.weight, zero), zero.terms)
 
         return images
@@ -92,11 +99,14 @@ class Excess:
         """The dimension of the kernel at these parameters."""
         weights = self.usual.grading.weights
         if block.level is None:
-            return len(kernel(there, list(monomials(weights, block.weight)), False))
+            columns = list(monomials(weights, block.weight))
+            self.columns += len(columns)
+            return len(kernel(there, columns, False))
         zero = self._zero(there, block.level)
         if not zero.terms:
             return 0
         columns = standard(weights, block.weight, zero)
+        self.columns += len(columns)
         return len(kernel_on(there, columns, cofactors(self.usual, block.weight, zero), zero))
 
     @cached_property
@@ -112,6 +122,7 @@ class Excess:
             columns = list(monomials(weights, block.weight))
             pairs = [(one.weight, there.terms(one.polynomial)) for one in usual]
             spanned = products(pairs, block.weight, True, there.prime, len(weights), lambda terms: terms)
+            self.columns += len(columns)
             return self.dimension(there, block) - len(echelon(spanned, columns, there.prime)[0])
         zero = self._zero(there, block.level)
         if not zero.terms:  # at these parameters the integral is zero everywhere: it has no levels
@@ -123,6 +134,7 @@ class Excess:
             return remainder(terms, zero.terms, there.prime)
 
         spanned = products(pairs, block.weight, True, there.prime, len(weights), reduce)
+        self.columns += len(columns)
         return self.dimension(there, block) - len(echelon(list(map(reduce, spanned)), columns, there.prime)[0])
 
     def build_products(self, block: Block) -> tuple[Build, int]:

@@ -18,7 +18,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations, product
 from math import comb, inf
-from time import monotonic
 from typing import Any
 
 from flint import fmpq, fmpq_mpoly_ctx, nmod_mat
@@ -35,6 +34,8 @@ from mbsym.problems.polynomial_integrals.values import special_of
 
 #: Families that are looked at; the degree of F; the lines that are drawn for one F.
 MOST_FAMILIES, MOST_DEGREE, MOST_LINES = 300, 3, 150
+#: What a column of a matrix costs, with its share of all that is done with it: about so many seconds.
+COLUMN = 1.2e-5
 #: Up to so many, those with equalities among real parameters are looked at, too. Of Euler's and Poisson's 75 families
 #: 35 would be of this kind (x0 = y0, which turning the axes gives) and take as long again as all others.
 FEW_FAMILIES = 40
@@ -112,7 +113,8 @@ def _partitions(names: Sequence[str]) -> list[tuple[tuple[str, str], ...]]:
 def cases(usual: PolynomialIntegrals, positive: Sequence[str], budget: float = inf) -> Cases:
     """The families and hypersurfaces in them on which there are more integrals than ``usual``, each proved.
 
-    After ``budget`` seconds no further family is begun.
+    No further family is begun when what was looked at has cost ``budget``: counted work, about as many seconds on a
+    usual machine, so that the same families are looked at on every one.
 
     Raises NoClosedForm where the field is not quasi-homogeneous, or where there are too many families.
     """
@@ -123,7 +125,7 @@ def cases(usual: PolynomialIntegrals, positive: Sequence[str], budget: float = i
     if len(listed) > MOST_FAMILIES:
         told = f"{len(field.parameters)} parameters have more than {MOST_FAMILIES} families"
         raise NoClosedForm(told, limit=Limit.WORK, remedy="put in numbers with --set, zeros above all")
-    return _Search(usual, positive).found(listed, monotonic() + budget)
+    return _Search(usual, positive).found(listed, budget)
 
 
 class _Search:
@@ -135,10 +137,10 @@ class _Search:
         self.unread = 0
         self.source = random.Random("families")
 
-    def found(self, listed: Sequence[Family], until: float) -> Cases:
+    def found(self, listed: Sequence[Family], budget: float) -> Cases:
         done = 0
         for family in listed:
-            if monotonic() > until:
+            if self.excess.columns * COLUMN > budget:
                 break
             done += 1
             there = self._somewhere(family)

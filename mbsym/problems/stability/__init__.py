@@ -12,8 +12,10 @@ is made primitive (a factor of known sign is removed) and factored; the conditio
 Every condition has its logical place.  Where p > 0 is listed and p < 0, a root has a positive real part: p >= 0 is
 necessary for stability.  That p is not 0 either is necessary for exponential stability, all roots to the left (second
 kind): at p = 0 terms of higher order may make the motion stable, asymptotically even.  Of the first kind it is only
-this method that needs it, as it needs roots that do not coincide: there the motion may be stable.  In potential systems
-coinciding roots do no harm: their discriminants are listed, and needed for nothing.
+this method that needs it, as it needs roots that do not coincide: there the motion may be stable.  Of exactly linear
+equations linear theory decides what equality does, where a parameter can be solved for on p = 0, and it is told with
+the condition.  In potential systems coinciding roots do no harm: their discriminants are listed, and needed for
+nothing.
 K > 0 is sufficient where the energy does not grow.
 
 "Necessary conditions hold" is not "stable": the verdict is one of asymptotically stable; stable (the theorem is named);
@@ -41,8 +43,9 @@ Verdicts of subsystems combine to the weakest that they share: all asymptoticall
 energy that does not grow (a damped part beside an undamped one: stable), or none of them dissipative; else critical.
 
 At the values, what the first approximation leaves open is looked at in the nonlinear system: terms of higher order
-where K has a null direction, and combinations of first integrals with a definite second variation (Chetaev; sleeping
-tops, free bodies, rotors).
+where K has a null direction, combinations of first integrals with a definite second variation (Chetaev; sleeping
+tops, free bodies, rotors), and the theorems of problem 11.  Claims, and every entry of a list of equilibria, are judged
+so, too.
 
 Source: Banshchikov & Vetrov, section 5, eqs (4) to (6); the theorems are those of Lagrange, Routh, Kelvin and Chetaev.
 

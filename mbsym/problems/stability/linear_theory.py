@@ -17,7 +17,7 @@ from typing import Any
 
 from mbsym.algebra.roots import RootCount, counted
 from mbsym.problems.stability.theorems import Fact
-from mbsym.problems.stability.verdict import Verdict, bounded, coasting, concluded, drifting, exactly
+from mbsym.problems.stability.verdict import Verdict, bounded, coasting, concluded, drifting, exactly, only_drifts
 
 Numbers = Any  # flint.fmpq_mat, or a matrix that does the same over another field
 
@@ -34,7 +34,7 @@ def decided(open_verdict: Verdict, first_order: Numbers, shifts: Numbers | None,
         return open_verdict
     calm = is_calm(first_order)
     if shifts is None:
-        return bounded(facts) if calm else concluded({Fact.EXACTLY_LINEAR, Fact.JORDAN_BLOCK})
+        return bounded(facts) if calm else growing(first_order)
     rest = across(first_order, shifts)
     if not rest.nrows():
         return bounded(facts) if calm else coasting()
@@ -45,10 +45,36 @@ def decided(open_verdict: Verdict, first_order: Numbers, shifts: Numbers | None,
     if calm:
         return bounded(facts)
     if not kept:
-        return concluded({Fact.EXACTLY_LINEAR, Fact.JORDAN_BLOCK})
+        return growing(first_order)
     if left.zero == left.degree:
         return coasting()
     return drifting(bounded(facts))
+
+
+def growing(first_order: Numbers) -> Verdict:
+    """The verdict where there is a Jordan block on the axis and no root to the right; whether only drifts grow is told.
+
+    Modulo all v with A (v, 0) = 0 no block is left then.
+    """
+    verdict = concluded({Fact.EXACTLY_LINEAR, Fact.JORDAN_BLOCK})
+    still = _still(first_order)
+    drifts = still.nrows() and is_calm(across(first_order, still))
+    return only_drifts(verdict) if drifts else verdict
+
+
+def _still(first_order: Numbers) -> Numbers:
+    """Rows v that span what A makes zero: positions that may be shifted, as x' = 0 there."""
+    reduced, rank = first_order.rref()
+    rows, n = reduced.tolist()[:rank], first_order.nrows()
+    pivots = [next(i for i, x in enumerate(row) if x != 0) for row in rows]
+    found = []
+    for free in (k for k in range(n) if k not in pivots):
+        vector = [first_order[0, 0] * 0] * n
+        vector[free] = vector[free] + 1
+        for at, row in zip(pivots, rows, strict=True):
+            vector[at] = -row[free]
+        found.append(vector)
+    return type(first_order)(len(found), n, [x for v in found for x in v])
 
 
 def is_calm(first_order: Numbers) -> bool:

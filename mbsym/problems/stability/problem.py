@@ -34,9 +34,10 @@ from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.knowledge import definition_in_parameters
 from mbsym.problems.linearisation import Linearisation, Subsystem, first_symbols
 from mbsym.problems.stability import nonholonomic
+from mbsym.problems.stability.algebraic_values import algebraic_point
 from mbsym.problems.stability.covering import Cell, Lift, cells_of, everywhere, joined
 from mbsym.problems.stability.enclosed import enclosed_verdict_with_cyclic
-from mbsym.problems.stability.exact import verdict_at
+from mbsym.problems.stability.exact import verdict_at, verdict_over
 from mbsym.problems.stability.linear_form import LinearSystem, NonholonomicForm, add, null_rows
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.requirements import Requirement
@@ -58,6 +59,7 @@ class SubsystemStability(Shown):
 
     ``theory`` holds the characteristic polynomial, conditions, cases and verdict, as polynomials of ``ring`` (that of
     the parameters, where nothing else occurs); the power of lambda is the position in a list of coefficients.
+    ``system`` with what is ``known`` is what was judged.
     """
 
     coordinates: tuple[str, ...]
@@ -65,6 +67,8 @@ class SubsystemStability(Shown):
     factor: Formula
     ring: Ring
     theory: Theory
+    system: LinearSystem | None = None
+    known: Signs | None = None
 
     @property
     def characteristic(self) -> tuple[Formula, ...]:
@@ -137,7 +141,8 @@ class Stability(Shown):
     """``verdict`` for the whole system; ``numerical`` the verdict at the description's parameter values, if any.
 
     ``spectra`` are the eigenvalues there, subsystem by subsystem, where the motion exists.  ``presumed``: so many
-    conditions of problem 4 are presumed by all this.
+    conditions of problem 4 are presumed by all this.  ``before_higher_order``: the verdict there that was open, where
+    terms of higher order decide it.
     """
 
     subsystems: tuple[SubsystemStability, ...]
@@ -145,6 +150,7 @@ class Stability(Shown):
     numerical: Verdict | None
     spectra: tuple[Spectrum, ...] = ()
     presumed: int = 0
+    before_higher_order: Verdict | None = None
 
     @property
     def terms(self) -> int:
@@ -185,7 +191,7 @@ def stability(
     if numerical is None and values is not None:
         spectra = tuple(x for part in judged if (x := _spectrum(scene, linear, part, values)) is not None)
         there = (
-            _enclosed(scene, linear, part, values, balance, found.theory)
+            _enclosed(scene, linear, part, values, balance, found.theory, equilibrium)
             if found.theory.at_point is None
             else found.theory.at_point.verdict
             for part, found in zip(prepared, judged, strict=True)
@@ -264,8 +270,33 @@ def _enclosed(
     values: Mapping[str, Fraction],
     balance: Balance,
     theory: Theory,
+    equilibrium: Equilibrium,
 ) -> Verdict:
-    """The verdict on a subsystem at values where its matrices hold irrational numbers (sqrt(3), a sine)."""
+    """The verdict on a subsystem at values where its matrices hold irrational numbers (sqrt(3), a sine).
+
+    By enclosures; where these leave it open and the numbers are in one field of a low degree, exactly.
+    """
+    found = _by_enclosures(scene, linear, part, values, balance, theory)
+    if not found.word.open or found.coordinates_singular:
+        return found
+    at = algebraic_point(scene, part.ring, (*part.system.matrices, [part.system.turned]), values, equilibrium)
+    if at is None:
+        return found
+    try:
+        exact = verdict_over(part.at(balance.at(values)), at).verdict
+    except Failure:
+        return found
+    return found if exact.word is Word.UNDECIDED else exact
+
+
+def _by_enclosures(
+    scene: Scene,
+    linear: Linearisation,
+    part: Prepared,
+    values: Mapping[str, Fraction],
+    balance: Balance,
+    theory: Theory,
+) -> Verdict:
     there = balance.at(values)
     cyclic = () if part.at(there).driven else part.system.cyclic
     matrices = matrices_at(scene, linear, part.coordinates, values, part.system.basis)
@@ -284,7 +315,7 @@ def _judge(scene: Scene, made: Prepared, values: Mapping[str, Fraction] | None, 
     theory = analyse(made.system, made.known)
     if values is not None and point is not None:
         theory = replace(theory, at_point=verdict_at(made.at(balance.at(values)), point))
-    return SubsystemStability(made.coordinates, made.matrices, made.factor, made.ring, theory)
+    return SubsystemStability(made.coordinates, made.matrices, made.factor, made.ring, theory, made.system, made.known)
 
 
 @dataclass(frozen=True)
@@ -395,7 +426,10 @@ def _prepared(
     )
     driven = tuple(i for i in cyclic if part.coordinates[i] in balance.driven)
     names, basis = part.coordinates, None
-    hidden = _displaced(scene, part, balance, signs, cyclic, equilibrium) if lagrangian else None
+    turns = bool(turned) and not all(
+        x.is_zero() for matrix in (part.D, part.N) for row in matrix.polynomials for x in row
+    )
+    hidden = _displaced(scene, part, balance, signs, cyclic, equilibrium, turns) if lagrangian else None
     if hidden is not None:
         found, basis = hidden
         inner = basis.through(scene.ring, elimination)
@@ -420,11 +454,18 @@ def _prepared(
 
 
 def _displaced(
-    scene: Scene, part: Subsystem, balance: Balance, signs: Signs, cyclic: Sequence[int], equilibrium: Equilibrium
+    scene: Scene,
+    part: Subsystem,
+    balance: Balance,
+    signs: Signs,
+    cyclic: Sequence[int],
+    equilibrium: Equilibrium,
+    turned: bool,
 ) -> tuple[Displacements, Basis] | None:
     """Displacements that change no equation, and coordinates made of them; None where cyclic coordinates are all.
 
-    They are looked for where K + N is singular besides the cyclic coordinates, or forces act on several of these.
+    They are looked for where K + N is singular besides the cyclic coordinates, or forces act on several of these; those
+    that vary with the position where the others do not explain all zero roots, nor does a damped spin, ``turned``.
     """
     others = [i for i in range(len(part.coordinates)) if i not in cyclic]
     stiff = [[part.K.polynomials[i][j] + part.N.polynomials[i][j] for j in others] for i in others]
@@ -433,12 +474,23 @@ def _displaced(
     whole = len(cyclic) < 2 or free == len(cyclic)
     if scene.system.linear is not None or (whole and _somewhere_regular(scene, stiff)):
         return None
-    found = balance.displacements(part.coordinates)
-    if len(found.directions) < len(cyclic) or (len(found.directions) == len(cyclic) and found.constant <= free):
-        return None
     images = equilibrium.determined(scene)
-    chosen = basis_of(scene.ring, found, signs)
-    return None if chosen is None else (found, chosen.through(scene.ring, lambda x: scene.ring.substitute(x, images)))
+    every = [
+        [x + y for x, y in zip(*rows, strict=True)] for rows in zip(part.K.polynomials, part.N.polynomials, strict=True)
+    ]
+    told: tuple[Displacements, Basis] | None = None
+    most = (len(cyclic), free)
+    for looked_for in (balance.displacements, *(() if turned else (balance.symmetries,))):
+        found = looked_for(part.coordinates)
+        chosen = basis_of(scene.ring, found, signs) if (len(found.directions), found.constant) > most else None
+        if chosen is None:
+            continue
+        told = found, chosen.through(scene.ring, lambda x: scene.ring.substitute(x, images))
+        most, count = (len(found.directions), found.constant), len(found.directions)
+        left = [row[count:] for row in told[1].congruent(scene.ring, every)[count:]]
+        if _somewhere_regular(scene, left):
+            break
+    return told
 
 
 def _somewhere_regular(scene: Scene, rows: Sequence[Sequence[Polynomial]]) -> bool:
@@ -486,7 +538,9 @@ class ExactVerdicts:
         for part in self._parts:
             point = _point(self.scene, part.ring, part.system.matrices, values)
             if point is None:  # a number there is irrational
-                found.append(_enclosed(self.scene, self.linear, part, values, self.balance, part.theory))
+                found.append(
+                    _enclosed(self.scene, self.linear, part, values, self.balance, part.theory, self.equilibrium)
+                )
             else:
                 found.append(verdict_at(part.at(there), point).verdict)
         return combine(found, there.law.bounded)

@@ -30,9 +30,11 @@ class Because(Enum):
     LINEAR_BOUNDED = auto()
     LINEAR_SHIFTED = auto()
     LINEAR_GROWS = auto()
+    LINEAR_DRIFTS = auto()
     LINEAR_GYROSCOPIC = auto()
     HIGHER_MINIMUM = auto()  # (order)
     NO_MINIMUM = auto()  # (order)
+    TERMS_OF_HIGHER_ORDER = auto()
     # of what no theorem carries
     GYROSCOPIC_ONLY = auto()
     GYROSCOPIC_ENCLOSED = auto()

@@ -30,11 +30,22 @@ class Method(StrEnum):
     NONE = "none"
 
 
+#: What Hurwitz's conditions say where zero roots, or those of a turned steady spin as well, are left out of them.
+BUT_ZERO = "all roots but the zero ones to the left of the imaginary axis: Lienard-Chipart"
+BUT_TURNED = "all roots but the zero ones and those of a turned spin to the left of the imaginary axis: Lienard-Chipart"
+
+
 class Place(StrEnum):
     """What follows where a condition fails."""
 
     #: p > 0: where p < 0 the motion is unstable; where p = 0 the method leaves it open.
     NECESSARY = "necessary, but for the case of equality"
+    #: p > 0, p != 0 in exactly linear equations: where p = 0, too, the motion is unstable.
+    STRICTLY = "necessary: with equality the motion is unstable"
+    #: In exactly linear equations: where p = 0 and the other conditions hold the motion is unstable.
+    BESIDE = "with equality, the other conditions holding, the motion is unstable"
+    #: In exactly linear equations: where p = 0 and the other conditions hold the motion is stable.
+    EQUALITY = "with equality, the other conditions holding, the motion is stable, too"
     #: Without it the first approximation has solutions that grow (linearly in time); the motion may be stable.
     FIRST = "necessary in the first approximation"
     #: Without it not all roots are to the left; by terms of higher order the motion may be asymptotically stable.

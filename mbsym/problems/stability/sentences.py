@@ -73,6 +73,10 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
         "The equations of motion are exactly linear, and a multiple root on the imaginary axis is not semisimple: "
         "there are disturbances that grow like a power of t."
     ),
+    Because.LINEAR_DRIFTS: (
+        "Nothing grows but a uniform drift along displacements that change no equation: coordinates count here, but "
+        "for that drift the motion is stable; of cyclic coordinates of bodies just that is said."
+    ),
     Because.LINEAR_GYROSCOPIC: (
         "K is not positive definite: gyroscopic forces alone stabilise the motion, and complete dissipation would make "
         "it unstable (Kelvin-Chetaev)."
@@ -81,6 +85,9 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
         "K is only semidefinite, but terms of order {} make a strict minimum of the (changed) potential energy.".format
     ),
     Because.NO_MINIMUM: "The (changed) potential energy has no minimum: terms of order {} decide.".format,
+    Because.TERMS_OF_HIGHER_ORDER: (
+        "The first approximation leaves the nonlinear system open; terms of higher order decide (problem 11)."
+    ),
     Because.GYROSCOPIC_ONLY: (
         "The necessary conditions hold, but K is not positive definite: the first approximation is stable by "
         "gyroscopic forces alone, complete dissipation would make it unstable (Kelvin-Chetaev), and leaves the "
@@ -105,7 +112,8 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
     Because.UNLIKE_PARTS: "Some parts are asymptotically stable, others not; no theorem that was tried covers both.",
     Because.HIGHER_ORDER: HIGHER_ORDER,
     Because.COASTING: (
-        "All coordinates of this part are cyclic: their momenta are constant, so their velocities stay near theirs."
+        "All coordinates of this part are cyclic: their momenta are constant, so their velocities stay near theirs; "
+        "the coordinates drift away if these are disturbed, so that with them counted the motion is unstable."
     ),
     Because.DRIFT: (
         "This is about the other coordinates and all velocities; a perturbation of the cyclic velocities can make "

@@ -28,6 +28,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from itertools import combinations
 
 from mbsym.algebra.characteristic import (
@@ -37,6 +38,7 @@ from mbsym.algebra.characteristic import (
     characteristic_polynomial,
     determinant,
     factor_in_lambda,
+    first_minors,
     is_semisimple,
     lienard_chipart,
     primitive,
@@ -44,7 +46,7 @@ from mbsym.algebra.characteristic import (
     subdiscriminants,
 )
 from mbsym.algebra.factors import irreducible_factors
-from mbsym.algebra.failures import NoClosedForm, TooLargeError
+from mbsym.algebra.failures import Failure, NoClosedForm, TooLargeError
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.signs import MOST_TERMS, Condition, ContradictionError, Signs, conditions
 from mbsym.problems.stability import nonholonomic
@@ -61,8 +63,11 @@ from mbsym.problems.stability.linear_form import (
     kind_of,
     null_rows,
 )
+from mbsym.problems.stability.on_border import where_zero
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.requirements import (
+    BUT_TURNED,
+    BUT_ZERO,
     Case,
     Definite,
     Definiteness,
@@ -85,6 +90,7 @@ from mbsym.problems.stability.routh import (
 )
 from mbsym.problems.stability.theorems import Fact, Ground, applying, implied
 from mbsym.problems.stability.verdict import (
+    Flaw,
     Verdict,
     bounded,
     coasting,
@@ -94,8 +100,10 @@ from mbsym.problems.stability.verdict import (
     drifting,
     exactly,
     off_the_leaf,
+    only_drifts,
     undecided,
 )
+from mbsym.problems.stability.word import Word
 
 #: More damped coordinates have too many principal minors.
 MOST_DAMPED = 4
@@ -130,6 +138,13 @@ class Theory:
     turned: bool = False  # the roots of a turned steady spin are left out of the requirements
 
     @property
+    def wanted(self) -> str:
+        """What the conditions say together."""
+        if self.method is not Method.HURWITZ or not (self.zero_power or self.turned):
+            return self.method.value
+        return BUT_TURNED if self.turned else BUT_ZERO
+
+    @property
     def potential(self) -> bool:
         """Whether there are no other forces than those of K."""
         return self.kind == CONSERVATIVE
@@ -148,14 +163,17 @@ class Theory:
         return conditions(r.condition for r in self.requirements)
 
 
-def analyse(system: LinearSystem, signs: Signs, point: Mapping[int, Fraction] | None = None) -> Theory:
+def analyse(
+    system: LinearSystem, signs: Signs, point: Mapping[int, Fraction] | None = None, borders: bool = True
+) -> Theory:
     """Characteristic polynomial, conditions, cases and verdict; with ``point`` also the exact verdict there.
 
+    With ``borders`` the places of conditions say what holds with equality, where the equations are exactly linear.
     Without proof by ``signs`` the verdict is ``undecided`` and ``cases`` say what it depends on.  Formulas beyond the
     budget are left out, with a remark; then nothing is claimed in symbols.
     """
     try:
-        found = _analyse(system, signs)
+        found = _analyse(system, signs, borders)
     except TooLargeError as error:
         found = _left_out(system, signs, str(error))
     if system.exact:
@@ -168,7 +186,8 @@ def analyse(system: LinearSystem, signs: Signs, point: Mapping[int, Fraction] | 
         calm = calm and _without_further_zeros(found, signs, found.cases[0] if found.cases else None)
         left_open = found.verdict.because(Because.BORDER)
         verdict = undecided(Because.LINEAR_OPEN) if left_open else exactly(found.verdict, calm)
-        if verdict.word.open and not occurring(x for matrix in system.matrices for row in matrix for x in row):
+        at_hand = verdict.word.open or verdict.because(Because.LINEAR_GROWS)
+        if at_hand and not occurring(x for matrix in system.matrices for row in matrix for x in row):
             verdict = verdict_at(system, {}).verdict
         found = replace(found, cases=cases, verdict=verdict)
     if system.leaf or system.basis is not None:
@@ -225,7 +244,7 @@ def _left_out(system: LinearSystem, signs: Signs, reason: str) -> Theory:
     )
 
 
-def _analyse(system: LinearSystem, signs: Signs) -> Theory:
+def _analyse(system: LinearSystem, signs: Signs, borders: bool) -> Theory:
     written = characteristic_polynomial(system.M, add(system.D, system.G), add(system.K, system.N))
     raw = tuple(signs.normalised(c) for c in written[: len(written) - len(system.following)])
     mass = definiteness(system.kinetic, signs, "M") if system.kinetic else Definiteness(Definite.POSITIVE, ())
@@ -257,6 +276,8 @@ def _analyse(system: LinearSystem, signs: Signs) -> Theory:
     factors = _factors(polynomial[::2] if even else polynomial)
     turned = None if even else _turned_factor(system, factors)
     requirements, remarks = _requirements(system, factors, even, signs, known, turned)
+    if system.exact and even and borders:
+        requirements = tuple(_with_equality(system, r, requirements, known) for r in requirements)
     if mass.word is not Definite.POSITIVE:
         remarks.append("M is taken to be positive definite, as the matrix of a kinetic energy is.")
     if zero_power:
@@ -282,6 +303,88 @@ def _analyse(system: LinearSystem, signs: Signs) -> Theory:
     if system.exact and zero_power and not any(case.verdict.word.stable for case in cases):
         cases = _cases_of_linear(system, found, known) or cases
     return replace(found, cases=cases, reduced=reduced, verdict=_first_certain(cases, known))
+
+
+def on_border(
+    system: LinearSystem, signs: Signs, p: Polynomial, further: Sequence[tuple[Polynomial, str]] = ()
+) -> Verdict | None:
+    """The verdict at all parameters at which p vanishes and ``further`` holds; None where none is known."""
+    return where_zero(system, signs, p, _with_blocks, further)
+
+
+def _with_blocks(system: LinearSystem, known: Signs, further: bool = True) -> Verdict:
+    """The verdict at all parameters, by Jordan blocks of imaginary roots, too, where the equations are exactly linear.
+
+    ``further``: where blocks may be missing is looked at, too.
+    """
+    theory = analyse(system, known, borders=False)
+    even = system.exact and theory.variable == "lambda^2" and theory.verdict.word is not Word.UNSTABLE
+    if even and any(_has_blocks(system, factor, known, further) for factor in theory.factors):
+        return concluded({Fact.EXACTLY_LINEAR, Fact.JORDAN_BLOCK})
+    return theory.verdict
+
+
+def _has_blocks(system: LinearSystem, factor: Factor, known: Signs, further: bool) -> bool:
+    """Whether at all parameters a factor in lambda^2 that occurs several times has Jordan blocks, or all is unstable.
+
+    Its roots are imaginary then, and multiple without being semisimple, or one of them lies to the right.
+    """
+    if factor.multiplicity == 1 or system.size == 1 or len(factor.coefficients) < 2:
+        return False
+    in_lambda = tuple(c for v in factor.coefficients for c in (v, v * 0))[:-1]
+    try:
+        for minor in first_minors(system.M, add(system.D, system.G), add(system.K, system.N)):
+            without = minor[0] if len(minor) == 1 else resultant(minor, in_lambda)
+            if known.never_zero(without):
+                return True
+            if further:
+                there = where_zero(system, known, without, partial(_with_blocks, further=False))
+                if there is not None and there.word is Word.UNSTABLE:
+                    return True
+    except (Failure, ContradictionError):
+        pass
+    return False
+
+
+def _with_equality(
+    system: LinearSystem, wanted: Requirement, every: Sequence[Requirement], known: Signs
+) -> Requirement:
+    """The requirement with the places that the verdicts on its borders give it."""
+    condition = wanted.condition
+    if condition.kind not in ("inequality", "nonzero") or Place.HARMLESS in (wanted.place, wanted.strict):
+        return wanted
+    others = [fact for r in every if r is not wanted and not r.always for fact in _facts_of(r)]
+    apart = tuple(x for x in condition.nonzero)
+    places = []
+    for polynomials in ((condition.polynomial,) if condition.kind == "inequality" else (), apart):
+        found: set[Place | None] = set()
+        for x in polynomials:
+            beside = [*others, *((y, "!=") for y in apart if y is not x)]
+            found.add(_place_of_equality(system, x, known, beside))
+        places.append(found.pop() if len(found) == 1 else None)
+    return replace(wanted, place=places[0] or wanted.place, strict=places[1] or wanted.strict)
+
+
+def _facts_of(r: Requirement) -> Iterator[tuple[Polynomial, str]]:
+    if r.condition.kind == "inequality":
+        yield r.condition.polynomial, r.relation
+    for x in r.condition.nonzero:
+        yield x, "!="
+
+
+def _place_of_equality(
+    system: LinearSystem, p: Polynomial, known: Signs, beside: Sequence[tuple[Polynomial, str]]
+) -> Place | None:
+    verdict = on_border(system, known, p)
+    if verdict is not None and verdict.word is Word.UNSTABLE:
+        return Place.STRICTLY
+    if verdict is None or not verdict.stable:
+        verdict = on_border(system, known, p, [x for x in beside if len(x[0]) <= MOST_TERMS])
+    if verdict is None:
+        return None
+    if verdict.word is Word.UNSTABLE:
+        return Place.BESIDE
+    return Place.EQUALITY if verdict.stable and Flaw.CYCLIC not in verdict.flawed else None
 
 
 def _turned_factor(system: LinearSystem, factors: tuple[Factor, ...]) -> int | None:
@@ -525,7 +628,10 @@ def _cases_of_linear(system: LinearSystem, found: Theory, known: Signs) -> tuple
         return Case(wanted, (), calm), *unstable
     if system.shifts:
         return ()
-    return (Case(_of_full_rank(places, len(null), known), (), concluded({Fact.EXACTLY_LINEAR, Fact.JORDAN_BLOCK})),)
+    grows = concluded({Fact.EXACTLY_LINEAR, Fact.JORDAN_BLOCK})
+    if still and found.zero_power == 2 * len(null) and not decays and all(r.always for r in wanted):
+        return (Case(wanted, (), only_drifts(grows)),)
+    return (Case(_of_full_rank(places, len(null), known), (), grows),)
 
 
 def _wanted(found: Theory) -> tuple[Requirement, ...]:

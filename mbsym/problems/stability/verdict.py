@@ -222,6 +222,8 @@ def weakest(verdicts: Sequence[Verdict]) -> Verdict:
     if row.ground is None and row.word in (Word.UNSTABLE, Word.UNSTABLE_BUT_BORDERS):
         names = tuple(sorted({name for one in alike for name in one.theorems}))
     reasons = {_uncounted(reason) for one in alike for reason in one.reasons}
+    if not all(one.because(Because.LINEAR_DRIFTS) for one in verdicts):
+        reasons.discard(_DRIFTS)
     return Verdict(row.word, names, tuple(sorted(reasons, key=lambda x: x.rank)), tuple(grounds.items()), flaws)
 
 
@@ -302,6 +304,15 @@ def drifting(verdict: Verdict, constant_momenta: bool = True) -> Verdict:
     names = verdict.theorems if row.ground is None else grounds[row.ground]
     reasons = (*(_BESIDE_ZERO_ROOTS.get(reason, reason) for reason in verdict.reasons), Reason(drift))
     return Verdict(row.word, names, tuple(dict.fromkeys(reasons)), tuple(grounds.items()), flaws)
+
+
+#: What is true of a whole only if it is of every part that is not stable.
+_DRIFTS = Reason(Because.LINEAR_DRIFTS)
+
+
+def only_drifts(verdict: Verdict) -> Verdict:
+    """The verdict, unstable by Jordan blocks, which says that nothing grows but a uniform drift."""
+    return replace(verdict, reasons=(*verdict.reasons, _DRIFTS))
 
 
 def displaced(verdict: Verdict, basis: Basis | None) -> Verdict:
@@ -407,6 +418,10 @@ def _reasons(parts: tuple[Verdict, ...], row: Row) -> tuple[Reason, ...]:
             found.add(Reason(Because.MINIMUM_AND_DISSIPATION))
         if any(Flaw.CYCLIC in part.flawed for part in moving) or (row.ground is Ground.ENERGY and idle):
             found.add(Reason(Because.PARTLY_CYCLIC))
+    if not all(part.stable or part.because(Because.LINEAR_DRIFTS) for part in parts):
+        found.discard(_DRIFTS)  # of a part: others grow otherwise
+    if Flaw.CYCLIC in row.wanted:
+        found |= {reason for part in parts for reason in part.reasons if reason.code is Because.DISPLACEMENTS}
     if idle and moving and row.ground is Ground.DECAYS:
         found.add(Reason(Because.CONSTANT_MOMENTA))
     if Reason(Because.CONSTANT_MOMENTA) in found:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from mbsym.problems.normal_forms.result import Outcome, Theorem, Why
+from mbsym.problems.stability.word import Word
 from mbsym.report.documents.base import Format, Part, told_apart_by, words
 
 
@@ -24,8 +25,12 @@ class ExceptionalValue(Part, frozen=True):
         list[str], "whole coefficients of the irreducible polynomial that it is a root of, from the constant one on"
     ]
     vanishing: Annotated[list[str], "what is zero there"]
-    verdict: Annotated[Outcome, "what is said of the nonlinear system"]
-    theorem: Annotated[Theorem, "the theorem behind it; empty where none applies"]
+    verdict: Annotated[
+        str,
+        words(*(x.value for x in Outcome), *(x.value for x in Word if not x.open)),
+        "what is said of the nonlinear system: in problem 6's words where terms of higher order leave it open",
+    ]
+    theorem: Annotated[str, "the theorem behind it; empty where none applies"]
     reason: Annotated[Why, "why nothing, or no more, is decided; empty where that is not so"]
     frequencies: Annotated[
         list[Annotated[str, "a number: exactly where it is rational, else an enclosure, [mid +/- radius]"]],

@@ -6,6 +6,7 @@ from typing import Annotated
 
 from msgspec import Meta
 
+from mbsym.problems.normal_forms.result import Theorem
 from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.theorems import THEOREMS
 from mbsym.problems.stability.word import Word
@@ -26,7 +27,11 @@ Formula = Annotated[
     Named("formula"),
 ]
 
-TheoremName = Annotated[str, words(*(theorem.name for theorem in THEOREMS)), "a theorem of stability, by its name"]
+TheoremName = Annotated[
+    str,
+    words(*(theorem.name for theorem in THEOREMS), *(theorem.value for theorem in Theorem if theorem.value)),
+    "a theorem of stability, by its name",
+]
 
 
 class Reason(Part, frozen=True):

@@ -266,7 +266,11 @@ class Certificate(Part, frozen=True):
     """
 
     whole: Annotated[bool, "whether all rows are enclosed"]
-    ended: Annotated[str | None, words("no_step_proved", "too_wide", "out_of_time", "interrupted"), "why they are not"]
+    ended: Annotated[
+        str | None,
+        words("no_step_proved", "too_wide", "out_of_time", "too_dear", "interrupted"),
+        "why they are not",
+    ]
     reached: Annotated[float | str, "the time up to which the solution is enclosed"]
     rows: Annotated[int, "how many rows are enclosed", Meta(ge=0)]
     bits: Annotated[int, "bits of the series"]

@@ -18,7 +18,7 @@ class Symmetry(Part, frozen=True):
     name: Annotated[
         str, "the integral of problem 7 of which it is a multiple, or of what it is a function; empty for others"
     ]
-    new: Annotated[bool, "proved to be no function of the integrals of problem 7 and of those before it"]
+    new: Annotated[bool, "proved to be no function of those known without it"]
     told_apart: Annotated[str, words("proved", "verified numerically", "undecided"), "how it is known what it is"]
     substituted: Annotated[
         str, words("proved", "verified numerically", "undecided"), "how dI/dt = 0 came out by substitution"

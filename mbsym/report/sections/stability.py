@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from msgspec import UNSET, UnsetType
@@ -36,6 +36,9 @@ ALONE = "(each of these while the others keep to the unperturbed motion)"
 
 #: What the coordinates of a verdict are; it is told beside every verdict.
 _OF_COORDINATES = (Because.DISPLACEMENTS, Because.OTHER_ANGLES)
+
+#: Whether a drift of coordinates counts, which makes two words for one motion: it is told with the verdict.
+_OF_DRIFTS = (Because.LINEAR_DRIFTS, Because.COASTING)
 
 #: More eigenvalues of a subsystem are left to the files.
 MOST_ROOTS = 10
@@ -138,7 +141,7 @@ def lines(found: Stability, analysis: Analysis) -> Iterator[str]:
         items = [] if part.theory.verdict.stable else list(statements(part.ring, part.theory.requirements))
         verdict = _verdict(part.theory.verdict)
         if part.theory.verdict.word in (Word.DEPENDS, Word.UNSTABLE_BUT_BORDERS) and items:
-            verdict += f"; {_heading(part.theory)}:"
+            verdict += f"; {_heading(part.theory, items)}:"
         yield f"{', '.join(part.coordinates)}: {verdict}"
         shown = Shown()
         for item in items:
@@ -146,6 +149,7 @@ def lines(found: Stability, analysis: Analysis) -> Iterator[str]:
                 shown.show(item)
         for item in items:
             yield f"  {_condition(item, shown)}"
+        yield from _of_drifts(part.theory.verdict)
     verdicts = [x for part in found.subsystems for x in (part.theory.verdict, *(y.verdict for y in part.theory.cases))]
     for one in dict.fromkeys(reason for x in verdicts for reason in x.reasons if reason.code in _OF_COORDINATES):
         yield _clause(sentence(one))
@@ -157,10 +161,16 @@ def lines(found: Stability, analysis: Analysis) -> Iterator[str]:
     if found.numerical is not None:
         why = found.numerical.explanation if found.numerical.word is Word.UNDECIDED else ""
         yield f"at the given values: {_verdict(found.numerical)}" + (f": {_clause(why)}" if why else "")
+        if not any(part.theory.verdict.reasons == found.numerical.reasons for part in found.subsystems):
+            yield from _of_drifts(found.numerical)
     elif lacking := _without_numbers(analysis):
         yield f"at the given values: nothing, {', '.join(lacking)} {'has' if len(lacking) == 1 else 'have'} none"
     for spectrum in found.spectra:
         yield f"eigenvalues there ({', '.join(spectrum.coordinates)}): {_roots(spectrum)}"
+
+
+def _of_drifts(verdict: Verdict) -> Iterator[str]:
+    return (f"  {_clause(sentence(one))}" for one in verdict.reasons if one.code in _OF_DRIFTS)
 
 
 def _without_numbers(analysis: Analysis) -> list[str]:
@@ -204,15 +214,17 @@ def _condition(item: Statement, shown: Shown) -> str:
     return f"{item.label}: {shortened(statement_text(item), 0 if item.formula is None else item.formula.terms)}{remark}"
 
 
-def _heading(theory: Theory) -> str:
-    """What the listed conditions are."""
+def _heading(theory: Theory, items: Sequence[Statement]) -> str:
+    """What the listed conditions are; some may say themselves what they are needed for."""
     if theory.method is Method.EVEN and not theory.potential:
+        if any(item.remark for item in items):
+            return "conditions, necessary but for the case of equality where nothing else is said"
         return "necessary conditions, but for the case of equality"
     always = next((case.verdict for case in theory.cases if case.always), None)
     if always is not None and always.stable:
         return f"{_verdict(always)} in any case, asymptotically stable under these conditions"
     if theory.method is Method.HURWITZ:  # a motion may be stable without them: where friction is zero, say
-        return "conditions on the roots that are not zero (Lienard-Chipart)"
+        return f"conditions for {theory.wanted.replace(': ', ' (')})"
     return "conditions"
 
 

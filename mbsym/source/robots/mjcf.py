@@ -33,6 +33,15 @@ _SECTIONS = {
 }
 _SAVED = 'let MuJoCo save the compiled model with <compiler saveinertial="true"/>'
 
+#: What stands for other elements, and what to do about it.
+_NOT_READ = {
+    "include": "what it stands for is in another file",
+    "attach": "what it stands for is in another model",
+    "frame": "what is inside has its place relative to it",
+    "replicate": "it stands for copies of what is inside",
+}
+_COMPILED = "MuJoCo writes the model without it: mj_saveLastXML, or Save xml in its viewer"
+
 #: Settings of the compiler that are one of these words; the first one where it is not given.
 _WORDS = {
     "angle": ("degree", "radian"),
@@ -46,8 +55,8 @@ def read_mjcf(root: Element, complaints: Complaints, exact: bool = False) -> Rob
     """The robot of an MJCF file, or None with complaints; ``exact``: angles in radians stay as they are printed."""
     reader = Reader(complaints, exact)
     for element in root.walk():
-        if element.tag in ("include", "attach", "frame", "replicate"):
-            reader.error("unsupported", f"<{element.tag}> is not read", element, "let MuJoCo save the compiled model")
+        if element.tag in _NOT_READ:
+            reader.error("unsupported", f"<{element.tag}> is not read: {_NOT_READ[element.tag]}", element, _COMPILED)
     check_spelling(root, reader)
     for section in root.children:
         for _ in section.children if section.tag in _SECTIONS else ():

@@ -33,7 +33,6 @@ def by_condition(found):
     return {frozenset(map(str, one.conditions)): one.special for one in found.cases}
 
 
-@pytest.mark.slow
 def test_yehias_and_sretenskys_cases():
     """C = 1 and mg = 1, the mass centre on the first axis: A = B = 2 and A = B = 4 are found."""
     _, found = special({"C": 1, "m": 1, "g": 1, "z0": 0}, 4)

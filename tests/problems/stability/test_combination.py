@@ -13,8 +13,9 @@ from typing import Any
 
 import pytest
 from flint import fmpq, fmpq_mat, fmpq_mpoly_ctx, fmpq_poly
-from hypothesis import assume, event, example, given, settings
+from hypothesis import assume, event, example, given
 from hypothesis import strategies as st
+from properties import settings
 
 import mbsym
 from mbsym.problems.stability.exact import verdict_at
@@ -44,7 +45,6 @@ def essence(verdict: Verdict) -> tuple[Any, ...]:
     return verdict.word, frozenset(verdict.laid), verdict.flawed
 
 
-EVERY = [verdict_of(g, f, "T") for g, f in product(sets_of(Ground), sets_of(Flaw))]
 verdicts = st.builds(
     verdict_of, st.sampled_from(sets_of(Ground)), st.sampled_from(sets_of(Flaw)), st.sampled_from(["R", "S", "T"])
 )
@@ -70,8 +70,9 @@ def at_most(word: Word) -> set[Word]:
 
 
 def test_the_table_covers_everything() -> None:
-    assert len(EVERY) == 2 ** (len(Ground) + len(Flaw))
-    assert {verdict.word for verdict in EVERY} == {*Word}
+    every = [verdict_of(g, f, "T") for g, f in product(sets_of(Ground), sets_of(Flaw))]
+    assert len(every) == 2 ** (len(Ground) + len(Flaw))
+    assert {verdict.word for verdict in every} == {*Word}
     assert {row.word for row in LAW} == {*Word}
     for word, (grounds, flaws) in PLAIN.items():
         assert row_of(grounds, flaws).word is word
@@ -86,7 +87,7 @@ def test_a_verdict_is_what_its_grounds_say() -> None:
 
 @pytest.mark.parametrize("one_energy", [True, False])
 @given(first=verdicts, second=verdicts, third=verdicts)
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=400)
 def test_combination_is_a_semilattice(one_energy: bool, first: Verdict, second: Verdict, third: Verdict) -> None:
     def both(*parts: Verdict) -> Verdict:
         return combine(parts, one_energy)
@@ -255,7 +256,7 @@ BOUNDED = (Word.STABLE, Word.STABLE_BUT_CYCLIC, Word.GYROSCOPIC, Word.CRITICAL)
 
 
 @given(parts=st.lists(blocks(), min_size=1, max_size=3), known=st.booleans())
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 def test_combined_verdicts_against_counted_roots(parts: list[Block], known: bool) -> None:
     together = whole(parts)
     energy = known and all(part.loses_energy for part in parts)
@@ -284,7 +285,7 @@ GYRO = Block([[1, 0], [0, 1]], [[0, 0], [0, 0]], [[0, 3], [-3, 0]], [[-1, 0], [0
 
 @example(parts=[LASTING, GYRO], known=False)
 @given(parts=st.lists(blocks(), min_size=2, max_size=3), known=st.booleans())
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 def test_parts_and_whole_are_judged_alike(parts: list[Block], known: bool) -> None:
     """A block-diagonal system judged at once, without knowing that it splits."""
     assume(not any(part.cyclic for part in parts))

@@ -14,6 +14,8 @@ import pytest
 import mbsym
 from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.word import Word
+from mbsym.report.summary import summary
+from mbsym.report.targets import TARGETS
 
 # --- rational matrices, as lists of rows ---
 
@@ -247,7 +249,14 @@ def _trap(axes, wc=3, wz=2):
         # lambda^2 = -s in the plane: s^2 - (wc^2 - wz^2) s + wz^4/4 = 0, disc. wc^2 (wc^2 - 2 wz^2) (Brown & Gabrielse)
         ("3", "2", Word.STABLE),
         ("29/20", "1", Word.STABLE),
-        ("sqrt(2)*2", "2", Word.UNDECIDED),  # on the border, by enclosures: a root that is double or nearly so
+        # on the border, at irrational numbers: lambda^2 = -wz^2/2 twice, at lambda = i wz/sqrt(2) the rank of
+        # lambda^2 + wc lambda J - wz^2/2 = -wz^2 + i wz^2 J is 1: a Jordan block, in the field of one root exactly
+        ("sqrt(2)*2", "2", Word.UNSTABLE),
+        ("4*cos(pi/4)", "2", Word.UNSTABLE),
+        ("sqrt(6)", "sqrt(3)", Word.UNSTABLE),
+        ("sqrt(2)*2 + 10**(-50)", "2", Word.STABLE),
+        ("sqrt(2)*2 - 10**(-60)/10**60", "2", Word.UNSTABLE),  # closer than enclosures tell
+        ("sqrt(2)*2 + 10**(-60)/10**60", "2", Word.STABLE),
         ("7/5", "1", Word.UNSTABLE),
     ],
 )
@@ -375,3 +384,50 @@ values: {{g: 1}}
 """
     assert mbsym.loads(text).stability.verdict.word is word
     assert mbsym.loads(text).stability.numerical.word is Word.STABLE
+
+
+# --- a drift is counted where matrices are given, and not where coordinates are cyclic: both say so ---
+
+LINE = """
+mbsym: 1
+name: line
+{}
+"""
+ONLY_DRIFTS = {  # x'' = 0, x'' + x - y = y'' + y - x = 0, x' = v, v' = 0: x = x0 + v t, all else is bounded
+    "linear system: {coordinates: [x], K: [[0]]}": True,
+    "linear system: {coordinates: [x, y], K: [[1, -1], [-1, 1]]}": True,
+    "linear system: {coordinates: [x, v], A: [[0, 1], [0, 0]]}": True,
+    # v' = x, u' = v, x' = 0: u grows like t^2; x'' = x besides: like exp t; y'''' = 0 by y'' = x, x'' = 0
+    "linear system: {coordinates: [x, v, u], A: [[0, 0, 0], [1, 0, 0], [0, 1, 0]]}": False,
+    "linear system: {coordinates: [x, y], K: [[0, 0], [0, -1]]}": False,
+    "linear system: {coordinates: [x, y], S: [[0, 1], [0, 0]]}": False,
+    # resonance: x'' + x = 0, y'' + y = x grows like t sin t; nothing drifts
+    "linear system: {coordinates: [x, y], S: [[1, 0], [-1, 1]]}": False,
+}
+
+
+@pytest.mark.parametrize(("system", "only"), ONLY_DRIFTS.items())
+def test_matrices_say_whether_nothing_grows_but_a_drift(system, only) -> None:
+    found = mbsym.loads(LINE.format(system)).stability
+    assert found.verdict.word is found.numerical.word is Word.UNSTABLE
+    assert found.verdict.because(Because.LINEAR_DRIFTS) is found.numerical.because(Because.LINEAR_DRIFTS) is only
+
+
+def test_one_motion_in_two_descriptions_is_told_alike() -> None:
+    """x'' = 0 of a free body and by its matrix: each verdict says what the other is about, on screen as in files."""
+    body = "bodies: [{name: p, attached to: 0, mass: 1, connection point: [x, 0, 0], coordinates: [x]}]\nmotion: {x: 0}"
+    free = mbsym.loads(LINE.format(body))
+    given = mbsym.loads(LINE.format("linear system: {coordinates: [x], K: [[0]]}"))
+    assert free.stability.verdict.word is Word.STABLE_BUT_CYCLIC
+    assert "with them counted the motion is unstable" in free.stability.verdict.explanation
+    assert "but for that drift the motion is stable" in given.stability.verdict.explanation
+    for a, words in ((free, "with them counted the motion is unstable"), (given, "but for that drift the motion is")):
+        assert words in "\n".join(summary(a, (6,), []).problems[0].lines)
+        for target in ("html", "latex"):
+            assert words in " ".join(TARGETS[target].render(a, (6,)).split())
+
+
+def test_a_part_that_drifts_says_nothing_of_a_whole_that_grows_otherwise() -> None:
+    found = mbsym.loads(LINE.format("linear system: {coordinates: [x, y], K: [[0, 0], [0, -1]]}")).stability
+    assert [p.theory.verdict.because(Because.LINEAR_DRIFTS) for p in found.subsystems] == [True, False]
+    assert not found.verdict.because(Because.LINEAR_DRIFTS)

@@ -14,8 +14,9 @@ import numpy as np
 import pytest
 import sympy
 from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpq_poly, fmpz_mat
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
+from properties import settings
 
 import mbsym
 from mbsym.algebra import characteristic
@@ -721,7 +722,7 @@ pair_factors = st.tuples(rationals, st.fractions(min_value=F(1, 4), max_value=4,
 factors = st.lists(st.tuples(st.one_of(real_factors, pair_factors), st.integers(1, 3)), min_size=1, max_size=5)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(factors, rationals.filter(bool))
 def test_counts_from_known_roots(parts: list[Any], scale: F) -> None:
     p = fmpq_poly([rational(scale)])
@@ -752,7 +753,7 @@ def number(p: Any) -> Any:
     return p(0)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(small)
 def test_hurwitz_and_lienard_chipart_agree_with_the_count(numbers: list[int]) -> None:
     stable = count_roots(numbers).left == len(numbers) - 1
@@ -760,7 +761,7 @@ def test_hurwitz_and_lienard_chipart_agree_with_the_count(numbers: list[int]) ->
     assert all(number(p) > 0 for _, p in lienard_chipart(constants(numbers))) == stable
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(st.one_of(small, st.lists(st.integers(-3, 3), min_size=1, max_size=5).map(lambda r: from_roots(r))))
 def test_subdiscriminants_agree_with_the_count(numbers: list[int]) -> None:
     negative, zero, positive = count_real_roots(numbers)
@@ -878,7 +879,7 @@ def systems(draw: Any) -> dict[str, Any]:
     return {name: value.tolist() for name, value in result.items() if name in "MK" or name in on}
 
 
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=120)
 @given(systems())
 def test_symbols_numbers_and_floats_agree(parts: dict[str, Any]) -> None:
     """The case analysis never contradicts the exact count; the exact count never contradicts clear float roots."""
@@ -982,7 +983,7 @@ def left_of_it_holds(wanted: Requirement, x: Any) -> bool:
     return bool(strict and all(p(x) != 0 for p in condition.nonzero))
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(st.lists(st.tuples(st.integers(-4, 6), st.integers(-3, 3)), min_size=3, max_size=6))
 def test_half_of_the_coefficients_decides_as_well(pairs: list[tuple[int, int]]) -> None:
     """Lienard-Chipart with every second coefficient left out, against the count of roots at points."""
@@ -1004,7 +1005,7 @@ def test_a_coefficient_is_spared() -> None:
     assert [r.label for r in _spared(wanted, 4)] == ["a3", "a1", "a0", "Hurwitz minor 3"]
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(st.lists(st.tuples(st.integers(-3, 5), st.integers(-2, 2)), min_size=6, max_size=6))
 def test_minors_may_presume_those_before_them(pairs: list[tuple[int, int]]) -> None:
     a, b, c, d, e, f = (p + q * X for p, q in pairs)
@@ -1024,7 +1025,7 @@ def test_a_diagonal_matrix_shows_its_entries() -> None:
     assert [r.polynomial for r in found.requirements] == [p, p * (p + q)]
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.integers(1, 4).flatmap(square))
 def test_inertia(rows: list[list[int]]) -> None:
     symmetric = np.array(rows) + np.array(rows).T

@@ -34,7 +34,16 @@ class Condition(Statement, frozen=True, kw_only=True):
     """a condition of stability: formula relation 0"""
 
     in_coefficients: InCoefficients | UnsetType = UNSET
-    place: Annotated[str, words(Place), "what follows where it fails"]
+    place: Annotated[
+        str,
+        words(Place),
+        "what follows where it fails: necessary (but for the case of equality: unstable), first (necessary in the "
+        "first approximation), exponential (necessary for exponential stability: all roots to the left; at the border "
+        "the motion may still be asymptotically stable), sufficient (nothing), method (this method decides nothing "
+        "then), harmless (nothing: a vanishing discriminant of a potential system), strictly (necessary: with equality "
+        "the motion is unstable, too), beside (with equality, the other conditions holding, the motion is unstable), "
+        "equality (with equality, the other conditions holding, the motion is stable, too)",
+    ]
 
 
 class Listed(Part, frozen=True):

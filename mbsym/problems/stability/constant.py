@@ -14,12 +14,12 @@ from fractions import Fraction
 from math import lcm
 from typing import Any
 
-from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpq_poly, fmpz_poly
+from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly_ctx, fmpq_poly, fmpz_poly
 
 from mbsym.algebra.factors import Polynomial
 from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.plane.fields import Extension, Over
-from mbsym.algebra.plane.numbers import AlgebraicNumber, number, roots_between, sign
+from mbsym.algebra.plane.numbers import AlgebraicNumber, number, primitive, roots_between, sign
 from mbsym.algebra.plane.points import Point
 from mbsym.algebra.ring import Ring
 from mbsym.expressions.angles import linear_form
@@ -29,8 +29,8 @@ from mbsym.model.system import System
 MOST_PARTS = 60
 #: Of the discriminant of a norm in two variables.
 MOST_IN_A_PLANE = 600
-#: Roots of larger numbers are not taken.
-MOST_DIGITS = 40
+#: Roots of larger numbers are not taken, nor the field of more of them.
+MOST_DIGITS, MOST_ROOTS = 40, 3
 
 
 @dataclass(frozen=True)
@@ -131,6 +131,43 @@ def _root(arguments: Mapping[int, Polynomial]) -> Constant | None:
     roots = roots_between(p, fmpq(0), fmpq(base + 1))
     made = number(roots[0])
     return Constant(made, found, f"sqrt({base})") if isinstance(made, AlgebraicNumber) else None
+
+
+def constant_of_roots(ring: Ring, indices: Sequence[int]) -> Constant | None:
+    """Some square roots of positive numbers, as polynomials in their sum; None where they are of other kinds.
+
+    The field has the products of different roots for a basis, if these are independent: then the powers of the sum are
+    another one.
+    """
+    arguments = [ring.generators[k].argument for k in indices if ring.generators[k].kind == "root"]
+    if len(arguments) < len(indices) or len(indices) > MOST_ROOTS:
+        return None
+    squares = [fmpq(x.leading_coefficient()) for x in arguments if x is not None and x.is_constant() and x != 0]
+    if len(squares) < len(indices) or any(x <= 0 for x in squares):
+        return None
+    size = 1 << len(squares)
+
+    def times_sum(vector: Sequence[Any]) -> list[Any]:
+        found = [fmpq(0)] * size
+        for place, x in enumerate(vector):
+            for k, square in enumerate(squares):
+                found[place ^ (1 << k)] += x * square if place & (1 << k) else x
+        return found
+
+    powers = [[fmpq(int(place == 0)) for place in range(size)]]
+    for _ in range(size):
+        powers.append(times_sum(powers[-1]))
+    basis = fmpq_mat(size, size, [x for vector in powers[:size] for x in vector]).transpose()
+    if basis.det() == 0:
+        return None
+    wanted = [[fmpq(int(place == 1 << k)) for place in range(size)] for k in range(len(squares))]
+    told = [basis.solve(fmpq_mat(size, 1, vector)).entries() for vector in (*wanted, powers[size])]
+    minimal = primitive(fmpq_poly([-x for x in told.pop()] + [fmpq(1)]))
+    made = number(roots_between(minimal, fmpq(0), sum((x + 1 for x in squares), fmpq(1)))[-1])
+    if not isinstance(made, AlgebraicNumber) or int(made.polynomial.degree()) < size:
+        return None
+    images = {k: fmpq_poly(list(x)) for k, x in zip(indices, told, strict=True)}
+    return Constant(made, images, " + ".join(f"sqrt({x})" for x in squares))
 
 
 def _angles(turns: Mapping[int, Fraction], kinds: Mapping[int, str]) -> Constant | None:

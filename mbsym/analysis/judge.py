@@ -1,0 +1,87 @@
+"""The one judge: what problems 6 and 11 together say of a motion at exact values of all parameters.
+
+Asked in this order, each only where those before leave the nonlinear system open:
+
+1. the first approximation, with the energy and exactly linear equations (``stability.ExactVerdicts``);
+2. the system at these numbers: its integrals, an energy of higher order (``open_verdicts``);
+3. terms of higher order: normal forms, centre manifolds (problem 11).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from mbsym.analysis import higher
+from mbsym.problems.stability.problem import ExactVerdicts
+from mbsym.problems.stability.reasons import Because, Reason
+from mbsym.problems.stability.verdict import Verdict
+from mbsym.problems.stability.word import Word
+
+if TYPE_CHECKING:
+    from mbsym.analysis.pipeline import Analysis
+    from mbsym.problems.normal_forms.result import Judged
+
+#: What problem 11 may say, as the words of problem 6; all but the last say it at given momenta of cyclic coordinates.
+_WORDS = {"stable": Word.STABLE, "asymptotically stable": Word.ASYMPTOTIC, "unstable": Word.UNSTABLE}
+
+#: Where there is no motion that could be judged.
+_NO_MOTION = (Because.NOT_THE_VALUE, Because.MOTION_NOT_THERE, Because.MOTION_OPEN, Because.POLE)
+
+
+class Judge:
+    """judge(values): the verdict on the unperturbed motion at exact values of all parameters."""
+
+    def __init__(self, analysis: Analysis) -> None:
+        self.analysis = analysis
+
+    def __call__(self, values: Mapping[str, Fraction]) -> Verdict:
+        return self.decided(self.first_approximation(values), values)
+
+    @cached_property
+    def first_approximation(self) -> ExactVerdicts:
+        """The verdict of step 1; irrational values are enclosures."""
+        of = self.analysis
+        return ExactVerdicts(of.parameters_scene, of.balance, of.judgeable, of.equilibrium, of.signs)
+
+    def decided(self, verdict: Verdict, values: Mapping[str, Any]) -> Verdict:
+        """A verdict of step 1, decided by the nonlinear system where it is open: steps 2 and 3.
+
+        What has constraints or speeds of its own is not judged further; by step 2 only rational values are.
+        """
+        system = self.analysis.system
+        if not verdict.word.open or verdict.coordinates_singular or any(map(verdict.because, _NO_MOTION)):
+            return verdict
+        if system.linear is not None or system.constraints or system.speeds:
+            return verdict
+        if all(isinstance(x, Fraction) for x in values.values()):
+            from mbsym.problems import open_verdicts  # what equilibria are judged by is not imported for nothing
+
+            verdict = open_verdicts.decided_at(verdict, self.analysis.parameters_scene, values)
+            if not verdict.word.open or verdict.coordinates_singular:
+                return verdict
+        found = self._of_higher_order(values)
+        return verdict if found is None else self._in_words(found) or verdict
+
+    @cached_property
+    def _of_higher_order(self) -> Any:
+        return higher.judge(self.analysis)
+
+    def _in_words(self, found: Judged) -> Verdict | None:
+        """A verdict of problem 11 as one of problem 6; None where it leaves the motion open, too.
+
+        Problem 11 keeps the momenta of cyclic coordinates.  Instability then is one; stability is one of neighbouring
+        momenta, too, if its conditions are inequalities (Dirichlet's theorem, Arnold and Moser's without resonance).
+        """
+        from mbsym.problems.normal_forms.result import Theorem
+
+        word = _WORDS.get(found.outcome.value)
+        if word is None:
+            return None
+        if word is not Word.UNSTABLE and higher.ignorable(self.analysis)[1]:
+            if found.theorem not in (Theorem.DEFINITE, Theorem.ARNOLD_MOSER):
+                return None
+            word = Word.STABLE_BUT_CYCLIC
+        return Verdict(word, (found.theorem.value,), (Reason(Because.TERMS_OF_HIGHER_ORDER),))

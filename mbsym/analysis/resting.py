@@ -1,0 +1,70 @@
+"""Relative equilibria, each judged as ``run`` would judge it if the description gave it as the unperturbed motion."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from fractions import Fraction
+
+from mbsym.algebra.failures import NOT_THERE, Failure
+from mbsym.analysis import higher
+from mbsym.analysis.judge import Judge
+from mbsym.analysis.pipeline import Analysis
+from mbsym.analysis.stages import Unavailable
+from mbsym.expressions.tree import Expression, Name, multiply, number
+from mbsym.mechanics.motion import motion_values
+from mbsym.mechanics.rest import Value, at_numbers
+from mbsym.model.system import MotionEntry, Parameter, System
+from mbsym.problems.equilibria import WITHIN, Equilibria, equilibria
+from mbsym.problems.open_verdicts import MOST_COORDINATES
+from mbsym.problems.rest_result import CoordinateValue, RelativeEquilibrium
+
+
+def relative_equilibria(system: System, values: Mapping[str, Value], within: float = WITHIN) -> Equilibria:
+    """``problems.equilibria`` with the verdicts that terms of higher order decide; raises as that does.
+
+    Raises Unavailable, too, where a check fails that the list stands on.
+    """
+    found = judged(system, values, equilibria(system, values, within))
+    withdrawn = Analysis(system, ()).broken(Analysis.equilibria.stands_on)
+    if withdrawn is not None:
+        raise Unavailable("equilibria", withdrawn)
+    return found
+
+
+def judged(system: System, values: Mapping[str, Value], found: Equilibria) -> Equilibria:
+    """Open verdicts at isolated places, judged further."""
+    if len(system.coordinates) > MOST_COORDINATES or not any(x.verdict.word.open for x in found.equilibria):
+        return found
+    bare = at_numbers(system, values)
+    return replace(found, equilibria=tuple(_decided(bare, one) for one in found.equilibria))
+
+
+def _decided(bare: System, one: RelativeEquilibrium) -> RelativeEquilibrium:
+    """Coordinates without an exact text are parameters that are known by their enclosures."""
+    if not one.verdict.word.open or one.coordinates_of:
+        return one
+    enclosed = {f"{_PLACE}{x.name}": one.enclosures[x.name] for x in one.values if not x.exact}
+    places = {x.name: _exact(x) if x.exact else Name(f"{_PLACE}{x.name}") for x in one.values}
+    motion = tuple(
+        MotionEntry(name, places.get(name, value), rate) for name, (value, rate) in motion_values(bare).items()
+    )
+    analysis = Analysis(replace(bare, motion=motion, parameters=tuple(map(Parameter, enclosed))), ())
+    try:
+        if not {*one.free} <= higher.ignorable(analysis)[1]:
+            return one
+        return replace(one, verdict=Judge(analysis).decided(one.verdict, enclosed))
+    except (Failure, *NOT_THERE):
+        return one
+
+
+#: How names of parameters begin that are coordinates of a place; no name of a description ends in ``_dot``.
+_PLACE = "place_dot_"
+
+
+def _exact(value: CoordinateValue) -> Expression:
+    """The value of a coordinate whose text is exact: a rational number, or an angle as twelfths of pi."""
+    if not value.angle:
+        return number(Fraction(value.text))
+    return multiply(number(Fraction(round(12 * value.value / math.pi), 12)), Name("pi"))

@@ -1,0 +1,130 @@
+"""What holds where a condition of exactly linear equations is an equality: proved in symbols, and held against points.
+
+By hand, of x'' + g y' + a x = 0, y'' - g x' + b y = 0 (a particle in a magnetic field g, potential (a x^2 + b y^2)/2):
+
+* a = b = 0: zero roots twice, +- i g.  The kernel of A has two dimensions where g != 0: bounded.  g = 0: x'' = y'' = 0,
+  Jordan blocks: unstable.
+* a = b: mu^2 + (2 a + g^2) mu + a^2 = 0, discriminant g^2 (g^2 + 4 a).  a = 0 != g: stable, as above.
+  g^2 + 4 a = 0: mu = -g^2/4 twice, the pencil has rank 1 there (its entry g lambda is not zero): Jordan
+  blocks, unstable.  g = 0 < a: two equal oscillators, stable.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+from conftest import at_values
+
+import mbsym
+from mbsym.problems.stability.requirements import Place
+from mbsym.report.conditions import statements
+from mbsym.report.summary import summary
+
+FIELD = """
+mbsym: 1
+name: field
+parameters: {{g: {sign}, a: real, b: real}}
+linear system: {{coordinates: [x, y], G: [[0, g], [-g, 0]], K: [[{a}, 0], [0, {b}]]}}
+claims:
+{claims}
+"""
+
+
+def places(**numbers: str) -> dict[str, Place]:
+    text = FIELD.format(claims="  []", **numbers).replace("claims:\n  []", "")
+    (part,) = mbsym.loads(text).stability.subsystems
+    return {str(x.formula): x.place for x in statements(part.ring, part.theory.requirements)}
+
+
+def test_places_say_what_equality_does() -> None:
+    assert places(sign="real", a="0", b="0") == {"g": Place.STRICTLY}
+    assert places(sign="positive", a="a", b="a") == {
+        "g**2 + 2*a": Place.STRICTLY,  # 2 a = -g^2 makes the discriminant -g^4
+        "a": Place.EQUALITY,
+        "g**2 + 4*a": Place.STRICTLY,
+    }
+    # g = 0: a > 0 is needed for the rest.  g^2 + 2 a = 0 has a = 0 = g, too, where x'' = y'' = 0 grows.
+    found = places(sign="real", a="a", b="a")
+    assert found["a"] is found["g"] is Place.EQUALITY
+    assert found["g**2 + 4*a"] is Place.STRICTLY
+    # a b = 0 holds a = 0 != b, a Jordan block, and a = 0 = b, which is stable: nothing is said of all.
+    assert places(sign="positive", a="a", b="b")["a*b"] is Place.NECESSARY
+
+
+#: Of a = b: (claim, role, sign of g, outcome, what the remark or the counterexample says)
+CLAIMS = (
+    ("a != 0", "necessary", "positive", "does not hold", ""),
+    ("a >= 0", "sufficient", "positive", "holds exactly", "the motion is stable (theory of linear equations)"),
+    ("a >= 0", "sufficient", "real", "does not hold", ""),  # a = 0 = g
+    ("g**2 + 4*a > 0", "necessary", "positive", "holds exactly", "without it the motion is unstable"),
+    ("g**2 + 4*a > 0", "necessary", "real", "holds exactly", "without it the motion is unstable"),
+    # Where 2 a = -g^2 the motion is unstable, but it is where -g^2 < 4 a < 0, too: no equality.
+    ("(2*a - g)*(g + a) != 0", "necessary", "positive", "does not hold", ""),
+)
+
+
+@pytest.mark.parametrize(("that", "role", "sign", "outcome", "told"), CLAIMS)
+def test_claims_are_decided_with_equality(that: str, role: str, sign: str, outcome: str, told: str) -> None:
+    line = f'  - {{claim: condition, that: "{that}", as: {role}}}'
+    (found,) = mbsym.loads(FIELD.format(sign=sign, a="a", b="a", claims=line)).claims
+    assert found.outcome == outcome
+    assert told in found.remark
+
+
+def test_without_potential_the_field_is_necessary() -> None:
+    line = '  - {claim: condition, that: "g != 0", as: necessary}'
+    (found,) = mbsym.loads(FIELD.format(sign="real", a="0", b="0", claims=line)).claims
+    assert (found.outcome, found.remark.endswith("without it the motion is unstable")) == ("holds exactly", True)
+
+
+POINTS = [(Fraction(g), Fraction(a)) for g in ("-2", "-1", "0", "1", "2") for a in ("-1", "-1/2", "-1/4", "0", "1")]
+
+
+def test_the_judge_agrees_at_points_of_every_border(tmp_path) -> None:
+    """Every place of a = b, against the exact verdict at points on its border."""
+    text = FIELD.format(claims="  []", sign="real", a="a", b="a").replace("claims:\n  []", "")
+    path = tmp_path / "field.yaml"
+    path.write_text(text, encoding="utf-8")
+    (part,) = mbsym.load(path).stability.subsystems
+    listed = list(statements(part.ring, part.theory.requirements))
+    seen = set()
+    for g, a in POINTS:
+        gaps = [eval(str(x.formula), {"__builtins__": {}}, {"g": g, "a": a}) for x in listed]
+        stable = at_values(path, g=str(g), a=str(a), b="0").stability.numerical.stable
+        for x, gap in zip(listed, gaps, strict=True):
+            others = all(
+                y != 0 if z.relation == "!=" else y > 0 for z, y in zip(listed, gaps, strict=True) if z is not x
+            )
+            if gap == 0 and x.place is Place.STRICTLY:
+                assert not stable, (x, g, a)
+            if gap == 0 and others and x.place in (Place.BESIDE, Place.EQUALITY):
+                assert stable is (x.place is Place.EQUALITY), (x, g, a)
+                seen.add(x.place)
+    assert Place.EQUALITY in seen
+
+
+BODY = """
+mbsym: 1
+name: body
+parameters: {g: real}
+bodies:
+  - {name: p, attached to: 0, mass: 1, connection point: [x, y, 0], coordinates: [x, y]}
+loads:
+  - generalized force: {x: -g*y_dot, y: g*x_dot}
+motion: {x: 0, y: 0}
+claims:
+  - {claim: condition, that: g != 0}
+"""
+
+
+def test_a_condition_that_is_not_listed_is_named_as_what_it_is() -> None:
+    """The free particle is stable but for a drift whatever g is, so that no condition is listed for it."""
+    a = mbsym.loads(BODY)
+    lines = "\n".join(summary(a, (6,), []).problems[0].lines)
+    assert "v0" not in lines
+    (found,) = a.claims
+    assert found.remark.startswith("it is the condition v0 of x, y (g != 0)")
+    line = '  - {claim: condition, that: "g != 0"}'
+    (found,) = mbsym.loads(FIELD.format(sign="real", a="0", b="0", claims=line)).claims
+    assert found.remark == "it is the condition v0 of x, y"  # listed there

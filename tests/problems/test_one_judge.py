@@ -1,0 +1,123 @@
+"""The verdict at given values, claims tried there, problem 11 and the list of equilibria say one thing of a motion."""
+
+from __future__ import annotations
+
+import random
+from fractions import Fraction
+
+import pytest
+
+import mbsym
+from mbsym.analysis import Analysis
+from mbsym.analysis.judge import Judge
+from mbsym.analysis.resting import relative_equilibria
+from mbsym.mechanics.rest import given_values
+from mbsym.problems.stability.word import Word
+
+PLANE = """mbsym: 1
+name: a particle in a plane
+parameters: {{a: {{sign: real, value: {a}}}, g: {{sign: real, value: {g}}}}}
+bodies:
+  - {{name: p, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}}
+loads:
+  - potential: {potential}
+  - generalized force: {{x: g*y_dot, y: -g*x_dot}}
+motion: {{x: 0, y: 0}}
+claims:
+  - {{claim: condition, that: a >= {least}, as: sufficient}}
+"""
+
+CYCLIC = """mbsym: 1
+name: the same in a plane that slides along a rail
+parameters: {{g: {{sign: real, value: {g}}}}}
+bodies:
+  - {{name: cart, connection point: [0, 0, z], mass: 1, coordinates: [z]}}
+  - {{name: p, attached to: cart, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}}
+loads:
+  - potential: {potential}
+  - generalized force: {{x: g*y_dot, y: -g*x_dot}}
+motion: {{x: 0, y: 0, z: 0}}
+"""
+
+
+def described(potential: str, a: str = "0", g: str = "0", least: str = "0") -> Analysis:
+    return Analysis(mbsym.loads(PLANE.format(potential=potential, a=a, g=g, least=least)).system, (6, 11))
+
+
+#: V along its valley, by hand: y = -x^2 gives V = -x^4/2; y = -x^2/2 in the second, V = x^4 (1 - 1/4); with
+#: x'' = -y, y'' = ... in the third no valley is needed, V has the cubic term x^3 along its only kernel.
+BY_HAND = [
+    ("a*x**2/2 + y**2/2 + x**2*y", Word.UNSTABLE),
+    ("a*x**2/2 + y**2 + x**2*y + x**4", Word.STABLE),
+    ("a*x**2/2 + y**2/2 + x**3", Word.UNSTABLE),
+]
+
+
+@pytest.mark.parametrize(("potential", "word"), BY_HAND)
+def test_a_zero_root_is_decided_by_terms_of_higher_order(potential: str, word: Word) -> None:
+    """a = 0: the first approximation x'' = 0 leaves it open; energies, claims and the list have to agree with it."""
+    analysis = described(potential)
+    assert analysis.stability.numerical is not None
+    assert analysis.stability.numerical.word is word
+    (claim,) = analysis.claims
+    assert (claim.outcome == "does not hold") == (word is Word.UNSTABLE)  # a >= 0 is claimed to be sufficient
+
+
+def test_gyroscopic_stabilisation_is_decided_as_the_theorem_of_arnold_and_moser_does() -> None:
+    """V = -x^2/2 - y^2/3 + ..., turned at the rate 3: the word of problem 6 was `gyroscopically stabilised only`."""
+    analysis = described("-x**2/2 - y**2/3 + a*x**4 + x*y**2 - y**3", a="1", g="3")
+    found = analysis.stability
+    assert found.numerical is not None
+    assert found.before_higher_order is not None
+    assert (found.numerical.word, found.numerical.theorems) == (Word.STABLE, ("Arnold-Moser",))
+    assert found.before_higher_order.word is Word.GYROSCOPIC
+    assert analysis.normal_forms.first is Word.GYROSCOPIC
+    listed = relative_equilibria(analysis.system, given_values(analysis.system, {}))
+    (there,) = (one for one in listed.equilibria if all(x.value == 0 for x in one.values))
+    assert there.verdict.word is Word.STABLE
+
+
+def test_momenta_that_problem_11_keeps_are_not_forgotten() -> None:
+    """With a cyclic coordinate nothing better than `but for a drift` holds.
+
+    A resonance of fourth order, w1 = 3 w2, is one of these momenta alone: its theorem says nothing of others, so that
+    the word stays open.  w^2 are the roots of s^2 - (g^2 - 5/6) s + 1/6; w1 w2 = 1/sqrt(6), so that at w1 = 3 w2
+    w1^2 + w2^2 = 10/3 sqrt(1/6), which no rational g has: V = -x^2/2 - 9 y^2/2 has w1 w2 = 3 and w1 = 3, w2 = 1 at
+    g^2 = 10 + 10 = 20, again none; V = -x^2/2 - y^2/2 + ... has w1 w2 = 1, w1^2 + w2^2 = 10/3 = g^2 - 2: g = 4/sqrt(3).
+    V = -(3 x^2 + 3 y^2)/2: w1 w2 = 3 and 10 = g^2 - 6, g = 4.
+    """
+    system = mbsym.loads(CYCLIC.format(potential="-x**2/2 - y**2/3 + x**4 + x*y**2 - y**3", g="3")).system
+    found = Analysis(system, (6,)).stability.numerical
+    assert found is not None
+    assert (found.word, found.theorems) == (Word.STABLE_BUT_CYCLIC, ("Arnold-Moser",))
+    resonant = "-3*x**2/2 - 3*y**2/2 + x**4 + 2*y**4"
+    free = described(resonant.replace("x**4", "x**4 + 0*a"), g="4").stability.numerical
+    held = Analysis(mbsym.loads(CYCLIC.format(potential=resonant, g="4")).system, (6,)).stability.numerical
+    assert free is not None
+    assert held is not None
+    assert not free.word.open
+    assert held.word.open or held.word is Word.UNSTABLE
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_every_surface_asks_the_same_judge(seed: int) -> None:
+    """Random potentials with gyroscopic forces: problem 6 at the values, the judge, problem 11 and the list agree."""
+    source = random.Random(seed)
+    a, g = source.choice([-2, -1, 0, 1]), source.choice([0, 1, 2, 3, 5])
+    b = source.choice(["-1/3", "0", "1/2"])
+    terms = [f"{source.randint(-2, 2)}*{x}" for x in ("x**3", "x**2*y", "y**3", "x**4", "x**2*y**2", "y**4")]
+    analysis = described(f"a*x**2/2 + ({b})*y**2/2 + {' + '.join(terms)}".replace("+ -", "- "), str(a), str(g))
+    found = analysis.stability.numerical
+    assert found is not None
+    values = {"a": Fraction(a), "g": Fraction(g)}
+    judge = Judge(analysis)
+    assert judge(values).word is found.word
+    higher = analysis.normal_forms.at_values
+    assert higher is not None
+    said = higher.outcome.value
+    if said in ("stable", "unstable", "asymptotically stable"):
+        assert found.word.value.startswith(said) or found.word.stable == (said != "unstable")
+        assert not found.word.open
+    listed = relative_equilibria(analysis.system, given_values(analysis.system, {}))
+    there = [one for one in listed.equilibria if all(x.exact and x.value == 0 for x in one.values)]
+    assert all(one.verdict.word is found.word for one in there)

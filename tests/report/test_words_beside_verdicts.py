@@ -1,0 +1,151 @@
+"""Words that stand beside a verdict and say what it is about: headings, what is new, why there is nothing.
+
+Derived by hand.  Jeffcott's rotor has no zero root (k > 0); Chaplygin's sleigh has them, as its speed is free.  Of a
+symmetric gyrostat that turns freely A (x'' + i (C W + h)/A x') = 0 is left: C W + h != 0 is needed by the method alone.
+Of a wheel that drags on a free shaft, B (a'' + b'') = -c b', so that B (a' + b') + c b is constant.  A mass dragged at
+speed v by a spring through a resisting medium stays behind by c v/k: it cannot move where the spring has no tension.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+import mbsym
+from mbsym.algebra.failures import Failure
+from mbsym.report.sections import polynomial_integrals, stability
+from mbsym_cli.main import main
+
+STATEMENTS = Path(__file__).parents[1] / "cases" / "statements"
+
+SLEIGH = """
+mbsym: 1
+name: sleigh
+parameters: {m: positive, J: positive, a: real, u: real}
+bodies:
+  - name: sleigh
+    connection point: [x, y, 0]
+    rotation: {axes: [3], angles: [f]}
+    mass centre: [a, 0, 0]
+    mass: m
+    inertia about: mass centre
+    inertia: [J, J, J]
+    coordinates: [x, y, f]
+constraints:
+  - velocity: -x_dot*sin(f) + y_dot*cos(f) = 0
+motion: {x: {value: 0, rate: u}, y: 0, f: 0}
+"""
+DRAGGED = """
+mbsym: 1
+name: dragged
+parameters: {m: positive, k: positive, c: positive, v: positive}
+prescribed: {s: v}
+bodies:
+  - {name: b, mass: m, connection point: [x, 0, 0], coordinates: [x]}
+loads:
+  - potential: k*(x - s)**2/2
+  - rayleigh: c*x_dot**2/2
+motion: {x: {value: 0, rate: v}}
+"""
+WHEEL = """
+mbsym: 1
+name: wheel
+parameters: {A: positive, B: positive, c: positive}
+bodies:
+  - {name: shaft, rotation: {axes: [3], angles: [a]}, mass: 0, inertia about: joint, inertia: [A, A, A]}
+  - name: wheel
+    attached to: shaft
+    rotation: {axes: [3], angles: [b]}
+    mass: 0
+    inertia about: joint
+    inertia: [B, B, B]
+loads:
+  - damper: {coordinate: b, coefficient: c}
+motion: {}
+"""
+GYROSTAT = """
+mbsym: 1
+name: gyrostat
+parameters: {A: positive, C: positive, h: real, W: positive}
+bodies:
+  - name: body
+    rotation: {axes: [1, 2, 3], angles: [a, b, c]}
+    mass: 0
+    inertia about: joint
+    inertia: [A, A, C]
+    gyrostatic moment: [0, 0, h]
+motion: {a: 0, b: 0, c: {value: 0, rate: W}}
+"""
+
+
+def headings(analysis: mbsym.Analysis) -> list[str]:
+    return [line for line in stability.lines(analysis.stability, analysis) if line.endswith(":")]
+
+
+def test_zero_roots_are_spoken_of_where_there_are_any() -> None:
+    (rotor,) = headings(mbsym.load(STATEMENTS / "jeffcott.yaml"))
+    assert "zero" not in rotor
+    assert "all roots to the left" in rotor
+    (sleigh,) = headings(mbsym.loads(SLEIGH))
+    assert "all roots but the zero ones" in sleigh
+
+
+def test_a_heading_does_not_call_necessary_what_its_line_does_not() -> None:
+    (heading,) = headings(mbsym.loads(GYROSTAT))
+    assert heading.endswith("conditions, necessary but for the case of equality where nothing else is said:")
+
+
+def test_what_problem_7_lists_is_not_told_to_be_no_function_of_it() -> None:
+    analysis = mbsym.loads(WHEEL)
+    told = " ".join(polynomial_integrals.lines(analysis.polynomial_integrals, analysis))
+    assert "B*(a_dot + b_dot) + c*b" in told
+    assert "a further integral, no function of those known without it (proved)" in told
+    assert "no function of those of problem 7" not in told
+
+
+@pytest.mark.parametrize("stage", ["stabilisation", "normal_forms"])
+def test_of_a_motion_that_cannot_be_nothing_else_is_said(stage: str) -> None:
+    with pytest.raises(Failure, match="the given motion does not exist: -c\\*v = 0 is impossible"):
+        getattr(mbsym.loads(DRAGGED), stage)
+
+
+FREE = """
+mbsym: 1
+name: free
+parameters: {m: positive, k: positive}
+bodies:
+  - {name: p, mass: m, connection point: [x, 0, 0], coordinates: [x]}
+  - {name: q, attached to: p, mass: m, connection point: [z, 0, 0], coordinates: [z]}
+loads:
+  - potential: k*z**2/2
+motion: {x: {value: 0, rate: 1}}
+values: {m: 1, k: 1}
+"""
+HOOP = """
+mbsym: 1
+name: hoop
+parameters: {l: positive, g: positive, w: positive}
+prescribed: {psi: w}
+bodies:
+  - {name: hoop, rotation: {axes: [3], angles: [psi]}, mass: 0}
+  - {name: bead, attached to: hoop, connection point: [l*sin(th), 0, -l*cos(th)], mass: 1, coordinates: [th]}
+loads:
+  - uniform gravity: {vector: [0, 0, -g]}
+motion: {th: 0}
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "command", "told", "untold"),
+    [
+        (FREE, "equilibria", "x moves at the rate 1", "turns"),  # a length
+        (HOOP, "average", "psi occurs in no equation of motion", "moves nothing"),  # the hoop turns with it
+    ],
+)
+def test_what_moves_is_said_to_move(tmp_path: Path, text: str, command: str, told: str, untold: str) -> None:
+    (tmp_path / "file.yaml").write_text(text, encoding="utf-8")
+    result = CliRunner().invoke(main, [command, str(tmp_path / "file.yaml")])
+    assert told in result.output + result.stderr
+    assert untold not in result.output + result.stderr
