@@ -216,7 +216,9 @@ def _cheapest_others(settled: Settled) -> tuple[Refused, ...]:
             best[name] = trial
     own = settled.found.method.traits.name
     return tuple(
-        Refused(trial.label, _told(settled, trial), _priced(settled, trial)) for name, trial in best.items() if name != own
+        Refused(trial.label, _told(settled, trial), _priced(settled, trial))
+        for name, trial in best.items()
+        if name != own
     )
 
 
