@@ -164,10 +164,12 @@ def _show(request: Request, found: Branches, names: Sequence[str], seconds: floa
 def rows(found: Branches) -> list[tuple[str, str, str, str]]:
     """(interval or value, equilibria, stable ones, what happens); intervals between which nothing happens as one."""
     told: list[tuple[str, str, str, str]] = []
+    from mbsym.report.branch_words import stable_words
+
     for first, last in found.spans():
         told += _at(found, first.low)
         count = f"{len(first.equilibria)}" + ("" if first.constant else " ?")
-        told.append((f"{value(first.low)} .. {value(last.high)}", count, str(first.stable), ""))
+        told.append((f"{value(first.low)} .. {value(last.high)}", count, stable_words(x.verdict for x in first.equilibria), ""))
     return told + (_at(found, found.intervals[-1].high) if found.intervals else [])
 
 
@@ -178,15 +180,15 @@ def _at(found: Branches, x: Any) -> list[tuple[str, str, str, str]]:
 
 
 def _critical_row(found: Branches, one: Any) -> list[tuple[str, str, str, str]]:
-    from mbsym.report.branch_words import critical_words
+    from mbsym.report.branch_words import critical_words, stable_words
 
     words = critical_words(found, one)
     if not words:
         return []
     counted = one.meetings is not None and not one.continuum
-    stable = sum(x.verdict is not None and x.verdict.stable for x in one.meetings or ())
+    stable = stable_words(x.verdict for x in one.meetings or ())
     count = "infinitely many" if one.continuum else str(len(one.meetings)) if counted else "not counted"
-    return [(value(one.number), count, str(stable) if counted else "", words)]
+    return [(value(one.number), count, stable if counted else "", words)]
 
 
 def value(x: Any) -> str:

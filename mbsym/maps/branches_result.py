@@ -85,6 +85,11 @@ class Interval:
     def stable(self) -> int:
         return sum(one.verdict.stable for one in self.equilibria)
 
+    @property
+    def undecided(self) -> int:
+        """Those of which nothing decides whether they are stable."""
+        return sum(one.verdict.word.open for one in self.equilibria)
+
 
 @dataclass(frozen=True)
 class Piece:

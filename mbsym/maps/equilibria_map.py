@@ -86,6 +86,11 @@ class Cell:
         """Stable ones at the sample."""
         return sum(one.verdict.stable for one in self.equilibria)
 
+    @property
+    def undecided(self) -> int:
+        """Those at the sample of which nothing decides whether they are stable."""
+        return sum(one.verdict.word.open for one in self.equilibria)
+
 
 @dataclass(frozen=True)
 class EquilibriaMap:
@@ -105,7 +110,7 @@ class EquilibriaMap:
 
     def look(self, cell: Cell) -> tuple[object, ...]:
         """What a picture tells apart."""
-        return (cell.count, cell.stable) if cell.counted else (cell.standing,)
+        return (cell.count, cell.stable, cell.undecided) if cell.counted else (cell.standing,)
 
 
 def equilibria_map(

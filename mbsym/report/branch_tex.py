@@ -39,6 +39,7 @@ def branch_tex(system: System, found: Branches, language: Language) -> str:
         low, high = number_tex(one.low), number_tex(last.high)
         doubt = "" if one.constant else f" ({language.say('not proved to be constant')})"
         stable = f"{language.say('of them stable')} {one.stable}"
+        stable += f", {language.say('undecided')} {one.undecided}" if one.undecided else ""
         lines.append(rf"\item ${low} < {name} < {high}$: {len(one.equilibria)}, {stable}{doubt}")
     lines.append(r"\end{itemize}")
     told = [(one, words) for one in found.criticals if (words := critical_words(found, one, language))]

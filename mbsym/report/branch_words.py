@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from mbsym.expressions.counting import counted
 from mbsym.maps.branches_events import Event
 from mbsym.maps.branches_result import Branches, Critical, Doubt, Remark
+from mbsym.problems.stability.verdict import Verdict
 from mbsym.report.language import Language
 
 ENGLISH = Language()
@@ -65,6 +65,9 @@ def remark_words(one: Remark) -> str:
     return _DOUBTS[one.doubt] + (f" ({one.about})" if one.about else "")
 
 
-def count_words(count: int, stable: int) -> str:
-    """``4 equilibria, 2 stable``."""
-    return f"{counted(count, 'equilibrium', 'equilibria')}, {stable} stable"
+def stable_words(verdicts: Iterable[Verdict | None]) -> str:
+    """``2``, or ``2, 1 undecided``: what nothing decides is not silently one of those that are not stable."""
+    known = list(verdicts)
+    stable = sum(x is not None and x.stable for x in known)
+    open_ = sum(x is None or x.word.open for x in known)
+    return f"{stable}, {open_} undecided" if open_ else f"{stable}"

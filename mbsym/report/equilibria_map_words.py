@@ -29,6 +29,8 @@ def cell_words(cell: Cell, language: Language = ENGLISH) -> str:
     stable = language.say("stable" if as_said else "stable at the sample", "number of equilibria")
     if language.name == "en":
         told = f"{counted(cell.count, 'equilibrium', 'equilibria')}, {cell.stable} {stable}"
+        told += f", {cell.undecided} undecided" if cell.undecided else ""
     else:
         told = f"{language.say('equilibria')}: {cell.count}; {stable}: {cell.stable}"
+        told += f"; {language.say('undecided')}: {cell.undecided}" if cell.undecided else ""
     return told if cell.standing is Standing.PROVED else f"{told} ({language.say(_AT_SAMPLE)})"

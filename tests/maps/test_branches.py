@@ -315,3 +315,28 @@ def test_every_word_has_its_translation() -> None:
     meeting = told["critical_values"]["items"]["properties"]["equilibria"]["items"]["properties"]
     assert meeting["event"]["enum"] == [one.value for one in Event]
     assert all(remark_words(module.Remark(doubt, "")) for doubt in Doubt)
+
+
+def test_what_nothing_decides_is_not_counted_as_unstable(tmp_path: Path) -> None:
+    """x'' = -2 x + P y - c x', y'' = -3 y - P x - c y', with cubic springs: the damping is the same in both, so that
+    with c > 0 the roots are to the left where P^2 < 1/4 + 5 c^2/2 (Routh), and without damping two pairs are
+    imaginary for P < 1/2, which no theorem here decides.  "0 stable" was told there, as beyond, where it is unstable.
+    """
+    text = """
+mbsym: 1
+name: Circulatory
+parameters: {P: real, c: nonnegative}
+bodies:
+  - {name: p, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}
+loads:
+  - generalized force: {x: "-2*x + P*y - c*x_dot - x**3", y: "-3*y - P*x - c*y_dot - y**3"}
+motion: {x: 0, y: 0}
+values: {P: 1/4, c: 0}
+"""
+    path = tmp_path / "circulatory.yaml"
+    path.write_text(text)
+    done = CliRunner().invoke(main, ["equilibria", str(path), "--vary", "P=0:1", "--out", str(tmp_path / "out")])
+    told = [re.split(r"  +", line.strip())[1:3] for line in done.output.splitlines() if " .. " in line]
+    assert told == [["1", "0, 1 undecided"], ["1", "0"]]
+    caption = (tmp_path / "out" / "branches.tex").read_text()
+    assert caption.count("undecided 1") == 1
