@@ -33,9 +33,9 @@ def dot(u: Iterable[S], v: Iterable[S]) -> S:
     return reduce(operator.add, products)
 
 
-def added(a: Table[S], b: Table[S]) -> list[list[S]]:
+def added(a: Table[S], b: Table[S]) -> tuple[tuple[S, ...], ...]:
     """A + B, by the scalars' own operator."""
-    return [[x + y for x, y in zip(*rows, strict=True)] for rows in zip(a, b, strict=True)]
+    return tuple(tuple(x + y for x, y in zip(*rows, strict=True)) for rows in zip(a, b, strict=True))
 
 
 class ScalarMatrix(Generic[S]):
