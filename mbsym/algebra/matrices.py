@@ -299,6 +299,12 @@ def echelon(algebra: Algebra[S], rows: Table[S], columns: int) -> tuple[list[lis
     return work, pivots
 
 
+def reduced_rows(matrix: Any) -> dict[int, list[Any]]:
+    """Of a flint matrix, or one like it: the rows of the reduced echelon form by the columns of their pivots."""
+    rows, rank = matrix.rref()
+    return {next(k for k, x in enumerate(row) if x != 0): row for row in rows.tolist()[:rank]}
+
+
 def null_space(algebra: Algebra[S], rows: Table[S], size: int) -> list[list[S]]:
     """A basis of the vectors of ``size`` components that every row annuls, over a field."""
     reduced, pivots = echelon(algebra, rows, size)

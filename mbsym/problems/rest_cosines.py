@@ -24,6 +24,7 @@ from typing import Any
 from flint import fmpq, fmpq_mat
 
 from mbsym.algebra.generators import occurring
+from mbsym.algebra.matrices import reduced_rows
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.mechanics.charts import Joint, rows
 from mbsym.mechanics.rest import Rest
@@ -163,16 +164,13 @@ def _combinations(basis: Sequence[Terms], wanted: Sequence[Terms]) -> list[list[
     for column, x in enumerate(every):
         for monomial, coefficient in x.items():
             table[places[monomial]][column] = fmpq(coefficient)
-    reduced, rank = fmpq_mat(table).rref()
-    pivots = []
-    for row in range(rank):
-        pivots.append(next(k for k in range(len(every)) if reduced[row, k] != 0))
-    if pivots and pivots[-1] >= len(basis):
+    reduced = reduced_rows(fmpq_mat(table))
+    if any(pivot >= len(basis) for pivot in reduced):
         return None
     found = []
     for k in range(len(wanted)):
         numbers = [fmpq(0)] * len(basis)
-        for row, pivot in enumerate(pivots):
-            numbers[pivot] = reduced[row, len(basis) + k]
+        for pivot, row in reduced.items():
+            numbers[pivot] = row[len(basis) + k]
         found.append(numbers)
     return found

@@ -35,7 +35,7 @@ from typing import Any
 from flint import fmpq, fmpq_mat
 
 from mbsym.algebra.generators import occurring
-from mbsym.algebra.matrices import added
+from mbsym.algebra.matrices import Operators, added, null_vectors, reduced_rows
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import relations
@@ -218,22 +218,7 @@ class _Equations:
         for i, row in enumerate(self.rows):
             for key, value in row.items():
                 matrix[i, place[key]] = fmpq(value.numerator, value.denominator)
-        return unknowns, _kernel(matrix)
-
-
-def _kernel(matrix: Any) -> list[list[fmpq]]:
-    """A basis of the x with A x = 0."""
-    reduced, rank = matrix.rref()
-    columns = matrix.ncols()
-    pivots = [next(j for j in range(columns) if reduced[i, j] != 0) for i in range(rank)]
-    basis = []
-    for free in (j for j in range(columns) if j not in pivots):
-        vector = [fmpq(0)] * columns
-        vector[free] = fmpq(1)
-        for i, pivot in enumerate(pivots):
-            vector[pivot] = -reduced[i, free]
-        basis.append(vector)
-    return basis
+        return unknowns, null_vectors(Operators(fmpq(0), fmpq(1)), reduced_rows(matrix), len(unknowns))
 
 
 def _found(scene: Scene, made: _Equations, coordinates: Sequence[str]) -> Groups:
