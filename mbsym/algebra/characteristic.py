@@ -48,6 +48,11 @@ def leading_minors(matrix: Matrix, budget: int = BUDGET) -> tuple[Polynomial, ..
         found = _eliminated(matrix, budget)
         if found is not None:
             return found
+    return _expanded(matrix, budget)
+
+
+def _expanded(matrix: Matrix, budget: int) -> tuple[Polynomial, ...]:
+    """By expansion along the rows, without division."""
     return tuple(matrices.leading_minors(_Counted(matrix, budget), matrix))
 
 
@@ -262,13 +267,7 @@ def hurwitz_minors(coefficients: Sequence[Polynomial]) -> tuple[Polynomial, ...]
     n = len(p) - 1
     if n < 1:
         raise ValueError("a polynomial of degree 1 at least is needed")
-    zero = p[0] * 0
-
-    def entry(i: int, j: int) -> Polynomial:
-        index = n - 2 * j + i
-        return p[index] if 0 <= index <= n else zero
-
-    return leading_minors([[entry(i, j) for j in range(1, n + 1)] for i in range(1, n + 1)])
+    return leading_minors(matrices.hurwitz(p[::-1], p[0] * 0, n))
 
 
 def lienard_chipart(coefficients: Sequence[Polynomial]) -> tuple[tuple[str, Polynomial], ...]:
@@ -282,17 +281,9 @@ def lienard_chipart(coefficients: Sequence[Polynomial]) -> tuple[tuple[str, Poly
     result = [(f"a{i}", p[i]) for i in range(n, -1, -1)]
     if n >= 3:
         # Delta_1 .. Delta_(n-1) do not involve the last row and column, so they come from a smaller matrix.
-        minors = _hurwitz_below(p)
+        minors = leading_minors(matrices.hurwitz(p[::-1], p[0] * 0, n - 1))
         result += [(f"Hurwitz minor {k}", minors[k - 1]) for k in range(n - 1, 1, -2)]
     return tuple(result)
-
-
-def _hurwitz_below(p: Coefficients) -> tuple[Polynomial, ...]:
-    n, zero = len(p) - 1, p[0] * 0
-    size = range(1, n)
-    return leading_minors(
-        [[p[n - 2 * j + i] if 0 <= n - 2 * j + i <= n else zero for j in size] for i in size],
-    )
 
 
 def _bezoutian(p: Coefficients, q: Coefficients) -> list[list[Polynomial]]:

@@ -271,6 +271,17 @@ def _horner(rows: Table[Any], s: Any, further: Table[Any]) -> list[list[Any]]:
     return [[x * s + y for x, y in zip(*pair, strict=True)] for pair in zip(rows, further, strict=True)]
 
 
+def hurwitz(polynomial: Sequence[S], zero: S, size: int) -> list[list[S]]:
+    """Hurwitz's matrix of c_0 s^n + c_1 s^(n-1) + ... + c_n, its first rows and columns: H_ij = c_(2j - i)."""
+    places = range(1, size + 1)
+    return [[polynomial[k] if 0 <= (k := 2 * j - i) < len(polynomial) else zero for j in places] for i in places]
+
+
+def leading_determinants(kind: Callable[[list[list[Any]]], Any], rows: Table[Any]) -> Iterator[Any]:
+    """``leading_minors`` of numbers or balls, by the library's matrices (``kind``: fmpq_mat, arb_mat)."""
+    return (kind([list(row[:size]) for row in rows[:size]]).det() for size in range(1, len(rows) + 1))
+
+
 # --- kernels ---
 
 

@@ -18,7 +18,7 @@ from flint import ctx
 
 from mbsym.algebra.base import Algebra
 from mbsym.algebra.evaluate import Carrier
-from mbsym.algebra.matrices import null_vectors
+from mbsym.algebra.matrices import dot, null_vectors
 from mbsym.algebra.ring import Ring
 from mbsym.mechanics.constraints.oracle import OracleRow, oracle_rows
 from mbsym.mechanics.constraints.programs import ConstrainedPrograms
@@ -109,7 +109,7 @@ def check_embedded(
             for name, row in zip(found.names, rows, strict=True)
         ]
         for place, y in enumerate(null_space([row.partials for row in rows], len(names), state.numbers)):
-            work = sum((a * b for a, b in zip(y, residual, strict=True)), zero)
+            work = dot(y, residual)
             compared.append((f"work along displacement {place + 1}", work, zero))
         return compared
 

@@ -26,7 +26,7 @@ from mbsym.algebra.characteristic import (
     subdiscriminants,
 )
 from mbsym.algebra.failures import Failure
-from mbsym.algebra.matrices import Operators, ScalarMatrix
+from mbsym.algebra.matrices import Operators, ScalarMatrix, dot
 from mbsym.algebra.ring import Polynomial
 from mbsym.problems.invariant_sets.branches import Place, evaluate, rank
 from mbsym.problems.invariant_sets.result import Definiteness, FirstApproximation, Relation, SecondVariation
@@ -246,8 +246,8 @@ def _characteristic(place: Place, a: Rows) -> list[Polynomial] | None:
         tails = [ring.one, -a[r][r]]
         vector = column
         for _ in range(r):
-            tails.append(-place.shortened(sum((x * y for x, y in zip(row, vector, strict=True)), ring.zero)))
-            vector = [place.shortened(sum((a[i][j] * vector[j] for j in range(r)), ring.zero)) for i in range(r)]
+            tails.append(-place.shortened(dot(row, vector)))
+            vector = [place.shortened(dot(a[i][:r], vector)) for i in range(r)]
             if any(len(x) > 4 * MOST_TERMS for x in vector):
                 return None
         polynomial = [

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from mbsym.algebra import matrices
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.matrices import determinant_by_traces, faddeev
 from mbsym.algebra.quotients import Quotient, Series
@@ -109,10 +110,7 @@ def hurwitz(context: object, polynomial: Sequence[Series]) -> Hurwitz:
     """The leading minors of Hurwitz's matrix of a monic polynomial."""
     n = len(polynomial) - 1
     nothing, one = _units(context)
-    matrix = [
-        [polynomial[k] if 0 <= (k := 2 * (j + 1) - (i + 1)) <= n else nothing for j in range(n)] for i in range(n)
-    ]
-    minors = [determinant_by_traces([row[:size] for row in matrix[:size]], nothing, one) for size in range(1, n + 1)]
+    minors = [determinant_by_traces(matrices.hurwitz(polynomial, nothing, k), nothing, one) for k in range(1, n + 1)]
     return Hurwitz(tuple(polynomial), tuple(minors))
 
 

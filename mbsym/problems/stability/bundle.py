@@ -29,7 +29,7 @@ from typing import Any
 
 from flint import arb, arb_mat, fmpq, fmpq_poly
 
-from mbsym.algebra.matrices import null_space
+from mbsym.algebra.matrices import leading_determinants, null_space
 from mbsym.algebra.polynomial_systems import Residues
 
 Element = Any  # flint.fmpq_poly, an element of QQ[t]/modulus
@@ -167,4 +167,4 @@ def _is_positive(forms: Sequence[Sequence[Sequence[Any]]], weights: Sequence[fmp
         [sum((form[i][j] * w for form, w in zip(forms, weights, strict=True)), arb(0)) for j in range(size)]
         for i in range(size)
     ]
-    return all(arb_mat(s, s, [x for row in total[:s] for x in row[:s]]).det() > 0 for s in range(1, size + 1))
+    return all(minor > 0 for minor in leading_determinants(arb_mat, total))

@@ -17,7 +17,7 @@ from typing import Any
 
 from flint import arb_mat, fmpq_poly
 
-from mbsym.algebra.matrices import null_space
+from mbsym.algebra.matrices import leading_determinants, null_space
 from mbsym.problems.stability.bundle import Element, NumberField
 
 #: Derivatives of a potential in one coordinate are looked at up to this order.
@@ -63,7 +63,8 @@ def of_fourth_order(
     v = null[0]
     left_out = next(i for i in span if v[i] != 0)
     others = [i for i in span if i != left_out]
-    if not _is_positive([[field.enclose(second[i][j]) for j in others] for i in others]):
+    block = [[field.enclose(second[i][j]) for j in others] for i in others]
+    if not all(x > 0 for x in leading_determinants(arb_mat, block)):
         return False
     cubic = {key: third(*key) for key in _sorted_indices(size, 3)}
     quartic = {key: fourth(*key) for key in _sorted_indices(size, 4)}
@@ -98,7 +99,3 @@ def _sorted_indices(size: int, count: int) -> list[tuple[int, ...]]:
     if count == 0:
         return [()]
     return [(*rest, i) for rest in _sorted_indices(size, count - 1) for i in range(rest[-1] if rest else 0, size)]
-
-
-def _is_positive(rows: Sequence[Sequence[Any]]) -> bool:
-    return all(arb_mat([row[:s] for row in rows[:s]]).det() > 0 for s in range(1, len(rows) + 1))
