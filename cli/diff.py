@@ -87,8 +87,11 @@ def _compare(
         if form == "text":
             show_lacking(name, first_only)
     if form == "json":
-        only = {key: [name for name, first in lacking if first is side] for key, side in (("a", True), ("b", False))}
-        click.echo(json.dumps({"format": 1, "systems": told, "only_in": only}, indent=2, ensure_ascii=False))
+        from mbsym.report.documents import diff as doc
+        from mbsym.report.documents.writer import written
+
+        only = doc.OnlyIn(*([name for name, first in lacking if first is side] for side in (True, False)))
+        click.echo(written(doc.Diff(systems=told, only_in=only), indent=2), nl=False)
     return worst
 
 

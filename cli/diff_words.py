@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from mbsym.expressions.counting import counted
+from mbsym.report.documents import diff as doc
 from mbsym_cli.console import console, printable
 
 if TYPE_CHECKING:
@@ -131,25 +132,25 @@ def show_lacking(name: str, first_only: bool) -> None:
     console().print(printable(f"{name}: only in {'A' if first_only else 'B'}"))
 
 
-def system_data(name: str, found: Diff) -> dict[str, Any]:
-    """One system as JSON; ``schemas/diff.json`` says what each property is."""
-    return {
-        "system": name,
-        "same": found.same,
-        "versions": list(found.versions),
-        "renamed": [{"kind": one.kind, "before": one.before, "after": one.after} for one in found.renamed],
-        "changes": [
-            {
-                "path": list(change.path),
-                "kind": change.kind,
-                "before": change.before,
-                "after": change.after,
-                "difference": change.difference or None,
-                "terms": change.terms,
-                "first": change.first or None,
-                "points": change.points,
-            }
+def system_data(name: str, found: Diff) -> doc.SystemDiff:
+    """One system, for ``--format json``."""
+    return doc.SystemDiff(
+        system=name,
+        same=found.same,
+        versions=list(found.versions),
+        renamed=[doc.RenamedRow(kind=one.kind, before=one.before, after=one.after) for one in found.renamed],
+        changes=[
+            doc.ChangeRow(
+                path=list(change.path),
+                kind=change.kind,
+                before=change.before,
+                after=change.after,
+                difference=change.difference or None,
+                terms=change.terms,
+                first=change.first or None,
+                points=change.points,
+            )
             for change in found.changes
         ],
-        "restated": [list(path) for path in found.restated],
-    }
+        restated=[list(path) for path in found.restated],
+    )

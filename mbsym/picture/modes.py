@@ -15,6 +15,7 @@ from math import hypot, inf, pi
 from typing import Any
 
 import numpy as np
+from msgspec import to_builtins
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.roots import Root
@@ -174,7 +175,7 @@ def modes_json(found: Modes) -> dict[str, Any]:
     return {
         "base": {name: number(value) for name, value in found.base.items()},
         "turning": {name: number(value) for name, value in found.turning.items()},
-        "verdict": verdict_data(found.verdict),
+        "verdict": to_builtins(verdict_data(found.verdict)),
         "still": list(found.still),
         "modes": [
             {

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from mbsym.expressions.tree import text
 from mbsym.numerics.methods.passed import Narrow, Passed
 from mbsym.numerics.sources import source_of
+from mbsym.report.documents import simulation as doc
 
 if TYPE_CHECKING:
     from mbsym.simulation import Simulation
@@ -16,15 +17,15 @@ if TYPE_CHECKING:
 SHOWN = 4
 
 
-def between_steps_json(passed: Passed | None) -> dict[str, Any] | None:
+def between_steps_json(passed: Passed | None) -> doc.BetweenSteps | None:
     """Times of switches, narrow features with the steps that passed them."""
     if passed is None:
         return None
-    return {
-        "switches": [float(t) for t in passed.switches],
-        "narrow": [{"time": one.time, "width": one.width, "step": one.step} for one in passed.narrow],
-        "unresolved": [float(t) for t in passed.unresolved],
-    }
+    return doc.BetweenSteps(
+        switches=[float(t) for t in passed.switches],
+        narrow=[doc.Narrow(time=one.time, width=one.width, step=one.step) for one in passed.narrow],
+        unresolved=[float(t) for t in passed.unresolved],
+    )
 
 
 def switch_line(passed: Passed | None) -> str:

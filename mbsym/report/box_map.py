@@ -20,10 +20,12 @@ from mbsym.maps.boxes import BoxMap
 from mbsym.maps.result import Of, Stratum
 from mbsym.model.quantities import unit_of
 from mbsym.model.system import System
+from mbsym.report.documents import map as doc
+from mbsym.report.documents.writer import written
 from mbsym.report.drawing import pictures
 from mbsym.report.language import Language
 from mbsym.report.map_figure import HEIGHT, RESOLUTION, SMALL, TEXT, WIDTH, hatch_of, legend, look, named, partial
-from mbsym.report.map_json import check_data, head, judged_data, written
+from mbsym.report.map_json import check_data, head, judged_data
 from mbsym.report.map_located import VERDICT, WHERE, Points
 from mbsym.report.map_tex import caption_of, escaped, figure_lines
 from mbsym.report.map_words import judged_words, look_words, signature_words
@@ -105,7 +107,7 @@ def percent(found: BoxMap, language: Language) -> str:
 
 def box_json(system: System, found: BoxMap) -> str:
     """map.json: each statement once, and the boxes with the numbers of theirs; exact edges."""
-    statements: list[dict[str, Any]] = []
+    statements: list[doc.Statement] = []
     places: dict[tuple[object, ...], int] = {}
     boxes = []
     for tile in found.tiles:
@@ -119,22 +121,23 @@ def box_json(system: System, found: BoxMap) -> str:
                 statements.append(judged_data(tile.proved))
             at = places[key]
         edges = [str(x) for x in (tile.box.x0, tile.box.x1, tile.box.y0, tile.box.y1)]
-        boxes.append({"edges": edges, "statement": at})
-    data = head(system, found) | {
-        "interrupted": found.interrupted,
-        "check": check_data(found.check),
-        "regions": [],
-        "arcs": [],
-        "corners": [],
-        "subdivision": {
-            "because": found.because or None,
-            "method": found.method.value,
-            "end": found.subdivision.end.value,
-            "white": str(found.subdivision.white),
-            "statements": statements,
-            "boxes": boxes,
-        },
-    }
+        boxes.append(doc.Box(edges=edges, statement=at))
+    data = doc.Map(
+        **head(system, found),
+        interrupted=found.interrupted,
+        check=check_data(found.check),
+        regions=[],
+        arcs=[],
+        corners=[],
+        subdivision=doc.Subdivision(
+            because=found.because or None,
+            method=found.method,
+            end=found.subdivision.end,
+            white=str(found.subdivision.white),
+            statements=statements,
+            boxes=boxes,
+        ),
+    )
     return written(data)
 
 

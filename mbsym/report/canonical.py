@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from mbsym.analysis.forms import BRACKETS, asked
 from mbsym.formulas.formula import Formula
+from mbsym.report.documents.results import canonical as doc
 from mbsym.report.plain import Write, column_text, matrix_text, shortened
 
 if TYPE_CHECKING:
@@ -110,34 +111,34 @@ def data(found: Forms, write: Write, failure: Callable[[NoResult], Any]) -> tupl
     return sections, {name: failure(why) for name, why in found.failures}
 
 
-def _routh(found: Routh, write: Write) -> dict[str, Any]:
-    return {
-        "ignored": list(found.ignored),
-        "momenta": list(found.momenta),
-        "coordinates": list(found.coordinates),
-        "function": write(found.function),
-        "mass_matrix": matrix_text(found.mass_matrix, write),
-        "linear": column_text(found.linear, write),
-        "reduced_potential": write(found.reduced_potential),
-        "forcing": column_text(found.forcing, write),
-        "ignored_rates": column_text(found.ignored_rates, write),
-    }
+def _routh(found: Routh, write: Write) -> doc.Routh:
+    return doc.Routh(
+        ignored=list(found.ignored),
+        momenta=list(found.momenta),
+        coordinates=list(found.coordinates),
+        function=write(found.function),
+        mass_matrix=matrix_text(found.mass_matrix, write),
+        linear=column_text(found.linear, write),
+        reduced_potential=write(found.reduced_potential),
+        forcing=column_text(found.forcing, write),
+        ignored_rates=column_text(found.ignored_rates, write),
+    )
 
 
-def _hamilton(found: Hamilton, write: Write) -> dict[str, Any]:
-    return {
-        "momenta": list(found.momenta),
-        "momenta_in_velocities": column_text(found.momenta_in_velocities, write),
-        "hamiltonian": write(found.hamiltonian),
-        "velocities": column_text(found.velocities, write),
-        "rates": column_text(found.rates, write),
-    }
+def _hamilton(found: Hamilton, write: Write) -> doc.Hamilton:
+    return doc.Hamilton(
+        momenta=list(found.momenta),
+        momenta_in_velocities=column_text(found.momenta_in_velocities, write),
+        hamiltonian=write(found.hamiltonian),
+        velocities=column_text(found.velocities, write),
+        rates=column_text(found.rates, write),
+    )
 
 
-def _brackets(found: Brackets, write: Write) -> dict[str, Any]:
-    return {
-        "integrals": list(found.names),
-        "formulas": column_text(found.formulas, write),
-        "matrix": matrix_text(found.matrix, write),
-        "in_involution": found.in_involution,
-    }
+def _brackets(found: Brackets, write: Write) -> doc.Brackets:
+    return doc.Brackets(
+        integrals=list(found.names),
+        formulas=column_text(found.formulas, write),
+        matrix=matrix_text(found.matrix, write),
+        in_involution=found.in_involution,
+    )

@@ -11,6 +11,7 @@ from mbsym.model.quantities import marked, time_unit, unit_of, with_unit
 from mbsym.model.system import System
 from mbsym.numerics.enclosure.compare import Certificate
 from mbsym.numerics.enclosure.enclose import INTERRUPTED, NO_STEP, OUT_OF_TIME, TOO_DEAR, TOO_WIDE
+from mbsym.report.documents import simulation as doc
 from mbsym.report.trajectory_csv import written
 from mbsym.report.unit_text import pretty
 
@@ -72,28 +73,28 @@ def spelled(seconds: float) -> str:
     return f"{seconds / 86400.0:.2g} days"
 
 
-def certificate_json(found: Certificate, names: list[str]) -> dict[str, Any]:
+def certificate_json(found: Certificate, names: list[str]) -> doc.Certificate:
     """Bounds are proved ones, at the enclosed rows."""
-    return {
-        "whole": found.whole,
-        "ended": found.ended.replace(" ", "_") or None,
-        "reached": found.enclosure.reached,
-        "rows": found.rows,
-        "bits": found.enclosure.bits,
-        "steps": len(found.enclosure.segments),
-        "largest_radius": found.width,
-        "largest_error": found.largest_error,
-        "events_proved": sum(radius is not None for radius in found.passages),
-        "largest_event_radius": max((radius for radius in found.passages if radius is not None), default=None),
-        "quantities": {
-            name: {
-                "largest_radius": float(found.radius[i].max(initial=0.0)),
-                "largest_error": float(found.error[i].max(initial=0.0)),
-                "scale": float(found.scale[i]),
-            }
+    return doc.Certificate(
+        whole=found.whole,
+        ended=found.ended.replace(" ", "_") or None,
+        reached=found.enclosure.reached,
+        rows=found.rows,
+        bits=found.enclosure.bits,
+        steps=len(found.enclosure.segments),
+        largest_radius=found.width,
+        largest_error=found.largest_error,
+        events_proved=sum(radius is not None for radius in found.passages),
+        largest_event_radius=max((radius for radius in found.passages if radius is not None), default=None),
+        quantities={
+            name: doc.Enclosure(
+                largest_radius=float(found.radius[i].max(initial=0.0)),
+                largest_error=float(found.error[i].max(initial=0.0)),
+                scale=float(found.scale[i]),
+            )
             for i, name in enumerate(names)
         },
-    }
+    )
 
 
 def enclosure_csv(found: Certificate, times: Any, system: System) -> str:

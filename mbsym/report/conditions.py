@@ -10,6 +10,7 @@ from mbsym.algebra.ring import Ring
 from mbsym.formulas.formula import Formula
 from mbsym.problems.stability import SubsystemStability
 from mbsym.problems.stability.requirements import Case, Place, Requirement
+from mbsym.problems.stability.word import Word
 from mbsym.report.coefficients import InCoefficients, in_coefficients, names_in
 
 #: Places that are told with the condition: the others are those of the list as a whole.
@@ -140,7 +141,7 @@ class CaseStatement:
 
     all_of: tuple[Statement, ...]
     any_of: tuple[Statement, ...]
-    word: str
+    word: Word
     theorems: tuple[str, ...]
     explanation: str
     otherwise: bool = False

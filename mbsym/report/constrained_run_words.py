@@ -5,8 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from msgspec import UNSET, UnsetType
+
 from mbsym.expressions.counting import counted
 from mbsym.model.quantities import time_unit, unit_of, with_unit
+from mbsym.report.documents import simulation as doc
 from mbsym.report.unit_text import pretty
 
 if TYPE_CHECKING:
@@ -108,24 +111,22 @@ def drift_columns(run: Simulation) -> Mapping[str, Any]:
     return {name + "_" if name in taken else name: values for name, values in found.items()}
 
 
-def constraints_json(run: Simulation) -> dict[str, Any]:
+def constraints_json(run: Simulation) -> doc.Constraints | UnsetType:
     """What simulation.json says; nothing without constraints."""
     known, closed, drift = run.dynamics.constraints, run.closed, run.drift
     if known is None or closed is None or drift is None:
-        return {}
+        return UNSET
     positions, velocities = drift.largest
-    return {
-        "constraints": {
-            "rows": [name.label for name in known.names],
-            "left_out": [name.label for name in known.redundant],
-            "free_velocities": known.freedom,
-            "start": {
-                "closest": closed.closest,
-                "fixed": list(closed.fixed),
-                "moved": {move.name: {"given": move.given, "taken": move.found} for move in closed.moves},
-            },
-            "drift": {"positions": positions, "velocities": velocities},
-            "singular": list(run.trajectory.work.singular),
-            "stepped_over": list(run.stepped_over),
-        }
-    }
+    return doc.Constraints(
+        rows=[name.label for name in known.names],
+        left_out=[name.label for name in known.redundant],
+        free_velocities=known.freedom,
+        start=doc.Start(
+            closest=closed.closest,
+            fixed=list(closed.fixed),
+            moved={move.name: doc.Moved(given=move.given, taken=move.found) for move in closed.moves},
+        ),
+        drift=doc.Drift(positions=positions, velocities=velocities),
+        singular=list(run.trajectory.work.singular),
+        stepped_over=list(run.stepped_over),
+    )

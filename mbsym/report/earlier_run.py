@@ -20,7 +20,6 @@ from mbsym.numerics.methods.interface import STEP_LIMIT
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.models import Model, scenario_of
 from mbsym.numerics.scenario import Scenario
-from mbsym.report.simulation_json import FORMAT
 from mbsym.report.trajectory_csv import column_units
 from mbsym.simulation.earlier import Earlier
 from mbsym.simulation.request import TOLERANCE
@@ -105,7 +104,7 @@ def _content(path: Path) -> dict[str, Any]:
         raise Unfit("it is no JSON file, or damaged") from None
     wanted = {"format", "description_sha256", "ended", "time", "reached", "method", "arithmetic", "tolerance", "step"}
     wanted |= {"parameters", "initial", "files"}
-    if not isinstance(content, dict) or not wanted <= set(content) or content["format"] != FORMAT:
+    if not isinstance(content, dict) or not wanted <= set(content) or content["format"] != 1:
         raise Unfit("it is not a simulation.json of this version of mbsym")
     if not {"table_sha256", "model"} <= set(content):
         raise Unfit('it is damaged, or older than --continue: "table_sha256" and "model" are wanted')

@@ -6,24 +6,22 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from math import isfinite
 from typing import Any
 
 import numpy as np
+from msgspec import UNSET
 
 from mbsym.expressions.counting import counted
 from mbsym.model.quantities import marked, unit_of
 from mbsym.numerics.ensemble import QUANTILES, Ensemble
 from mbsym.numerics.variation import Grid, Variation
-from mbsym.report.documents.writer import version
+from mbsym.report.documents import ensemble as doc
+from mbsym.report.documents.writer import written as document
 from mbsym.report.simulation_words import laws_json
 from mbsym.report.trajectory_csv import written
 from mbsym.source.meaning import meaning
-
-#: The version of ``schemas/ensemble.json`` that it follows.
-FORMAT = 1
 
 #: So many members that ended early are named one by one in sentences.
 NAMED = 5
@@ -82,56 +80,54 @@ def ensemble_json(
     """The file's text; ``files`` are those that belong to it."""
     scenario = found.members.dynamics.scenario
     spread, compared = found.statistics, found.compared
-    content: dict[str, Any] = {
-        "format": FORMAT,
-        "version": version(),
-        "system": scenario.system.name,
-        "description_sha256": meaning(scenario.system),
-        "status": "partial" if found.interrupted else "whole",
-        **({"inputs": laws_json(scenario)} if scenario.inputs else {}),
-        "members": found.count,
-        "varied": [_variation(one) for one in variations],
-        "seed": None if isinstance(variations[0], Grid) else seed,
-        "sampling": "grid" if isinstance(variations[0], Grid) else sampling,
-        "time": {"from": 0.0, "to": float(found.times[-1]), "samples": len(found.times)},
-        "method": found.method,
-        "tolerance": found.setting.tolerance,
-        "step": found.setting.step,
-        "ended": [
-            {
-                "member": fate.member,
-                "kind": fate.kind,
-                "time": fate.time,
-                "values": dict(zip(found.members.names, map(float, found.members.values[:, fate.member]), strict=True)),
-            }
+    content = doc.Ensemble(
+        system=scenario.system.name,
+        description_sha256=meaning(scenario.system),
+        status="partial" if found.interrupted else "whole",
+        inputs=laws_json(scenario) if scenario.inputs else UNSET,
+        members=found.count,
+        varied=[_variation(one) for one in variations],
+        seed=None if isinstance(variations[0], Grid) else seed,
+        sampling="grid" if isinstance(variations[0], Grid) else sampling,
+        time=doc.Time(from_=0.0, to=float(found.times[-1]), samples=len(found.times)),
+        method=found.method,
+        tolerance=found.setting.tolerance,
+        step=found.setting.step,
+        ended=[
+            doc.Ended(
+                member=fate.member,
+                kind=fate.kind,
+                time=fate.time,
+                values=dict(zip(found.members.names, map(float, found.members.values[:, fate.member]), strict=True)),
+            )
             for fate in found.fates
         ],
-        "final": {
-            name: {
-                "mean": _finite(spread.mean[-1, place]),
-                "std": _finite(spread.deviation[-1, place]),
-                "min": _finite(spread.least[-1, place]),
-                "max": _finite(spread.greatest[-1, place]),
-                "quantiles": {
+        final={
+            name: doc.Final(
+                mean=_finite(spread.mean[-1, place]),
+                std=_finite(spread.deviation[-1, place]),
+                min=_finite(spread.least[-1, place]),
+                max=_finite(spread.greatest[-1, place]),
+                quantiles={
                     f"{chance:g}": _finite(row[-1, place])
                     for chance, row in zip(QUANTILES, spread.quantiles, strict=True)
                 },
-            }
+            )
             for place, name in enumerate(found.quantities)
         },
-        "compared": {"members": list(compared.members), "largest": _finite(compared.largest)},
-        "steps": found.steps,
-        "files": files,
-    }
-    return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
+        compared=doc.Compared(members=list(compared.members), largest=_finite(compared.largest)),
+        steps=found.steps,
+        files=files,
+    )
+    return document(content)
 
 
-def _variation(one: Variation) -> dict[str, Any]:
+def _variation(one: Variation) -> doc.Varied:
     if isinstance(one, Grid):
-        return {"name": one.name, "kind": "grid", "from": one.low, "to": one.high, "count": one.count}
+        return doc.Varied(name=one.name, kind="grid", from_=one.low, to=one.high, count=one.count)
     if one.kind == "normal":
-        return {"name": one.name, "kind": "normal", "mean": one.first, "deviation": one.second}
-    return {"name": one.name, "kind": "uniform", "from": one.first, "to": one.second}
+        return doc.Varied(name=one.name, kind="normal", mean=one.first, deviation=one.second)
+    return doc.Varied(name=one.name, kind="uniform", from_=one.first, to=one.second)
 
 
 def _finite(value: Any) -> float | None:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from fractions import Fraction
-from typing import Any
+
+from msgspec import UNSET
+from msgspec.structs import asdict
 
 from mbsym.expressions.tree import text
 from mbsym.mechanics.rest import Value
@@ -13,11 +14,10 @@ from mbsym.model.quantities import units_by_name
 from mbsym.model.system import System
 from mbsym.problems.equilibria import CoordinateValue, Equilibria, RelativeEquilibrium
 from mbsym.problems.permanent_rotations import PermanentRotations
-from mbsym.report.documents.writer import version
+from mbsym.report.documents import equilibria as doc
+from mbsym.report.documents import parts
+from mbsym.report.documents.writer import written
 from mbsym.report.sections.stability import verdict_data
-
-#: The version of ``schemas/equilibria.json`` that it follows.
-FORMAT = 1
 
 
 def equilibria_json(
@@ -27,59 +27,57 @@ def equilibria_json(
     permanent: PermanentRotations | None = None,
 ) -> str:
     """One JSON object, keys in a fixed order, the same text for the same input."""
-    data = {
-        "format": FORMAT,
-        "version": version(),
-        "system": system.name,
-        **({"units": units} if (units := units_by_name(system)) else {}),
-        "values": {name: str(x) if isinstance(x, Fraction) else text(x) for name, x in values.items()},
-        "turning": dict(found.turning),
-        "complete": found.complete,
-        "remarks": list(found.remarks),
-        "equilibria": [_equilibrium(one) for one in found.equilibria],
-        "singular": [_equilibrium(one) for one in found.singular],
-        "beyond": [_equilibrium(one) | {"negative": list(one.beyond)} for one in found.beyond],
-        "families": [
-            {
-                "dimension": family.dimension,
-                "equations": list(family.equations),
-                "free": list(family.free),
-                "angles_of": family.coordinates_of or None,
-                "sample": [_coordinate(item) for item in family.sample],
-                "stability_of_the_sample": verdict_data(family.verdict),
-            }
+    data = doc.Equilibria(
+        system=system.name,
+        units=units_by_name(system) or UNSET,
+        values={name: str(x) if isinstance(x, Fraction) else text(x) for name, x in values.items()},
+        turning=dict(found.turning),
+        complete=found.complete,
+        remarks=list(found.remarks),
+        equilibria=[_equilibrium(one) for one in found.equilibria],
+        singular=[_equilibrium(one) for one in found.singular],
+        beyond=[doc.Beyond(**asdict(_equilibrium(one)), negative=list(one.beyond)) for one in found.beyond],
+        families=[
+            doc.Family(
+                dimension=family.dimension,
+                equations=list(family.equations),
+                free=list(family.free),
+                angles_of=family.coordinates_of or None,
+                sample=[_coordinate(item) for item in family.sample],
+                stability_of_the_sample=verdict_data(family.verdict),
+            )
             for family in found.families
         ],
-        "permanent_rotations": None if permanent is None else _permanent(permanent),
-    }
-    return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
+        permanent_rotations=None if permanent is None else _permanent(permanent),
+    )
+    return written(data)
 
 
-def _equilibrium(one: RelativeEquilibrium) -> dict[str, Any]:
-    return {
-        "coordinates": [_coordinate(item) for item in one.values],
-        "angles_of": one.coordinates_of or None,
-        "arbitrary": list(one.free),
-        "descriptions": one.described,
-        "proof": one.proof,
-        "stability": verdict_data(one.verdict),
-    }
+def _equilibrium(one: RelativeEquilibrium) -> doc.Equilibrium:
+    return doc.Equilibrium(
+        coordinates=[_coordinate(item) for item in one.values],
+        angles_of=one.coordinates_of or None,
+        arbitrary=list(one.free),
+        descriptions=one.described,
+        proof=one.proof,
+        stability=verdict_data(one.verdict),
+    )
 
 
-def _permanent(found: PermanentRotations) -> dict[str, Any]:
-    return {
-        "body": found.body,
-        "angle": found.angle,
-        "axes": list(found.axes),
-        "everywhere": found.everywhere,
-        "one_parameter_family": found.family,
-        "one_direction_of_each_line": found.either,
-        "equations": [
-            {"constant": constant, "linear": linear, "quadratic": quadratic}
+def _permanent(found: PermanentRotations) -> doc.PermanentRotations:
+    return doc.PermanentRotations(
+        body=found.body,
+        angle=found.angle,
+        axes=list(found.axes),
+        everywhere=found.everywhere,
+        one_parameter_family=found.family,
+        one_direction_of_each_line=found.either,
+        equations=[
+            doc.RotationEquation(constant=constant, linear=linear, quadratic=quadratic)
             for constant, linear, quadratic in zip(found.constant, found.linear, found.quadratic, strict=True)
         ],
-    }
+    )
 
 
-def _coordinate(item: CoordinateValue) -> dict[str, Any]:
-    return {"name": item.name, "value": item.text, "exact": item.exact, "number": item.value}
+def _coordinate(item: CoordinateValue) -> parts.CoordinateValue:
+    return parts.CoordinateValue(name=item.name, value=item.text, exact=item.exact, number=item.value)

@@ -2,7 +2,6 @@ r"""A map of equilibria as a picture, as JSON, and as LaTeX to \input."""
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Sequence
 from typing import Any
@@ -20,7 +19,9 @@ from mbsym.formulas.latex import LatexNames
 from mbsym.maps.equilibria_map import Cell, EquilibriaMap
 from mbsym.model.quantities import unit_of
 from mbsym.model.system import System
-from mbsym.report.documents.writer import version
+from mbsym.report.documents import branches, parts
+from mbsym.report.documents import equilibria_map as doc
+from mbsym.report.documents.writer import written
 from mbsym.report.drawing import pictures
 from mbsym.report.equilibria_map_words import ORIGINS, cell_words
 from mbsym.report.language import Language
@@ -31,8 +32,6 @@ from mbsym.report.unit_text import labelled
 from mbsym.report.verdict_colours import NONE, Look
 from mbsym.source.meaning import meaning
 
-#: The version of ``schemas/equilibria_map.json`` that it follows.
-FORMAT = 1
 #: From few equilibria to many: told apart in grey, too.
 SHADES = ("#f7fbff", "#d6e6f4", "#abd0e6", "#6aaed6", "#3787c0", "#105ba4", "#08306b")
 _DARK = "#1a1a1a"
@@ -135,44 +134,43 @@ def _fill(axes: Axes, found: EquilibriaMap, branches: Branches, cell: Cell) -> N
 
 def equilibria_map_json(system: System, found: EquilibriaMap) -> str:
     """One JSON object, keys in a fixed order, the same text for the same input."""
-    data = {
-        "format": FORMAT,
-        "version": version(),
-        "system": system.name,
-        "description_sha256": meaning(system),
-        "axes": [{"name": x.name, "low": str(x.low), "high": str(x.high)} for x in found.axes],
-        "values": {name: str(value) for name, value in sorted(found.given.items())},
-        "interrupted": found.interrupted,
-        "unfinished": list(found.unfinished),
-        "curves": [
-            {"number": k, "polynomial": str(p), "origins": [x.value for x in of]}
+    data = doc.EquilibriaMap(
+        system=system.name,
+        description_sha256=meaning(system),
+        axes=[parts.Axis(name=x.name, low=str(x.low), high=str(x.high)) for x in found.axes],
+        values={name: str(value) for name, value in sorted(found.given.items())},
+        interrupted=found.interrupted,
+        unfinished=list(found.unfinished),
+        curves=[
+            doc.Curve(number=k, polynomial=str(p), origins=list(of))
             for k, (p, of) in enumerate(zip(found.arrangement.factors, found.origins, strict=True))
         ],
-        "regions": [
-            {
-                "number": one.number,
-                "sample": [str(x) for x in one.sample],
-                "standing": one.standing.value,
-                "count": one.count if one.counted else None,
-                "stable": one.stable if one.counted else None,
-                "stable_throughout": one.throughout,
-                "found_by_newton_elsewhere": one.confirmed,
-                "area": area,
-                "equilibria": [
-                    {
-                        "coordinates": [
-                            {"name": x.name, "value": x.text, "exact": x.exact, "number": x.value} for x in there.values
+        regions=[
+            doc.Region(
+                number=one.number,
+                sample=[str(x) for x in one.sample],
+                standing=one.standing,
+                count=one.count if one.counted else None,
+                stable=one.stable if one.counted else None,
+                stable_throughout=one.throughout,
+                found_by_newton_elsewhere=one.confirmed,
+                area=area,
+                equilibria=[
+                    branches.Equilibrium(
+                        coordinates=[
+                            parts.CoordinateValue(name=x.name, value=x.text, exact=x.exact, number=x.value)
+                            for x in there.values
                         ],
-                        "angles_of": there.coordinates_of or None,
-                        "stability": verdict_data(there.verdict),
-                    }
+                        angles_of=there.coordinates_of or None,
+                        stability=verdict_data(there.verdict),
+                    )
                     for there in one.equilibria
                 ],
-            }
+            )
             for one, (area, _) in zip(found.cells, found.areas, strict=True)
         ],
-    }
-    return json.dumps(data, indent=1, ensure_ascii=False) + "\n"
+    )
+    return written(data)
 
 
 def equilibria_map_tex(system: System, found: EquilibriaMap, language: Language) -> str:

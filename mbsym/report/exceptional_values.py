@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -13,6 +12,8 @@ from mbsym.problems.normal_forms import Judged, Outcome, Theorem
 from mbsym.problems.normal_forms.along import Along, Special
 from mbsym.problems.stability.sentences import with_theorem
 from mbsym.problems.stability.verdict import Verdict
+from mbsym.report.documents import nonlinear as doc
+from mbsym.report.documents.writer import written
 from mbsym.report.normal_form_words import REASONS, decimal
 from mbsym.report.sections.normal_forms import enclosure
 
@@ -112,43 +113,41 @@ def _polynomial(coefficients: Sequence[int], name: str) -> str:
 
 def as_text(system: System, found: Along) -> str:
     """JSON: ``between`` has one entry more than ``values``."""
-    whole = {
-        "format": 1,
-        "system": system.name,
-        "parameter": found.name,
-        "low": str(found.low),
-        "high": str(found.high),
-        "hamiltonian": found.hamiltonian,
-        "coordinates": list(found.coordinates),
-        "cyclic": list(found.cyclic),
-        "values": [
-            {
-                "value": _number(one),
-                "enclosure": enclosure(one.enclosure),
-                "root_of": list(map(str, one.polynomial)),
-                "vanishing": [VANISHING[key] for key in one.vanishing],
-                **_judged(one.judged),
-                **_of_problem_6(one.verdict),
-            }
+    whole = doc.Nonlinear(
+        system=system.name,
+        parameter=found.name,
+        low=str(found.low),
+        high=str(found.high),
+        hamiltonian=found.hamiltonian,
+        coordinates=list(found.coordinates),
+        cyclic=list(found.cyclic),
+        values=[
+            doc.ExceptionalValue(
+                value=_number(one),
+                enclosure=enclosure(one.enclosure),
+                root_of=list(map(str, one.polynomial)),
+                vanishing=[VANISHING[key] for key in one.vanishing],
+                **_judged(one.judged) | _of_problem_6(one.verdict),
+            )
             for one in found.specials
         ],
-        "between": [{"sample": str(one.sample), **_judged(one.judged)} for one in found.between],
-    }
-    return json.dumps(whole, indent=1, ensure_ascii=False) + "\n"
+        between=[doc.Between(sample=str(one.sample), **_judged(one.judged)) for one in found.between],
+    )
+    return written(whole)
 
 
 def _of_problem_6(verdict: Verdict | None) -> dict[str, Any]:
     """In place of what terms of higher order leave open."""
-    return {} if verdict is None else {"verdict": verdict.word.value, "theorem": verdict.theorem, "reason": ""}
+    return {} if verdict is None else {"verdict": verdict.word, "theorem": verdict.theorem, "reason": ""}
 
 
 def _judged(judged: Judged) -> dict[str, Any]:
     return {
-        "verdict": judged.outcome.value,
-        "theorem": judged.theorem.value,
-        "reason": judged.why.value,
+        "verdict": judged.outcome,
+        "theorem": judged.theorem,
+        "reason": judged.why,
         "frequencies": list(map(enclosure, judged.frequencies)),
-        "determinants": [{"order": order, "value": enclosure(value)} for order, value in judged.determinants],
+        "determinants": [doc.Determinant(order=order, value=enclosure(value)) for order, value in judged.determinants],
         "coefficient": None if judged.coefficient is None else enclosure(judged.coefficient),
         "amplitude_of": judged.amplitude_of,
         "along": judged.along,

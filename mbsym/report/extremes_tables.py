@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import csv
 import io
-import json
 from collections.abc import Iterator, Sequence
 from math import isfinite
 from typing import Any
+
+from msgspec import UNSET
 
 from mbsym.numerics.digits import FULL
 from mbsym.numerics.extremes import Extremes, Row
@@ -15,10 +16,8 @@ from mbsym.numerics.extremes_told import sentences
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
 from mbsym.numerics.singular import Singularities
 from mbsym.numerics.singular_positions import SingularPositions
-from mbsym.report.documents.writer import version
-
-#: The version of ``schemas/extremes.json`` that it follows.
-FORMAT = 1
+from mbsym.report.documents import extremes as doc
+from mbsym.report.documents.writer import written
 
 HEADER = (
     "kind",
@@ -58,106 +57,103 @@ def extremes_csv(found: Extremes) -> str:
 def extremes_json(found: Extremes) -> str:
     """Everything, with the sentences; numbers that are infinite are null."""
     rows = [
-        {
-            "kind": row.kind,
-            "subject": row.subject,
-            "size": row.size,
-            "quantity": row.quantity,
-            "digits": _rounded(row.found.digits),
-            "digits_of_worst_entry": _rounded(row.found.worst),
-            "formula_digits": round(row.found.formula, 2),
-            "condition": row.found.condition if isfinite(row.found.condition) else None,
-            "verdict": row.found.verdict,
-            "bits": row.found.bits,
-        }
+        doc.Row(
+            kind=row.kind,
+            subject=row.subject,
+            size=row.size,
+            quantity=row.quantity,
+            digits=_rounded(row.found.digits),
+            digits_of_worst_entry=_rounded(row.found.worst),
+            formula_digits=round(row.found.formula, 2),
+            condition=row.found.condition if isfinite(row.found.condition) else None,
+            verdict=row.found.verdict,
+            bits=row.found.bits,
+        )
         for row in found.rows
     ]
     verdicts = [
-        {
-            "kind": item.kind,
-            "subject": item.subject,
-            "size": item.size,
-            "exact": item.judged.exact.word,
-            "theorems": list(item.judged.exact.theorems),
-            "floats": dict(item.judged.floats),
-            "floats_wrong": {scalar: item.judged.wrong(scalar) for scalar in FULL},
-        }
+        doc.StabilityAt(
+            kind=item.kind,
+            subject=item.subject,
+            size=item.size,
+            exact=item.judged.exact.word,
+            theorems=list(item.judged.exact.theorems),
+            floats=dict(item.judged.floats),
+            floats_wrong={scalar: item.judged.wrong(scalar) for scalar in FULL},
+        )
         for item in found.verdicts
     ]
-    whole: dict[str, Any] = {
-        "format": FORMAT,
-        "version": version(),
-        "system": found.system.name,
-        "sentences": list(sentences(found)),
-        "left_out": list(found.left_out),
-        "singular": _singular(found.singularities),
-        "eigenvalues": [
-            {
-                "real": float(x.real.mid()),
-                "imaginary": float(x.imag.mid()),
-                "radius": float(max(x.real.rad(), x.imag.rad())),
-            }
+    whole = doc.Extremes(
+        system=found.system.name,
+        sentences=list(sentences(found)),
+        left_out=list(found.left_out),
+        singular=_singular(found.singularities),
+        eigenvalues=[
+            doc.Eigenvalue(
+                real=float(x.real.mid()),
+                imaginary=float(x.imag.mid()),
+                radius=float(max(x.real.rad(), x.imag.rad())),
+            )
             for x in found.eigenvalues
         ],
-        "compensated": [
-            {
-                "subject": one.subject,
-                "size": one.size,
-                "operations_in_pairs": one.found.sensitive,
-                "digits_without": round(one.found.before, 2),
-                "digits_with": round(one.found.after, 2),
-                "cost": round(one.found.cost, 3),
-            }
+        compensated=[
+            doc.Compensated(
+                subject=one.subject,
+                size=one.size,
+                operations_in_pairs=one.found.sensitive,
+                digits_without=round(one.found.before, 2),
+                digits_with=round(one.found.after, 2),
+                cost=round(one.found.cost, 3),
+            )
             for one in found.compensated
         ],
-        "rows": rows,
-        "stability": verdicts,
-    }
-    if found.positions is not None:
-        whole["singular_positions"] = _positions(found.positions)
-    return json.dumps(whole, indent=1, ensure_ascii=False) + "\n"
+        rows=rows,
+        stability=verdicts,
+        singular_positions=UNSET if found.positions is None else _positions(found.positions),
+    )
+    return written(whole)
 
 
-def _singular(found: Singularities | None) -> dict[str, Any] | None:
+def _singular(found: Singularities | None) -> doc.Singular | None:
     """Where M is singular; None where that was not to be had."""
     if found is None or not found.how:
         return None
     sets = [
-        {
-            "names": list(one.names),
-            "values": [value.label for value in one.values],
-            "equation": one.equation,
-            "places": [{name: float(x) for name, x in place.items()} for place in one.places],
-            "finite": one.finite,
-            "fails": one.kind,
-            "joint": one.joint,
-            "proved": one.proved,
-        }
+        doc.Set(
+            names=list(one.names),
+            values=[value.label for value in one.values],
+            equation=one.equation,
+            places=[{name: float(x) for name, x in place.items()} for place in one.places],
+            finite=one.finite,
+            fails=one.kind,
+            joint=one.joint,
+            proved=one.proved,
+        )
         for one in found.sets
     ]
-    return {
-        "complete": found.complete,
-        "how": found.how,
-        "ranges": {name: float(bound) for name, bound in found.ranges.items()},
-        "undecided": list(found.undecided),
-        "sets": sets,
-    }
+    return doc.Singular(
+        complete=found.complete,
+        how=found.how,
+        ranges={name: float(bound) for name, bound in found.ranges.items()},
+        undecided=list(found.undecided),
+        sets=sets,
+    )
 
 
-def _positions(found: SingularPositions) -> dict[str, Any]:
+def _positions(found: SingularPositions) -> doc.SingularPositions:
     """Where constraints lose their rank."""
     listed = [
-        {
-            "place": dict(one.place),
-            "labels": dict(one.labels),
-            "rank": one.rank,
-            "usual": one.usual,
-            "proved": one.proved,
-            "family": one.family,
-        }
+        doc.Found(
+            place=dict(one.place),
+            labels=dict(one.labels),
+            rank=one.rank,
+            usual=one.usual,
+            proved=one.proved,
+            family=one.family,
+        )
         for one in found.found
     ]
-    return {"starts": found.starts, "more": found.more, "found": listed}
+    return doc.SingularPositions(starts=found.starts, more=found.more, found=listed)
 
 
 def _rounded(digits: Any) -> dict[str, float]:

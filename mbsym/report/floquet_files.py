@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
-from typing import Any
 
 from mbsym.model.system import System
 from mbsym.numerics.floquet import Judged, Multiplier, Word
-from mbsym.report.documents.writer import version
+from mbsym.report.documents import floquet as doc
+from mbsym.report.documents.writer import written
 from mbsym.source.meaning import meaning
-
-#: The version of ``schemas/floquet.json`` that it follows.
-FORMAT = 1
 
 #: Digits of numbers that are shown.
 DIGITS = 12
@@ -33,32 +29,30 @@ _SAID = {
 
 def floquet_json(system: System, found: Judged) -> str:
     """The file's text."""
-    content: dict[str, Any] = {
-        "format": FORMAT,
-        "version": version(),
-        "system": system.name,
-        "description_sha256": meaning(system),
-        "verdict": found.word.name.lower(),
-        "motion": "proved" if found.rests else "verified numerically",
-        "lagrangian": found.lagrangian,
-        "frequency": str(found.frequency),
-        "period": found.period.str(30, radius=False),
-        "multipliers": [_multiplier(one) for one in found.multipliers],
-        "simple": found.simple,
-        "monodromy": [[entry.str(DIGITS) for entry in row] for row in found.monodromy.tolist()],
-        "steps": found.steps,
-    }
-    return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
+    content = doc.Floquet(
+        system=system.name,
+        description_sha256=meaning(system),
+        verdict=found.word.name.lower(),
+        motion="proved" if found.rests else "verified numerically",
+        lagrangian=found.lagrangian,
+        frequency=str(found.frequency),
+        period=found.period.str(30, radius=False),
+        multipliers=[_multiplier(one) for one in found.multipliers],
+        simple=found.simple,
+        monodromy=[[entry.str(DIGITS) for entry in row] for row in found.monodromy.tolist()],
+        steps=found.steps,
+    )
+    return written(content)
 
 
-def _multiplier(one: Multiplier) -> dict[str, Any]:
-    return {
-        "real": one.ball.real.str(DIGITS),
-        "imaginary": one.ball.imag.str(DIGITS),
-        "size_at_least": one.least,
-        "size_at_most": one.greatest,
-        "on_unit_circle": one.on_circle,
-    }
+def _multiplier(one: Multiplier) -> doc.Multiplier:
+    return doc.Multiplier(
+        real=one.ball.real.str(DIGITS),
+        imaginary=one.ball.imag.str(DIGITS),
+        size_at_least=one.least,
+        size_at_most=one.greatest,
+        on_unit_circle=one.on_circle,
+    )
 
 
 def sentences(found: Judged) -> Iterator[tuple[str, str]]:

@@ -7,10 +7,12 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from io import StringIO
-from typing import Any
+
+from msgspec import to_builtins
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.numerics.ledger.entry import NOT_NEEDED, SECONDS, Ledger, Measure, Saving
+from mbsym.report.documents.results import ledger as doc
 
 COLUMNS = ("kind", "what", "why", "how", "quantity", "unit", "without", "with", "saved", "at_least", "standing")
 
@@ -76,35 +78,35 @@ def ledger_csv(found: Ledger) -> str:
     return stream.getvalue()
 
 
-def ledger_data(found: Ledger) -> dict[str, Any]:
-    """The ledger as nested lists and dictionaries."""
-    return {"savings": [_saving(item) for item in found.savings], "not_measured": list(found.unmeasured)}
+def ledger_data(found: Ledger) -> doc.Ledger:
+    """The ledger as a part of results.json."""
+    return doc.Ledger(savings=[_saving(item) for item in found.savings], not_measured=list(found.unmeasured))
 
 
-def _saving(item: Saving) -> dict[str, Any]:
+def _saving(item: Saving) -> doc.Saving:
     measures = [
-        {
-            "quantity": measure.quantity,
-            "unit": measure.unit,
-            "without": measure.without,
-            "with": measure.taken,
-            "at_least": measure.at_least,
-        }
+        doc.Measure(
+            quantity=measure.quantity,
+            unit=measure.unit,
+            without=measure.without,
+            with_=measure.taken,
+            at_least=measure.at_least,
+        )
         for measure in item.measures
     ]
-    return {
-        "kind": item.kind,
-        "what": list(item.what),
-        "why": item.why,
-        "how": item.how,
-        "measures": measures,
-        "standing": item.standing,
-        "error": item.error,
-        "tolerable": item.tolerable,
-    }
+    return doc.Saving(
+        kind=item.kind,
+        what=list(item.what),
+        why=item.why,
+        how=item.how,
+        measures=measures,
+        standing=item.standing,
+        error=item.error,
+        tolerable=item.tolerable,
+    )
 
 
 def with_ledger(results: str, found: Ledger) -> str:
     """The text of ``results.json`` with the ledger in it."""
-    content = json.loads(results) | {"ledger": ledger_data(found)}
+    content = json.loads(results) | {"ledger": to_builtins(ledger_data(found))}
     return json.dumps(content, indent=2, sort_keys=True, ensure_ascii=False) + "\n"

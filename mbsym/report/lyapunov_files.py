@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Sequence
 from math import isfinite
 from typing import Any
@@ -15,13 +14,11 @@ from matplotlib.figure import Figure
 
 from mbsym.model.system import System
 from mbsym.numerics.lyapunov import Exponents, Parting
-from mbsym.report.documents.writer import version
+from mbsym.report.documents import lyapunov as doc
+from mbsym.report.documents.writer import written as document
 from mbsym.report.drawing import BLUE, GREY, pictures
 from mbsym.report.trajectory_csv import written
 from mbsym.source.meaning import meaning
-
-#: The version of ``schemas/lyapunov.json`` that it follows.
-FORMAT = 1
 
 
 def lyapunov_csv(found: Exponents) -> str:
@@ -31,22 +28,20 @@ def lyapunov_csv(found: Exponents) -> str:
 
 def lyapunov_json(system: System, found: Exponents) -> str:
     """The file's text."""
-    content: dict[str, Any] = {
-        "format": FORMAT,
-        "version": version(),
-        "system": system.name,
-        "description_sha256": meaning(system),
-        "time": found.time,
-        "exponents": [
-            {"value": _finite(value), "uncertainty": _finite(doubt)}
+    content = doc.Lyapunov(
+        system=system.name,
+        description_sha256=meaning(system),
+        time=found.time,
+        exponents=[
+            doc.Exponent(value=_finite(value), uncertainty=_finite(doubt))
             for value, doubt in zip(found.values, found.uncertainty, strict=True)
         ],
-        "largest": found.parting.name.lower().removesuffix("_over_this_time") if len(found.times) else None,
-        "divergence": _finite(found.divergence),
-        "sum_error": _finite(found.sum_error),
-        "ended": None if found.ended is None else str(found.ended),
-    }
-    return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
+        largest=found.parting.name.lower().removesuffix("_over_this_time") if len(found.times) else None,
+        divergence=_finite(found.divergence),
+        sum_error=_finite(found.sum_error),
+        ended=None if found.ended is None else str(found.ended),
+    )
+    return document(content)
 
 
 def lyapunov_figure(system: System, found: Exponents, formats: Sequence[str]) -> dict[str, bytes]:

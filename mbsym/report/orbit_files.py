@@ -5,23 +5,19 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from math import isfinite
-from typing import Any
 
 import numpy as np
 
 from mbsym.expressions.counting import counted
 from mbsym.model.quantities import marked, unit_of
 from mbsym.numerics.periodic import Orbit
-from mbsym.report.documents.writer import version
+from mbsym.report.documents import orbit as doc
+from mbsym.report.documents.writer import written as document
 from mbsym.report.trajectory_csv import written
 from mbsym.simulation.motions import PeriodicMotion
 from mbsym.source.meaning import meaning
-
-#: The version of ``schemas/orbit.json`` that it follows.
-FORMAT = 1
 
 
 def orbit_csv(found: PeriodicMotion) -> str:
@@ -33,31 +29,30 @@ def orbit_csv(found: PeriodicMotion) -> str:
 def orbit_json(found: PeriodicMotion) -> str:
     """The file's text."""
     orbit, system = found.orbit, found.scenario.system
-    content: dict[str, Any] = {
-        "format": FORMAT,
-        "version": version(),
-        "system": system.name,
-        "description_sha256": meaning(system),
-        "initial": dict(zip(orbit.names, map(float, orbit.state), strict=True)),
-        "period": orbit.period,
-        "turns": {name: float(turn) for name, turn in zip(orbit.names, orbit.turns, strict=True) if turn},
-        "energy": orbit.energy,
-        "closure": orbit.closure,
-        "verified": {"closure": orbit.verified if isfinite(orbit.verified) else None, "method": orbit.verifier},
-        "newton_steps": orbit.steps,
-        "autonomous": orbit.autonomous,
-        "multipliers": [
-            {"real": float(mu.real), "imaginary": float(mu.imag), "size": float(abs(mu))} for mu in orbit.multipliers
+    content = doc.Orbit(
+        system=system.name,
+        description_sha256=meaning(system),
+        initial=dict(zip(orbit.names, map(float, orbit.state), strict=True)),
+        period=orbit.period,
+        turns={name: float(turn) for name, turn in zip(orbit.names, orbit.turns, strict=True) if turn},
+        energy=orbit.energy,
+        closure=orbit.closure,
+        verified=doc.Verified(closure=orbit.verified if isfinite(orbit.verified) else None, method=orbit.verifier),
+        newton_steps=orbit.steps,
+        autonomous=orbit.autonomous,
+        multipliers=[
+            doc.Multiplier(real=float(mu.real), imaginary=float(mu.imag), size=float(abs(mu)))
+            for mu in orbit.multipliers
         ],
-        "uncertainty": orbit.uncertainty,
-        "determinant": orbit.determinant,
-        "trivial": {
-            "count": orbit.trivial,
-            "reasons": [{"reason": one.reason, "moved": one.moved} for one in orbit.reasons],
-        },
-        "monodromy": [[float(x) for x in row] for row in orbit.monodromy],
-    }
-    return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
+        uncertainty=orbit.uncertainty,
+        determinant=orbit.determinant,
+        trivial=doc.Trivial(
+            count=orbit.trivial,
+            reasons=[doc.Reason(reason=one.reason, moved=one.moved) for one in orbit.reasons],
+        ),
+        monodromy=[[float(x) for x in row] for row in orbit.monodromy],
+    )
+    return document(content)
 
 
 def sentences(found: PeriodicMotion) -> Iterator[tuple[str, str]]:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 from mbsym.expressions.counting import counted
 from mbsym.formulas.formula import Column, Formula, Matrix
 from mbsym.report.conditions import Statement
+from mbsym.report.documents.parts import Counted
 
 #: The text of a formula; of one that is not written out, its length and a digest of it.
-Written = str | dict[str, Any]
+Written = str | Counted
 Write = Callable[[Formula], Written]
 
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 import shlex
 from collections.abc import Iterator, Sequence
 from math import isfinite
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from msgspec import UNSET
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.expressions.counting import counted
@@ -37,6 +39,7 @@ from mbsym.numerics.plan import (
     Share,
 )
 from mbsym.report.certificate import at_most
+from mbsym.report.documents import simulation as doc
 
 if TYPE_CHECKING:
     from mbsym.expressions.condition import Condition
@@ -202,31 +205,31 @@ def repeating_command(file: str, settings: Sequence[str], request: Request, carr
 # --- simulation.json ---
 
 
-def model_json(model: Model) -> dict[str, Any]:
+def model_json(model: Model) -> doc.Model:
     """What is in the equations."""
-    return {"gravity": model.gravity, "linear": model.linear, "without": list(model.without)}
+    return doc.Model(gravity=model.gravity, linear=model.linear, without=list(model.without))
 
 
-def plan_json(plan: Plan, request: Request) -> dict[str, Any]:
+def plan_json(plan: Plan, request: Request) -> doc.Plan:
     """The plan without seconds, which no two runs share."""
-    return {
-        "accuracy": {"everything": plan.accuracy.everything, "named": dict(plan.accuracy.named)},
-        "reached": plan.reached,
-        "bounds": [
-            {
-                "quantity": bound.quantity,
-                "target": bound.target,
-                "total": bound.total,
-                "how": bound.how,
-                "shares": [{"name": x.name, "error": x.error, "how": x.how or "together"} for x in bound.shares],
-                **({} if bound.proved is None else {"proved_at_rows": bound.proved}),
-            }
+    return doc.Plan(
+        accuracy=doc.Accuracy(everything=plan.accuracy.everything, named=dict(plan.accuracy.named)),
+        reached=plan.reached,
+        bounds=[
+            doc.Bound(
+                quantity=bound.quantity,
+                target=bound.target,
+                total=bound.total,
+                how=bound.how,
+                shares=[doc.Share(name=x.name, error=x.error, how=x.how or "together") for x in bound.shares],
+                proved_at_rows=UNSET if bound.proved is None else bound.proved,
+            )
             for bound in plan.bounds
         ],
-        "items": [
-            {"kind": x.kind, "what": list(x.what), "chosen": x.chosen, "why": x.why, "error": x.error, "how": x.how}
+        items=[
+            doc.Item(kind=x.kind, what=list(x.what), chosen=x.chosen, why=x.why, error=x.error, how=x.how)
             for x in plan.items
         ],
-        "remarks": list(plan.remarks),
-        "options": repeating_options(request),
-    }
+        remarks=list(plan.remarks),
+        options=repeating_options(request),
+    )

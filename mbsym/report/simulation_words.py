@@ -11,6 +11,7 @@ from mbsym.model.quantities import with_unit
 from mbsym.numerics.accuracy import Against, ErrorEstimate, Lacking, NoEstimate
 from mbsym.numerics.conservation import Conservation, Standing
 from mbsym.numerics.methods.interface import Change
+from mbsym.report.documents import simulation as doc
 
 if TYPE_CHECKING:
     from mbsym.numerics.scenario import Scenario
@@ -120,51 +121,51 @@ def conservation_json(found: Conservation) -> dict[str, Any]:
     """``conserved`` is true, false or null; ``how`` says how that is known."""
     return {
         "conserved": found.standing.conserved,
-        "how": found.standing.value,
+        "how": found.standing,
         "doubt": found.doubt.name.lower() if found.doubt is not None else None,
         "largest_relative_drift": found.change,
         "relative_to": found.scale,
     }
 
 
-def error_json(found: ErrorEstimate | NoEstimate) -> dict[str, Any]:
+def error_json(found: ErrorEstimate | NoEstimate) -> doc.Estimate | doc.NoEstimate:
     """The estimate with what it was made of, or why there is none."""
     if isinstance(found, NoEstimate):
-        return {"available": False, "why": found.why.name.lower()}
+        return doc.NoEstimate(available=False, why=found.why.name.lower())
     against = found.against
-    return {
-        "available": True,
-        "final": found.final,
-        "largest": found.largest,
-        "how": "better run",
-        "against": {
-            "method": against.method,
-            "arithmetic": against.scalar,
-            "tolerance": against.setting.tolerance,
-            "step": against.setting.step,
-            "longest_step": against.setting.longest,
-        },
-        "lower_bound": found.parted is not None,
-        "parted": found.parted,
-        "over": {
-            "from": 0.0,
-            "to": found.compared.end,
-            "samples": found.compared.points,
-            "every_step": found.compared.followed,
-        },
-        "quantities": {
-            q.name: {
-                "final": q.final,
-                "largest": q.largest,
-                "when": q.when,
-                "size": q.size,
-                "scale": q.scale,
-                "floor": q.floor,
-                "rests": q.rests,
-            }
+    return doc.Estimate(
+        available=True,
+        final=found.final,
+        largest=found.largest,
+        how="better run",
+        against=doc.Against(
+            method=against.method,
+            arithmetic=against.scalar,
+            tolerance=against.setting.tolerance,
+            step=against.setting.step,
+            longest_step=against.setting.longest,
+        ),
+        lower_bound=found.parted is not None,
+        parted=found.parted,
+        over=doc.Over(
+            from_=0.0,
+            to=found.compared.end,
+            samples=found.compared.points,
+            every_step=found.compared.followed,
+        ),
+        quantities={
+            q.name: doc.QuantityError(
+                final=q.final,
+                largest=q.largest,
+                when=q.when,
+                size=q.size,
+                scale=q.scale,
+                floor=q.floor,
+                rests=q.rests,
+            )
             for q in found.quantities
         },
-    }
+    )
 
 
 def inputs_line(given: Scenario) -> str:

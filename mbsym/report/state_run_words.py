@@ -6,9 +6,11 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from msgspec import UNSET, UnsetType
 
 from mbsym.model.states import InStates
 from mbsym.numerics.states import StateDynamics, has_quaternions, norm_drifts
+from mbsym.report.documents import simulation as doc
 
 if TYPE_CHECKING:
     from mbsym.simulation import Simulation
@@ -41,15 +43,13 @@ def state_lines(run: Simulation) -> Iterator[tuple[str, str]]:
         yield "drift", f"{what} restored after every step; what is left of it at the rows is {worst:.1e} at most"
 
 
-def states_json(run: Simulation) -> dict[str, Any]:
+def states_json(run: Simulation) -> doc.Variables | UnsetType:
     """What simulation.json says; nothing for a run in coordinates."""
     if not isinstance(run.system, InStates):
-        return {}
+        return UNSET
     drifts = {name: float(np.max(values)) for name, values in norm_columns(run).items()}
-    return {
-        "variables": {
-            "positions": list(run.system.positions),
-            "speeds": list(run.system.own_speeds),
-            "norm_drift": drifts,
-        }
-    }
+    return doc.Variables(
+        positions=list(run.system.positions),
+        speeds=list(run.system.own_speeds),
+        norm_drift=drifts,
+    )

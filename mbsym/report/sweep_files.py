@@ -5,7 +5,6 @@ Numbers have 17 digits, so that a row can be tried again; words stand for themse
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from io import BytesIO
 from math import isfinite
@@ -15,16 +14,14 @@ import numpy as np
 
 from mbsym.model.system import System
 from mbsym.numerics.variation import Grid, Variation
-from mbsym.report.documents.writer import version
+from mbsym.report.documents import sweep as doc
+from mbsym.report.documents.writer import written
 from mbsym.report.trajectory_csv import header, rows
 from mbsym.source.meaning import meaning
 from mbsym.sweeps.judged import VERDICT
 from mbsym.sweeps.measure import Column
 from mbsym.sweeps.points import Points
 from mbsym.sweeps.statistics import LEVEL, Share, Totals
-
-#: The version of ``schemas/sweep.json`` that it follows.
-FORMAT = 1
 
 Part = tuple[Any, Mapping[str, Any]]
 
@@ -97,49 +94,47 @@ def sweep_json(
     """
     random = not points.grids and points.sampling == "random"
     judged = any(column.name == VERDICT.name for column in columns)
-    content: dict[str, Any] = {
-        "format": FORMAT,
-        "version": version(),
-        "system": system.name,
-        "description_sha256": meaning(system),
-        "measure": measure,
-        "points": points.count,
-        "table": table,
-        "varied": [_variation(one) for one in points.variations],
-        "sampling": None if points.grids else points.sampling,
-        "seed": None if points.grids else points.seed,
-        "settings": dict(settings),
-        "columns": [{"name": column.name, "meaning": column.meaning} for column in columns],
-        "shares": [_share(one) for one in totals.shares(random)] if judged else [],
-        "stable": _share(totals.stable(random)) if judged else None,
-        "singly": totals.singly if judged else None,
-        "ranges": [
-            {
-                "column": one.column,
-                "least": _finite(one.least),
-                "mean": _finite(one.mean),
-                "greatest": _finite(one.greatest),
-                "missing": one.missing,
-            }
+    content = doc.Sweep(
+        system=system.name,
+        description_sha256=meaning(system),
+        measure=measure,
+        points=points.count,
+        table=table,
+        varied=[_variation(one) for one in points.variations],
+        sampling=None if points.grids else points.sampling,
+        seed=None if points.grids else points.seed,
+        settings=dict(settings),
+        columns=[doc.Column(name=column.name, meaning=column.meaning) for column in columns],
+        shares=[_share(one) for one in totals.shares(random)] if judged else [],
+        stable=_share(totals.stable(random)) if judged else None,
+        singly=totals.singly if judged else None,
+        ranges=[
+            doc.Range(
+                column=one.column,
+                least=_finite(one.least),
+                mean=_finite(one.mean),
+                greatest=_finite(one.greatest),
+                missing=one.missing,
+            )
             for one in totals.ranges()
         ],
-        "dependence": [{"name": name, "value": value} for name, value in totals.dependence()],
-        "left_out": list(left_out),
-    }
-    return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
+        dependence=[doc.Dependence(name=name, value=value) for name, value in totals.dependence()],
+        left_out=list(left_out),
+    )
+    return written(content)
 
 
-def _variation(one: Variation) -> dict[str, Any]:
+def _variation(one: Variation) -> doc.Varied:
     if isinstance(one, Grid):
-        return {"name": one.name, "kind": "grid", "low": one.low, "high": one.high, "count": one.count}
-    return {"name": one.name, "kind": one.kind, "first": one.first, "second": one.second}
+        return doc.Varied(name=one.name, kind="grid", low=one.low, high=one.high, count=one.count)
+    return doc.Varied(name=one.name, kind=one.kind, first=one.first, second=one.second)
 
 
-def _share(one: Share) -> dict[str, Any]:
+def _share(one: Share) -> doc.Share:
     found = None
     if one.interval is not None:
-        found = {"low": one.interval[0], "high": one.interval[1], "confidence": LEVEL}
-    return {"word": one.word, "count": one.count, "total": one.total, "interval": found}
+        found = doc.Interval(low=one.interval[0], high=one.interval[1], confidence=LEVEL)
+    return doc.Share(word=one.word, count=one.count, total=one.total, interval=found)
 
 
 def _finite(value: float) -> float | None:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated
 
 from mbsym.maps.branches_events import Event
 from mbsym.maps.branches_result import Doubt
-from mbsym.report.documents.base import ASIDE, Hashed, Part
-from mbsym.report.documents.equilibria import CoordinateValue
-from mbsym.report.documents.parts import Axis, Number, Verdict
+from mbsym.report.documents.base import ASIDE, Hashed, Part, words
+from mbsym.report.documents.parts import Axis, CoordinateValue, Number, Verdict
 
 
 class Remark(Part, frozen=True):
@@ -59,14 +58,17 @@ class CriticalValue(Part, frozen=True):
     intervals: Annotated[list[int | None], "the intervals below and above, by number from 0; null beyond an end"]
     events: Annotated[
         list[
-            Literal[
-                "fold",
-                "vertical tangent",
-                "transcritical",
-                "isolated point",
-                "pitchfork",
-                "continuum",
-                "degenerate, not named",
+            Annotated[
+                str,
+                words(
+                    "fold",
+                    "vertical tangent",
+                    "transcritical",
+                    "isolated point",
+                    "pitchfork",
+                    "continuum",
+                    "degenerate, not named",
+                ),
             ]
         ],
         "what happens, each as often as it does",

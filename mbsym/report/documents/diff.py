@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from mbsym.report.documents.base import Part, words
+from mbsym.report.documents.base import Format, Part, words
 
 
 class RenamedRow(Part, frozen=True):
@@ -46,9 +46,9 @@ class OnlyIn(Part, frozen=True):
     b: Annotated[list[str], "in B only"]
 
 
-class Diff(Part, frozen=True):
+class Diff(Part, frozen=True, kw_only=True):
     """What changed from A to B."""
 
-    format: Annotated[int, words(1), "version of this format"]
+    format: Format = 1
     systems: Annotated[list[SystemDiff], "systems that are in both"]
     only_in: OnlyIn

@@ -61,12 +61,12 @@ class Ensemble(Hashed, frozen=True, kw_only=True):
     """Many motions of one system: what varied, who ended early, how the members are spread at the end."""
 
     status: Annotated[str, words("whole", "partial"), "whether it was interrupted"]
-    members: Annotated[int, "how many members there are, those that ended early included"]
-    varied: Annotated[list[Varied], "what varies", told_apart_by("name")]
     inputs: Annotated[
         dict[str, str] | UnsetType,
         "what the inputs of the description were: formulas by name; only where it has inputs",
     ] = UNSET
+    members: Annotated[int, "how many members there are, those that ended early included"]
+    varied: Annotated[list[Varied], "what varies", told_apart_by("name")]
     seed: Annotated[int | None, "of what is drawn at random; null for grids"]
     sampling: Annotated[str, words("grid", "random", "sobol"), "how members were chosen"]
     time: Time

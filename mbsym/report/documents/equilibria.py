@@ -7,16 +7,7 @@ from typing import Annotated
 from msgspec import UNSET, UnsetType
 
 from mbsym.report.documents.base import Head, Part
-from mbsym.report.documents.parts import Verdict
-
-
-class CoordinateValue(Part, frozen=True):
-    """a coordinate's value"""
-
-    name: Annotated[str, "the coordinate"]
-    value: Annotated[str, "the value as text: exact where exact is true"]
-    exact: Annotated[bool, "whether the text is exact"]
-    number: Annotated[float, "the value as a double"]
+from mbsym.report.documents.parts import CoordinateValue, Verdict
 
 
 class Equilibrium(Part, frozen=True):

@@ -105,7 +105,6 @@ class Extremes(Head, frozen=True, kw_only=True):
     sentences: Annotated[list[str], "what follows from the rows, in sentences"]
     left_out: Annotated[list[str], "what was not measured, and why, in sentences"]
     singular: Singular | None
-    singular_positions: SingularPositions | UnsetType = UNSET
     eigenvalues: Annotated[
         list[Eigenvalue],
         "of the first approximation at the given values, with multiplicity; empty where they were not enclosed",
@@ -115,3 +114,4 @@ class Extremes(Head, frozen=True, kw_only=True):
     ]
     rows: Annotated[list[Row], "measurements"]
     stability: Annotated[list[StabilityAt], "verdicts"]
+    singular_positions: SingularPositions | UnsetType = UNSET

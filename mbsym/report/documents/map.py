@@ -18,20 +18,7 @@ from mbsym.report.documents.base import Hashed, Part, words
 from mbsym.report.documents.parts import Axis, Number, Verdict
 
 
-class Demand(Part, frozen=True):
-    """polynomial relation 0"""
-
-    origin: Annotated[Origin, "which condition it is"]
-    subsystem: Annotated[
-        int | None, "the subsystem it belongs to, by its place in subsystems; nothing for the whole system"
-    ]
-    about: Annotated[str, "which factor, assumption, parameter or body"]
-    reduced: Annotated[bool, "whether it belongs to the system that Routh's reduction leaves"]
-    polynomial: Annotated[str, "in the axes"]
-    relation: Annotated[str, words(">", ">=", "!="), "to zero"]
-
-
-class Vanishing(Part, frozen=True):
+class Condition(Part, frozen=True):
     """a condition of which the curve is a border"""
 
     origin: Annotated[Origin, "which condition it is"]
@@ -42,12 +29,19 @@ class Vanishing(Part, frozen=True):
     reduced: Annotated[bool, "whether it belongs to the system that Routh's reduction leaves"]
 
 
+class Demand(Condition, frozen=True):
+    """polynomial relation 0"""
+
+    polynomial: Annotated[str, "in the axes"]
+    relation: Annotated[str, words(">", ">=", "!="), "to zero"]
+
+
 class Curve(Part, frozen=True):
     """a curve"""
 
     number: Annotated[int, "its place in this list"]
     polynomial: Annotated[str, "in the axes"]
-    conditions: Annotated[list[Vanishing], "the conditions that it comes from"]
+    conditions: Annotated[list[Condition], "the conditions that it comes from"]
 
 
 class Finding(Part, frozen=True):
@@ -69,8 +63,8 @@ class MapCheck(Part, frozen=True):
     findings: Annotated[list[Finding], "what did not agree"]
 
 
-class Region(Part, frozen=True):
-    """a region"""
+class Place(Part, frozen=True, kw_only=True):
+    """a place and what is proved there"""
 
     number: Annotated[int, "its place in this list"]
     point: Annotated[list[Number], "the exact point at which it was judged, a coordinate for each axis"]
@@ -82,13 +76,18 @@ class Region(Part, frozen=True):
     negative_eigenvalues_of_K: Annotated[int | None, "Poincare's degree of instability"]
     zero_eigenvalues_of_K: Annotated[int | None, "how many of K's eigenvalues vanish"]
     border: Annotated[Border | None, "of arcs and corners: what is special about the roots there"]
+
+
+class Region(Place, frozen=True, kw_only=True):
+    """a region"""
+
     signs: Annotated[list[int], "signs of the curves' polynomials there"]
     arcs: Annotated[list[int], "the arcs that bound it"]
-    area: Annotated[float, "its area"]
-    area_error: Annotated[float, "an estimate of the area's error"]
     ends: Annotated[
         list[int | None] | UnsetType, "of an interval: the corners at which it ends; nothing: an end of the line"
     ] = UNSET
+    area: Annotated[float, "its area"]
+    area_error: Annotated[float, "an estimate of the area's error"]
 
 
 class Along(Part, frozen=True):
@@ -139,19 +138,9 @@ class SoftOrHard(Part, frozen=True):
     ]
 
 
-class Arc(Part, frozen=True, kw_only=True):
+class Arc(Place, frozen=True, kw_only=True):
     """an arc"""
 
-    number: Annotated[int, "its place in this list"]
-    point: Annotated[list[Number], "the exact point at which it was judged, a coordinate for each axis"]
-    standing: Annotated[Standing, "whether there is a verdict, and if not, why"]
-    broken: Annotated[list[str], "what is not kept there"]
-    stability: Annotated[Verdict | None, "the verdict of problem 6; nothing where none is given"]
-    unstable_roots: Annotated[int | None, "roots with a positive real part, with multiplicity, over all subsystems"]
-    real_unstable_roots: Annotated[int | None, "how many of them are real"]
-    negative_eigenvalues_of_K: Annotated[int | None, "Poincare's degree of instability"]
-    zero_eigenvalues_of_K: Annotated[int | None, "how many of K's eigenvalues vanish"]
-    border: Annotated[Border | None, "of arcs and corners: what is special about the roots there"]
     soft_or_hard: Annotated[SoftOrHard | UnsetType | None, "what terms of third order decide there"] = UNSET
     curves: Annotated[list[int], "the curves that it is part of"]
     regions: Annotated[
@@ -162,19 +151,9 @@ class Arc(Part, frozen=True, kw_only=True):
     separates: Annotated[bool, "whether what the picture shows differs between its sides"]
 
 
-class Corner(Part, frozen=True, kw_only=True):
+class Corner(Place, frozen=True, kw_only=True):
     """a corner"""
 
-    number: Annotated[int, "its place in this list"]
-    point: Annotated[list[Number], "the exact point at which it was judged, a coordinate for each axis"]
-    standing: Annotated[Standing, "whether there is a verdict, and if not, why"]
-    broken: Annotated[list[str], "what is not kept there"]
-    stability: Annotated[Verdict | None, "the verdict of problem 6; nothing where none is given"]
-    unstable_roots: Annotated[int | None, "roots with a positive real part, with multiplicity, over all subsystems"]
-    real_unstable_roots: Annotated[int | None, "how many of them are real"]
-    negative_eigenvalues_of_K: Annotated[int | None, "Poincare's degree of instability"]
-    zero_eigenvalues_of_K: Annotated[int | None, "how many of K's eigenvalues vanish"]
-    border: Annotated[Border | None, "of arcs and corners: what is special about the roots there"]
     soft_or_hard: Annotated[SoftOrHard | UnsetType | None, "what terms of third order decide there"] = UNSET
     curves: Annotated[list[int], "the curves through it"]
     arcs: Annotated[list[int], "the arcs that meet there"]
@@ -267,7 +246,7 @@ class Map(Hashed, frozen=True, kw_only=True):
     demands: Annotated[list[Demand], "what parameters have to keep: declared signs, assumptions, triangle inequalities"]
     left_out: Annotated[list[str], "what they have to keep besides, but cannot be expressed in the axes"]
     curves: Annotated[list[Curve], "irreducible polynomials whose zeros are the curves"]
-    vanishing: Annotated[list[Vanishing], "conditions that are equalities in the whole plane"]
+    vanishing: Annotated[list[Condition], "conditions that are equalities in the whole plane"]
     interrupted: Annotated[bool, "whether some places were not reached"]
     check: Annotated[MapCheck | None, "the map's check of itself"]
     regions: Annotated[list[Region], "open regions of one verdict each"]

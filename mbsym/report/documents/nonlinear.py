@@ -6,7 +6,7 @@ from typing import Annotated
 
 from mbsym.problems.normal_forms.result import Outcome, Theorem, Why
 from mbsym.problems.stability.word import Word
-from mbsym.report.documents.base import Part, told_apart_by, words
+from mbsym.report.documents.base import Format, Part, told_apart_by, words
 
 
 class Determinant(Part, frozen=True):
@@ -77,10 +77,10 @@ class Between(Part, frozen=True):
     degree: Annotated[int | None, "M of that energy"]
 
 
-class Nonlinear(Part, frozen=True):
+class Nonlinear(Part, frozen=True, kw_only=True):
     """All values of a parameter at which terms of higher order decide otherwise than beside them."""
 
-    format: Annotated[int, words(1), "version of this format"]
+    format: Format = 1
     system: Annotated[str, "its name"]
     parameter: Annotated[str, "the parameter that is varied"]
     low: Annotated[str, "lower end of the open interval, a rational number"]

@@ -69,3 +69,12 @@ class Number(Part, frozen=True):
     ]
     between: Annotated[list[str] | None, "of an algebraic number: rational ends of an interval with this root alone"]
     number: Annotated[float, "the number in double precision"]
+
+
+class CoordinateValue(Part, frozen=True):
+    """a coordinate's value"""
+
+    name: Annotated[str, "the coordinate"]
+    value: Annotated[str, "the value as text: exact where exact is true"]
+    exact: Annotated[bool, "whether the text is exact"]
+    number: Annotated[float, "the value as a double"]

@@ -9,7 +9,7 @@ from msgspec import UNSET, Meta, UnsetType
 from mbsym.numerics.accuracy import Lacking
 from mbsym.numerics.conservation import Doubt, Standing
 from mbsym.numerics.surfaces import Action, Direction
-from mbsym.report.documents.base import ASIDE, SHA256, Part, told_apart_by, words
+from mbsym.report.documents.base import ASIDE, SHA256, Format, Part, told_apart_by, words
 
 
 class Variables(Part, frozen=True):
@@ -42,7 +42,7 @@ class Drift(Part, frozen=True):
     velocities: Annotated[float | str, "of all rows"]
 
 
-class Constraints(Part, frozen=True):
+class Constraints(Part, frozen=True, kw_only=True):
     """of a system with constraints: its rows, how its initial state was made to satisfy them, how far the run strays
     from them
     """
@@ -57,12 +57,12 @@ class Constraints(Part, frozen=True):
     ]
     free_velocities: Annotated[int, "velocities less independent rows"]
     start: Start
-    stepped_over: Annotated[list[float], "times near which steps went over singular positions of the constraints"]
+    drift: Drift
     singular: Annotated[
         list[Annotated[float, "a time"]],
         "times of singular positions of the constraints through which the motion was continued",
     ]
-    drift: Drift
+    stepped_over: Annotated[list[float], "times near which steps went over singular positions of the constraints"]
 
 
 class Ended(Part, frozen=True):
@@ -203,15 +203,15 @@ class Over(Part, frozen=True):
     ]
 
 
-class QuantityError(Part, frozen=True):
+class QuantityError(Part, frozen=True, kw_only=True):
     """one quantity"""
 
     final: Annotated[float | str, "error at the end"]
     largest: Annotated[float | str, "error at worst"]
     when: Annotated[float, "time of the error at worst"]
-    floor: Annotated[float | str, "a smaller size is rest but for rounding, and does not count as scale"]
     size: Annotated[float | str, "its largest value in the whole motion"]
     scale: Annotated[float | str, "what the error is relative to"]
+    floor: Annotated[float | str, "a smaller size is rest but for rounding, and does not count as scale"]
     rests: Annotated[bool, "whether it rests"]
 
 
@@ -324,7 +324,9 @@ class Model(Part, frozen=True):
     """what of the mechanics is in the equations"""
 
     gravity: Annotated[
-        Literal[2, 3, 4, "exact"] | None, "order of Newtonian gravity where it is not that of the description"
+        int | str | None,
+        "order of Newtonian gravity where it is not that of the description",
+        words(2, 3, 4, "exact"),
     ]
     linear: Annotated[bool, "whether they are linearised about the unperturbed motion"]
     without: Annotated[list[str], "parameters taken as zero"]
@@ -356,12 +358,12 @@ class Bound(Part, frozen=True, kw_only=True):
     target: Annotated[float | str, "the tolerable error"]
     total: Annotated[float | str, "the sum of the shares"]
     how: Annotated[str, words("proved", "measured", "estimated"), "the weakest way in which a share is known"]
+    shares: Annotated[list[Share], "model, integration, arithmetic"]
     proved_at_rows: Annotated[
         float | UnsetType,
         "a proved bound of integration and arithmetic together at the rows, of the quantity's largest value there",
         Meta(ge=0),
     ] = UNSET
-    shares: Annotated[list[Share], "model, integration, arithmetic"]
 
 
 class Item(Part, frozen=True):
@@ -400,14 +402,7 @@ class MethodChange(Part, frozen=True):
 class Simulation(Part, frozen=True, kw_only=True):
     """What a trajectory was computed from, how, with what work, and whether it is whole. Infinite numbers are text."""
 
-    variables: Variables | UnsetType = UNSET
-    constraints: Constraints | UnsetType = UNSET
-    format: Annotated[int, words(1), "version of this format"]
-    units: Annotated[
-        dict[str, Annotated[str, "its unit"]] | UnsetType,
-        "where the description declares units: those of t, coordinates, rates, parameters, prescribed motions, "
-        "energies and invariants, by name; 1 for a pure number, nothing where a unit does not follow",
-    ] = UNSET
+    format: Format = 1
     system: Annotated[str, "name of the description"]
     description_sha256: Annotated[str, "SHA-256 of the description as 'mbsym convert' writes it in YAML", SHA256]
     status: Annotated[str, words("whole", "partial"), "whether it reached its end"]
@@ -435,21 +430,25 @@ class Simulation(Part, frozen=True, kw_only=True):
         "SHA-256 of trajectory.csv or trajectory-partial.csv, which another run may go on from",
     ]
     versions: Annotated[dict[str, str], "of Python and of the packages that the numbers depend on", ASIDE]
+    units: Annotated[
+        dict[str, Annotated[str, "its unit"]] | UnsetType,
+        "where the description declares units: those of t, coordinates, rates, parameters, prescribed motions, "
+        "energies and invariants, by name; 1 for a pure number, nothing where a unit does not follow",
+    ] = UNSET
     energy: Energy
     generalized_energy: GeneralizedEnergy | UnsetType = UNSET
     invariants: Annotated[dict[str, Invariant], "first integrals, by their column"]
     estimated_error: Annotated[NoEstimate | Estimate, "the error, or why none is estimated"]
     resting: Resting | None
-    parts: Annotated[
-        list[SystemPart], "parts that nothing links, each integrated by itself; empty where all are linked"
-    ]
-    certificate: Certificate | UnsetType = UNSET
     events: Annotated[
         list[WatchedEvent] | UnsetType,
         "conditions that were watched for, --event and --stop, in their order; each occurrence is a row of events.csv",
     ] = UNSET
     stopped: Stopped | UnsetType | None = UNSET
     section: Section | UnsetType = UNSET
+    parts: Annotated[
+        list[SystemPart], "parts that nothing links, each integrated by itself; empty where all are linked"
+    ]
     model: Model
     plan: Plan | None
     method_changes: Annotated[
@@ -457,3 +456,6 @@ class Simulation(Part, frozen=True, kw_only=True):
         "where the run changed its method on the way, as the motion became stiff or ceased to be; 'method' is the "
         "one that it began with",
     ] = UNSET
+    constraints: Constraints | UnsetType = UNSET
+    variables: Variables | UnsetType = UNSET
+    certificate: Certificate | UnsetType = UNSET

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
-if TYPE_CHECKING:
-    from msgspec import Struct
+from msgspec import Struct, to_builtins
 
 T = TypeVar("T")
 
@@ -29,7 +28,14 @@ def headed(found: Mapping[str, T]) -> dict[str, T]:
 
 
 def written(document: Struct, indent: int = 1, sort_keys: bool = False) -> str:
-    """The text of a file: the same text for the same document."""
-    from msgspec import to_builtins
+    """The text of a file: keys in a fixed order, the same text for the same document."""
+    content = headed(to_builtins(document, enc_hook=_plain))
+    return json.dumps(content, indent=indent, sort_keys=sort_keys, ensure_ascii=False) + "\n"
 
-    return json.dumps(headed(to_builtins(document)), indent=indent, sort_keys=sort_keys, ensure_ascii=False) + "\n"
+
+def _plain(value: object) -> object:
+    """Numbers of NumPy and texts of types of their own as Python's."""
+    for kind in (float, int, str):
+        if isinstance(value, kind):
+            return kind(value)
+    raise TypeError(type(value))

@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, cast
 
+from msgspec import UNSET, UnsetType
+
 from mbsym.expressions.counting import counted
 from mbsym.model.system import System
 from mbsym.problems.equations import Equations
+from mbsym.report.documents.results import equations as doc
 from mbsym.report.plain import Write, column_text, matrix_text
 
 if TYPE_CHECKING:
@@ -17,14 +20,16 @@ if TYPE_CHECKING:
     from mbsym.problems.speeds import SpeedEquations
 
 
-def data(found: Equations, system: System, write: Write) -> dict[str, Any]:
+def data(found: Equations, system: System, write: Write) -> doc.Equations:
     """The section of results.json."""
-    section = {"mass_matrix": matrix_text(found.mass_matrix, write), "forcing": column_text(found.forcing, write)}
-    if found.in_speeds:
-        section |= _in_speeds(cast("SpeedEquations", found), write)
-    if found.constraints is not None:
-        section |= {"constraints": _constraints(found.constraints, write)} | _embedded(found, write)
-    return section
+    constraints = found.constraints
+    return doc.Equations(
+        mass_matrix=matrix_text(found.mass_matrix, write),
+        forcing=column_text(found.forcing, write),
+        **(_in_speeds(cast("SpeedEquations", found), write) if found.in_speeds else {}),
+        constraints=UNSET if constraints is None else _constraints(constraints, write),
+        embedded=UNSET if constraints is None else _embedded(found, write),
+    )
 
 
 def _in_speeds(found: SpeedEquations, write: Write) -> dict[str, Any]:
@@ -38,63 +43,64 @@ def _in_speeds(found: SpeedEquations, write: Write) -> dict[str, Any]:
     }
 
 
-def _constraints(found: Constraints, write: Write) -> dict[str, Any]:
+def _constraints(found: Constraints, write: Write) -> doc.Constraints:
     rows = [
-        {
-            "constraint": name.constraint + 1,
-            "component": name.component or None,
-            "kind": name.kind,
-            "holonomic": name.holonomic,
-            "position": None if position is None else write(position),
-            "velocity": write(velocity),
-            "independent": k in found.independent,
-        }
+        doc.ConstraintRow(
+            constraint=name.constraint + 1,
+            component=name.component or None,
+            kind=name.kind,
+            holonomic=name.holonomic,
+            position=None if position is None else write(position),
+            velocity=write(velocity),
+            independent=k in found.independent,
+        )
         for k, (name, position, velocity) in enumerate(zip(found.names, found.position, found.velocity, strict=True))
     ]
     integrable = found.integrability
-    return {
-        "rows": rows,
-        "jacobian": matrix_text(found.jacobian, write),
-        "acceleration": column_text(found.acceleration, write),
-        "position_rank": found.position_rank,
-        "velocity_rank": found.velocity_rank,
-        "degrees_of_freedom": len(found.free),
-        "redundant": [
-            {
-                "row": one.name.label,
-                "follows_from": [name.label for name in one.from_rows],
-                "known": one.certainty.value,
-            }
+    return doc.Constraints(
+        rows=rows,
+        jacobian=matrix_text(found.jacobian, write),
+        acceleration=column_text(found.acceleration, write),
+        position_rank=found.position_rank,
+        velocity_rank=found.velocity_rank,
+        degrees_of_freedom=len(found.free),
+        redundant=[
+            doc.RedundantRow(
+                row=one.name.label,
+                follows_from=[name.label for name in one.from_rows],
+                known=one.certainty.value,
+            )
             for one in found.redundant
         ],
-        "parameter_conditions": found.parameter_conditions,
-        "integrability": None
+        parameter_conditions=found.parameter_conditions,
+        integrability=None
         if integrable is None
-        else {
-            "word": integrable.word,
-            "growth": list(integrable.growth),
-            "kept": integrable.kept,
-            "known": integrable.certainty.value,
-        },
-        "integrable_alone": [{"row": name.label, "integrable": decided} for name, decided in found.alone],
-        "dependent": list(found.dependent),
-        "independent": list(found.free),
-    } | _solved(found.solved, write)
+        else doc.Integrability(
+            word=integrable.word,
+            growth=list(integrable.growth),
+            kept=integrable.kept,
+            known=integrable.certainty.value,
+        ),
+        integrable_alone=[doc.IntegrableAlone(row=name.label, integrable=decided) for name, decided in found.alone],
+        dependent=list(found.dependent),
+        independent=list(found.free),
+        **_solved(found.solved, write),
+    )
 
 
-def reaction_data(found: Sequence[Reaction], tied: Constraints | None, write: Write) -> list[dict[str, Any]]:
+def reaction_data(found: Sequence[Reaction], tied: Constraints | None, write: Write) -> list[doc.Reaction]:
     """What each joint transmits, for results.json."""
     names = [] if tied is None else [tied.names[i].label for i in tied.independent]
     return [
-        {
-            "body": one.body,
-            "force": column_text(one.force, write),
-            "moment": column_text(one.moment, write),
-            "per_multiplier": [
-                {"row": name, "force": column_text(force, write), "moment": column_text(moment, write)}
+        doc.Reaction(
+            body=one.body,
+            force=column_text(one.force, write),
+            moment=column_text(one.moment, write),
+            per_multiplier=[
+                doc.PerMultiplier(row=name, force=column_text(force, write), moment=column_text(moment, write))
                 for name, (force, moment) in zip(names, one.per_multiplier, strict=True)
             ],
-        }
+        )
         for one in found
     ]
 
@@ -111,11 +117,11 @@ def _solved(found: Solved | None, write: Write) -> dict[str, Any]:
     }
 
 
-def _embedded(found: Equations, write: Write) -> dict[str, Any]:
+def _embedded(found: Equations, write: Write) -> doc.Embedded | UnsetType:
     if found.embedded is None:
-        return {}
+        return UNSET
     matrix, forcing = found.embedded.mass_matrix, found.embedded.forcing
-    return {"embedded": {"mass_matrix": matrix_text(matrix, write), "forcing": column_text(forcing, write)}}
+    return doc.Embedded(mass_matrix=matrix_text(matrix, write), forcing=column_text(forcing, write))
 
 
 def lines(found: Equations, analysis: Analysis) -> Iterator[str]:

@@ -3,25 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from mbsym.expressions.tree import text
 from mbsym.model.system import System
 from mbsym.problems.equilibrium import Equilibrium
+from mbsym.report.documents import results as doc
 from mbsym.report.plain import Write, column_text, shortened
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
 
 
-def data(found: Equilibrium, system: System, write: Write) -> dict[str, Any]:
+def data(found: Equilibrium, system: System, write: Write) -> doc.Equilibrium:
     """The section of results.json."""
-    return {
-        "satisfied": found.satisfied,
-        "impossible": bool(found.impossible),
-        "conditions": column_text(found.conditions, write),
-        "solved": {name: str(value) for name, value in found.solved},
-    }
+    return doc.Equilibrium(
+        satisfied=found.satisfied,
+        impossible=bool(found.impossible),
+        conditions=column_text(found.conditions, write),
+        solved={name: str(value) for name, value in found.solved},
+    )
 
 
 def lines(found: Equilibrium, analysis: Analysis) -> Iterator[str]:

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from mbsym.model.system import System
 from mbsym.problems.integrals import Integral
+from mbsym.report.documents import results as doc
 from mbsym.report.plain import Write
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
 
 
-def data(found: tuple[Integral, ...], system: System, write: Write) -> list[dict[str, Any]]:
+def data(found: tuple[Integral, ...], system: System, write: Write) -> list[doc.Integral]:
     """The section of results.json."""
     return [
-        {"name": item.name, "kind": item.kind, "of": item.of, "formula": write(item.formula), "status": item.status}
+        doc.Integral(name=item.name, kind=item.kind, of=item.of, formula=write(item.formula), status=item.status)
         for item in found
     ]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
@@ -15,6 +15,7 @@ from mbsym.problems.invariant_sets import (
     SecondVariation,
     StationarySet,
 )
+from mbsym.report.documents.results import invariant_sets as doc
 from mbsym.report.even_powers import in_even_powers
 from mbsym.report.invariant_words import Medium, closing, family_title, of_family, of_set, opening, told_families
 from mbsym.report.plain import LONGEST, Write
@@ -24,70 +25,70 @@ if TYPE_CHECKING:
     from mbsym.analysis import Analysis
 
 
-def data(found: InvariantSets, system: System, write: Write) -> dict[str, Any]:
+def data(found: InvariantSets, system: System, write: Write) -> doc.InvariantSets:
     """The section of results.json."""
-    return {
-        "integrals": [{"name": name, "formula": write(x)} for name, x in found.integrals],
-        "left_out": list(found.left_out),
-        "relations": [write(x) for x in found.relations],
-        "stand_for": dict(found.written),
-        "families": [
-            {
-                "integrals": list(family.integrals),
-                "multipliers": list(family.multipliers),
-                "complete": not (family.unfinished or family.singular or family.parts),
-                "sets": [_set(one, write) for one in family.sets],
-            }
+    return doc.InvariantSets(
+        integrals=[doc.NamedFormula(name=name, formula=str(x)) for name, x in found.integrals],
+        left_out=list(found.left_out),
+        relations=[str(x) for x in found.relations],
+        stand_for=dict(found.written),
+        families=[
+            doc.Family(
+                integrals=list(family.integrals),
+                multipliers=list(family.multipliers),
+                complete=not (family.unfinished or family.singular or family.parts),
+                sets=[_set(one) for one in family.sets],
+            )
             for family in found.families
         ],
-        "provided_nonzero": [write(x) for x in found.generic],
-    }
+        provided_nonzero=[str(x) for x in found.generic],
+    )
 
 
-def _set(one: StationarySet, write: Write) -> dict[str, Any]:
+def _set(one: StationarySet) -> doc.InvariantSet:
     stands = one.invariant is True
-    return {
-        "kind": one.kind.value,
-        "dimension": one.dimension,
-        "dimension_of_union": one.union,
-        "solved": {name: write(x) for name, x in one.solved},
-        "relations": [write(x) for x in one.relations],
-        "nonzero": [write(x) for x in one.nonzero],
-        "free": list(one.free),
-        "multipliers": {name: None if x is None else write(x) for name, x in one.multipliers},
-        "motion": {name: write(x) for name, x in one.motion},
-        "invariant": {True: "proved", None: "undecided", False: "failed"}[one.invariant],
-        "real_point_found": one.real,
-        "second_variation": None if one.variation is None or not stands else _variation(one.variation, write),
-        "first_approximation": None if one.first is None else _first(one.first, write),
-        "gap": one.gap.value,
-    }
+    return doc.InvariantSet(
+        kind=one.kind,
+        dimension=one.dimension,
+        dimension_of_union=one.union,
+        solved={name: str(x) for name, x in one.solved},
+        relations=[str(x) for x in one.relations],
+        nonzero=[str(x) for x in one.nonzero],
+        free=list(one.free),
+        multipliers={name: None if x is None else str(x) for name, x in one.multipliers},
+        motion={name: str(x) for name, x in one.motion},
+        invariant={True: "proved", None: "undecided", False: "failed"}[one.invariant],
+        real_point_found=one.real,
+        second_variation=None if one.variation is None or not stands else _variation(one.variation),
+        first_approximation=None if one.first is None else _first(one.first),
+        gap=one.gap.value,
+    )
 
 
-def _variation(found: SecondVariation, write: Write) -> dict[str, Any]:
-    return {
-        "outcome": found.outcome.value,
-        "size": found.size,
-        "positive": None if found.positive is None else _relations(found.positive, write),
-        "negative": None if found.negative is None else _relations(found.negative, write),
-        "for_some_value_of": list(found.chosen),
-    }
+def _variation(found: SecondVariation) -> doc.SecondVariation:
+    return doc.SecondVariation(
+        outcome=found.outcome,
+        size=found.size,
+        positive=None if found.positive is None else _relations(found.positive),
+        negative=None if found.negative is None else _relations(found.negative),
+        for_some_value_of=list(found.chosen),
+    )
 
 
-def _first(found: FirstApproximation, write: Write) -> dict[str, Any]:
-    return {
-        "zero_roots": found.zeros,
-        "factors_in_lambda_squared": [[write(x) for x in factor] for factor in found.factors],
-        "necessary": _relations(found.necessary, write),
-        "unstable": found.unstable,
-        "complete": found.complete,
-        "roots_left_out": found.left,
-    }
+def _first(found: FirstApproximation) -> doc.FirstApproximation:
+    return doc.FirstApproximation(
+        zero_roots=found.zeros,
+        factors_in_lambda_squared=[[str(x) for x in factor] for factor in found.factors],
+        necessary=_relations(found.necessary),
+        unstable=found.unstable,
+        complete=found.complete,
+        roots_left_out=found.left,
+    )
 
 
-def _relations(relations: Sequence[Relation], write: Write) -> list[dict[str, Any]]:
+def _relations(relations: Sequence[Relation]) -> list[doc.SignCondition]:
     return [
-        {"formula": write(one.formula), "relation": one.relation, "unless_zero": [write(x) for x in one.unless]}
+        doc.SignCondition(formula=str(one.formula), relation=one.relation, unless_zero=[str(x) for x in one.unless])
         for one in relations
     ]
 

@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from msgspec import UNSET
+
 from mbsym.expressions.tree import text
 from mbsym.formulas.formula import Matrix
 from mbsym.model.system import System
 from mbsym.problems.linearisation import Linearisation
+from mbsym.report.documents.results import linearisation as doc
 from mbsym.report.plain import Write, Written, matrix_text
 
 if TYPE_CHECKING:
@@ -20,31 +23,33 @@ if TYPE_CHECKING:
 SHORT = 12
 
 
-def data(found: Linearisation, system: System, write: Write) -> dict[str, Any]:
+def data(found: Linearisation, system: System, write: Write) -> doc.Linearisation:
     """The section of results.json."""
-    return {
+    return doc.Linearisation(
         **_five(found, write),
-        **({} if found.B is None else {"B": matrix_text(found.B, write)}),
-        **({} if found.constrained is None else {"reduction": _reduction(found.constrained, write)}),
-        "subsystems": [{"coordinates": list(part.coordinates), **_five(part, write)} for part in found.subsystems],
-        "time": "t" if found.time_scale is None else f"({found.time_scale})*t",
-        "notation": {item.name: text(item.value) for item in system.notation},
-    }
+        B=UNSET if found.B is None else matrix_text(found.B, write),
+        reduction=UNSET if found.constrained is None else _reduction(found.constrained, write),
+        subsystems=[
+            doc.LinearSubsystem(coordinates=list(part.coordinates), **_five(part, write)) for part in found.subsystems
+        ],
+        time="t" if found.time_scale is None else f"({found.time_scale})*t",
+        notation={item.name: text(item.value) for item in system.notation},
+    )
 
 
-def _reduction(about: Reduction, write: Write) -> dict[str, Any]:
-    return {
-        "coordinates": list(about.coordinates),
-        "speeds": list(about.speeds),
-        "dependent_coordinates": list(about.dependent_coordinates),
-        "dependent_speeds": list(about.dependent_speeds),
-        "idle": list(about.idle),
-        **({"following": list(about.following)} if about.following else {}),
-        **({"leaf": about.leaf} if about.leaf else {}),
-        "rates": {name: write(rate) for name, rate in about.rates},
-        "assumed_nonzero": [write(x) for x in about.assumed],
-        "holonomic": about.holonomic,
-    }
+def _reduction(about: Reduction, write: Write) -> doc.Reduction:
+    return doc.Reduction(
+        coordinates=list(about.coordinates),
+        speeds=list(about.speeds),
+        dependent_coordinates=list(about.dependent_coordinates),
+        dependent_speeds=list(about.dependent_speeds),
+        idle=list(about.idle),
+        following=list(about.following) or UNSET,
+        leaf=about.leaf or UNSET,
+        rates={name: write(rate) for name, rate in about.rates},
+        assumed_nonzero=[write(x) for x in about.assumed],
+        holonomic=about.holonomic,
+    )
 
 
 def lines(found: Linearisation, analysis: Analysis) -> Iterator[str]:

@@ -10,6 +10,8 @@ from flint import arb
 from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
 from mbsym.problems.normal_forms import Focus, InSymbols, Judged, NormalForms
+from mbsym.report.documents.nonlinear import Determinant
+from mbsym.report.documents.results import normal_forms as doc
 from mbsym.report.normal_form_words import Medium, sentences
 from mbsym.report.plain import LONGEST, Write
 from mbsym.report.said import filled
@@ -18,57 +20,57 @@ if TYPE_CHECKING:
     from mbsym.analysis import Analysis
 
 
-def data(found: NormalForms, system: System, write: Write) -> dict[str, Any]:
+def data(found: NormalForms, system: System, write: Write) -> doc.NormalForms:
     """The section of results.json."""
     symbols = found.in_symbols
-    return {
-        "coordinates": list(found.coordinates),
-        "cyclic": list(found.cyclic),
-        "hamiltonian": found.conservative,
-        "generalized_potential": found.taken_in,
-        "first_approximation": None if found.first is None else found.first.value,
-        "at_values": None if found.at_values is None else _judged(found.at_values),
-        "two_frequencies": _in_symbols(symbols, write) if isinstance(symbols, InSymbols) else None,
-        "pair": _focus(symbols, write) if isinstance(symbols, Focus) else None,
-        "no_formula": found.no_symbols,
-    }
+    return doc.NormalForms(
+        coordinates=list(found.coordinates),
+        cyclic=list(found.cyclic),
+        hamiltonian=found.conservative,
+        generalized_potential=found.taken_in,
+        first_approximation=None if found.first is None else found.first.value,
+        at_values=None if found.at_values is None else _judged(found.at_values),
+        two_frequencies=_in_symbols(symbols, write) if isinstance(symbols, InSymbols) else None,
+        pair=_focus(symbols, write) if isinstance(symbols, Focus) else None,
+        no_formula=found.no_symbols,
+    )
 
 
-def _judged(found: Judged) -> dict[str, Any]:
-    return {
-        "verdict": found.outcome.value,
-        "theorem": found.theorem.value,
-        "reason": found.why.value,
-        "frequencies": list(map(enclosure, found.frequencies)),
-        "actions": [
-            {"first": i + 1, "second": j + 1, "coefficient": enclosure(value)} for (i, j), value in found.quadratic
+def _judged(found: Judged) -> doc.NormalFormAtValues:
+    return doc.NormalFormAtValues(
+        verdict=found.outcome,
+        theorem=found.theorem,
+        reason=found.why,
+        frequencies=list(map(enclosure, found.frequencies)),
+        actions=[
+            doc.ActionTerm(first=i + 1, second=j + 1, coefficient=enclosure(value)) for (i, j), value in found.quadratic
         ],
-        "determinants": [{"order": order, "value": enclosure(value)} for order, value in found.determinants],
-        "resonances": [list(one.vector) for one in found.resonances],
-        "coefficient": None if found.coefficient is None else enclosure(found.coefficient),
-        "amplitude_of": found.amplitude_of,
-        "along": found.along,
-        "degree": found.degree,
-    }
+        determinants=[Determinant(order=order, value=enclosure(value)) for order, value in found.determinants],
+        resonances=[list(one.vector) for one in found.resonances],
+        coefficient=None if found.coefficient is None else enclosure(found.coefficient),
+        amplitude_of=found.amplitude_of,
+        along=found.along,
+        degree=found.degree,
+    )
 
 
-def _in_symbols(found: InSymbols, write: Write) -> dict[str, Any]:
-    return {
-        "sum_of_squares": write(found.trace),
-        "product_of_squares": write(found.product),
-        "discriminant": write(found.discriminant),
-        "D4": write(found.determinant),
-        "D4_vanishes": write(found.zero),
-        "resonances": [{"ratio": list(vector), "vanishes": write(x)} for vector, x in found.resonances],
-    }
+def _in_symbols(found: InSymbols, write: Write) -> doc.TwoFrequencies:
+    return doc.TwoFrequencies(
+        sum_of_squares=write(found.trace),
+        product_of_squares=write(found.product),
+        discriminant=write(found.discriminant),
+        D4=write(found.determinant),
+        D4_vanishes=write(found.zero),
+        resonances=[doc.Resonance(ratio=list(vector), vanishes=write(x)) for vector, x in found.resonances],
+    )
 
 
-def _focus(found: Focus, write: Write) -> dict[str, Any]:
-    return {
-        "frequency_squared": write(found.square),
-        "coefficient": write(found.coefficient),
-        "amplitude_of": found.amplitude_of,
-    }
+def _focus(found: Focus, write: Write) -> doc.Pair:
+    return doc.Pair(
+        frequency_squared=write(found.square),
+        coefficient=write(found.coefficient),
+        amplitude_of=found.amplitude_of,
+    )
 
 
 def enclosure(x: Any) -> str:

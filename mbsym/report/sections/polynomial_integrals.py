@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
 from mbsym.problems.polynomial_integrals import Polynomials
 from mbsym.problems.symmetries import Symmetry
 from mbsym.report import symmetry_words
+from mbsym.report.documents import integrals
+from mbsym.report.documents.results import polynomial_integrals as doc
 from mbsym.report.integrals_words import level_title, sentences, title, weights
 from mbsym.report.plain import LONGEST, Write
 from mbsym.report.said import filled
@@ -19,40 +21,40 @@ if TYPE_CHECKING:
     from mbsym.analysis import Analysis
 
 
-def data(result: Polynomials, system: System, write: Write) -> dict[str, Any]:
+def data(result: Polynomials, system: System, write: Write) -> doc.PolynomialIntegrals:
     """The section of results.json."""
     found = result.found
-    return {
-        "degree": found.degree,
-        "weights": dict(zip(found.field.variables, found.grading.weights, strict=True)),
-        "quasi_homogeneous": found.grading.homogeneous,
-        "complete": found.complete,
-        "independent": found.independent,
-        "not_contained": list(found.aside),
-        "integrals": [
-            {
-                "weight": one.weight,
-                "name": one.name,
-                "new": one.is_new,
-                "formula": write(formula),
-                "independent": one.independent,
-                "independence": one.certainty.value,
-            }
+    return doc.PolynomialIntegrals(
+        degree=found.degree,
+        weights=dict(zip(found.field.variables, found.grading.weights, strict=True)),
+        quasi_homogeneous=found.grading.homogeneous,
+        complete=found.complete,
+        independent=found.independent,
+        not_contained=list(found.aside),
+        integrals=[
+            integrals.Integral(
+                weight=one.weight,
+                name=one.name,
+                new=one.is_new,
+                formula=str(formula),
+                independent=one.independent,
+                independence=one.certainty.value,
+            )
             for one, formula in zip(found.generators, result.formulas, strict=True)
         ],
-        "on_levels": [
-            {
-                "zero": one.level.name,
-                "integrals": [
-                    {"weight": weight, "formula": write(formula)}
+        on_levels=[
+            integrals.ZeroLevel(
+                zero=one.level.name,
+                integrals=[
+                    integrals.WeightedIntegral(weight=weight, formula=str(formula))
                     for (weight, _), formula in zip(one.integrals, formulas, strict=True)
                 ],
-                "complete": one.complete,
-            }
+                complete=one.complete,
+            )
             for one, formulas in zip(result.levels, result.on_levels, strict=True)
         ],
-        "symmetries": None if result.symmetries is None else symmetries_data(result.symmetries, write),
-    }
+        symmetries=None if result.symmetries is None else symmetries_data(result.symmetries),
+    )
 
 
 def lines(result: Polynomials, analysis: Analysis) -> Iterator[str]:

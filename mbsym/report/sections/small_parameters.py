@@ -9,6 +9,7 @@ from mbsym.analysis.small import SmallParameters
 from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
 from mbsym.report import oscillation_words
+from mbsym.report.documents.results import small_parameters as doc
 from mbsym.report.expansion_json import expansion_data, measured_data
 from mbsym.report.expansion_measured import JudgedAverage, averages, flow_measured, oscillation_measured
 from mbsym.report.expansion_words import (
@@ -20,7 +21,6 @@ from mbsym.report.expansion_words import (
     opening,
     sentences,
 )
-from mbsym.report.oscillation_json import measured_data as oscillation_measured_data
 from mbsym.report.oscillation_json import oscillation_data
 from mbsym.report.plain import LONGEST, Write
 from mbsym.report.said import Said, filled
@@ -29,34 +29,26 @@ if TYPE_CHECKING:
     from mbsym.analysis import Analysis
 
 
-def data(found: SmallParameters, system: System, write: Write) -> dict[str, Any]:
+def data(found: SmallParameters, system: System, write: Write) -> doc.SmallParameters:
     """The section of results.json."""
-    slow = found.slow
-    return {
-        "small": found.small or None,
-        "powers": dict(found.powers),
-        "slow_manifold": None if slow is None else expansion_data(slow, write),
-        "no_slow_manifold": found.no_slow,
-        "measured": None if slow is None else measured_data(flow_measured(found, system)),
-        "oscillation": None if found.oscillation is None else _oscillation(found, system),
-        "no_oscillation": found.no_oscillation,
-        "averaged": [_averaging(one, write) for one in averages(found, system)],
-    }
+    slow, wave = found.slow, found.oscillation
+    return doc.SmallParameters(
+        small=found.small or None,
+        powers=dict(found.powers),
+        slow_manifold=None if slow is None else expansion_data(slow, write),
+        no_slow_manifold=found.no_slow,
+        measured=None if slow is None else measured_data(flow_measured(found, system)),
+        oscillation=None if wave is None else oscillation_data(wave, oscillation_measured(found, system)),
+        no_oscillation=found.no_oscillation,
+        averaged=[_averaging(one, write) for one in averages(found, system)],
+    )
 
 
-def _oscillation(found: SmallParameters, system: System) -> dict[str, Any]:
-    assert found.oscillation is not None
-    return {
-        **oscillation_data(found.oscillation),
-        "measured": oscillation_measured_data(oscillation_measured(found, system)),
-    }
-
-
-def _averaging(judged: JudgedAverage, write: Write) -> dict[str, Any]:
+def _averaging(judged: JudgedAverage, write: Write) -> doc.Averaged:
     one, found = judged.one, judged.one.found
     if found is None:
-        return {"phase": one.phase, "reason": one.failure}
-    taken = {
+        return doc.Averaged(phase=one.phase, reason=one.failure)
+    taken: dict[str, Any] = {
         "phase": one.phase,
         "rate": found.rate,
         "small": list(found.small),
@@ -64,16 +56,16 @@ def _averaging(judged: JudgedAverage, write: Write) -> dict[str, Any]:
         "measured": measured_data(judged.measured),
     }
     if judged.withdrawn:
-        return {**taken, "reason": "withdrawn: the measured distance does not shrink as it should"}
+        return doc.Averaged(**taken, reason="withdrawn: the measured distance does not shrink as it should")
     assert one.analysis is not None
     verdict = one.analysis.optional("stability")
     word = None if verdict is None or verdict.numerical is None else verdict.numerical.word.value
-    return {
+    return doc.Averaged(
         **taken,
-        "vibrational": write(found.vibrational),
-        "potential": write(found.potential),
-        "averaged_motion_at_values": word,
-    }
+        vibrational=write(found.vibrational),
+        potential=write(found.potential),
+        averaged_motion_at_values=word,
+    )
 
 
 def told(found: SmallParameters, system: System, write: Medium) -> Iterator[Said | list[Any]]:

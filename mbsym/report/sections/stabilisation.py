@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from msgspec.structs import asdict
 
 from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
 from mbsym.problems.stabilisation import Feedback, Locus, Rank, Stabilisation
+from mbsym.report.documents.results import stabilisation as doc
 from mbsym.report.plain import LONGEST, Write
 from mbsym.report.said import filled
 from mbsym.report.sections.stability import verdict_data
@@ -18,92 +21,92 @@ if TYPE_CHECKING:
     from mbsym.analysis import Analysis
 
 
-def data(found: Stabilisation, system: System, write: Write) -> dict[str, Any]:
+def data(found: Stabilisation, system: System, write: Write) -> doc.Stabilisation:
     """The section of results.json."""
-    return {
-        "gyroscopic": [
-            {
-                "coordinates": list(part.coordinates),
-                "zero_eigenvalues": part.free,
-                "regions": [
-                    {
-                        "where": [{"formula": write(x), "relation": relation} for x, relation in region.signs],
-                        "degree": region.degree,
-                    }
+    return doc.Stabilisation(
+        gyroscopic=[
+            doc.Gyroscopic(
+                coordinates=list(part.coordinates),
+                zero_eigenvalues=part.free,
+                regions=[
+                    doc.Region(
+                        where=[doc.Relation(formula=write(x), relation=relation) for x, relation in region.signs],
+                        degree=region.degree,
+                    )
                     for region in part.regions
                 ],
-            }
+            )
             for part in found.gyroscopic
         ],
-        "energies": [
-            {
-                "coordinates": list(part.coordinates),
-                "conserved": part.conserved,
-                "definite": part.definite,
-                "minors": [write(x) for x in part.minors],
-                "definite_at_values": part.at_values,
-                "bundle_at_values": None if part.bundle is None else list(map(str, part.bundle)),
-            }
+        energies=[
+            doc.BundleEnergy(
+                coordinates=list(part.coordinates),
+                conserved=part.conserved,
+                definite=part.definite,
+                minors=[write(x) for x in part.minors],
+                definite_at_values=part.at_values,
+                bundle_at_values=None if part.bundle is None else list(map(str, part.bundle)),
+            )
             for part in found.energy
         ],
-        "dissipation": [
-            {
-                "coordinates": list(part.coordinates),
-                "complete": part.complete,
-                "semidefinite": part.semidefinite,
-                "rank": _rank(part.rank, write),
-                "undamped": [
-                    {
-                        "minus_lambda_squared": write(one.square),
-                        "shape": None if one.shape is None else [write(x) for x in one.shape],
-                    }
+        dissipation=[
+            doc.Dissipation(
+                coordinates=list(part.coordinates),
+                complete=part.complete,
+                semidefinite=part.semidefinite,
+                rank=_rank(part.rank, write),
+                undamped=[
+                    doc.Undamped(
+                        minus_lambda_squared=write(one.square),
+                        shape=None if one.shape is None else [write(x) for x in one.shape],
+                    )
                     for one in part.motions
                 ],
-                "pervasive_at_values": part.at_values,
-            }
+                pervasive_at_values=part.at_values,
+            )
             for part in found.dissipation
         ],
-        "control": [
-            {
-                "coordinates": list(part.coordinates),
-                "inputs": list(part.inputs),
-                "rank": _rank(part.rank, write),
-                "controllable_at_values": part.at_values,
-                "stabilisable_at_values": part.stabilisable_at_values,
-            }
+        control=[
+            doc.Control(
+                coordinates=list(part.coordinates),
+                inputs=list(part.inputs),
+                rank=_rank(part.rank, write),
+                controllable_at_values=part.at_values,
+                stabilisable_at_values=part.stabilisable_at_values,
+            )
             for part in found.control
         ],
-        "least_inputs": [list(one) for one in found.least],
-        "feedback": None if found.feedback is None else _feedback(found.feedback),
-        "no_feedback": found.no_feedback,
-    }
+        least_inputs=[list(one) for one in found.least],
+        feedback=None if found.feedback is None else _feedback(found.feedback),
+        no_feedback=found.no_feedback,
+    )
 
 
-def _rank(found: Rank, write: Write) -> dict[str, Any]:
-    return {
-        "full": found.full,
-        "sure": found.certainty.value,
-        "roots_without": [[write(x) for x in factor] for factor in found.factors],
-        "lost": None if found.locus is None else _locus(found.locus, write),
-        "why_not": found.why_not,
-    }
+def _rank(found: Rank, write: Write) -> doc.Rank:
+    return doc.Rank(
+        full=found.full,
+        sure=found.certainty.value,
+        roots_without=[[write(x) for x in factor] for factor in found.factors],
+        lost=None if found.locus is None else _locus(found.locus, write),
+        why_not=found.why_not,
+    )
 
 
-def _locus(found: Locus, write: Write) -> dict[str, Any]:
-    return {
-        "where_one_vanishes": [write(x) for x in found.factors],
-        "where_all_vanish": [write(x) for x in found.together],
-        "provided_nonzero": [write(x) for x in found.provided],
-    }
+def _locus(found: Locus, write: Write) -> doc.Lost:
+    return doc.Lost(
+        where_one_vanishes=[write(x) for x in found.factors],
+        where_all_vanish=[write(x) for x in found.together],
+        provided_nonzero=[write(x) for x in found.provided],
+    )
 
 
-def _feedback(found: Feedback) -> dict[str, Any]:
-    return {
-        "gains": _numbers(found.gains),
-        "characteristic_polynomial": list(map(str, found.characteristic)),
-        **verdict_data(found.verdict),
-        "lyapunov": None if found.lyapunov is None else _numbers(found.lyapunov),
-    }
+def _feedback(found: Feedback) -> doc.Feedback:
+    return doc.Feedback(
+        gains=_numbers(found.gains),
+        characteristic_polynomial=list(map(str, found.characteristic)),
+        **asdict(verdict_data(found.verdict)),
+        lyapunov=None if found.lyapunov is None else _numbers(found.lyapunov),
+    )
 
 
 def _numbers(rows: Sequence[Sequence[Fraction]]) -> list[list[str]]:

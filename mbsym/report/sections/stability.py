@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from msgspec import UNSET, UnsetType
+from msgspec.structs import asdict
 
 from mbsym.expressions.counting import counted
 from mbsym.expressions.tree import names
@@ -20,6 +23,8 @@ from mbsym.problems.stability.symbolic import Theory
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word
 from mbsym.report.conditions import CaseStatement, Shown, Statement, cases, label_meanings, provided, statements
+from mbsym.report.documents import parts
+from mbsym.report.documents.results import stability as doc
 from mbsym.report.plain import LONGEST, Write, shortened, statement_text
 
 if TYPE_CHECKING:
@@ -39,92 +44,93 @@ _OF_DRIFTS = (Because.LINEAR_DRIFTS, Because.COASTING)
 MOST_ROOTS = 10
 
 
-def data(found: Stability, system: System, write: Write) -> dict[str, Any]:
+def data(found: Stability, system: System, write: Write) -> doc.Stability:
     """The section of results.json."""
     taken = [*system.coordinates, *system.parameter_names, *(item.name for item in system.notation)]
     variable = free_name("lam", taken)
-    return {
-        **verdict_data(found.verdict),
-        "at_values": None if found.numerical is None else verdict_data(found.numerical),
-        "subsystems": [_subsystem(part, variable) for part in found.subsystems],
-        "eigenvalues_at_values": [
-            {
-                "coordinates": list(part.coordinates),
-                "roots": [
-                    {"real": x.real, "imaginary": x.imaginary, "multiplicity": x.multiplicity} for x in numbers(part)
+    return doc.Stability(
+        **asdict(verdict_data(found.verdict)),
+        at_values=None if found.numerical is None else verdict_data(found.numerical),
+        subsystems=[_subsystem(part, variable) for part in found.subsystems],
+        eigenvalues_at_values=[
+            doc.Spectrum(
+                coordinates=list(part.coordinates),
+                roots=[
+                    doc.Root(real=x.real, imaginary=x.imaginary, multiplicity=x.multiplicity) for x in numbers(part)
                 ],
-            }
+            )
             for part in found.spectra
         ],
-    }
+    )
 
 
-def verdict_data(found: Verdict) -> dict[str, Any]:
+def verdict_data(found: Verdict) -> parts.Verdict:
     """A verdict in every JSON file: its word, its theorems and reasons as codes, the reasons in sentences beside."""
-    return {
-        "verdict": found.word,
-        "theorems": list(found.theorems),
-        "reasons": [{"code": item.code.name.lower(), "data": [_datum(x) for x in item.data]} for item in found.reasons],
-        "explanation": found.explanation,
-    }
+    return parts.Verdict(
+        verdict=found.word,
+        theorems=list(found.theorems),
+        reasons=[
+            parts.Reason(code=item.code.name.lower(), data=[_datum(x) for x in item.data]) for item in found.reasons
+        ],
+        explanation=found.explanation,
+    )
 
 
 def _datum(value: object) -> int | str:
     return value if isinstance(value, int) else str(value)
 
 
-def _subsystem(part: SubsystemStability, variable: str) -> dict[str, Any]:
+def _subsystem(part: SubsystemStability, variable: str) -> doc.StabilitySubsystem:
     told = label_meanings(part.ring, part.theory.requirements)
     listed = list(statements(part.ring, part.theory.requirements, told=told))
     shown = Shown()
     for item in listed:
         shown.show(item)
-    return {
-        "coordinates": list(part.coordinates),
-        "variable": variable,
-        "characteristic_polynomial": [str(coefficient) for coefficient in part.characteristic],
-        "method": part.theory.method.name.lower(),
-        **verdict_data(part.theory.verdict),
-        "conditions": [
-            _statement(item) | _in_coefficients(item) | {"place": item.place.name.lower()} for item in listed
-        ],
-        "cases": [_case(case, shown) for case in cases(part.ring, part.theory.cases, told)],
-    }
+    return doc.StabilitySubsystem(
+        coordinates=list(part.coordinates),
+        variable=variable,
+        characteristic_polynomial=[str(coefficient) for coefficient in part.characteristic],
+        method=part.theory.method.name.lower(),
+        **asdict(verdict_data(part.theory.verdict)),
+        conditions=[_condition_of(item) for item in listed],
+        cases=[_case(case, shown) for case in cases(part.ring, part.theory.cases, told)],
+    )
 
 
-def _statement(item: Statement) -> dict[str, Any]:
+def _statement(item: Statement) -> doc.Statement:
     """``formula`` ``relation`` 0; null for a formula that is too long to be written out."""
     formula = item.formula if item.never is None else item.never
-    return {
-        "label": item.label,
-        "formula": None if formula is None else str(formula),
-        "relation": item.relation,
-        "never": item.never is not None,
-    }
+    return doc.Statement(
+        label=item.label,
+        formula=None if formula is None else str(formula),
+        relation=item.relation,
+        never=item.never is not None,
+    )
 
 
-def _in_coefficients(item: Statement) -> dict[str, Any]:
-    """A long condition in the coefficients of the characteristic polynomial, and what these are."""
-    if item.told is None:
-        return {}
-    letters = {str(letter): str(value) for letter, value in item.told.letters}
-    return {"in_coefficients": {"formula": str(item.told.formula), "coefficients": letters}}
+def _condition_of(item: Statement) -> doc.Condition:
+    """A long one in the coefficients of the characteristic polynomial, too, with what these are."""
+    told: doc.InCoefficients | UnsetType = UNSET
+    if item.told is not None:
+        letters = {str(letter): str(value) for letter, value in item.told.letters}
+        told = doc.InCoefficients(formula=str(item.told.formula), coefficients=letters)
+    return doc.Condition(**asdict(_statement(item)), in_coefficients=told, place=item.place.name.lower())
 
 
-def _case(case: CaseStatement, shown: Shown) -> dict[str, Any]:
+def _case(case: CaseStatement, shown: Shown) -> doc.Case:
     """Conditions that the list already holds, or holds reversed, are named by their labels there."""
 
-    def named(item: Statement) -> dict[str, Any]:
+    def named(item: Statement) -> doc.Listed | doc.Statement:
         found = shown.reference(item)
-        return _statement(item) if found is None else {"listed": found.under, "relation": found.relation}
+        return _statement(item) if found is None else doc.Listed(listed=found.under, relation=found.relation)
 
-    return {
-        "all_of": [named(item) for item in case.all_of],
-        "any_of": [named(item) for item in case.any_of],
-        "otherwise": case.otherwise,
-        "verdict": case.word,
-        "theorems": list(case.theorems),
-    }
+    return doc.Case(
+        all_of=[named(item) for item in case.all_of],
+        any_of=[named(item) for item in case.any_of],
+        otherwise=case.otherwise,
+        verdict=case.word,
+        theorems=list(case.theorems),
+    )
 
 
 def lines(found: Stability, analysis: Analysis) -> Iterator[str]:

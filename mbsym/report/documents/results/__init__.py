@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from msgspec import UNSET, Meta, UnsetType
+from msgspec import UNSET, Meta, UnsetType, field
 
 from mbsym.algebra.failures import Limit, Severity
-from mbsym.report.documents.base import ASIDE, Part, told_apart_by, words
+from mbsym.report.documents.base import ASIDE, Format, Part, Version, told_apart_by, words
 from mbsym.report.documents.parts import Formula
 from mbsym.report.documents.results.canonical import Brackets, Hamilton, Routh
 from mbsym.report.documents.results.claims import Claim
@@ -22,6 +22,7 @@ from mbsym.report.documents.results.polynomial_integrals import PolynomialIntegr
 from mbsym.report.documents.results.small_parameters import SmallParameters
 from mbsym.report.documents.results.stabilisation import Stabilisation
 from mbsym.report.documents.results.stability import Stability
+from mbsym.report.documents.writer import version
 
 
 class Described(Part, frozen=True):
@@ -147,8 +148,8 @@ class Failure(Part, frozen=True):
 class Results(Part, frozen=True, kw_only=True):
     """Every result of mbsym run for one description. A problem that was not asked for has no property."""
 
-    format: Annotated[int, words(1), "version of this format"]
-    version: Annotated[str, "version of mbsym that wrote it", ASIDE]
+    format: Format = 1
+    version: Version = field(default_factory=version)
     problems: Annotated[list[Annotated[int, Meta(ge=1, le=12)]], "the problems that were asked for"]
     terms: Annotated[int, "budget of terms of one closed formula", Meta(ge=1)]
     system: Described

@@ -38,10 +38,9 @@ class Reduction(Part, frozen=True, kw_only=True):
     ]
 
 
-class LinearSubsystem(Part, frozen=True):
-    """a decoupled part, in dimensionless time and the description's notation"""
+class Matrices(Part, frozen=True, kw_only=True):
+    """of M x'' + (D + G) x' + (K + N) x"""
 
-    coordinates: Annotated[list[str], "its coordinates"]
     M: Annotated[list[Annotated[list[Formula], BY_COORDINATE]], "mass matrix, symmetric", BY_COORDINATE]
     D: Annotated[list[Annotated[list[Formula], BY_COORDINATE]], "damping matrix, symmetric", BY_COORDINATE]
     G: Annotated[list[Annotated[list[Formula], BY_COORDINATE]], "gyroscopic matrix, skew", BY_COORDINATE]
@@ -49,17 +48,18 @@ class LinearSubsystem(Part, frozen=True):
     N: Annotated[list[Annotated[list[Formula], BY_COORDINATE]], "circulatory matrix, skew", BY_COORDINATE]
 
 
-class Linearisation(Part, frozen=True, kw_only=True):
+class LinearSubsystem(Matrices, frozen=True, kw_only=True):
+    """a decoupled part, in dimensionless time and the description's notation"""
+
+    coordinates: Annotated[list[str], "its coordinates"]
+
+
+class Linearisation(Matrices, frozen=True, kw_only=True):
     """problem 5: M x'' + (D + G) x' + (K + N) x = B v, with 0 on the right where there are no inputs; of a system with
     constraints x are the coordinates of the independent speeds
     """
 
     reduction: Reduction | UnsetType = UNSET
-    M: Annotated[list[Annotated[list[Formula], BY_COORDINATE]], "mass matrix, symmetric", BY_COORDINATE]
-    D: Annotated[list[Annotated[list[Formula], BY_COORDINATE]], "damping matrix, symmetric", BY_COORDINATE]
-    G: Annotated[list[Annotated[list[Formula], BY_COORDINATE]], "gyroscopic matrix, skew", BY_COORDINATE]
-    K: Annotated[list[Annotated[list[Formula], BY_COORDINATE]], "stiffness matrix, symmetric", BY_COORDINATE]
-    N: Annotated[list[Annotated[list[Formula], BY_COORDINATE]], "circulatory matrix, skew", BY_COORDINATE]
     B: Annotated[
         list[list[Formula]] | UnsetType,
         "input matrix: a column for each of the inputs, where there are any",

@@ -12,7 +12,7 @@ from mbsym.report.documents.nonlinear import Determinant
 from mbsym.report.documents.parts import Formula
 
 
-class Action_(Part, frozen=True):
+class ActionTerm(Part, frozen=True):
     """a coefficient"""
 
     first: Annotated[int, "number of the one frequency", Meta(ge=1)]
@@ -31,7 +31,7 @@ class NormalFormAtValues(Part, frozen=True):
         "of Hamiltonian systems with the signs of their energies",
     ]
     actions: Annotated[
-        list[Action_],
+        list[ActionTerm],
         "coefficients of products of two actions in the normal form of order 4",
         told_apart_by("first", "second"),
     ]
