@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from mbsym.maps.branches_result import Branches, Critical, Meeting, Piece
 from mbsym.model.system import System
-from mbsym.problems.equilibria import CoordinateValue
 from mbsym.report.documents import branches as doc
 from mbsym.report.documents import parts
 from mbsym.report.documents.writer import written
+from mbsym.report.equilibria_json import coordinate_value
 from mbsym.report.map_json import coordinate
 from mbsym.report.sections.stability import verdict_data
 from mbsym.source.meaning import meaning
@@ -37,7 +37,7 @@ def branches_json(system: System, found: Branches) -> str:
                 constant=one.constant,
                 equilibria=[
                     doc.Equilibrium(
-                        coordinates=[_coordinate(x) for x in there.values],
+                        coordinates=[coordinate_value(x) for x in there.values],
                         angles_of=there.coordinates_of or None,
                         stability=verdict_data(there.verdict),
                     )
@@ -68,7 +68,7 @@ def _critical(found: Branches, one: Critical) -> doc.CriticalValue:
 
 def _meeting(one: Meeting) -> doc.CriticalValueEquilibrium:
     return doc.CriticalValueEquilibrium(
-        coordinates=[_coordinate(x) for x in one.values],
+        coordinates=[coordinate_value(x) for x in one.values],
         angles_of=one.coordinates_of or None,
         event=one.named.event,
         below=one.named.below,
@@ -92,7 +92,3 @@ def _piece(one: Piece) -> doc.Branch:
 
 def _rounded(x: float) -> float:
     return float(f"{x:.{DIGITS}g}")
-
-
-def _coordinate(item: CoordinateValue) -> parts.CoordinateValue:
-    return parts.CoordinateValue(name=item.name, value=item.text, exact=item.exact, number=item.value)

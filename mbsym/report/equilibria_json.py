@@ -43,7 +43,7 @@ def equilibria_json(
                 equations=list(family.equations),
                 free=list(family.free),
                 angles_of=family.coordinates_of or None,
-                sample=[_coordinate(item) for item in family.sample],
+                sample=[coordinate_value(item) for item in family.sample],
                 stability_of_the_sample=verdict_data(family.verdict),
             )
             for family in found.families
@@ -55,7 +55,7 @@ def equilibria_json(
 
 def _equilibrium(one: RelativeEquilibrium) -> doc.Equilibrium:
     return doc.Equilibrium(
-        coordinates=[_coordinate(item) for item in one.values],
+        coordinates=[coordinate_value(item) for item in one.values],
         angles_of=one.coordinates_of or None,
         arbitrary=list(one.free),
         descriptions=one.described,
@@ -79,5 +79,5 @@ def _permanent(found: PermanentRotations) -> doc.PermanentRotations:
     )
 
 
-def _coordinate(item: CoordinateValue) -> parts.CoordinateValue:
+def coordinate_value(item: CoordinateValue) -> parts.CoordinateValue:
     return parts.CoordinateValue(name=item.name, value=item.text, exact=item.exact, number=item.value)

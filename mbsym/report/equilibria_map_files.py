@@ -23,6 +23,7 @@ from mbsym.report.documents import branches, parts
 from mbsym.report.documents import equilibria_map as doc
 from mbsym.report.documents.writer import written
 from mbsym.report.drawing import pictures
+from mbsym.report.equilibria_json import coordinate_value
 from mbsym.report.equilibria_map_words import ORIGINS, cell_words
 from mbsym.report.language import Language
 from mbsym.report.map_figure import HEIGHT, NODES, RESOLUTION, SMALL, TEXT, TOLERANCE, WIDTH, named
@@ -157,10 +158,7 @@ def equilibria_map_json(system: System, found: EquilibriaMap) -> str:
                 area=area,
                 equilibria=[
                     branches.Equilibrium(
-                        coordinates=[
-                            parts.CoordinateValue(name=x.name, value=x.text, exact=x.exact, number=x.value)
-                            for x in there.values
-                        ],
+                        coordinates=[coordinate_value(x) for x in there.values],
                         angles_of=there.coordinates_of or None,
                         stability=verdict_data(there.verdict),
                     )
