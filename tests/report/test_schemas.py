@@ -25,8 +25,8 @@ from mbsym.problems.stability.word import Word
 from mbsym.report.documents.base import Part, told_apart_by
 from mbsym.report.documents.writer import written
 from mbsym.report.results_json import render
+from mbsym.report.runs.simulation_json import simulation_json
 from mbsym.report.schemas import names, schema, schema_of
-from mbsym.report.simulation_json import simulation_json
 from mbsym_cli.main import main
 from mbsym_cli.schema import DESCRIPTION, SUMMARY
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from mbsym.numerics.floquet import Word
+from mbsym.numerics.orbits.floquet import Word
 from mbsym.report.documents.base import ASIDE, Hashed, Part, words
 
 

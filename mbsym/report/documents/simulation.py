@@ -8,7 +8,7 @@ from msgspec import UNSET, Meta, UnsetType
 
 from mbsym.numerics.accuracy import Lacking
 from mbsym.numerics.conservation import Doubt, Standing
-from mbsym.numerics.surfaces import Action, Direction
+from mbsym.numerics.events.surfaces import Action, Direction
 from mbsym.report.documents.base import ASIDE, SHA256, Format, Part, told_apart_by, words
 
 

@@ -20,9 +20,9 @@ from mbsym.problems.small_parameter.lindstedt import NotPeriodic, Resonance
 from mbsym.problems.small_parameter.oscillation_checks import residual_orders
 from mbsym.problems.small_parameter.oscillation_result import Amplitude
 from mbsym.report.oscillation_json import oscillation_data
-from mbsym.report.oscillation_words import numerator, sentences
-from mbsym.report.said import filled
 from mbsym.report.sections.small_parameters import PLAIN
+from mbsym.report.words.oscillation_words import numerator, sentences
+from mbsym.report.words.said import filled
 from mbsym.simulation.oscillating import measured_orders
 
 POINT = """mbsym: 1

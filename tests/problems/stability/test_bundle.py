@@ -11,7 +11,7 @@ from flint import arb, fmpq, fmpq_poly
 
 import mbsym
 from mbsym.mechanics.rest import given_values
-from mbsym.problems.equilibria import equilibria
+from mbsym.problems.relative_equilibria.equilibria import equilibria
 from mbsym.problems.stability.bundle import NumberField, definite_combination
 from mbsym.problems.stability.word import Word
 

@@ -9,7 +9,7 @@ from conftest import TESTS
 
 import mbsym
 from mbsym.mechanics.rest import given_values
-from mbsym.problems.equilibria import equilibria
+from mbsym.problems.relative_equilibria.equilibria import equilibria
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word
 
