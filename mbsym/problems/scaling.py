@@ -35,12 +35,13 @@ from typing import Any
 from flint import fmpq, fmpq_mat
 
 from mbsym.algebra.generators import occurring
+from mbsym.algebra.matrices import added
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import relations
 from mbsym.problems.equations import Equations
 from mbsym.problems.in_speeds.speeds import SpeedEquations
-from mbsym.problems.stability.linear_form import LinearSystem, add
+from mbsym.problems.stability.linear_form import LinearSystem
 
 #: More choices of units than this are not compared: then the first parameters that will do are taken.
 MOST_CHOICES = 20_000
@@ -117,7 +118,7 @@ def linear_groups(scene: Scene, parts: Sequence[tuple[Ring, LinearSystem]]) -> G
     """The groups of the first approximation: of its subsystems, whose matrices hold polynomials of these rings."""
     made = _Equations(scene.ring)
     for number, (ring, part) in enumerate(parts):
-        matrices = (add(part.K, part.N), add(part.D, part.G), part.M)
+        matrices = (added(part.K, part.N), added(part.D, part.G), part.M)
         for order, matrix in enumerate(matrices):
             for i, row in enumerate(matrix):
                 for j, entry in enumerate(row):

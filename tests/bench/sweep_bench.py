@@ -52,9 +52,9 @@ def loop(found: Any, points: Any) -> Any:
 
 
 def _matrices(part: Any) -> Any:
-    from mbsym.problems.stability.linear_form import add
+    from mbsym.algebra.matrices import added
 
-    return part.M, add(part.D, part.G), add(part.K, part.N)
+    return part.M, added(part.D, part.G), added(part.K, part.N)
 
 
 def _function(x: Any) -> Any:

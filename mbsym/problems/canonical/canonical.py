@@ -35,7 +35,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from mbsym.algebra.failures import Failure, NoClosedForm, SingularPoint
-from mbsym.algebra.matrices import determinant
+from mbsym.algebra.matrices import cramer, determinant
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Column, Formula, Matrix, column
 from mbsym.formulas.notebook import Shown
@@ -197,8 +197,4 @@ def _solved(ring: Ring, matrix: Sequence[Sequence[Polynomial]], right: Sequence[
     if ring.vanishes(whole):
         raise SingularPoint("the mass matrix is singular")
     inverse = ring.reciprocal(whole)
-    found = []
-    for k in range(len(right)):
-        replaced = [[*row[:k], value, *row[k + 1 :]] for row, value in zip(matrix, right, strict=True)]
-        found.append(ring.reduce(ring.times(determinant(ring, replaced), inverse)))
-    return found
+    return [ring.reduce(ring.times(x, inverse)) for x in cramer(ring, matrix, right)]

@@ -29,12 +29,12 @@ from typing import Any
 
 from flint import acb, arb
 
+from mbsym.algebra.matrices import faddeev
 from mbsym.algebra.truncated import Space, Truncated
 from mbsym.problems.normal_forms.averages import at_point, averaged
 from mbsym.problems.normal_forms.birkhoff import Linear, NormalForm, matrix_of, normal_form
 from mbsym.problems.normal_forms.centre import on_double_pair
 from mbsym.problems.normal_forms.checks import defects
-from mbsym.problems.normal_forms.expansion import faddeev
 from mbsym.problems.normal_forms.nilpotent import on_double_root, pairing
 from mbsym.problems.normal_forms.result import Judged, Outcome, Theorem, Why
 from mbsym.problems.normal_forms.twist import NotVerified, definite

@@ -11,7 +11,7 @@ from itertools import combinations
 from flint import ctx, fmpq, fmpq_mpoly_ctx
 
 from mbsym.algebra.failures import Failure, NotRational
-from mbsym.algebra.matrices import ScalarMatrix, skew, symmetric
+from mbsym.algebra.matrices import ScalarMatrix, added, skew, symmetric
 from mbsym.algebra.ring import Polynomial
 from mbsym.mechanics.rest import Rest
 from mbsym.mechanics.symmetry import free_spin
@@ -25,7 +25,7 @@ from mbsym.problems.stability.bundle import Element, NumberField
 from mbsym.problems.stability.degenerate import Extremum, in_one_coordinate, of_fourth_order
 from mbsym.problems.stability.enclosed import blocks, enclosed_verdict_with_cyclic
 from mbsym.problems.stability.exact import verdict_at
-from mbsym.problems.stability.linear_form import LinearSystem, add, null_rows
+from mbsym.problems.stability.linear_form import LinearSystem, null_rows
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.theorems import Fact
 from mbsym.problems.stability.verdict import Verdict, combine, concluded, drifting, undecided
@@ -226,6 +226,6 @@ def _rational_verdict(
     turned = () if spin is None else (_CONSTANTS.constant(1), _CONSTANTS.constant(spin * spin))
     made = [tuple(tuple(_CONSTANTS.constant(x) for x in row) for row in rows_) for rows_ in parts]
     system = LinearSystem(made[0], made[1], made[2], made[3], made[4], conservative, cyclic, turned, names=names)
-    if exact and not null_rows(add(system.K, system.N), lambda x: x):
+    if exact and not null_rows(added(system.K, system.N), lambda x: x):
         system = replace(system, exact=True)
     return verdict_at(system, {}).verdict

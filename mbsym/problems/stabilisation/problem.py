@@ -14,6 +14,7 @@ from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.characteristic import determinant
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Failure, TooLargeError
+from mbsym.algebra.matrices import added
 from mbsym.algebra.point import Rationals
 from mbsym.algebra.signs import Signs
 from mbsym.formulas.formula import Formula, Matrix
@@ -294,7 +295,7 @@ def _ranked(whole: Cleared, at: Sequence[int], columns: Sequence[int]) -> Rank:
 
     mass, damped, gyro, stiff, circulatory = (cut(rows) for rows in whole.matrices[:5])
     inputs = [[whole.matrices[5][i][j] for j in columns] for i in at]
-    rates, places = _sum(damped, gyro), _sum(stiff, circulatory)
+    rates, places = added(damped, gyro), added(stiff, circulatory)
     try:
         return rank_of(whole, mass, rates, places, inputs)
     except TooLargeError as error:
@@ -314,10 +315,6 @@ def _at_random(whole: Cleared, mass: Rows, rates: Rows, places: Rows, inputs: Ro
         if there.mass.det() != 0 and numbers.is_controllable(there):
             return Rank(True, Certainty.PROVED, (), None, why)
     return Rank(False, Certainty.UNDECIDED, why_not=why)
-
-
-def _sum(first: Rows, second: Rows) -> Rows:
-    return [[a + b for a, b in zip(*pair, strict=True)] for pair in zip(first, second, strict=True)]
 
 
 def _least(whole: Cleared, linear: Linearisation) -> tuple[tuple[str, ...], ...]:
