@@ -16,7 +16,7 @@ from mbsym.maps.boundaries import Origin
 from mbsym.maps.result import LineMap, Of, PlaneMap, Standing, Stratum
 from mbsym.maps.soft_borders import Onset
 from mbsym.model.system import System
-from mbsym.report.map_words import STANDINGS, condition_words, row_words, signature_words, telling
+from mbsym.report.maps.words import STANDINGS, condition_words, row_words, signature_words, telling
 from mbsym_cli.console import console, printable
 
 

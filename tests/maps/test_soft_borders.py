@@ -27,8 +27,8 @@ from mbsym.maps.slices import stack
 from mbsym.maps.soft_borders import Missing, Onset
 from mbsym.problems.normal_forms import Why
 from mbsym.report.language import Language
-from mbsym.report.map_figure import lettered, letters
-from mbsym.report.map_words import onset_words
+from mbsym.report.maps.figure import lettered, letters
+from mbsym.report.maps.words import onset_words
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main
 from mbsym_cli.map_table import borders_of_slices, remarks

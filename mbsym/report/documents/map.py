@@ -141,7 +141,11 @@ class SoftOrHard(Part, frozen=True):
 class Arc(Place, frozen=True, kw_only=True):
     """an arc"""
 
-    soft_or_hard: Annotated[SoftOrHard | UnsetType | None, "what terms of third order decide there"] = UNSET
+    soft_or_hard: Annotated[
+        SoftOrHard | UnsetType | None,
+        "where a pair of roots is imaginary and none to the right: what terms of third order decide; nothing "
+        "elsewhere, or where that was not asked",
+    ] = UNSET
     curves: Annotated[list[int], "the curves that it is part of"]
     regions: Annotated[
         list[int | None],
@@ -154,7 +158,11 @@ class Arc(Place, frozen=True, kw_only=True):
 class Corner(Place, frozen=True, kw_only=True):
     """a corner"""
 
-    soft_or_hard: Annotated[SoftOrHard | UnsetType | None, "what terms of third order decide there"] = UNSET
+    soft_or_hard: Annotated[
+        SoftOrHard | UnsetType | None,
+        "where a pair of roots is imaginary and none to the right: what terms of third order decide; nothing "
+        "elsewhere, or where that was not asked",
+    ] = UNSET
     curves: Annotated[list[int], "the curves through it"]
     arcs: Annotated[list[int], "the arcs that meet there"]
     kind: Annotated[str, words("crossing", "singular", "isolated", "edge", "zero"), "what it is"]
