@@ -264,7 +264,7 @@ bodies:
 
 
 def test_roots_of_squares_are_not_told_from_either_sign() -> None:
-    """sqrt((a - b)^2) is b - a where a < b, sqrt(n^2) is -n for n < 0: neither is refused, but what is no value of it."""
+    """sqrt((a - b)^2) is b - a where a < b, sqrt(n^2) is -n for n < 0: no refusal, but of what is neither of them."""
     assert vanishes(expression("sqrt((a - b)**2) - b + a")) is None
     assert vanishes(expression("sqrt(n**2) + n")) is None
     assert vanishes(expression("sqrt((a - b)**2) - b + 2*a")) is False
