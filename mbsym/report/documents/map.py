@@ -120,7 +120,7 @@ class SoftOrHard(Part, frozen=True):
             "mixed-roots",
             "coefficient-open",
             "constraints",
-            "given-by-matrices",
+            "exactly-linear",
             "unsolved-conditions",
             "no-expansion",
             "no-loss",
