@@ -75,7 +75,7 @@ def command(
     from mbsym.algebra.failures import Failure
     from mbsym.analysis import Analysis
     from mbsym.analysis.averaged import averaged_system, averaging_of
-    from mbsym.report.expansion_measured import average_or_why, contradicts
+    from mbsym.report.words.expansion_measured import average_or_why, contradicts
 
     analysis = Analysis(system)
     try:

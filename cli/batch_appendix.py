@@ -20,8 +20,8 @@ def write_appendix(out: Path, name: str, summary: Summary) -> None:
     Labels differ from system to system; what has none, as a description with errors, is named at the head.  Raises
     OSError where the file cannot be written.
     """
-    from mbsym.report.latex_appendix import joined
-    from mbsym.report.parsing import unreadable
+    from mbsym.report.code.parsing import unreadable
+    from mbsym.report.latex.appendix import joined
     from mbsym.report.rendering import Unreadable
 
     texts = [(row.file, _text(out, row)) for row in summary.rows]

@@ -20,7 +20,7 @@ from mbsym.batch.outcome import ComplaintRow, Outcome, Row, Summary
 from mbsym.batch.summary_json import FILENAME, summary_text
 from mbsym.batch.task import Asked, Budget
 from mbsym.expressions.counting import counted
-from mbsym.report.findings import github_annotations, json_lines, sarif
+from mbsym.report.words.findings import github_annotations, json_lines, sarif
 from mbsym_cli.batch_appendix import SUMMARY
 from mbsym_cli.batch_folders import Found, chosen, found_in, share
 from mbsym_cli.batch_gone import forget_gone

@@ -62,7 +62,7 @@ def command(files: tuple[Path, ...], output_format: str, skip_others: bool) -> N
 
 def _for_programs(paths: Sequence[Path], output_format: str) -> int:
     """All complaints about all files on standard output, in a format that programs read."""
-    from mbsym.report.findings import Finding, found, github_annotations, json_lines, sarif
+    from mbsym.report.words.findings import Finding, found, github_annotations, json_lines, sarif
 
     findings: list[Finding] = []
     worst = OK

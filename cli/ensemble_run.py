@@ -31,10 +31,10 @@ def spread(
     options: Options,
 ) -> int:
     """Many motions; the exit code."""
-    from mbsym.numerics.ensemble import Ensemble
-    from mbsym.numerics.variation import Unvaried
-    from mbsym.report.ensemble_figure import fan_charts
-    from mbsym.report.ensemble_tables import ensemble_csv, ensemble_json, members_csv, sentences
+    from mbsym.numerics.ensembles.ensemble import Ensemble
+    from mbsym.numerics.ensembles.variation import Unvaried
+    from mbsym.report.figures.ensemble_figure import fan_charts
+    from mbsym.report.runs.ensemble_tables import ensemble_csv, ensemble_json, members_csv, sentences
     from mbsym.simulation.ensembles import Spread, simulate_many
 
     request = Spread(wanted.request, varied.variations, varied.members, varied.seed, varied.sampling)
@@ -85,7 +85,7 @@ def answers(
     wanted: Asked,
 ) -> int:
     """The motion's derivatives by initial values and parameters; the exit code."""
-    from mbsym.report.sensitivity_csv import sensitivity_csv, sentences
+    from mbsym.report.runs.sensitivity_csv import sensitivity_csv, sentences
     from mbsym.simulation.sensitivities import Sensitivities, sensitivities
 
     def work() -> Sensitivities:

@@ -87,7 +87,7 @@ def command(
         sys.exit(BAD_INPUT)
     from mbsym.algebra.failures import Failure
     from mbsym.analysis.resting import relative_equilibria
-    from mbsym.problems.permanent_rotations import permanent_rotations
+    from mbsym.problems.relative_equilibria.permanent_rotations import permanent_rotations
 
     started = time.perf_counter()
     try:
@@ -98,7 +98,7 @@ def command(
         complain(file, f"no equilibria listed: {reason}")
         sys.exit(FAILED)
     if as_json:
-        from mbsym.report.equilibria_json import equilibria_json
+        from mbsym.report.maps.equilibria_json import equilibria_json
 
         click.echo(equilibria_json(system, values, found, permanent), nl=False)
     else:

@@ -113,15 +113,15 @@ def run(request: Request) -> int:
 
 
 def _files(request: Request, found: Branches) -> dict[str, str | bytes]:
-    from mbsym.report.branch_json import branches_json
-    from mbsym.report.branch_tex import branch_tex
     from mbsym.report.language import Language
+    from mbsym.report.maps.branch_json import branches_json
+    from mbsym.report.maps.branch_tex import branch_tex
 
     language = Language(request.language)
     files: dict[str, str | bytes] = {}
     pictures = [kind for kind in request.formats if kind in ("svg", "pdf", "png")]
     if pictures:
-        from mbsym.report.branch_figure import branch_figure
+        from mbsym.report.maps.branch_figure import branch_figure
 
         files |= branch_figure(request.system, found, language, pictures)
     if "json" in request.formats:
@@ -133,7 +133,7 @@ def _files(request: Request, found: Branches) -> dict[str, str | bytes]:
 
 def _show(request: Request, found: Branches, names: Sequence[str], seconds: float) -> None:
     """Intervals and critical values in their order, then what there is to know besides."""
-    from mbsym.report.branch_words import critical_words, remark_words
+    from mbsym.report.maps.branch_words import critical_words, remark_words
 
     out = console()
     title = (request.system.name, "bold"), (f"  {printable(request.file)}, {seconds:.2f} s", "dim")
@@ -164,12 +164,13 @@ def _show(request: Request, found: Branches, names: Sequence[str], seconds: floa
 def rows(found: Branches) -> list[tuple[str, str, str, str]]:
     """(interval or value, equilibria, stable ones, what happens); intervals between which nothing happens as one."""
     told: list[tuple[str, str, str, str]] = []
-    from mbsym.report.branch_words import stable_words
+    from mbsym.report.maps.branch_words import stable_words
 
     for first, last in found.spans():
         told += _at(found, first.low)
         count = f"{len(first.equilibria)}" + ("" if first.constant else " ?")
-        told.append((f"{value(first.low)} .. {value(last.high)}", count, stable_words(x.verdict for x in first.equilibria), ""))
+        stable = stable_words(x.verdict for x in first.equilibria)
+        told.append((f"{value(first.low)} .. {value(last.high)}", count, stable, ""))
     return told + (_at(found, found.intervals[-1].high) if found.intervals else [])
 
 
@@ -180,7 +181,7 @@ def _at(found: Branches, x: Any) -> list[tuple[str, str, str, str]]:
 
 
 def _critical_row(found: Branches, one: Any) -> list[tuple[str, str, str, str]]:
-    from mbsym.report.branch_words import critical_words, stable_words
+    from mbsym.report.maps.branch_words import critical_words, stable_words
 
     words = critical_words(found, one)
     if not words:

@@ -104,8 +104,8 @@ def run(request: Request) -> int:
     from mbsym.algebra.failures import Failure
     from mbsym.analysis import Analysis
     from mbsym.maps.equilibria_map import Standing, equilibria_map
-    from mbsym.report.equilibria_map_files import equilibria_map_figure, equilibria_map_json, equilibria_map_tex
     from mbsym.report.language import Language
+    from mbsym.report.maps.equilibria_map_files import equilibria_map_figure, equilibria_map_json, equilibria_map_tex
     from mbsym_cli.map_run import watched
 
     started = time.perf_counter()
@@ -148,7 +148,7 @@ def run(request: Request) -> int:
 def _show(request: Request, found: EquilibriaMap, names: Sequence[str], seconds: float) -> None:
     """A row for each pair of numbers, then what there is to know besides."""
     from mbsym.maps.equilibria_map import Standing
-    from mbsym.report.equilibria_map_words import cell_words
+    from mbsym.report.maps.equilibria_map_words import cell_words
 
     out = console()
     out.print(Text.assemble((request.system.name, "bold"), (f"  {printable(request.file)}, {seconds:.2f} s", "dim")))

@@ -14,8 +14,13 @@ from mbsym.expressions.counting import counted
 from mbsym.expressions.tree import names
 from mbsym.model.quantities import unit_of, with_unit
 from mbsym.model.system import System
-from mbsym.problems.equilibria import CoordinateValue, Equilibria, EquilibriumFamily, RelativeEquilibrium
-from mbsym.problems.permanent_rotations import PermanentRotations
+from mbsym.problems.relative_equilibria.equilibria import (
+    CoordinateValue,
+    Equilibria,
+    EquilibriumFamily,
+    RelativeEquilibrium,
+)
+from mbsym.problems.relative_equilibria.permanent_rotations import PermanentRotations
 from mbsym.problems.stability.word import Word
 from mbsym.report.unit_text import labelled, pretty
 from mbsym_cli.console import console, printable

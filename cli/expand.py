@@ -72,7 +72,7 @@ def command(file: Path, order: str, settings: tuple[str, ...], time: str | None,
     except Failure as reason:
         complain(file, f"no expansion: {reason}" + (f"; {reason.remedy}" if reason.remedy else ""))
         sys.exit(FAILED)
-    from mbsym.report.expansion_measured import measured_or_why
+    from mbsym.report.words.expansion_measured import measured_or_why
 
     with status(as_json, f"{file.name}: measuring"):
         told = measured_or_why(system, found, span, values)
@@ -92,9 +92,9 @@ FLOW = "The flow on it, up to order [[order]]"
 def _show(file: Path, name: str, found: Expansion, told: Measured | str) -> None:
     from rich.text import Text
 
-    from mbsym.report.expansion_words import of_measured, sentences
-    from mbsym.report.said import filled
     from mbsym.report.sections.small_parameters import PLAIN
+    from mbsym.report.words.expansion_words import of_measured, sentences
+    from mbsym.report.words.said import filled
     from mbsym_cli.console import console, printable
 
     out = console()

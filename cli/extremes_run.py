@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from mbsym.expressions.tree import Expression
-    from mbsym.numerics.extremes import Extremes
+    from mbsym.numerics.extremes.extremes import Extremes
     from mbsym.numerics.scenario import Scenario
     from mbsym.numerics.sequences import Ranking
 
@@ -26,9 +26,9 @@ def measure(
 ) -> int:
     """The exit code.  Raises Failure where the equations have no program, OSError where nothing can be written."""
     from mbsym.mechanics.variables import ring_of
-    from mbsym.numerics.extremes import extremes
-    from mbsym.report.extremes_figure import extremes_figure
-    from mbsym.report.extremes_tables import extremes_csv, extremes_json
+    from mbsym.numerics.extremes.extremes import extremes
+    from mbsym.report.figures.extremes_figure import extremes_figure
+    from mbsym.report.runs.extremes_tables import extremes_csv, extremes_json
 
     with status(quiet) as say:
         found = extremes(given, ring_of(given.system), overrides, seconds, lambda text: say(f"{file.name}: {text}"))
@@ -44,8 +44,8 @@ def _print(file: Path, found: Extremes, folder: Path, names: Sequence[str], quie
     from rich.console import Console
     from rich.text import Text
 
-    from mbsym.numerics.extremes_told import sentences
-    from mbsym.report.extremes_tables import tables
+    from mbsym.numerics.extremes.extremes_told import sentences
+    from mbsym.report.runs.extremes_tables import tables
 
     out = console()
     if not quiet:
@@ -68,7 +68,7 @@ def _table(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
     """Names, verdicts and titles fold where the terminal is narrow; numbers never do."""
     from rich.table import Table
 
-    from mbsym.report.extremes_tables import APPROXIMATION
+    from mbsym.report.runs.extremes_tables import APPROXIMATION
 
     shown = Table(box=None, padding=(0, 1), header_style="bold cyan")
     for place, name in enumerate(columns):

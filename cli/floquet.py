@@ -47,8 +47,8 @@ def _command(file: Path, folder: Path, settings: tuple[str, ...], quiet: bool) -
     if code or given is None:
         return code or BAD_INPUT
     from mbsym.numerics.dynamics import Dynamics
-    from mbsym.numerics.floquet import Judged, NotPeriodic, judged
-    from mbsym.report.floquet_files import floquet_json, sentences
+    from mbsym.numerics.orbits.floquet import Judged, NotPeriodic, judged
+    from mbsym.report.runs.floquet_files import floquet_json, sentences
 
     def work() -> Judged:
         with status(quiet, f"{file.name}: enclosing the monodromy matrix"):

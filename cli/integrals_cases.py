@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from mbsym.report.integrals_words import aside_text, case_title, conditions_text, level_title, weights_text
+from mbsym.report.words.integrals_words import aside_text, case_title, conditions_text, level_title, weights_text
 
 if TYPE_CHECKING:
     from mbsym.analysis.polynomial import Setting

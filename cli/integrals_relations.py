@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from mbsym.problems.polynomial_integrals.result import Obstacle
-from mbsym.report.integrals_words import equations_text, level_title, title, weights_text
+from mbsym.report.words.integrals_words import equations_text, level_title, title, weights_text
 
 if TYPE_CHECKING:
     from mbsym.analysis.polynomial import Setting

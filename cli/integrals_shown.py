@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from rich.text import Text
 
-from mbsym.report.integrals_words import HEADING, sentences, title, weights
-from mbsym.report.said import filled
+from mbsym.report.words.integrals_words import HEADING, sentences, title, weights
+from mbsym.report.words.said import filled
 from mbsym_cli.console import console, printable
 from mbsym_cli.integrals_cases import along_lines, cases_lines
 from mbsym_cli.integrals_relations import darboux_lines, darboux_values, level_lines, relation_lines

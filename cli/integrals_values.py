@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from mbsym.report.integrals_words import title
+from mbsym.report.words.integrals_words import title
 
 if TYPE_CHECKING:
     from mbsym.analysis.polynomial import Setting

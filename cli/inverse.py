@@ -73,7 +73,7 @@ def _command(
     """Reads everything, complains about everything, then solves."""
     from mbsym.numerics.inverse import InverseDynamics, NotLinear, inverse_dynamics
     from mbsym.numerics.scenario import Incomplete, scenario
-    from mbsym.report.inverse_files import inputs_csv, inputs_figure, sentences
+    from mbsym.report.runs.inverse_files import inputs_csv, inputs_figure, sentences
 
     system, asked = read_description(file, moving="inverse"), Options()
     moved: dict[str, Expression] = {}

@@ -12,7 +12,7 @@ from rich.text import Text
 from mbsym_cli.console import console, indented
 
 if TYPE_CHECKING:
-    from mbsym.report.ledger import LedgerLine
+    from mbsym.report.runs.ledger import LedgerLine
 
 #: A table of three columns of sentences needs so many characters.
 WIDE = 100

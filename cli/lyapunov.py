@@ -71,8 +71,8 @@ def _command(
     code = prevented(file, folder, system is not None, asked)
     if code or given is None or time is None or tolerance is None:
         return code or BAD_INPUT
-    from mbsym.numerics.lyapunov import Exponents
-    from mbsym.report.lyapunov_files import lyapunov_csv, lyapunov_figure, lyapunov_json, sentences
+    from mbsym.numerics.orbits.lyapunov import Exponents
+    from mbsym.report.runs.lyapunov_files import lyapunov_csv, lyapunov_figure, lyapunov_json, sentences
     from mbsym.simulation.motions import lyapunov_exponents
 
     def work() -> Exponents:
@@ -98,7 +98,7 @@ def _command(
 
 def _check_intervals(every: float, time: float, asked: Options) -> None:
     """Complains of too many intervals, and of too few for the statistics of means."""
-    from mbsym.numerics.lyapunov import LEAST_INTERVALS
+    from mbsym.numerics.orbits.lyapunov import LEAST_INTERVALS
 
     if time / every > 1e6:
         asked.complain("--every", "too-large", f"{time / every:.3g} intervals are too many", "at most a million")

@@ -60,8 +60,8 @@ def run_boxes(request: Request, because: str = "") -> int:
 
 
 def _files(request: Request, found: BoxMap) -> dict[str, str | bytes]:
-    from mbsym.report.box_map import box_figure, box_json, box_located, box_tex
     from mbsym.report.language import Language
+    from mbsym.report.maps.box_map import box_figure, box_json, box_located, box_tex
 
     language = Language(request.language)
     files: dict[str, str | bytes] = {}
@@ -88,7 +88,7 @@ def _show(request: Request, found: BoxMap, names: list[str], seconds: float) -> 
 
 def _table(found: BoxMap) -> Table:
     from mbsym.maps.result import Of
-    from mbsym.report.box_map import row_of, share
+    from mbsym.report.maps.box_map import row_of, share
 
     rows: dict[tuple[str, str], list[float]] = {}
     for tile in found.tiles:
@@ -109,7 +109,7 @@ def remarks(found: BoxMap) -> list[str]:
     """Sentences on what the table does not show."""
     from mbsym.maps.boxes import Method
     from mbsym.maps.subdivision import End
-    from mbsym.report.box_map import share
+    from mbsym.report.maps.box_map import share
 
     told = [f"no exact regions: {found.because}; boxes instead"] if found.because else []
     told.append(

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from mbsym.maps.result import LineMap, PlaneMap
     from mbsym.maps.section import Axis
     from mbsym.model.system import System
-    from mbsym.report.map_located import Points
+    from mbsym.report.maps.located import Points
 
 #: Larger files of points are not read.
 MOST_BYTES = 200_000_000
@@ -47,7 +47,7 @@ class Request:
 
 def read_located(path: Path, axes: Sequence[str], asked: Options) -> Points | None:
     """The points of ``--locate``; every complaint joins those of ``asked``."""
-    from mbsym.report.map_located import read_points
+    from mbsym.report.maps.located import read_points
 
     try:
         if path.stat().st_size > MOST_BYTES:
@@ -139,18 +139,18 @@ def run(request: Request) -> int:
 def _files(request: Request, found: PlaneMap | LineMap) -> dict[str, str | bytes]:
     from mbsym.maps.result import LineMap, PlaneMap
     from mbsym.report.language import Language
-    from mbsym.report.map_json import map_json
-    from mbsym.report.map_tex import map_tex
+    from mbsym.report.maps.json import map_json
+    from mbsym.report.maps.tex import map_tex
 
     language = Language(request.language)
     files: dict[str, str | bytes] = {}
     pictures = [kind for kind in request.formats if kind in ("svg", "pdf", "png")]
     if pictures and isinstance(found, LineMap):
-        from mbsym.report.line_figure import line_figure
+        from mbsym.report.maps.line_figure import line_figure
 
         files |= line_figure(request.system, found, language, pictures)
     elif pictures and isinstance(found, PlaneMap):
-        from mbsym.report.map_figure import map_figure
+        from mbsym.report.maps.figure import map_figure
 
         files |= map_figure(request.system, found, language, pictures)
     if "json" in request.formats:
@@ -158,7 +158,7 @@ def _files(request: Request, found: PlaneMap | LineMap) -> dict[str, str | bytes
     if "tex" in request.formats:
         files["map.tex"] = map_tex(request.system, found, language)
     if request.points is not None:
-        from mbsym.report.map_located import located_csv
+        from mbsym.report.maps.located import located_csv
 
         files["located.csv"] = located_csv(request.points, found)
     return files

@@ -69,19 +69,19 @@ def _files(request: Request, found: Stack) -> dict[str, str | bytes]:
     files: dict[str, str | bytes] = {}
     pictures = [kind for kind in request.formats if kind in ("svg", "pdf", "png")]
     if pictures:
-        from mbsym.report.slice_figure import slice_figure
+        from mbsym.report.maps.slice_figure import slice_figure
 
         files |= slice_figure(request.system, found, language, pictures)
     if "json" in request.formats:
-        from mbsym.report.slice_json import slices_json
+        from mbsym.report.maps.slice_json import slices_json
 
         files["map.json"] = slices_json(request.system, found)
     if "tex" in request.formats:
-        from mbsym.report.slice_tex import slices_tex
+        from mbsym.report.maps.slice_tex import slices_tex
 
         files["map.tex"] = slices_tex(request.system, found, language)
     if request.points is not None:
-        from mbsym.report.slice_located import located_slices
+        from mbsym.report.maps.slice_located import located_slices
 
         files["located.csv"] = located_slices(request.points, found)
     return files
@@ -106,7 +106,7 @@ def _show(request: Request, found: Stack, names: list[str], seconds: float) -> N
 
 
 def _row(found: Stack, picture: Picture) -> tuple[str, str, str]:
-    from mbsym.report.slice_figure import value
+    from mbsym.report.maps.slice_figure import value
 
     shown = found.layers[picture.shown]
     low, closed_low, high, closed_high = found.ends(picture)
@@ -123,7 +123,7 @@ def _row(found: Stack, picture: Picture) -> tuple[str, str, str]:
 
 def _seen(plane: PlaneMap) -> str:
     """Its verdicts, each with what part of the slice it has, the largest first."""
-    from mbsym.report.map_words import look_words
+    from mbsym.report.maps.words import look_words
 
     rows: dict[str, float] = {}
     for one, (area, _) in zip(plane.regions, plane.areas, strict=True):
@@ -177,7 +177,7 @@ def _planes(found: Stack) -> Iterator[Any]:
 
 def _doubts(found: Stack) -> Iterator[str]:
     """What the checks do not confirm."""
-    from mbsym.report.slice_figure import value
+    from mbsym.report.maps.slice_figure import value
 
     for one in found.layers:
         where = f"{found.axis.name} = {value(one.z)}"

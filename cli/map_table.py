@@ -16,7 +16,7 @@ from mbsym.maps.boundaries import Origin
 from mbsym.maps.result import LineMap, Of, PlaneMap, Standing, Stratum
 from mbsym.maps.soft_borders import Onset
 from mbsym.model.system import System
-from mbsym.report.map_words import STANDINGS, condition_words, row_words, signature_words, telling
+from mbsym.report.maps.words import STANDINGS, condition_words, row_words, signature_words, telling
 from mbsym_cli.console import console, printable
 
 
@@ -102,7 +102,10 @@ ONSETS = {
     Onset.SOFT: "soft: asymptotically stable at the border, small oscillations arise beyond",
     Onset.HARD: "hard: unstable at the border already",
     Onset.OPEN: "open: terms of third order do not decide, or are not at hand",
-    Onset.NEITHER: "neither soft nor hard: roots are to the right on both sides or on none, or one side is not judged",
+    Onset.NEITHER: (
+        "neither soft nor hard: roots are to the right on both sides or on none, one side is not judged, or the "
+        "equations are exactly linear"
+    ),
 }
 
 

@@ -94,13 +94,13 @@ def _numbers(
 
 def _show(system: System, found: Any, file: Path, seconds: float, as_json: bool) -> None:
     if as_json:
-        from mbsym.report.exceptional_values import as_text
+        from mbsym.report.words.exceptional_values import as_text
 
         click.echo(as_text(system, found), nl=False)
         return
     from rich.text import Text
 
-    from mbsym.report.exceptional_values import lines
+    from mbsym.report.words.exceptional_values import lines
     from mbsym_cli.console import console, printable
 
     out = console()

@@ -85,8 +85,8 @@ def _command(
     code = prevented(file, folder, system is not None, asked)
     if code or given is None or length is None or kept is None:
         return code or BAD_INPUT
-    from mbsym.numerics.periodic import NotFound
-    from mbsym.report.orbit_files import orbit_csv, orbit_json, sentences
+    from mbsym.numerics.orbits.periodic import NotFound
+    from mbsym.report.runs.orbit_files import orbit_csv, orbit_json, sentences
     from mbsym.simulation.motions import PeriodicMotion, find_orbit
 
     def work() -> PeriodicMotion:

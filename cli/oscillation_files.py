@@ -60,9 +60,9 @@ def drawn(asked: Drawing, found: Oscillating) -> int:
     """Draws and writes; the exit code."""
     from mbsym.algebra.failures import Failure
     from mbsym.numerics.scenario import Incomplete
-    from mbsym.report.expansion_measured import DIVIDED, NO_NUMBERS
+    from mbsym.report.figures.oscillation_figure import oscillation_figures
     from mbsym.report.language import Language
-    from mbsym.report.oscillation_figure import oscillation_figures
+    from mbsym.report.words.expansion_measured import DIVIDED, NO_NUMBERS
     from mbsym.simulation.oscillation_paths import oscillation_paths
 
     reason = ""

@@ -85,7 +85,7 @@ def command(
     from mbsym.algebra.failures import Failure
     from mbsym.analysis import Analysis
     from mbsym.analysis.oscillating import oscillating
-    from mbsym.report.expansion_measured import orders_or_why
+    from mbsym.report.words.expansion_measured import orders_or_why
 
     try:
         with status(as_json, f"{file.name}: oscillations"):
@@ -112,7 +112,7 @@ def command(
 def _show(file: Path, name: str, told: Oscillating, measured: MeasuredOrders | str) -> None:
     from rich.text import Text
 
-    from mbsym.report.oscillation_lines import lines
+    from mbsym.report.words.oscillation_lines import lines
     from mbsym_cli.console import console, printable
 
     out = console()

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from mbsym.model.system import System
     from mbsym.numerics.ledger.entry import Ledger
     from mbsym.numerics.ledger.work import Wanted
-    from mbsym.report.made_figures import MadeFigure
+    from mbsym.report.figures.made_figures import MadeFigure
     from mbsym.report.rendering import Rendered
 
 
@@ -81,7 +81,7 @@ def _derive(path: Path, system: System, folder: Path, request: Request) -> int:
     from mbsym.analysis import Analysis
     from mbsym.analysis.given import chosen as own_problems
     from mbsym.formulas.tree import angles_as
-    from mbsym.report.html_motion import animated
+    from mbsym.report.html.motion import animated
 
     started = time.perf_counter()
     problems = request.problems if request.named else own_problems(system, request.problems)
@@ -115,7 +115,7 @@ def _figures(folder: Path, system: System) -> tuple[MadeFigure, ...]:
     """Figures that 'mbsym simulate' made of this description in the same folder, if nobody has changed them."""
     if not (folder / "simulation.json").is_file():
         return ()
-    from mbsym.report.made_figures import made_figures
+    from mbsym.report.figures.made_figures import made_figures
     from mbsym.source.meaning import meaning
 
     sums = delivered(folder, "simulate")
@@ -129,7 +129,7 @@ def _figures(folder: Path, system: System) -> tuple[MadeFigure, ...]:
 def _ledger(analysis: Analysis, texts: dict[str, str | bytes], wanted: Wanted | bool) -> Ledger:
     """The ledger of a finished run, put into its files."""
     from mbsym.numerics.ledger.table import ledger
-    from mbsym.report.ledger import ledger_csv, with_ledger
+    from mbsym.report.runs.ledger import ledger_csv, with_ledger
     from mbsym.report.targets import TARGETS
 
     found = ledger(analysis, wanted=None if isinstance(wanted, bool) else wanted)
@@ -159,7 +159,7 @@ def _show(
     with angles_as(request.angles or "shorter"):
         show(summary(analysis, analysis.problems, written), path, seconds)
     if found is not None:
-        from mbsym.report.ledger import ledger_lines
+        from mbsym.report.runs.ledger import ledger_lines
         from mbsym_cli.ledger import show_ledger
 
         show_ledger(ledger_lines(found), found.unmeasured)

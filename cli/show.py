@@ -12,8 +12,8 @@ from mbsym_cli.console import printable, tell
 if TYPE_CHECKING:
     from mbsym.problems.checks import Check
     from mbsym.report.brief import Brief
-    from mbsym.report.claims import ClaimLine
     from mbsym.report.summary import Line, Summary
+    from mbsym.report.words.claims import ClaimLine
 
 _COLOURS = {"exact": "green", "verified numerically": "green", "FAILED": "bold red"}
 _COLOURS |= {"undecided": "yellow", "singular": "yellow"}
@@ -65,7 +65,7 @@ def _claims(claims: tuple[ClaimLine, ...]) -> None:
     """How many hold; then each with its place, and by what it differs."""
     if not claims:
         return
-    from mbsym.report.claims import together
+    from mbsym.report.words.claims import together
 
     words = [claim.word for claim in claims]
     counts = [f"{words.count(word)} {word}" for word in ("held", "refuted", "undecided") if word in words]

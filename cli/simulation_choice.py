@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
     from mbsym.model.system import System
-    from mbsym.numerics.models import Model
-    from mbsym.numerics.plan import Accuracy
-    from mbsym.numerics.planning import Pins
+    from mbsym.numerics.planning.models import Model
+    from mbsym.numerics.planning.plan import Accuracy
+    from mbsym.numerics.planning.planning import Pins
     from mbsym.simulation import Request
     from mbsym_cli.simulation_options import Group
     from mbsym_cli.simulation_request import Asked
@@ -103,7 +103,7 @@ def with_goal(
 
 def _pins(request: Request, choosing: Choosing, arithmetic: bool) -> Pins:
     """What other options have settled; float64 settles the ``arithmetic`` only where it was typed."""
-    from mbsym.numerics.planning import Pins
+    from mbsym.numerics.planning.planning import Pins
 
     return Pins(
         model=request.model if choosing.models else None,
@@ -119,7 +119,7 @@ def _accuracy(system: System | None, text: str | None, asked: Options) -> Accura
     """``1e-6``, ``theta=1e-6,energy=1e-9``, or both: ``1e-4,energy=1e-9``."""
     if text is None:
         return None
-    from mbsym.numerics.plan import ENERGY, Accuracy
+    from mbsym.numerics.planning.plan import ENERGY, Accuracy
 
     known = (*system.coordinates, *system.velocities, ENERGY) if system is not None else ()
     everything: float | None = None
@@ -142,7 +142,7 @@ def _accuracy(system: System | None, text: str | None, asked: Options) -> Accura
 
 def _model(system: System | None, choosing: Choosing, asked: Options) -> Model | None:
     """The model that was settled by hand; None where nothing was said."""
-    from mbsym.numerics.models import Model
+    from mbsym.numerics.planning.models import Model
 
     order: int | str | None = None
     if choosing.gravity is not None:

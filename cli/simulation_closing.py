@@ -115,7 +115,7 @@ def begun_from(file: Path, given: Scenario, with_models: bool) -> Scenario | int
     if not given.system.constraints:
         return given
     from mbsym.numerics.closing import NotClosed, closed
-    from mbsym.report.constrained_run_words import start_lines
+    from mbsym.report.runs.constrained_run_words import start_lines
 
     try:
         found = closed(given)

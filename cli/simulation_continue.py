@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection
 
     from mbsym.model.system import System
-    from mbsym.numerics.models import Model
+    from mbsym.numerics.planning.models import Model
     from mbsym.numerics.scenario import Scenario
     from mbsym.simulation import Request
     from mbsym.simulation.earlier import Earlier
@@ -29,7 +29,7 @@ class Continuing:
 
     def added(self, request: Request, system: System | None, asked: Options) -> Request:
         """The request with the earlier run; how it is gone on from is settled by ``going_on``."""
-        from mbsym.report.earlier_run import Unfit, read_earlier
+        from mbsym.report.runs.earlier_run import Unfit, read_earlier
 
         if self.path is None or system is None:
             return request
@@ -85,7 +85,7 @@ def _worded(model: Model) -> str:
 
 def _check_values(request: Request, given: Scenario | None, asked: Options) -> None:
     """Complains about values that are not those of the run that is gone on from."""
-    from mbsym.report.earlier_run import changed
+    from mbsym.report.runs.earlier_run import changed
 
     if request.earlier is None or given is None:
         return

@@ -60,7 +60,7 @@ watch_options = group(
 
 def _read(option: str, texts: Sequence[str], system: System, asked: Options) -> tuple[Condition, ...]:
     """The conditions that are sound."""
-    from mbsym.numerics.surfaces import known_names
+    from mbsym.numerics.events.surfaces import known_names
 
     found = []
     for text in (" ".join(one.splitlines()) for one in texts):
@@ -71,7 +71,7 @@ def _read(option: str, texts: Sequence[str], system: System, asked: Options) -> 
 
 
 def _axes(text: str | None, system: System, asked: Options) -> tuple[AxisText, ...]:
-    from mbsym.numerics.surfaces import known_names
+    from mbsym.numerics.events.surfaces import known_names
 
     complaints = Complaints()
     found = () if text is None else parse_axes(text, known_names(system), complaints, _place)

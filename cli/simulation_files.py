@@ -48,12 +48,12 @@ def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
     """
     from mbsym.model.quantities import unit_of
     from mbsym.numerics.input_columns import input_columns
-    from mbsym.report.bodies_csv import bodies_parts
-    from mbsym.report.certificate import enclosure_csv
-    from mbsym.report.constrained_run_words import drift_columns
-    from mbsym.report.simulation_json import simulation_json
-    from mbsym.report.state_run_words import norm_columns
-    from mbsym.report.trajectory_csv import trajectory_parts
+    from mbsym.report.runs.bodies_csv import bodies_parts
+    from mbsym.report.runs.certificate import enclosure_csv
+    from mbsym.report.runs.constrained_run_words import drift_columns
+    from mbsym.report.runs.simulation_json import simulation_json
+    from mbsym.report.runs.state_run_words import norm_columns
+    from mbsym.report.runs.trajectory_csv import trajectory_parts
 
     mark = "" if run.whole else "-partial"
     files: dict[str, Content] = {}
@@ -107,7 +107,7 @@ def _bodies(run: Simulation) -> Iterator[BodyMotions]:
 
 def _happened(run: Simulation) -> dict[str, str]:
     """What was watched for is written whatever the formats are: it was asked for by options of its own."""
-    from mbsym.report.events_csv import events_csv, section_csv
+    from mbsym.report.runs.events_csv import events_csv, section_csv
 
     if run.happened is None:
         return {}
@@ -121,7 +121,7 @@ def _happened(run: Simulation) -> dict[str, str]:
 def _section(run: Simulation, kinds: Sequence[str]) -> dict[str, bytes]:
     if run.section is None or not kinds:
         return {}
-    from mbsym.report.section_figure import section_figure
+    from mbsym.report.maps.section_figure import section_figure
 
     return section_figure(run.section, run.system, note(run.trajectory), kinds)
 
@@ -130,7 +130,7 @@ def _animation(run: Simulation, formats: Sequence[str]) -> dict[str, bytes]:
     """The moving system; nothing, and a word about it, where there is nothing to be seen."""
     if not {"html", "gif"} & set(formats):
         return {}
-    from mbsym.report.animation import animation
+    from mbsym.report.figures.animation import animation
 
     found = animation(run)
     if found is None:
@@ -138,8 +138,8 @@ def _animation(run: Simulation, formats: Sequence[str]) -> dict[str, bytes]:
         return {}
     files: dict[str, bytes] = {}
     if "html" in formats:
-        from mbsym.report.animation_page import animation_page
-        from mbsym.report.parsing import unreadable
+        from mbsym.report.code.parsing import unreadable
+        from mbsym.report.figures.animation_page import animation_page
         from mbsym.report.rendering import Unreadable
 
         text = animation_page(found, run)
@@ -148,7 +148,7 @@ def _animation(run: Simulation, formats: Sequence[str]) -> dict[str, bytes]:
             raise Unreadable(f"animation.html: {reason}")
         files["animation.html"] = text.encode()
     if "gif" in formats:
-        from mbsym.report.animation_gif import animation_gif
+        from mbsym.report.figures.animation_gif import animation_gif
 
         files["animation.gif"] = animation_gif(found)
     return files
@@ -156,7 +156,7 @@ def _animation(run: Simulation, formats: Sequence[str]) -> dict[str, bytes]:
 
 def _pictures(run: Simulation, kinds: Sequence[str]) -> dict[str, bytes]:
     from mbsym.numerics.between import accelerations
-    from mbsym.report.figures import figures
+    from mbsym.report.figures.figures import figures
 
     found = run.trajectory
     conserved = run.conservation.standing.conserved is True
@@ -175,7 +175,7 @@ def _places(run: Simulation, kinds: Sequence[str]) -> dict[str, bytes]:
     from mbsym.algebra.failures import Failure
     from mbsym.numerics.positions import positions
     from mbsym.numerics.states import StateDynamics, in_coordinates
-    from mbsym.report.motion_figure import motion_figures
+    from mbsym.report.figures.motion_figure import motion_figures
 
     found, dynamics, given = run.trajectory, run.dynamics, run.given
     assert isinstance(dynamics, StateDynamics)
@@ -199,7 +199,7 @@ def _motion(run: Simulation, kinds: Sequence[str], rates: Any) -> dict[str, byte
     from mbsym.numerics.between import between
     from mbsym.numerics.body_motion import body_motions
     from mbsym.numerics.positions import positions
-    from mbsym.report.motion_figure import motion_figures
+    from mbsym.report.figures.motion_figure import motion_figures
     from mbsym.report.outlines import Outline, outlines
 
     found = run.trajectory

@@ -16,8 +16,8 @@ from mbsym_cli.options import MAX_LENGTH, Options
 if TYPE_CHECKING:
     from collections.abc import Collection
 
+    from mbsym.numerics.ensembles.variation import Variation
     from mbsym.numerics.scenario import Scenario
-    from mbsym.numerics.variation import Variation
     from mbsym_cli.simulation_request import Asked
 
 #: More names than this are not varied at once.
@@ -75,7 +75,7 @@ def read_many(
     names = _sensitive(many.sensitivity, given, options)
     if not many.vary:
         return None, names
-    from mbsym.numerics.variation import Grid
+    from mbsym.numerics.ensembles.variation import Grid
 
     _check_method(wanted, options)
     if len(many.vary) > MOST_VARIED:
@@ -93,7 +93,7 @@ def read_many(
         return None, names
     if many.members is not None and members is None:
         return None, names
-    from mbsym.numerics.variation import complaints
+    from mbsym.numerics.ensembles.variation import complaints
 
     for name, told, hint in complaints(given.system, found, members):
         options.complain(f"--vary {name}", "bad-variation", told, hint or None)
@@ -101,7 +101,7 @@ def read_many(
 
 
 def _check_method(wanted: Asked, options: Options) -> None:
-    from mbsym.numerics.side_by_side import TABLEAUX
+    from mbsym.numerics.ensembles.side_by_side import TABLEAUX
 
     request = wanted.request
     if request.method != "auto" and request.method not in TABLEAUX:
@@ -114,7 +114,7 @@ def _check_method(wanted: Asked, options: Options) -> None:
 
 
 def _variation(text: str, given: Scenario | None, options: Options) -> list[Variation]:
-    from mbsym.numerics.variation import Draw, Grid
+    from mbsym.numerics.ensembles.variation import Draw, Grid
 
     text = " ".join(text.splitlines())
     name, equals, right = (part.strip() for part in text.partition("="))

@@ -46,7 +46,7 @@ def only_planned(file: Path, given: Scenario, asked: Asked) -> int:
     """Prints the plan; the exit code says whether it reaches what was asked for."""
     from rich.text import Text
 
-    from mbsym.report.plan_words import plan_lines
+    from mbsym.report.runs.plan_words import plan_lines
     from mbsym.simulation.accurate import plan_for
 
     goal = asked.goal
@@ -68,6 +68,6 @@ def only_planned(file: Path, given: Scenario, asked: Asked) -> int:
 
 def print_repeat(file: Path, goal: Wanted, settled: Request) -> None:
     """The command that makes the same trajectory without choosing, on a line of its own to be pasted."""
-    from mbsym.report.plan_words import repeating_command
+    from mbsym.report.runs.plan_words import repeating_command
 
     print(f"  to repeat:\n{repeating_command(str(file), goal.settings, settled, goal.carried)}")

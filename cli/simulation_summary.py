@@ -16,7 +16,7 @@ from mbsym_cli.console import console, printable
 
 if TYPE_CHECKING:
     from mbsym.numerics.methods.interface import Breakdown
-    from mbsym.numerics.reduced import Reduced
+    from mbsym.numerics.planning.reduced import Reduced
     from mbsym.numerics.simulate import Trajectory
     from mbsym.simulation import Simulation
 
@@ -42,12 +42,12 @@ def print_summary(file: Path, run: Simulation, paths: Sequence[Path]) -> None:
 def _lines(run: Simulation, file: Path) -> Iterator[tuple[str, str]]:
     """(title, text) of the summary's lines."""
     from mbsym.numerics.breakdowns import least_pivot
-    from mbsym.report.between_steps import passed_over, switch_line
-    from mbsym.report.certificate import certificate_lines
-    from mbsym.report.constrained_run_words import constraint_lines
-    from mbsym.report.events_words import events_lines
-    from mbsym.report.plan_words import plan_lines
-    from mbsym.report.simulation_words import (
+    from mbsym.report.runs.between_steps import passed_over, switch_line
+    from mbsym.report.runs.certificate import certificate_lines
+    from mbsym.report.runs.constrained_run_words import constraint_lines
+    from mbsym.report.runs.events_words import events_lines
+    from mbsym.report.runs.plan_words import plan_lines
+    from mbsym.report.runs.simulation_words import (
         change_lines,
         energy_lines,
         error_lines,
@@ -55,7 +55,7 @@ def _lines(run: Simulation, file: Path) -> Iterator[tuple[str, str]]:
         invariant_line,
         warnings,
     )
-    from mbsym.report.state_run_words import state_lines
+    from mbsym.report.runs.state_run_words import state_lines
 
     found, chosen, request = run.trajectory, run.chosen, run.request
     if run.plan is not None:

@@ -14,7 +14,7 @@ from mbsym_cli.section_options import known, read_rational
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
-    from mbsym.numerics.variation import Variation
+    from mbsym.numerics.ensembles.variation import Variation
     from mbsym.sweeps.points import Points
 
 #: More names than this are not varied at once.
@@ -69,7 +69,7 @@ def read_vary(
 def _variation(
     text: str, names: Sequence[str], system: System, options: Options
 ) -> tuple[Variation, tuple[Fraction, Fraction]] | None:
-    from mbsym.numerics.variation import Draw, Grid
+    from mbsym.numerics.ensembles.variation import Draw, Grid
 
     name, equals, right = (part.strip() for part in " ".join(text.splitlines()).partition("="))
     if not equals or not name or not right or len(text) > MAX_LENGTH:

@@ -235,8 +235,8 @@ def _written(
 ) -> int:
     import numpy as np
 
-    from mbsym.report.sweep_files import sweep_csv, sweep_json, sweep_parquet
-    from mbsym.report.sweep_words import sentences
+    from mbsym.report.runs.sweep_files import sweep_csv, sweep_json, sweep_parquet
+    from mbsym.report.runs.sweep_words import sentences
     from mbsym.sweeps.statistics import total
     from mbsym_cli.telling import told
 
@@ -258,7 +258,7 @@ def _written(
             files["sweep.parquet"] = sweep_parquet(points.names, columns, parts())
         kinds = [kind for kind in wanted.formats if kind in ("svg", "png", "pdf")]
         if kinds and points.count <= MOST_DRAWN:
-            from mbsym.report.sweep_figure import sweep_figure
+            from mbsym.report.figures.sweep_figure import sweep_figure
 
             values = np.concatenate([found[columns[0].name] for _, found in parts()])
             files.update(sweep_figure(system, points, columns[0], values, kinds))

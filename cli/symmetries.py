@@ -69,8 +69,8 @@ def command(file: Path, settings: tuple[str, ...], as_json: bool) -> None:
 def _show(file: Path, name: str, found: Symmetries) -> None:
     from rich.text import Text
 
-    from mbsym.report.said import filled
-    from mbsym.report.symmetry_words import HEADING, field_text, second_route, sentences, title
+    from mbsym.report.words.said import filled
+    from mbsym.report.words.symmetry_words import HEADING, field_text, second_route, sentences, title
     from mbsym_cli.console import console, printable
 
     out = console()

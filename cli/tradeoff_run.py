@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from mbsym.model.system import System
     from mbsym.numerics.methods.interface import Breakdown, Method
     from mbsym.numerics.scenario import Scenario
-    from mbsym.numerics.trade_study import Study
-    from mbsym.numerics.tradeoff import Measured
+    from mbsym.numerics.trade.trade_study import Study
+    from mbsym.numerics.trade.tradeoff import Measured
 
 #: How columns are aligned that do not end on the right.
 SIDES = {"method": "left", "setting": "left", "front": "center"}
@@ -38,7 +38,7 @@ def run(file: Path, folder: Path, found: Scenario, methods: Sequence[Method], re
     """The exit code.  Raises OSError where the results cannot be written."""
     from mbsym.algebra.failures import Failure
     from mbsym.numerics.methods.interface import Breakdown
-    from mbsym.numerics.trade_study import studied
+    from mbsym.numerics.trade.trade_study import studied
 
     begun = begun_from(file, found, request.fidelity)
     if isinstance(begun, int):
@@ -70,7 +70,7 @@ def run(file: Path, folder: Path, found: Scenario, methods: Sequence[Method], re
 def _without_reference(error: Breakdown, request: Request) -> str:
     """A solution that ends is one thing, one that takes too long another."""
     from mbsym.numerics.methods.interface import STEP_LIMIT
-    from mbsym.numerics.reference_search import DISAGREE
+    from mbsym.numerics.trade.reference_search import DISAGREE
 
     if error.kind == DISAGREE:
         why = f"no two solutions agree, {error.message}: the motion may be chaotic over such a time"
@@ -83,8 +83,8 @@ def _without_reference(error: Breakdown, request: Request) -> str:
 
 def _write(folder: Path, system: System, study: Study, request: Request) -> list[Path]:
     from mbsym.model.quantities import time_unit, with_unit
-    from mbsym.report.tradeoff_figure import work_precision
-    from mbsym.report.tradeoff_table import fidelity_csv, tradeoff_csv
+    from mbsym.report.figures.tradeoff_figure import work_precision
+    from mbsym.report.runs.tradeoff_table import fidelity_csv, tradeoff_csv
     from mbsym.report.unit_text import pretty
 
     trade, models = study.trade, study.models
@@ -102,9 +102,9 @@ def _print(file: Path, system: System, study: Study, request: Request, paths: li
     from rich.table import Table
     from rich.text import Text
 
-    from mbsym.numerics.fidelity import model_advice
-    from mbsym.numerics.tradeoff import advice
-    from mbsym.report.tradeoff_table import constrained, models_shown, shown
+    from mbsym.numerics.trade.fidelity import model_advice
+    from mbsym.numerics.trade.tradeoff import advice
+    from mbsym.report.runs.tradeoff_table import constrained, models_shown, shown
 
     out, trade, models = console(), study.trade, study.models
     advised = f"{advice(trade, request.target)} {model_advice(models, request.target)}".rstrip()

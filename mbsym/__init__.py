@@ -25,12 +25,12 @@ if TYPE_CHECKING:
 
     from mbsym.analysis import Analysis
     from mbsym.model.system import System
-    from mbsym.numerics.adjoint import Gradient
-    from mbsym.numerics.ensemble import Ensemble
-    from mbsym.numerics.floquet import Judged
+    from mbsym.numerics.ensembles.ensemble import Ensemble
     from mbsym.numerics.inverse import InverseDynamics
-    from mbsym.numerics.lyapunov import Exponents
-    from mbsym.numerics.plan import Plan
+    from mbsym.numerics.orbits.adjoint import Gradient
+    from mbsym.numerics.orbits.floquet import Judged
+    from mbsym.numerics.orbits.lyapunov import Exponents
+    from mbsym.numerics.planning.plan import Plan
     from mbsym.simulation import Simulation
     from mbsym.simulation.motions import PeriodicMotion
     from mbsym.simulation.sensitivities import Sensitivities
@@ -218,8 +218,8 @@ def ensemble(
     Raises DescriptionError, ValueError, ``mbsym.numerics.scenario.Incomplete``.
     """
     from mbsym import simulation
+    from mbsym.numerics.ensembles.variation import variation
     from mbsym.numerics.scenario import scenario
-    from mbsym.numerics.variation import variation
     from mbsym.simulation.ensembles import Spread, simulate_many
 
     system = _system(source)
@@ -299,7 +299,7 @@ def orbit(
         >>> found.orbit.multipliers.shape, found.states.shape
         ((4,), (4, 401))
 
-    Raises DescriptionError, ValueError, ``mbsym.numerics.periodic.NotFound``.
+    Raises DescriptionError, ValueError, ``mbsym.numerics.orbits.periodic.NotFound``.
     """
     from mbsym import simulation
     from mbsym.numerics.scenario import scenario
@@ -337,11 +337,11 @@ def floquet(source: str | Path | Analysis, *, values: Mapping[str, Fraction | fl
         >>> mbsym.floquet("systems/shaken-pendulum.yaml", values={"nu": 40}).word.value
         'unstable'
 
-    Raises DescriptionError, ValueError, ``mbsym.numerics.floquet.NotPeriodic``.
+    Raises DescriptionError, ValueError, ``mbsym.numerics.orbits.floquet.NotPeriodic``.
     """
     from mbsym import simulation
     from mbsym.numerics.dynamics import Dynamics
-    from mbsym.numerics.floquet import judged
+    from mbsym.numerics.orbits.floquet import judged
     from mbsym.numerics.scenario import scenario
 
     system = _system(source)

@@ -15,10 +15,10 @@ from mbsym.expressions.guessing import guess
 from mbsym.expressions.tree import Expression
 from mbsym.mechanics.rest import given_values, missing_values
 from mbsym.model.system import System
-from mbsym.numerics.extremes import Extremes
-from mbsym.numerics.singular import SingularSet
-from mbsym.numerics.trade_study import Study
-from mbsym.problems.equilibria import WITHIN, Equilibria
+from mbsym.numerics.extremes.extremes import Extremes
+from mbsym.numerics.extremes.singular import SingularSet
+from mbsym.numerics.trade.trade_study import Study
+from mbsym.problems.relative_equilibria.equilibria import WITHIN, Equilibria
 
 #: Rows of a table that a notebook shows.
 SHOWN = 30
@@ -150,8 +150,8 @@ def tradeoff(
     """See ``mbsym.tradeoff``."""
     from mbsym.numerics.methods.table import METHODS
     from mbsym.numerics.scenario import scenario
-    from mbsym.numerics.trade_study import studied
-    from mbsym.numerics.tradeoff import advice
+    from mbsym.numerics.trade.trade_study import studied
+    from mbsym.numerics.trade.tradeoff import advice
     from mbsym.simulation import read_values
 
     names = tuple(METHODS) if methods is None else tuple(methods)
@@ -202,8 +202,8 @@ def tradeoff(
 def extremes(system: System, values: Mapping[str, Fraction | float | str], budget: float) -> ExtremesStudy:
     """See ``mbsym.extremes``."""
     from mbsym.mechanics.variables import ring_of
-    from mbsym.numerics.extremes import extremes as measured
-    from mbsym.numerics.extremes_told import sentences
+    from mbsym.numerics.extremes.extremes import extremes as measured
+    from mbsym.numerics.extremes.extremes_told import sentences
     from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
     from mbsym.numerics.scenario import scenario
     from mbsym.simulation import read_values

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -124,7 +125,7 @@ UNUSED = (
     "importlib.metadata",
     "importlib.resources",
     "mbsym.algebra.polynomial_systems",
-    "mbsym.problems.equilibria",
+    "mbsym.problems.relative_equilibria.equilibria",
     "mbsym.problems.reduction",
     "mbsym.mechanics.constraints.rows",
 )
@@ -144,3 +145,17 @@ def test_a_command_loads_only_what_it_uses(command: str, unused: tuple[str, ...]
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "loaded:"
+
+
+ARCHITECTURE = (ROOT.parent / "ARCHITECTURE.md").read_text(encoding="utf-8")
+
+
+def test_the_page_names_what_is_there() -> None:
+    """Each path of it exists, in mbsym/ or beside it; each room has its place there, and it stays one page."""
+    paths = {path for path in re.findall(r"`([\w./*]+(?:/|\.py|\.po|\.json|\.j2))`", ARCHITECTURE) if "/" in path}
+    lost = [path for path in sorted(paths) if not any(any(top.glob(path)) for top in (ROOT, ROOT.parent))]
+    assert not lost
+    rooms = {str(path.parent.relative_to(ROOT)) for path in ROOT.rglob("__init__.py")} - {"."}
+    unnamed = {room for room in rooms if room.count("/") == 1 and f"{room}/" not in ARCHITECTURE}
+    assert not unnamed
+    assert len(ARCHITECTURE.splitlines()) <= 140

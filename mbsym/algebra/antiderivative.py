@@ -16,6 +16,7 @@ from flint import fmpq_mat
 
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.generators import occurring
+from mbsym.algebra.matrices import reduced_rows
 from mbsym.algebra.ring import Polynomial, Ring
 
 #: Longer functions are left alone; so many monomials are tried, in so many rounds.
@@ -102,10 +103,8 @@ def _solved(ring: Ring, x: Polynomial, tried: dict[Exponents, Polynomial]) -> Po
     if not {*wanted} <= {key for _, column in columns for key in column}:
         return None
     table: list[list[Any]] = [[column.get(key, 0) for _, column in columns] + [wanted.get(key, 0)] for key in rows]
-    reduced, rank = fmpq_mat(table).rref()
     found = ring.zero
-    for line in reduced.tolist()[:rank]:
-        pivot = next(k for k, entry in enumerate(line) if entry != 0)
+    for pivot, line in reduced_rows(fmpq_mat(table)).items():
         if pivot == len(columns):
             return None
         if line[-1] != 0:

@@ -14,9 +14,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from mbsym.algebra import matrices
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.generators import occurring
+from mbsym.algebra.matrices import Operators
 
 Polynomial = Any  # a flint.fmpq_mpoly: python-flint carries no types
 Coefficients = tuple[Polynomial, ...]
@@ -50,35 +52,38 @@ def leading_minors(matrix: Matrix, budget: int = BUDGET) -> tuple[Polynomial, ..
 
 
 def _expanded(matrix: Matrix, budget: int) -> tuple[Polynomial, ...]:
-    """By expansion along the rows: without division, and zeros cost nothing."""
-    n, zero = len(matrix), matrix[0][0] * 0
-    # minors[columns] = minor of the rows so far with this set of columns (a bit mask); zeros are left out.
-    minors: dict[int, Polynomial] = {0: zero + 1}
-    result, spent = [], 0
-    for size, row in enumerate(matrix, start=1):
-        expanded: dict[int, Polynomial] = {}
-        for columns, minor in minors.items():
-            words = _words(minor)
-            for j, entry in enumerate(row):
-                bit = 1 << j
-                if columns & bit or entry == 0:
-                    continue
-                spent += OVERHEAD + len(minor) * len(entry) * words
-                if spent > budget:
-                    raise TooLargeError(f"a determinant of order {n} with too many terms")
-                # Expansion along the last row: the sign counts the chosen columns to the right of j.
-                term = minor * entry if (columns >> j).bit_count() % 2 == 0 else -(minor * entry)
-                expanded[columns | bit] = expanded.get(columns | bit, zero) + term
-        minors = {columns: minor for columns, minor in expanded.items() if minor != 0}
-        result.append(minors.get((1 << size) - 1, zero))
-    return tuple(result)
+    """By expansion along the rows, without division."""
+    return tuple(matrices.leading_minors(_Counted(matrix, budget), matrix))
+
+
+class _Counted(Operators[Polynomial]):
+    """Polynomials; products of terms are counted.  Raises TooLargeError beyond the budget."""
+
+    def __init__(self, matrix: Matrix, budget: int) -> None:
+        zero = matrix[0][0] * 0
+        super().__init__(zero, zero + 1)
+        self._order, self._left = len(matrix), budget
+        self._minor, self._words = zero, 1
+
+    def times(self, a: Polynomial, b: Polynomial) -> Polynomial:
+        """An entry by a minor; one minor after another is asked for."""
+        if b is not self._minor:
+            self._minor, self._words = b, _words(b)
+        self.spend(len(b) * len(a) * self._words)
+        return b * a
+
+    def spend(self, work: int) -> None:
+        self._left -= OVERHEAD + work
+        if self._left < 0:
+            raise TooLargeError(f"a determinant of order {self._order} with too many terms")
 
 
 def _eliminated(matrix: Matrix, budget: int) -> tuple[Polynomial, ...] | None:
     """By elimination without fractions (Bareiss): n^3/3 exact divisions; None where a leading minor vanishes."""
     n = len(matrix)
     rows = [list(row) for row in matrix]
-    previous, spent = matrix[0][0] * 0 + 1, 0
+    algebra = _Counted(matrix, budget)
+    previous = algebra.one
     for k in range(n):
         pivot = rows[k][k]
         if pivot == 0:
@@ -86,9 +91,7 @@ def _eliminated(matrix: Matrix, budget: int) -> tuple[Polynomial, ...] | None:
         for i in range(k + 1, n):
             for j in range(k + 1, n):
                 a, b, c = rows[i][j], rows[i][k], rows[k][j]
-                spent += OVERHEAD + (len(a) * len(pivot) + len(b) * len(c)) * _words(pivot)
-                if spent > budget:
-                    raise TooLargeError(f"a determinant of order {n} with too many terms")
+                algebra.spend((len(a) * len(pivot) + len(b) * len(c)) * _words(pivot))
                 rows[i][j] = (a * pivot - b * c) / previous
         previous = pivot
     return tuple(rows[k][k] for k in range(n))
@@ -110,6 +113,12 @@ def _words(x: Polynomial) -> int:
 def determinant(matrix: Matrix, budget: int = BUDGET) -> Polynomial:
     """det of a square matrix, without division."""
     return leading_minors(matrix, budget)[-1]
+
+
+def adjugate(matrix: Matrix) -> list[list[Polynomial]]:
+    """adj A of a square matrix with at least one row, without division."""
+    one = matrix[0][0] * 0 + 1
+    return matrices.adjugate(matrix, lambda rows: determinant(rows) if rows else one)
 
 
 def characteristic_polynomial(m: Matrix, c: Matrix, k: Matrix) -> Coefficients:
@@ -144,8 +153,7 @@ def is_semisimple(m: Matrix, c: Matrix, k: Matrix, factor: Coefficients, multipl
     needed = lam.assemble(factor) ** (multiplicity - 1)
     for i in range(n):
         for j in range(n):
-            rows = [[entry for col, entry in enumerate(row) if col != j] for at, row in enumerate(pencil) if at != i]
-            if divmod(determinant(rows), needed)[1] != 0:
+            if divmod(determinant(matrices.without(pencil, i, j)), needed)[1] != 0:
                 return False
     return True
 
@@ -159,8 +167,7 @@ def first_minors(m: Matrix, c: Matrix, k: Matrix) -> Iterator[Coefficients]:
     pencil, n = _pencil(lam, m, c, k), len(m)
     for i in range(n):
         for j in range(n):
-            rows = [[entry for col, entry in enumerate(row) if col != j] for at, row in enumerate(pencil) if at != i]
-            minor = trimmed(lam.coefficients(determinant(rows), 2 * n - 2))
+            minor = trimmed(lam.coefficients(determinant(matrices.without(pencil, i, j)), 2 * n - 2))
             if minor[-1] != 0:
                 yield minor
 
@@ -260,13 +267,7 @@ def hurwitz_minors(coefficients: Sequence[Polynomial]) -> tuple[Polynomial, ...]
     n = len(p) - 1
     if n < 1:
         raise ValueError("a polynomial of degree 1 at least is needed")
-    zero = p[0] * 0
-
-    def entry(i: int, j: int) -> Polynomial:
-        index = n - 2 * j + i
-        return p[index] if 0 <= index <= n else zero
-
-    return leading_minors([[entry(i, j) for j in range(1, n + 1)] for i in range(1, n + 1)])
+    return leading_minors(matrices.hurwitz(p[::-1], p[0] * 0, n))
 
 
 def lienard_chipart(coefficients: Sequence[Polynomial]) -> tuple[tuple[str, Polynomial], ...]:
@@ -280,17 +281,9 @@ def lienard_chipart(coefficients: Sequence[Polynomial]) -> tuple[tuple[str, Poly
     result = [(f"a{i}", p[i]) for i in range(n, -1, -1)]
     if n >= 3:
         # Delta_1 .. Delta_(n-1) do not involve the last row and column, so they come from a smaller matrix.
-        minors = _hurwitz_below(p)
+        minors = leading_minors(matrices.hurwitz(p[::-1], p[0] * 0, n - 1))
         result += [(f"Hurwitz minor {k}", minors[k - 1]) for k in range(n - 1, 1, -2)]
     return tuple(result)
-
-
-def _hurwitz_below(p: Coefficients) -> tuple[Polynomial, ...]:
-    n, zero = len(p) - 1, p[0] * 0
-    size = range(1, n)
-    return leading_minors(
-        [[p[n - 2 * j + i] if 0 <= n - 2 * j + i <= n else zero for j in size] for i in size],
-    )
 
 
 def _bezoutian(p: Coefficients, q: Coefficients) -> list[list[Polynomial]]:

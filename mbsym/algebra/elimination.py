@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from flint import fmpq_mat
 
+from mbsym.algebra.matrices import reduced_rows
 from mbsym.algebra.ring import Polynomial, Ring
 
 #: A table of rows by columns is reduced if rows * columns^2 is no more than this; beyond it p stays as it was.
@@ -43,16 +44,11 @@ def _combination(ring: Ring, p: Polynomial, definitions: Sequence[Definition]) -
         return None
     ring.spend(len(monomials) * len(columns) ** 2)
     table = fmpq_mat(len(monomials), len(columns), [column.get(m, 0) for m in monomials for column in columns])
-    reduced, rank = table.rref()
-    last = len(columns) - 1
-    solution: dict[int, Polynomial] = {}
-    for row in range(rank):
-        pivot = next(k for k in range(len(columns)) if reduced[row, k] != 0)
-        if pivot == last:
-            return None
-        solution[pivot] = reduced[row, last]
+    reduced = reduced_rows(table)
+    if len(definitions) in reduced:
+        return None
     gens = ring.context.gens()
-    return sum((gens[definitions[k][0]] * value for k, value in solution.items()), ring.zero)
+    return sum((gens[definitions[k][0]] * row[-1] for k, row in reduced.items()), ring.zero)
 
 
 @dataclass(frozen=True)

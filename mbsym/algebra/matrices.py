@@ -1,16 +1,41 @@
-"""Matrices over any algebra: sums and products, symmetric and skew parts, determinants, coupled indices."""
+"""Linear algebra over any scalars: products, determinants, adjugates, characteristic polynomials, kernels.
+
+What an algebra says of its scalars (products in normal form, what vanishes, reciprocals) is asked of it; ``Operators``
+is the algebra of scalars whose own + - * are all that is wanted.  Rational matrices are ``fmpq_mat``, those modulo a
+prime ``nmod_mat``, balls ``arb_mat``.
+"""
 
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
+from functools import reduce
 from itertools import combinations
 from typing import Any, Generic, overload
 
 from mbsym.algebra.base import Algebra, S
 
 Rows = Iterable[Iterable[S]]
+Table = Sequence[Sequence[S]]
+
+
+class Operators(Algebra[S]):
+    """Scalars whose own + - * are all that is wanted: polynomials, elements of a tower, truncated series."""
+
+    def __init__(self, zero: S, one: S) -> None:
+        self.zero, self.one = zero, one
+
+
+def dot(u: Iterable[S], v: Iterable[S]) -> S:
+    """u_1 v_1 + u_2 v_2 + ..., of one component at least, by the scalars' own operators; see also ``Algebra.dot``."""
+    products: list[S] = [operator.mul(a, b) for a, b in zip(u, v, strict=True)]
+    return reduce(operator.add, products)
+
+
+def added(a: Table[S], b: Table[S]) -> tuple[tuple[S, ...], ...]:
+    """A + B, by the scalars' own operator."""
+    return tuple(tuple(x + y for x, y in zip(*rows, strict=True)) for rows in zip(a, b, strict=True))
 
 
 class ScalarMatrix(Generic[S]):
@@ -126,20 +151,184 @@ def components(size: int, coupled: Callable[[int, int], bool]) -> list[list[int]
     return [[i for i in range(size) if label[i] == first] for first in sorted(set(label))]
 
 
-def determinant(algebra: Algebra[S], rows: Sequence[Sequence[S]]) -> S:
-    """Of a square matrix, without a division: minors of the first rows, each taken once."""
-    n = len(rows)
-    known: dict[int, S] = {0: algebra.one}
-    for row in rows:
+# --- determinants ---
+
+
+def leading_minors(algebra: Algebra[S], rows: Table[S]) -> list[S]:
+    """Of the upper left 1 x 1, 2 x 2, ..., n x n blocks, without a division: minors of the first rows, each taken once.
+
+    Zeros cost nothing; of a full matrix up to 2^n sets of columns are looked at.
+    """
+    known: dict[int, S] = {0: algebra.one}  # minors of the rows so far, by their columns as a bit mask
+    found = []
+    for size, row in enumerate(rows, start=1):
+        entries = [(j, x) for j, x in enumerate(row) if not algebra.vanishes(x)]
         following: dict[int, S] = {}
         for columns, minor in known.items():
-            for j in range(n):
-                if columns >> j & 1 or algebra.vanishes(row[j]):
+            for j, x in entries:
+                if columns >> j & 1:
                     continue
-                term = algebra.times(row[j], minor)
-                key, beyond = columns | 1 << j, (columns >> (j + 1)).bit_count()
+                term = algebra.times(x, minor)
+                key, beyond = (
+                    columns | 1 << j,
+                    (columns >> j).bit_count(),
+                )  # the sign: how many columns are to the right
                 previous = following.get(key, algebra.zero)
                 following[key] = previous - term if beyond % 2 else previous + term
         reduced = {key: algebra.reduce(x) for key, x in following.items()}
         known = {key: x for key, x in reduced.items() if not algebra.vanishes(x)}
-    return known.get((1 << n) - 1, algebra.zero)
+        found.append(known.get((1 << size) - 1, algebra.zero))
+    return found
+
+
+def determinant(algebra: Algebra[S], rows: Table[S]) -> S:
+    """Of a square matrix, without a division; 1 without rows."""
+    return leading_minors(algebra, rows)[-1] if rows else algebra.one
+
+
+def without(rows: Table[S], i: int, j: int) -> list[list[S]]:
+    """The matrix without row i and column j."""
+    return [[*row[:j], *row[j + 1 :]] for k, row in enumerate(rows) if k != i]
+
+
+def adjugate(rows: Table[S], determinant: Callable[[list[list[S]]], S]) -> list[list[S]]:
+    """adj A, with A adj A = det A, entry by entry by the ``determinant`` of what is left without a row and a column."""
+
+    def entry(i: int, j: int) -> S:
+        minor = determinant(without(rows, j, i))
+        return -minor if (i + j) % 2 else minor
+
+    size = range(len(rows))
+    return [[entry(i, j) for j in size] for i in size]
+
+
+def cramer(algebra: Algebra[S], rows: Table[S], right: Sequence[S]) -> list[S]:
+    """x_k det A with A x = b: the determinants of A with b in place of column k."""
+    size = range(len(right))
+    return [
+        determinant(algebra, [[*row[:k], b, *row[k + 1 :]] for row, b in zip(rows, right, strict=True)]) for k in size
+    ]
+
+
+# --- characteristic polynomials ---
+
+
+def faddeev(rows: Table[Any], zero: Any, one: Any) -> tuple[list[list[list[Any]]], list[Any]]:
+    """(B_0 ... B_(m-1)) and (c_0 ... c_m):  adj(s - A) = sum B_k s^(m-1-k),  det(s - A) = sum c_k s^k.
+
+    m >= 1; scalars can be divided by whole numbers.  Source: Faddeev & LeVerrier (Gantmacher, The Theory of Matrices,
+    chapter IV, section 5).
+    """
+    m = len(rows)
+    now = [[one if i == j else zero for j in range(m)] for i in range(m)]
+    found, coefficients = [now], [one]
+    for k in range(1, m + 1):
+        columns = list(zip(*now, strict=True))
+        product = [[dot(row, column) for column in columns] for row in rows]
+        c = -reduce(operator.add, [product[i][i] for i in range(m)]) / k
+        coefficients.append(c)
+        now = [[x + c if i == j else x for j, x in enumerate(row)] for i, row in enumerate(product)]
+        if k < m:
+            found.append(now)
+    return found, coefficients[::-1]
+
+
+def determinant_by_traces(rows: Table[Any], zero: Any, one: Any) -> Any:
+    """det A = (-1)^m c_0 of ``faddeev``: of scalars for which m^4 products are cheaper than 2^m minors."""
+    constant = faddeev(rows, zero, one)[1][0]
+    return -constant if len(rows) % 2 else constant
+
+
+def inverted(rows: Table[Any], inverse: Callable[[Any], Any], zero: Any, one: Any) -> list[list[Any]]:
+    """A^-1 = -B_(m-1) / c_0 of ``faddeev``: one division, by the determinant.
+
+    Raises what ``inverse`` raises where the determinant is zero.
+    """
+    adjugates, coefficients = faddeev(rows, zero, one)
+    factor = -inverse(coefficients[0])
+    return [[value * factor for value in row] for row in adjugates[-1]]
+
+
+def adjugate_at(rows: Table[Any], root: Any, zero: Any, one: Any) -> list[list[Any]]:
+    """adj(s - A) at s = ``root``: Horner's rule for sum B_k s^(m-1-k)."""
+    adjugates, _ = faddeev(rows, zero, one)
+    whole = adjugates[0]
+    for further in adjugates[1:]:
+        whole = _horner(whole, root, further)
+    return whole
+
+
+def adjugate_slope_at(rows: Table[Any], root: Any, zero: Any, one: Any) -> list[list[Any]]:
+    """d/ds adj(s - A) at s = ``root``: Horner's rule for the derivative."""
+    adjugates, _ = faddeev(rows, zero, one)
+    whole, slope = adjugates[0], [[zero] * len(rows) for _ in rows]
+    for further in adjugates[1:]:
+        slope, whole = _horner(slope, root, whole), _horner(whole, root, further)
+    return slope
+
+
+def _horner(rows: Table[Any], s: Any, further: Table[Any]) -> list[list[Any]]:
+    return [[x * s + y for x, y in zip(*pair, strict=True)] for pair in zip(rows, further, strict=True)]
+
+
+def hurwitz(polynomial: Sequence[S], zero: S, size: int) -> list[list[S]]:
+    """Hurwitz's matrix of c_0 s^n + c_1 s^(n-1) + ... + c_n, its first rows and columns: H_ij = c_(2j - i)."""
+    places = range(1, size + 1)
+    return [[polynomial[k] if 0 <= (k := 2 * j - i) < len(polynomial) else zero for j in places] for i in places]
+
+
+def leading_determinants(kind: Callable[[list[list[Any]]], Any], rows: Table[Any]) -> Iterator[Any]:
+    """``leading_minors`` of numbers or balls, by the library's matrices (``kind``: fmpq_mat, arb_mat)."""
+    return (kind([list(row[:size]) for row in rows[:size]]).det() for size in range(1, len(rows) + 1))
+
+
+# --- kernels ---
+
+
+def echelon(algebra: Algebra[S], rows: Table[S], columns: int) -> tuple[list[list[S]], list[int]]:
+    """Gauss and Jordan over a field: the rows reduced in the first ``columns``, and the columns of the pivots in order.
+
+    A pivot is the first entry that is not zero by ==; what vanishes as it stands is left out of products.
+    """
+    work = [[algebra.reduce(x) for x in row] for row in rows]
+    pivots: list[int] = []
+    for column in range(columns):
+        at = len(pivots)
+        pivot = next((r for r in range(at, len(work)) if work[r][column] != 0), None)
+        if pivot is None:
+            continue
+        work[at], work[pivot] = work[pivot], work[at]
+        inverse = algebra.reciprocal(work[at][column])
+        top = work[at] = [x if algebra.vanishes(x) else algebra.times(x, inverse) for x in work[at]]
+        for r, row in enumerate(work):
+            factor = row[column]
+            if r != at and factor != 0:
+                work[r] = [
+                    x if algebra.vanishes(y) else x - algebra.times(factor, y) for x, y in zip(row, top, strict=True)
+                ]
+        pivots.append(column)
+    return work, pivots
+
+
+def reduced_rows(matrix: Any) -> dict[int, list[Any]]:
+    """Of a flint matrix, or one like it: the rows of the reduced echelon form by the columns of their pivots."""
+    rows, rank = matrix.rref()
+    return {next(k for k, x in enumerate(row) if x != 0): row for row in rows.tolist()[:rank]}
+
+
+def null_space(algebra: Algebra[S], rows: Table[S], size: int) -> list[list[S]]:
+    """A basis of the vectors of ``size`` components that every row annuls, over a field."""
+    reduced, pivots = echelon(algebra, rows, size)
+    return null_vectors(algebra, dict(zip(pivots, reduced, strict=False)), size)
+
+
+def null_vectors(algebra: Algebra[S], reduced: Mapping[int, Sequence[S]], size: int) -> list[list[S]]:
+    """The kernel of reduced rows, each by the column of its pivot: one vector for each other column, with 1 there."""
+    basis = []
+    for free in (k for k in range(size) if k not in reduced):
+        vector = [algebra.zero] * size
+        vector[free] = algebra.one
+        for column, row in reduced.items():
+            vector[column] = -row[free]
+        basis.append(vector)
+    return basis

@@ -26,8 +26,10 @@ from typing import Any
 
 from flint import Ordering, arb, arb_poly, ctx, fmpq, fmpq_mat, fmpq_poly, fmpz, fmpz_mpoly_ctx, fmpz_mpoly_vec
 
+from mbsym.algebra.base import Algebra
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.matrices import echelon
 
 Polynomial = Any  # a flint.fmpz_mpoly
 Univariate = Any  # a flint.fmpq_poly
@@ -658,21 +660,25 @@ def _independent(leads: Sequence[Monomial], nvars: int) -> tuple[int, ...]:
 
 def _rank(equations: Sequence[Polynomial], point: AlgebraicPoint, nvars: int) -> int:
     """The rank of the Jacobian at an algebraic point, by elimination in the number field: exact."""
-    p = point.modulus
     rows = [[point.residue(x.derivative(k)) for k in range(nvars)] for x in equations]
-    rank = 0
-    for column in range(nvars):
-        pivot = next((r for r in range(rank, len(rows)) if rows[r][column] != 0), None)
-        if pivot is None:
-            continue
-        rows[rank], rows[pivot] = rows[pivot], rows[rank]
-        inverse = inverse_modulo(rows[rank][column], p)
-        for r in range(rank + 1, len(rows)):
-            if rows[r][column] != 0:
-                factor = rows[r][column] * inverse % p
-                rows[r] = [(a - factor * b) % p for a, b in zip(rows[r], rows[rank], strict=True)]
-        rank += 1
-    return rank
+    return len(echelon(Residues(point.modulus), rows, nvars)[1])
+
+
+class Residues(Algebra[Univariate]):
+    """QQ[t]/modulus, a field where the modulus is irreducible."""
+
+    def __init__(self, modulus: Univariate) -> None:
+        self.modulus = modulus
+        self.zero, self.one = fmpq_poly([0]), fmpq_poly([1])
+
+    def times(self, a: Univariate, b: Univariate) -> Univariate:
+        return a * b % self.modulus
+
+    def reduce(self, x: Univariate) -> Univariate:
+        return x % self.modulus
+
+    def reciprocal(self, x: Univariate) -> Univariate:
+        return inverse_modulo(x, self.modulus)
 
 
 def inverse_modulo(x: Univariate, p: Univariate) -> Univariate:

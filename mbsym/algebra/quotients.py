@@ -142,6 +142,10 @@ class Series:
                     total[k + n] = total[k + n] + c if k + n in total else c
         return Series(self.context, {k: c for k, c in total.items() if not c.is_zero}, known)
 
+    def __truediv__(self, number: int) -> Series:
+        found = {k: Quotient.of(c.top / number, c.bottom) for k, c in self.coefficients.items()}
+        return Series(self.context, found, self.known)
+
     def over(self, other: Series, known: int) -> Series:
         """The quotient up to eps^known, term by term.  Raises ZeroDivisionError where no coefficient of it is known."""
         first = other.lowest

@@ -19,6 +19,7 @@ from flint import Ordering, arb, ctx, fmpq, fmpq_mat, fmpq_mpoly_ctx, fmpq_poly
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.algebra.generators import occurring
+from mbsym.algebra.matrices import reduced_rows
 from mbsym.algebra.polynomial_systems import real_roots
 from mbsym.algebra.ring import Generator, Polynomial, Ring
 from mbsym.algebra.zero_kinds import (
@@ -82,10 +83,9 @@ def _straightened(ring: Ring, x: Polynomial) -> tuple[Polynomial, tuple[str, ...
             return x, tuple(straight)
         columns = [slope.to_dict() for slope in slopes]
         rows = fmpq_mat(len(monomials), len(angles), [c.get(m, fmpq(0)) for m in monomials for c in columns])
-        reduced, rank = rows.rref()
-        if rank == len(angles):
+        pivots = reduced_rows(rows)
+        if len(pivots) == len(angles):
             return x, tuple(straight)
-        pivots = {next(j for j in range(len(angles)) if reduced[i, j] != 0) for i in range(rank)}
         name = next(name for j, name in enumerate(angles) if j not in pivots)
         s, c = ring.index("sine", name), ring.index("cosine", name)
         x = ring.substitute(x, {s: ring.zero, c: ring.one})

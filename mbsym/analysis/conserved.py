@@ -14,7 +14,7 @@ from mbsym.problems.integrals import Integral
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
-    from mbsym.problems.speeds import SpeedEquations
+    from mbsym.problems.in_speeds.speeds import SpeedEquations
 
 
 def first_integrals(analysis: Analysis) -> tuple[Integral, ...]:
@@ -26,7 +26,7 @@ def first_integrals(analysis: Analysis) -> tuple[Integral, ...]:
     if analysis.system.constraints:
         return constrained.integrals_of(analysis)
     if analysis.speed_form is not None:
-        from mbsym.problems import speed_integrals
+        from mbsym.problems.in_speeds import speed_integrals
 
         equations = cast("SpeedEquations", analysis.equations)
         return speed_integrals.integrals(analysis.speed_form, analysis.scene, analysis.energy, equations)

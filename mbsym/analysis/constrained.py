@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from mbsym.mechanics.constraints.programs import ConstrainedPrograms
     from mbsym.mechanics.speeds import SpeedForm
     from mbsym.problems.constraints import Constraints
+    from mbsym.problems.in_speeds.speeds import SpeedEquations
     from mbsym.problems.integrals import Integral
     from mbsym.problems.reactions import Reaction
-    from mbsym.problems.speeds import SpeedEquations
 
 #: The checks of what only constrained systems have.
 CHECKS = ("constraints", "constrained motion")
@@ -67,8 +67,8 @@ def equations_of(analysis: Analysis) -> Equations:
 
 def _in_speeds(analysis: Analysis, form: SpeedForm) -> SpeedEquations:
     """Kane's equations of the open tree with the constraints, and those of the independent speeds."""
-    from mbsym.problems import speeds
     from mbsym.problems.constraints.in_speeds import embedded_in_speeds
+    from mbsym.problems.in_speeds import speeds
 
     found = analysis.constraints
     rows = [x.polynomial for x in (*found.velocity, *(f for f in found.position if f is not None))]

@@ -27,9 +27,9 @@ from mbsym.problems.telling import ToldSystem, told_system
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
     from mbsym.problems.constraints import Constraints
-    from mbsym.problems.equilibria import Equilibria
     from mbsym.problems.first_order import FirstOrder
-    from mbsym.problems.speeds import SpeedEquations
+    from mbsym.problems.in_speeds.speeds import SpeedEquations
+    from mbsym.problems.relative_equilibria.equilibria import Equilibria
     from mbsym.problems.stabilisation import Stabilisation
     from mbsym.problems.state_space import StateSpace
 
@@ -38,7 +38,7 @@ def energy_of(analysis: Analysis) -> Energy:
     """T, U and their parts, in speeds where the system has some."""
     if analysis.speed_form is None:
         return energy.energy(analysis.scene)
-    from mbsym.problems import speeds
+    from mbsym.problems.in_speeds import speeds
 
     return speeds.energy(analysis.speed_form, analysis.scene)
 
@@ -49,7 +49,7 @@ def equations_of(analysis: Analysis) -> Equations:
         return constrained.equations_of(analysis)
     if analysis.speed_form is None:
         return equations.equations(analysis.scene, analysis.energy)
-    from mbsym.problems import speeds
+    from mbsym.problems.in_speeds import speeds
 
     return speeds.equations(analysis.speed_form, analysis.scene)
 
@@ -202,6 +202,6 @@ def equilibria_of(analysis: Analysis) -> Equilibria:
         hint = f"add for example  values: {{{missing[0]}: 1, ...}}"
         raise Unavailable("values", NoResult(f"no number for {', '.join(missing)}", hint, "no values", "no-value"))
     from mbsym.analysis import resting
-    from mbsym.problems import equilibria
+    from mbsym.problems.relative_equilibria import equilibria
 
     return resting.judged(analysis.system, values, equilibria.equilibria(analysis.system, values))

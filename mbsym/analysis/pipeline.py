@@ -75,15 +75,15 @@ if TYPE_CHECKING:
     from mbsym.analysis.oscillating import Oscillating
     from mbsym.analysis.small import SmallParameters
     from mbsym.mechanics.speeds import SpeedForm
-    from mbsym.problems.brackets import Brackets
-    from mbsym.problems.canonical import Hamilton, Routh
+    from mbsym.problems.canonical.brackets import Brackets
+    from mbsym.problems.canonical.canonical import Hamilton, Routh
     from mbsym.problems.constraints import Constraints
-    from mbsym.problems.equilibria import Equilibria
     from mbsym.problems.first_order import FirstOrder
     from mbsym.problems.invariant_sets import InvariantSets
     from mbsym.problems.normal_forms import NormalForms
     from mbsym.problems.polynomial_integrals import Polynomials
     from mbsym.problems.reduction import Reduced
+    from mbsym.problems.relative_equilibria.equilibria import Equilibria
     from mbsym.problems.stabilisation import Stabilisation
     from mbsym.problems.state_space import StateSpace
 

@@ -16,9 +16,9 @@ from mbsym.expressions.tree import Expression, Name, multiply, number
 from mbsym.mechanics.motion import motion_values
 from mbsym.mechanics.rest import Value, at_numbers
 from mbsym.model.system import MotionEntry, Parameter, System
-from mbsym.problems.equilibria import WITHIN, Equilibria, equilibria
 from mbsym.problems.open_verdicts import MOST_COORDINATES
-from mbsym.problems.rest_result import CoordinateValue, RelativeEquilibrium
+from mbsym.problems.relative_equilibria.equilibria import WITHIN, Equilibria, equilibria
+from mbsym.problems.relative_equilibria.result import CoordinateValue, RelativeEquilibrium
 
 
 def relative_equilibria(system: System, values: Mapping[str, Value], within: float = WITHIN) -> Equilibria:

@@ -78,7 +78,7 @@ def _kinematics(analysis: Analysis) -> Check | None:
 def _energy(analysis: Analysis) -> Check | None:
     found = analysis.optional("energy")
     if found is not None and analysis.speed_form is not None:
-        from mbsym.problems import speed_checks
+        from mbsym.problems.in_speeds import speed_checks
 
         names = tuple(u.name for u in analysis.speed_form.speeds)
         return speed_checks.check_energy(analysis.oracles, found, names)
@@ -93,8 +93,8 @@ def _closed(analysis: Analysis) -> Equations | None:
 def _equations(analysis: Analysis) -> Check | None:
     closed = _closed(analysis)
     if closed is not None and analysis.speed_form is not None:
-        from mbsym.problems import speed_checks
-        from mbsym.problems.speeds import SpeedEquations
+        from mbsym.problems.in_speeds import speed_checks
+        from mbsym.problems.in_speeds.speeds import SpeedEquations
 
         assert isinstance(closed, SpeedEquations)
         return speed_checks.check_equations(analysis.oracles, closed)
@@ -108,7 +108,7 @@ def _program(analysis: Analysis) -> Check | None:
     checked = comparison.check_program(analysis.oracles, found)
     if analysis.speed_form is None or checked.failed:
         return checked
-    from mbsym.problems import speed_checks
+    from mbsym.problems.in_speeds import speed_checks
 
     in_speeds = speed_checks.check_program(analysis.oracles, analysis.speed_form)
     return in_speeds if in_speeds.failed else checked
@@ -168,7 +168,7 @@ def _first_order(analysis: Analysis) -> Check | None:
 
         return tied.check(analysis.speed_form, found, analysis.in_coordinates.reduced, analysis.equilibrium)
     from mbsym.problems import first_order
-    from mbsym.problems.speeds import SpeedEquations
+    from mbsym.problems.in_speeds.speeds import SpeedEquations
 
     closed = analysis.equations
     assert isinstance(closed, SpeedEquations)

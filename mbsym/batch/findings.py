@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from mbsym.batch.outcome import Outcome, Row, Summary
-from mbsym.report.findings import Finding
+from mbsym.report.words.findings import Finding
 
 #: Codes of what concerns a file as a whole.
 _CODES = {

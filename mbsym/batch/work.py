@@ -141,7 +141,7 @@ def _problem_row(analysis: Analysis, number: int) -> ProblemRow:
 
 
 def _claim_rows(analysis: Analysis) -> Iterable[ClaimRow]:
-    from mbsym.report.claims import claim_line
+    from mbsym.report.words.claims import claim_line
 
     for result in analysis.claims:
         line = claim_line(result)

@@ -43,10 +43,11 @@ from mbsym.algebra.characteristic import (
 )
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import TooLargeError
+from mbsym.algebra.matrices import added
 from mbsym.algebra.signs import Signs
 from mbsym.maps.section import Section
 from mbsym.problems.stability.constant import Constant
-from mbsym.problems.stability.linear_form import LinearSystem, add, is_potential, is_zero
+from mbsym.problems.stability.linear_form import LinearSystem, is_potential, is_zero
 from mbsym.problems.stability.routh import ignoring_cyclic, momenta_are_constant
 
 
@@ -208,7 +209,7 @@ def _of_roots(system: LinearSystem, part: int, reduced: bool, left_out: Sequence
     def told(origin: Origin, polynomial: Polynomial, about: str) -> Condition:
         return Condition(origin, polynomial, part, about, reduced)
 
-    raw = characteristic_polynomial(system.M, add(system.D, system.G), add(system.K, system.N))
+    raw = characteristic_polynomial(system.M, added(system.D, system.G), added(system.K, system.N))
     zeros = next((i for i, c in enumerate(raw) if c != 0), len(raw))
     if zeros == len(raw):
         return
@@ -253,7 +254,7 @@ def _of_roots_over(system: LinearSystem, part: int, reduced: bool, constant: Con
             raise TooLargeError(f"a {origin.value} that vanishes identically, with irrational numbers")
         return Condition(origin, found, part, "", reduced)
 
-    raw = characteristic_polynomial(system.M, add(system.D, system.G), add(system.K, system.N))
+    raw = characteristic_polynomial(system.M, added(system.D, system.G), added(system.K, system.N))
     p = tuple(map(constant.reduced, raw))
     zeros = next((i for i, c in enumerate(p) if c != 0), len(p))
     p = p[zeros:]

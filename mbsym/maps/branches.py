@@ -30,7 +30,7 @@ from mbsym.maps.branches_stability import decided_throughout, is_undamped, stabi
 from mbsym.maps.section import Axis
 from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.model.system import System
-from mbsym.problems.equilibria import CoordinateValue, Equilibria, equilibria
+from mbsym.problems.relative_equilibria.equilibria import CoordinateValue, Equilibria, equilibria
 
 #: Tells what is being done: a word, how much of it is done, and how much there is.
 Watch = Callable[[str, int, int], None]

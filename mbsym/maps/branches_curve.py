@@ -28,9 +28,9 @@ from mbsym.algebra.ring import Polynomial
 from mbsym.mechanics.charts import Chart, charts
 from mbsym.mechanics.rest import Rest, at_numbers, rest
 from mbsym.model.system import System
-from mbsym.problems.equilibria import EXACT, WITHIN, _ChartSearch
-from mbsym.problems.rest_place import PRECISION, Place
-from mbsym.problems.rest_unknowns import Unknowns
+from mbsym.problems.relative_equilibria.equilibria import EXACT, WITHIN, _ChartSearch
+from mbsym.problems.relative_equilibria.place import PRECISION, Place
+from mbsym.problems.relative_equilibria.unknowns import Unknowns
 
 #: The determinant of M is not formed for more coordinates.
 MOST_COORDINATES = 6

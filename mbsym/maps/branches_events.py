@@ -27,7 +27,8 @@ from typing import Any
 from flint import fmpq_poly
 
 from mbsym.algebra.failures import Failure
-from mbsym.algebra.polynomial_systems import inverse_modulo
+from mbsym.algebra.matrices import echelon, null_space
+from mbsym.algebra.polynomial_systems import Residues
 from mbsym.algebra.ring import Polynomial
 from mbsym.maps.branches_curve import Curve, CurvePoint
 
@@ -93,6 +94,7 @@ class _Reduction:
     def __init__(self, point: CurvePoint) -> None:
         self.curve: Curve = point.curve
         self.place, self.modulus = point.place, point.place.modulus
+        self.field = Residues(self.modulus)
         self.names, self.ring = self.curve.names, self.curve.ring
         self.slopes = [[self.value(x) for x in row] for row in self.curve.slopes]
 
@@ -113,15 +115,15 @@ class _Reduction:
 
     def named(self) -> Named:
         n = len(self.names)
-        right = null_space(self.slopes, self.modulus)
+        right = null_space(self.field, self.slopes, n)
         if not right:
             return Named(Event.REGULAR, 1, 1)
         if len(right) > 1:
             return _unnamed()
         self.v = right[0]
-        self.w = null_space([[self.slopes[i][j] for i in range(n)] for j in range(n)], self.modulus)[0]
+        self.w = null_space(self.field, list(zip(*self.slopes, strict=True)), n)[0]
         by_p = [self.value(self.curve.along(x)) for x in self.curve.forcing]
-        g_p, g_yy = self.dot(self.w, by_p), self.dot(self.w, self.second(self.v, self.v))
+        g_p, g_yy = self.field.dot(self.w, by_p), self.field.dot(self.w, self.second(self.v, self.v))
         first, curved = self.sign(g_p), self.sign(g_yy)
         told = [("g_p", g_p), ("g_yy", g_yy)]
         if first and curved:
@@ -129,22 +131,22 @@ class _Reduction:
             return self.found(Event.FOLD, more_above, told)
         if not first and curved:
             q_p = self.solved([-x for x in by_p])
-            g_yp = self.dot(self.w, self.mixed(self.v)) + self.dot(self.w, self.second(self.v, q_p))
-            g_pp = self.dot(self.w, self.twice_by_p())
-            g_pp += 2 * self.dot(self.w, self.mixed(q_p)) + self.dot(self.w, self.second(q_p, q_p))
+            g_yp = self.field.dot(self.w, self.mixed(self.v)) + self.field.dot(self.w, self.second(self.v, q_p))
+            g_pp = self.field.dot(self.w, self.twice_by_p())
+            g_pp += 2 * self.field.dot(self.w, self.mixed(q_p)) + self.field.dot(self.w, self.second(q_p, q_p))
             split = self.sign((g_yp * g_yp - g_yy * g_pp) % self.modulus)
             told += [("g_yp", g_yp % self.modulus), ("g_pp", g_pp % self.modulus)]
             if split:
                 return self.found(Event.TRANSCRITICAL if split > 0 else Event.ISOLATED, True, told)
             return _unnamed()
         q_yy = self.solved([-x for x in self.second(self.v, self.v)])
-        g_yyy = self.dot(self.w, self.third()) + 3 * self.dot(self.w, self.second(self.v, q_yy))
+        g_yyy = self.field.dot(self.w, self.third()) + 3 * self.field.dot(self.w, self.second(self.v, q_yy))
         cubic = self.sign(g_yyy % self.modulus)
         told.append(("g_yyy", g_yyy % self.modulus))
         if first:
             return self.found(Event.STEEP, True, told) if cubic else _unnamed()
         q_p = self.solved([-x for x in by_p])
-        g_yp = self.dot(self.w, self.mixed(self.v)) + self.dot(self.w, self.second(self.v, q_p))
+        g_yp = self.field.dot(self.w, self.mixed(self.v)) + self.field.dot(self.w, self.second(self.v, q_p))
         crossing = self.sign(g_yp % self.modulus)
         told.append(("g_yp", g_yp % self.modulus))
         return self.found(Event.PITCHFORK, crossing * cubic < 0, told) if crossing and cubic else _unnamed()
@@ -187,7 +189,7 @@ class _Reduction:
 
     def mixed(self, a: Sequence[Element]) -> list[Element]:
         """f_qp a."""
-        return [self.dot([self.value(self.curve.along(x)) for x in row], a) for row in self.curve.slopes]
+        return [self.field.dot([self.value(self.curve.along(x)) for x in row], a) for row in self.curve.slopes]
 
     def twice_by_p(self) -> list[Element]:
         """f_pp."""
@@ -195,49 +197,12 @@ class _Reduction:
 
     # --- linear algebra in the number field ---
 
-    def dot(self, a: Sequence[Element], b: Sequence[Element]) -> Element:
-        return sum((x * y % self.modulus for x, y in zip(a, b, strict=True)), fmpq_poly([0]))
-
     def solved(self, right: Sequence[Element]) -> list[Element]:
         """One solution of f_q x = right, which is orthogonal to w."""
         n = len(self.names)
         rows = [[*row, y] for row, y in zip(self.slopes, right, strict=True)]
-        reduced, pivots = echelon(rows, self.modulus, n)
+        reduced, pivots = echelon(self.field, rows, n)
         found = [fmpq_poly([0])] * n
         for row, column in zip(reduced, pivots, strict=False):
             found[column] = row[n]
         return found
-
-
-def echelon(rows: Sequence[Sequence[Element]], modulus: Any, columns: int) -> tuple[list[list[Element]], list[int]]:
-    """Reduced row echelon form over QQ[t]/modulus in the first ``columns``, with the pivots' columns."""
-    table = [[x % modulus for x in row] for row in rows]
-    pivots: list[int] = []
-    for column in range(columns):
-        at = len(pivots)
-        chosen = next((i for i in range(at, len(table)) if table[i][column] != 0), None)
-        if chosen is None:
-            continue
-        table[at], table[chosen] = table[chosen], table[at]
-        inverse = inverse_modulo(table[at][column], modulus)
-        table[at] = [x * inverse % modulus for x in table[at]]
-        for i in range(len(table)):
-            if i != at and table[i][column] != 0:
-                factor = table[i][column]
-                table[i] = [(x - factor * y) % modulus for x, y in zip(table[i], table[at], strict=True)]
-        pivots.append(column)
-    return table, pivots
-
-
-def null_space(rows: Sequence[Sequence[Element]], modulus: Any) -> list[list[Element]]:
-    """A basis of {x: rows x = 0}."""
-    n = len(rows[0]) if rows else 0
-    reduced, pivots = echelon(rows, modulus, n)
-    basis = []
-    for free in (k for k in range(n) if k not in pivots):
-        vector = [fmpq_poly([0])] * n
-        vector[free] = fmpq_poly([1])
-        for row, column in zip(reduced, pivots, strict=False):
-            vector[column] = -row[free]
-        basis.append(vector)
-    return basis

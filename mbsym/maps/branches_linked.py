@@ -14,8 +14,8 @@ from mbsym.maps.branches_curve import Curve
 from mbsym.maps.branches_followed import followed, uses_only_known
 from mbsym.maps.branches_result import Critical, Interval, Meeting, Piece
 from mbsym.maps.section import Axis
-from mbsym.problems.equilibria import RelativeEquilibrium
-from mbsym.problems.rest_place import Place
+from mbsym.problems.relative_equilibria.equilibria import RelativeEquilibrium
+from mbsym.problems.relative_equilibria.place import Place
 
 #: Farther than this (in direction cosines, sines, cosines, lengths) a branch does not tend to an equilibrium.
 FAR = 0.05

@@ -11,7 +11,7 @@ from fractions import Fraction
 from mbsym.algebra.plane.numbers import Number, compare
 from mbsym.maps.branches_events import Event, Named
 from mbsym.maps.section import Axis
-from mbsym.problems.equilibria import CoordinateValue, RelativeEquilibrium
+from mbsym.problems.relative_equilibria.equilibria import CoordinateValue, RelativeEquilibrium
 from mbsym.problems.stability.verdict import Verdict
 
 

@@ -19,8 +19,8 @@ from mbsym.algebra.matrices import ScalarMatrix
 from mbsym.algebra.ring import Polynomial
 from mbsym.maps.branches_curve import Curve, Found, joined
 from mbsym.maps.branches_result import Interval
-from mbsym.problems.equilibria import _ChartSearch
-from mbsym.problems.rest_verdict import LinearAtRest
+from mbsym.problems.relative_equilibria.equilibria import _ChartSearch
+from mbsym.problems.relative_equilibria.verdict import LinearAtRest
 
 #: More coordinates than this make polynomials that are not looked at.
 MOST_COORDINATES = 4

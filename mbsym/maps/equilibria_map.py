@@ -30,7 +30,7 @@ from mbsym.maps.mapping import box_of
 from mbsym.maps.section import Axis
 from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.model.system import System
-from mbsym.problems.equilibria import RelativeEquilibrium, equilibria
+from mbsym.problems.relative_equilibria.equilibria import RelativeEquilibrium, equilibria
 
 Watch = Callable[[str, int, int], None]
 

@@ -25,8 +25,8 @@ from mbsym.maps.branches_curve import MOST_COORDINATES
 from mbsym.mechanics.charts import Chart, charts
 from mbsym.mechanics.rest import at_numbers, rest
 from mbsym.model.system import System
-from mbsym.problems.equilibria import WITHIN, _ChartSearch
-from mbsym.problems.rest_unknowns import Unknowns
+from mbsym.problems.relative_equilibria.equilibria import WITHIN, _ChartSearch
+from mbsym.problems.relative_equilibria.unknowns import Unknowns
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from typing import Any
 from flint import fmpq
 
 from mbsym.algebra.characteristic import characteristic_polynomial
+from mbsym.algebra.matrices import added
 from mbsym.algebra.plane import AlgebraicNumber, Point
 from mbsym.algebra.plane.numbers import sign
 from mbsym.algebra.plane.point_field import LineField, PointField
@@ -21,7 +22,7 @@ from mbsym.maps.constant_points import ConstantPoint
 from mbsym.maps.section import Section
 from mbsym.maps.verdicts import Border, Judged
 from mbsym.problems.stability.exact import ExactPoint, PointVerdict, RationalPoint, evaluated, inertia, verdict_over
-from mbsym.problems.stability.linear_form import LinearSystem, add, is_zero
+from mbsym.problems.stability.linear_form import LinearSystem, is_zero
 from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.state_matrix import state_matrix
 from mbsym.problems.stability.verdict import combine
@@ -99,7 +100,7 @@ def _usual(part: LinearSystem) -> tuple[int, int]:
     The power of lambda that divides the determinant is exact; the other is the least count at some random points, and
     used only to leave out what is nothing special.
     """
-    polynomial = characteristic_polynomial(part.M, add(part.D, part.G), add(part.K, part.N))
+    polynomial = characteristic_polynomial(part.M, added(part.D, part.G), added(part.K, part.N))
     zeros = next((k for k, c in enumerate(polynomial) if c != 0), 0)
     if is_zero(part.D) and is_zero(part.N) and part.nonholonomic is None:
         return zeros, 2 * part.size

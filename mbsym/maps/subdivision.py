@@ -23,12 +23,13 @@ from typing import Any, Generic, Protocol, TypeVar
 from flint import arb, ctx, fmpq
 
 from mbsym.algebra.characteristic import characteristic_polynomial
+from mbsym.algebra.matrices import added
 from mbsym.algebra.plane.numbers import Rational, between, sign
 from mbsym.algebra.plane.projection import Box, Polynomial, Progress, nothing
 from mbsym.maps.section import Section
 from mbsym.problems.stability import nonholonomic
 from mbsym.problems.stability.enclosed import enclosed_verdict_with_cyclic
-from mbsym.problems.stability.linear_form import LinearSystem, add
+from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.nonholonomic import to_the_right
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.theorems import Fact
@@ -199,7 +200,7 @@ class ByEnclosures:
 
 def _characteristic(part: LinearSystem) -> tuple[Polynomial, ...]:
     """The coefficients of the determinant, without those that a part's followers make vanish at its end."""
-    whole = characteristic_polynomial(part.M, add(part.D, part.G), add(part.K, part.N))
+    whole = characteristic_polynomial(part.M, added(part.D, part.G), added(part.K, part.N))
     return tuple(whole[: len(whole) - len(part.following)])
 
 

@@ -208,7 +208,7 @@ class Placement:
 
     def direction(self, body: str, v: Sequence[Series]) -> Triple:
         """A vector given in a body's axes, in inertial axes."""
-        return [_dot(row, v) for row in self.axes[body]]
+        return [dot(row, v) for row in self.axes[body]]
 
     def point(self, body: str, v: Sequence[Series]) -> Triple:
         return [a + b for a, b in zip(self.origin[body], self.direction(body, v), strict=True)]
@@ -230,7 +230,7 @@ class Placement:
         tensor = [list(self.lower.vector(row)) for row in inertia.tensor]
         if inertia.about == "joint":
             c = self.lower.vector(body.mass_centre)
-            mass, square = self.lower(body.mass), _dot(c, c)
+            mass, square = self.lower(body.mass), dot(c, c)
             for i in range(3):
                 for j in range(3):
                     steiner = square - c[i] * c[j] if i == j else -(c[i] * c[j])
@@ -260,12 +260,12 @@ class Placement:
         return omega, rate
 
 
-def _dot(u: Sequence[Any], v: Sequence[Any]) -> Any:
+def dot(u: Sequence[Any], v: Sequence[Any]) -> Any:
     return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
 
 
 def _product(a: list[Triple], b: list[Triple]) -> list[Triple]:
-    return [[_dot(row, [b[k][j] for k in range(3)]) for j in range(3)] for row in a]
+    return [[dot(row, [b[k][j] for k in range(3)]) for j in range(3)] for row in a]
 
 
 def _transpose(a: list[Triple]) -> list[Triple]:
@@ -319,16 +319,16 @@ class Displacement(Placement):
 
     def _carried(self, carrier: str, theta: Sequence[Scalar], point: Triple) -> Triple:
         arm = [x.a - o.a for x, o in zip(point, self.rest.origin[carrier], strict=True)]
-        turned = _cross(theta, arm)
+        turned = cross(theta, arm)
         zero = self.algebra.numbers.zero
         return [Series(x.a, o.b + along, zero) for x, o, along in zip(point, self.origin[carrier], turned, strict=True)]
 
     def _turned(self, theta: Sequence[Scalar], direction: Triple) -> Triple:
-        turned = _cross(theta, [x.a for x in direction])
+        turned = cross(theta, [x.a for x in direction])
         return [Series(x.a, along, self.algebra.numbers.zero) for x, along in zip(direction, turned, strict=True)]
 
 
-def _cross(u: Sequence[Scalar], v: Sequence[Scalar]) -> list[Scalar]:
+def cross(u: Sequence[Scalar], v: Sequence[Scalar]) -> list[Scalar]:
     return [u[i] * v[j] - u[j] * v[i] for i, j in ((1, 2), (2, 0), (0, 1))]
 
 
@@ -401,7 +401,7 @@ class Oracle:
             change = None
             if tensor is not None:
                 omega, rate = self.moving.spin(body.name)
-                change = [_dot([x.a for x in row], rate) + _dot([x.b for x in row], omega) for row in tensor]
+                change = [dot([x.a for x in row], rate) + dot([x.b for x in row], omega) for row in tensor]
             if internal is not None:
                 turning = [x.b for x in internal]
                 change = turning if change is None else [a + b for a, b in zip(change, turning, strict=True)]
@@ -414,9 +414,9 @@ class Oracle:
         for body, force, change in self.momentum_rates:
             if not displaced.moves(body):
                 continue
-            total = total + _dot(force, [x.b for x in displaced.mass_centre(body)])
+            total = total + dot(force, [x.b for x in displaced.mass_centre(body)])
             if change is not None:
-                total = total + _dot(change, displaced.spin(body.name)[0])
+                total = total + dot(change, displaced.spin(body.name)[0])
         return total
 
     def _applied(self, name: str) -> Scalar:
@@ -449,7 +449,7 @@ class Oracle:
         for body in self.system.bodies:
             internal = self.moving.gyrostatic_moment(body)
             if internal is not None:
-                total = total + _dot([x.a for x in internal], self.moving.spin(body.name)[0])
+                total = total + dot([x.a for x in internal], self.moving.spin(body.name)[0])
         return total
 
     @cached_property
@@ -463,7 +463,7 @@ class Oracle:
             tensor = self.moving.inertia(body)
             if tensor is not None:
                 spin = self.moving.spin(body.name)[0]
-                twice = twice + _dot(spin, [_dot([x.a for x in row], spin) for row in tensor])
+                twice = twice + dot(spin, [dot([x.a for x in row], spin) for row in tensor])
         return twice * self.numbers.number(Fraction(1, 2))
 
     def along(self, name: str, body: str, point: Sequence[Scalar]) -> list[Scalar]:
@@ -488,7 +488,7 @@ def _uniform(load: loads.UniformGravity, place: Placement) -> Series:
     field = place.lower.vector(load.acceleration)
     total = place.algebra.zero
     for body in place.system.bodies:
-        total = total + place.lower(body.mass) * _dot(field, place.mass_centre(body))
+        total = total + place.lower(body.mass) * dot(field, place.mass_centre(body))
     return total
 
 
@@ -522,7 +522,7 @@ def _newtonian_exact(load: loads.NewtonianGravity, place: Placement) -> Series:
     total = algebra.zero
     for body in _attracted(load, place):
         r = _from(load.centre, place.mass_centre(body), place)
-        inverse = algebra.reciprocal(algebra.square_root(_dot(r, r)))
+        inverse = algebra.reciprocal(algebra.square_root(dot(r, r)))
         total = total + place.lower(body.mass) * inverse
         moments = _central_second_moments(body, place)
         if moments is None:
@@ -543,7 +543,7 @@ def _newtonian_in_size(load: loads.NewtonianGravity, place: Placement, order: in
     """
     algebra = place.algebra
     p = _from(load.centre, place.origin[load.about], place)
-    square = _dot(p, p)
+    square = dot(p, p)
     inverse_square = algebra.reciprocal(square)
     inverse = algebra.reciprocal(algebra.square_root(square))
     two, half = algebra.number(2), algebra.number(Fraction(1, 2))
@@ -558,7 +558,7 @@ def _newtonian_in_size(load: loads.NewtonianGravity, place: Placement, order: in
     total = algebra.zero
     for body in _attracted(load, place):
         x = _from(load.about, place.mass_centre(body), place)
-        u = [algebra.zero, two * inverse_square * _dot(p, x), inverse_square * _dot(x, x)]
+        u = [algebra.zero, two * inverse_square * dot(p, x), inverse_square * dot(x, x)]
         power, binomial, reciprocal = [inverse], Fraction(1), [algebra.zero] * (order + 1)
         for k in range(order + 1):
             for degree, term in enumerate(power):
@@ -570,8 +570,8 @@ def _newtonian_in_size(load: loads.NewtonianGravity, place: Placement, order: in
         if moments is None:
             continue
         cube = product(reciprocal, product(reciprocal, reciprocal))
-        turned = [_dot(row, p) for row in moments]
-        quadratic = [_dot(p, turned), two * _dot(x, turned), _dot(x, [_dot(row, x) for row in moments])]
+        turned = [dot(row, p) for row in moments]
+        quadratic = [dot(p, turned), two * dot(x, turned), dot(x, [dot(row, x) for row in moments])]
         fifth = product(cube, product(reciprocal, reciprocal))
         spread = moments[0][0] + moments[1][1] + moments[2][2]
         for along, across in zip(product(quadratic, fifth)[: order - 1], cube[: order - 1], strict=True):
@@ -583,7 +583,7 @@ def _newtonian_quadratic(load: loads.NewtonianGravity, place: Placement) -> Seri
     """U = nu sum of int (1/R - e.x/R^2 + (3 (e.x)^2 - x.x)/(2 R^3)) dm, x from the expansion point."""
     algebra = place.algebra
     outward = [a - b for a, b in zip(place.origin[load.about], place.origin[load.centre], strict=True)]
-    distance = algebra.square_root(_dot(outward, outward))
+    distance = algebra.square_root(dot(outward, outward))
     inverse = algebra.reciprocal(distance)
     e = [inverse * x for x in outward]
     total = algebra.zero
@@ -599,9 +599,9 @@ def _newtonian_quadratic(load: loads.NewtonianGravity, place: Placement) -> Seri
                 for j in range(3):
                     spread = trace - tensor[i][j] if i == j else -tensor[i][j]
                     second[i][j] = second[i][j] + spread
-        along = _dot(e, [_dot(row, e) for row in second])
+        along = dot(e, [dot(row, e) for row in second])
         quadrupole = half * (three * along - (second[0][0] + second[1][1] + second[2][2]))
-        terms = mass * inverse - inverse * inverse * mass * _dot(e, x) + inverse * inverse * inverse * quadrupole
+        terms = mass * inverse - inverse * inverse * mass * dot(e, x) + inverse * inverse * inverse * quadrupole
         total = total + terms
     return place.lower(load.constant) * total
 
@@ -615,7 +615,7 @@ def _point_spring(load: loads.PointSpring, place: Placement) -> Series:
     algebra = place.algebra
     ends = [place.point(end.body, place.lower.vector(end.position)) for end in (load.first, load.second)]
     span = [a - b for a, b in zip(*ends, strict=True)]
-    square, length = _dot(span, span), place.lower(load.length)
+    square, length = dot(span, span), place.lower(load.length)
     energy = square
     if not algebra.vanishes(length):
         energy = square - algebra.number(2) * length * algebra.square_root(square) + length * length
@@ -645,14 +645,14 @@ def _coordinate_damper(oracle: Oracle, load: loads.CoordinateDamper, name: str) 
 def _point_damper(oracle: Oracle, load: loads.PointDamper, name: str) -> Scalar:
     """-c d' dd'/dq', where the rate of the distance d' = (r . r')/d has dd'/dq' = dd/dq = (r . dr/dq)/d."""
     apart, closing, shift = _ends_apart(oracle, load, name)
-    square = oracle.numbers.reciprocal(_dot(apart, apart))
-    return -(oracle.moving.lower(load.coefficient).a * _dot(apart, closing) * _dot(apart, shift) * square)
+    square = oracle.numbers.reciprocal(dot(apart, apart))
+    return -(oracle.moving.lower(load.coefficient).a * dot(apart, closing) * dot(apart, shift) * square)
 
 
 def _isotropic_damper(oracle: Oracle, load: loads.IsotropicDamper, name: str) -> Scalar:
     """-c r' . dr/dq with r the vector between the points."""
     _, closing, shift = _ends_apart(oracle, load, name)
-    return -(oracle.moving.lower(load.coefficient).a * _dot(closing, shift))
+    return -(oracle.moving.lower(load.coefficient).a * dot(closing, shift))
 
 
 def _ends_apart(
@@ -689,7 +689,7 @@ def _generalized(oracle: Oracle, load: loads.GeneralizedForce, name: str) -> Sca
 
 def _point_force(oracle: Oracle, load: loads.PointForce, name: str) -> Scalar:
     force = oracle.in_inertial_axes(load.axes, load.components)
-    return _dot(force, oracle.along(name, load.point.body, oracle.numbers_of(load.point.position)))
+    return dot(force, oracle.along(name, load.point.body, oracle.numbers_of(load.point.position)))
 
 
 def _torque(oracle: Oracle, load: loads.Torque, name: str) -> Scalar:
@@ -698,7 +698,7 @@ def _torque(oracle: Oracle, load: loads.Torque, name: str) -> Scalar:
     turned = place.spin(load.body)[0] if load.body != INERTIAL else [oracle.numbers.zero] * 3
     if load.reaction_on is not None and load.reaction_on != INERTIAL:
         turned = [a - b for a, b in zip(turned, place.spin(load.reaction_on)[0], strict=True)]
-    return _dot(torque, turned)
+    return dot(torque, turned)
 
 
 _GENERALIZED_FORCES: dict[type, Any] = {

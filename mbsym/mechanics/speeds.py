@@ -23,7 +23,7 @@ from itertools import combinations
 from mbsym.algebra.base import Algebra, Lowering, Scalar
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import SingularPoint
-from mbsym.algebra.matrices import determinant
+from mbsym.algebra.matrices import cramer, determinant
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.vectors import Tensor, Vector, tensor_of
@@ -383,8 +383,4 @@ def _cramer(ring: Ring, matrix: Sequence[Sequence[Polynomial]], right: Sequence[
     if not right:
         return []
     inverse = ring.reciprocal(determinant(ring, matrix))
-    found = []
-    for column in range(len(right)):
-        replaced = [[*row[:column], r, *row[column + 1 :]] for row, r in zip(matrix, right, strict=True)]
-        found.append(ring.reduce(ring.times(determinant(ring, replaced), inverse)))
-    return found
+    return [ring.reduce(ring.times(x, inverse)) for x in cramer(ring, matrix, right)]

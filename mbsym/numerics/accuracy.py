@@ -2,14 +2,14 @@
 
     error_i = max over 0 <= t <= end of |x_i(t) - better_i(t)|,      relative to  scale_i = max over t of |better_i(t)|
 
-on dense output of both, following the steps of both, and at the rows that were shown (``mbsym.numerics.comparison``).
+on dense output of both, following the steps of both, and at the rows that were shown (``trade.comparison``).
 
 The better run differs in more than name: in an arithmetic of more digits, by another method, or by a tolerance ten
 times smaller at least; two runs that come down to the same settings are never compared.  It takes no step longer than a
 two thousandth of the whole, so that short events are not stepped over twice.  Where the run is as fine as any method,
 a short one is compared with an extrapolation in 160 bits at places that lie unevenly.
 
-The better run may be given so much counted work (``mbsym.numerics.prices``): one that shows on the way that it would
+The better run may be given so much counted work (``planning.prices``): one that shows on the way that it would
 cost more is given up.  No clock is looked at: whether there is an estimate, and which, is the same on every machine.
 
 Where the two part, both may be wrong from there on: the estimate is a lower bound then, and says so.
@@ -24,16 +24,16 @@ from math import inf
 
 import numpy as np
 
-from mbsym.numerics.comparison import Comparison, Difference, Ended, compared, compared_at, uneven
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.kernels.llvm import SCALARS, available
 from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Method, Setting, Unusable
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.prices import Meter, Working
-from mbsym.numerics.reference import BITS, solved_at
+from mbsym.numerics.planning.prices import Meter, Working
+from mbsym.numerics.planning.sizes import AFFORDABLE, sizes_of_scene
 from mbsym.numerics.simulate import Trajectory
-from mbsym.numerics.sizes import AFFORDABLE, sizes_of_scene
+from mbsym.numerics.trade.comparison import Comparison, Difference, Ended, compared, compared_at, uneven
+from mbsym.numerics.trade.reference import BITS, solved_at
 
 #: The better run's tolerance beside the run's own, and how much smaller it has to be where nothing else differs.
 TIGHTER, LEAST_RATIO = 1e-2, 0.1
@@ -133,7 +133,7 @@ def estimated(
     """The error of a run of ``method``, whose setting and times ``found`` holds, by a better one.
 
     ``completed`` makes of another method one that integrates the same coordinates and shows whole states.  All better
-    runs together, and the run beside them, may cost about as much as ``limit`` (``mbsym.numerics.prices``).
+    runs together, and the run beside them, may cost about as much as ``limit`` (``mbsym.numerics.planning.prices``).
     """
     if not found.whole:
         return NoEstimate(Lacking.NOT_WHOLE)

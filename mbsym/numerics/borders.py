@@ -27,13 +27,13 @@ from mbsym.algebra.roots import enclosures
 from mbsym.algebra.stable import stabilised
 from mbsym.analysis import Analysis, Unavailable
 from mbsym.expressions.tree import Expression
-from mbsym.numerics.digits import FULL, PRECISIONS, Digits, ball, compared, digits_of, tight
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64, Code
 from mbsym.numerics.kernels.llvm import kernels
 from mbsym.numerics.kernels.precise import precise
+from mbsym.numerics.planning.scales import kinds, scales
 from mbsym.numerics.probes import Ladder, Probe, free_parameters, scaled
-from mbsym.numerics.scales import kinds, scales
 from mbsym.numerics.scenario import Incomplete, Scenario, changed
+from mbsym.numerics.trade.digits import FULL, PRECISIONS, Digits, ball, compared, digits_of, tight
 from mbsym.problems.stability import ExactVerdicts
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word

@@ -288,7 +288,7 @@ def drift_of(dynamics: Dynamics, times: Any, states: Any) -> Drift | None:
     """The drift along a run, measured by its own sizes; None without constraints."""
     if dynamics.constraints is None:
         return None
-    from mbsym.numerics.sizes import scaled, sizes_of_scene
+    from mbsym.numerics.planning.sizes import scaled, sizes_of_scene
 
     states = np.asarray(states, dtype=float)
     own = np.max(np.abs(states), axis=1)

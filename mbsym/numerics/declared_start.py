@@ -17,6 +17,7 @@ from typing import Any
 from flint import arb, arb_mat, ctx, fmpq
 
 from mbsym.algebra.derivative import jacobian
+from mbsym.algebra.matrices import dot
 from mbsym.algebra.point import Balls
 from mbsym.algebra.program import Program
 from mbsym.expressions.tree import Name
@@ -161,7 +162,7 @@ class _Start:
         vectors = [[self.own[name] for name in one.components] for one in body.orientation]
         for i, vector in enumerate(vectors):
             for other in vectors[i:]:
-                product = sum((a * b for a, b in zip(vector, other, strict=True)), arb(0))
+                product = dot(vector, other)
                 wanted = 1 if other is vector else 0
                 if not abs(product - wanted) < _ball(AGREEMENT):
                     name = body.orientation[i].name
@@ -171,9 +172,9 @@ class _Start:
                     return None
         for i, vector in enumerate(vectors):  # Gram and Schmidt: what is left are roundings
             for other in vectors[:i]:
-                along = sum((a * b for a, b in zip(vector, other, strict=True)), arb(0))
+                along = dot(vector, other)
                 vector = [a - along * b for a, b in zip(vector, other, strict=True)]
-            length = sum((a * a for a in vector), arb(0)).sqrt()
+            length = dot(vector, vector).sqrt()
             vectors[i] = [a / length for a in vector]
             self.oriented |= dict(zip(body.orientation[i].components, vectors[i], strict=True))
         if isinstance(first, Quaternion):

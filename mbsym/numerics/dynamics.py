@@ -28,7 +28,7 @@ from mbsym.mechanics.forward_dynamics import ForwardDynamics, forward_dynamics
 from mbsym.mechanics.programs import Programs, programs, scene_without_accelerations
 from mbsym.mechanics.variables import program_environment, ring_of
 from mbsym.model.system import System
-from mbsym.numerics.features import SLIDING, Features, Polynomial, Standing, features, held, sign_that_holds
+from mbsym.numerics.events.features import SLIDING, Features, Polynomial, Standing, features, held, sign_that_holds
 from mbsym.numerics.kernels.cells import Cells
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.scenario import Scenario

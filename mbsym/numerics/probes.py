@@ -1,6 +1,6 @@
 """Where a model is driven to its extremes: ladders of exact states and scenarios.
 
-singular          a coordinate approaches a value at which M is singular (found: ``mbsym.numerics.singular``)
+singular          a coordinate approaches a value at which M is singular (found: ``mbsym.numerics.extremes.singular``)
 rates             all velocities together, 1e-8 to 1e8 times the usual
 equilibrium       the state approaches the unperturbed motion
 ratios            one positive parameter at a time, times 1e-12 to 1e12; towards 0 this is also the small parameter
@@ -16,10 +16,10 @@ from fractions import Fraction
 
 from mbsym.algebra.failures import SingularPoint
 from mbsym.expressions.tree import Expression, Number, names
-from mbsym.numerics.digits import Quantity
+from mbsym.numerics.extremes.singular import Singularities, SingularSet
 from mbsym.numerics.scenario import Incomplete, Scenario, exact, scenario
 from mbsym.numerics.scene_units import SceneUnits, in_units
-from mbsym.numerics.singular import Singularities, SingularSet
+from mbsym.numerics.trade.digits import Quantity
 
 SINGULAR, RATES, EQUILIBRIUM, RATIO = "singular", "rates", "equilibrium", "ratio"
 

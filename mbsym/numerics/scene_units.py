@@ -17,8 +17,8 @@ from typing import Any
 from flint import ctx
 
 from mbsym.mechanics.variables import angle_denominators
-from mbsym.numerics.digits import Truth
 from mbsym.numerics.scenario import Scenario
+from mbsym.numerics.trade.digits import Truth
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from mbsym.expressions.tree import number
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import COUNTS, Breakdown, Method, Piece, Run, Setting, Traits, Work
 from mbsym.numerics.methods.passed import Passed, together
-from mbsym.numerics.reduction import without
+from mbsym.numerics.planning.reduction import without
 from mbsym.numerics.scenario import Scenario
 
 

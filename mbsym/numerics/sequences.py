@@ -26,9 +26,9 @@ from mbsym.mechanics.forward_dynamics import forward_dynamics
 from mbsym.mechanics.programs import constants, programs
 from mbsym.mechanics.variables import expressions, ring_of
 from mbsym.model.system import Body, Rotation, System
-from mbsym.numerics.digits import Arithmetic, Quantity, input_names
 from mbsym.numerics.kernels.interface import FLOAT64, Code
 from mbsym.numerics.scenario import Scenario
+from mbsym.numerics.trade.digits import Arithmetic, Quantity, input_names
 
 #: Three axes of which no two neighbours are equal.
 SEQUENCES = tuple(axes for axes in product((1, 2, 3), repeat=3) if axes[0] != axes[1] != axes[2])

@@ -31,12 +31,12 @@ from mbsym.numerics.methods.interface import (
 )
 from mbsym.numerics.methods.kept import compiled_kernel
 from mbsym.numerics.methods.passed import Passed, met_by, up_to
-from mbsym.numerics.prices import Meter
+from mbsym.numerics.planning.prices import Meter
 
 if TYPE_CHECKING:
     from mbsym.numerics.streamed import Table
 
-#: Rows are filled in chunks that cost about so much (``mbsym.numerics.prices``), so that progress is seen and Ctrl-C
+#: Rows are filled in chunks that cost about so much (``planning.prices``), so that progress is seen and Ctrl-C
 #: keeps what there is; and not more of them at once.
 CHUNK, MOST_AT_ONCE = 0.2, 1 << 16
 

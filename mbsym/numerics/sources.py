@@ -6,7 +6,7 @@ from mbsym.algebra.failures import Failure
 from mbsym.expressions.tree import Call, Expression, Operation, walk
 from mbsym.mechanics.variables import expressions
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.surfaces import node
+from mbsym.numerics.events.surfaces import node
 
 
 def source_of(dynamics: Dynamics, place: int) -> Expression | None:

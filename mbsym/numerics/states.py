@@ -24,6 +24,7 @@ from flint import arb, ctx
 
 from mbsym.algebra.derivative import gradient
 from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.matrices import dot
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
 from mbsym.expressions.tree import Name
@@ -187,9 +188,9 @@ class StateDynamics(Dynamics):
             for names in vectors:
                 vector = [values[name] for name in names]
                 for other in done:
-                    along = sum((a * b for a, b in zip(vector, other, strict=True)), arb(0))
+                    along = dot(vector, other)
                     vector = [a - along * b for a, b in zip(vector, other, strict=True)]
-                length = sum((a * a for a in vector), arb(0)).sqrt()
+                length = dot(vector, vector).sqrt()
                 done.append([a / length for a in vector])
                 values |= dict(zip(names, done[-1], strict=True))
         return [values[name] for name in self.inputs]

@@ -13,13 +13,13 @@ import numpy as np
 from mbsym.numerics.breakdowns import least_pivot
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import Breakdown, Method
-from mbsym.numerics.prices import cost
+from mbsym.numerics.planning.prices import cost
 from mbsym.numerics.simulate import Trajectory, simulate
 
 #: Steps whose ends are looked at one by one, and places in what is left of the interval.
 MOST, PLACES = 4_000, 4_000
 
-#: Runs that cost more than this (``mbsym.numerics.prices``) are not run again.
+#: Runs that cost more than this (``mbsym.numerics.planning.prices``) are not run again.
 LONG = 2.0
 
 

@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.events import BATCH, Occurrences, Watcher
+from mbsym.numerics.events.events import BATCH, Occurrences, Watcher
+from mbsym.numerics.events.surfaces import Event
 from mbsym.numerics.methods.interface import STOPPED, Breakdown, Method, Piece, Run, Setting
 from mbsym.numerics.methods.passed import Passed, met_by
 from mbsym.numerics.pieces import states_on
-from mbsym.numerics.surfaces import Event
 
 #: (dynamics, events, tolerance, flow) -> the watcher of a run.
 Watch = Callable[..., Watcher]

@@ -17,8 +17,8 @@ from mbsym.expressions.tree import Expression
 from mbsym.model.quantities import energy_unit, time_unit
 from mbsym.model.system import System, velocity_name
 from mbsym.numerics.scenario import scenario
-from mbsym.report.animation_page import drift_of, run_sentences
-from mbsym.report.constrained_run_words import constraint_lines
+from mbsym.report.figures.animation_page import drift_of, run_sentences
+from mbsym.report.runs.constrained_run_words import constraint_lines
 from mbsym.report.unit_text import pretty
 from mbsym.simulation import Request, Simulation, simulate
 from mbsym.simulation.request import COORDINATES

@@ -17,7 +17,7 @@ from markupsafe import escape
 from mbsym import __version__
 from mbsym.model.system import System
 from mbsym.picture.parts import Values, equilibria_part, modes_part, motion_part, picture_part
-from mbsym.report.html_environment import embedded
+from mbsym.report.html.environment import embedded
 
 #: Where the bundles are that `make page` builds.
 BUNDLES = Path(__file__).parents[1] / "serving" / "page"

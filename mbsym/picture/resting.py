@@ -15,7 +15,7 @@ from mbsym.analysis.stages import Unavailable
 from mbsym.mechanics.rest import given_values, missing_values
 from mbsym.model.system import System
 from mbsym.picture.encode import number
-from mbsym.problems.equilibria import CoordinateValue
+from mbsym.problems.relative_equilibria.equilibria import CoordinateValue
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.report.sections.stability import verdict_data
 

@@ -15,7 +15,7 @@ import numpy as np
 from mbsym.numerics.positions import STILL
 from mbsym.numerics.scenario import Scenario
 from mbsym.picture.values import Coordinate, Measure, Numbers, Operands, View
-from mbsym.report.animation import azimuth_of
+from mbsym.report.figures.animation import azimuth_of
 
 #: So many positions are looked at; the first is the start.
 POSITIONS = 24

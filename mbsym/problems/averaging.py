@@ -45,6 +45,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import combinations
 from math import comb
 from typing import Any
@@ -53,7 +54,7 @@ from flint import fmpq
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.generators import occurring
-from mbsym.algebra.matrices import determinant
+from mbsym.algebra.matrices import adjugate, determinant
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.notebook import Shown
@@ -247,19 +248,16 @@ def averaged(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str, or
     driven = {name: ring.times(order.integral(push), slow) for name, push in pushes.items()}
     kicks = [ring.times(ring.derivative(wave, name), slow) + driven[name] for name in names]
     swings = [ring.reduce(x - mean - g) for x, mean, g in zip(linear, means, kicks, strict=True)]
+    adjoint = adjugate(mass, partial(determinant, ring))
     vibrational = ring.number(0)
     for i, x in enumerate(swings):
         for j, y in enumerate(swings):
             if not (ring.vanishes(x) or ring.vanishes(y)):
                 product = order.mean(ring.reduce(ring.times(x, y)), "T")
-                vibrational += ring.times(product, _cofactor(ring, mass, i, j))
+                vibrational += ring.times(product, adjoint[i][j])
     inverse = ring.reciprocal(determinant(ring, mass))
     divided = ring.times(vibrational * fmpq(1, 2), inverse)
-    turned = [
-        sum((ring.times(_cofactor(ring, mass, i, j), y) for j, y in enumerate(swings)), ring.zero)
-        for i in range(len(names))
-    ]
-    turned = [ring.reduce(ring.times(x, inverse)) for x in turned]
+    turned = [ring.reduce(ring.times(ring.dot(row, swings), inverse)) for row in adjoint]
     for a in names:
         for b, turn in zip(names, turned, strict=True):
             curl = ring.reduce(ring.derivative(driven[b], a) - ring.derivative(driven[a], b))
@@ -312,12 +310,6 @@ def _force_function(ring: Ring, forces: Mapping[str, Polynomial]) -> Polynomial:
                 remedy="write it as a potential",
             )
     return ring.reduce(total)
-
-
-def _cofactor(ring: Ring, matrix: Sequence[Sequence[Polynomial]], i: int, j: int) -> Polynomial:
-    rows = [[x for col, x in enumerate(row) if col != i] for at, row in enumerate(matrix) if at != j]
-    value = determinant(ring, rows) if rows else ring.one
-    return -value if (i + j) % 2 else value
 
 
 def without_constants(ring: Ring, names: Sequence[str]) -> Callable[[Polynomial], Polynomial]:

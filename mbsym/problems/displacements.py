@@ -31,7 +31,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations
 
-from mbsym.algebra.matrices import determinant
+from mbsym.algebra.matrices import ScalarMatrix, determinant
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs
 from mbsym.formulas.formula import Formula
@@ -282,17 +282,12 @@ class Basis:
 
     def congruent(self, ring: Ring, rows: Sequence[Sequence[Polynomial]]) -> list[list[Polynomial]]:
         """P^T A P."""
-        size = range(len(rows))
-        turned = [[_dot(ring, row, column) for column in self.columns] for row in rows]
-        return [[_dot(ring, column, [turned[k][j] for k in size]) for j in size] for column in self.columns]
+        p_transposed = ScalarMatrix(ring, self.columns)
+        return [list(row) for row in p_transposed @ (ScalarMatrix(ring, rows) @ p_transposed.T)]
 
     def through(self, ring: Ring, image: Callable[[Polynomial], Polynomial]) -> Basis:
         """The same in other symbols; a common denominator of a column is left out."""
         return replace(self, columns=tuple(_cleared(ring, [image(x) for x in column]) for column in self.columns))
-
-
-def _dot(ring: Ring, u: Sequence[Polynomial], v: Sequence[Polynomial]) -> Polynomial:
-    return ring.reduce(sum((ring.times(a, b) for a, b in zip(u, v, strict=True)), ring.zero))
 
 
 def _cleared(ring: Ring, column: Sequence[Polynomial]) -> Direction:

@@ -19,7 +19,7 @@ from flint import arb, ctx, fmpq, fmpq_mat
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import Failure
-from mbsym.algebra.matrices import determinant
+from mbsym.algebra.matrices import added, determinant
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import Signs
 from mbsym.expressions.place import Span
@@ -95,8 +95,8 @@ def check_matrices(scene: Scene[Polynomial], found: Linearisation) -> Check:
                 return Check("linearisation", ROUTE, second, UNDECIDED, str(reason))
             mass, damping, gyroscopic, stiffness, circulatory = derived
             pairs: list[tuple[str, Any, Any]] = [("M", mass, given.mass), ("B", gains, given.inputs)]
-            pairs.append(("D + G", _sum(damping, gyroscopic), given.rates))
-            pairs.append(("K + N", _sum(stiffness, circulatory), given.places))
+            pairs.append(("D + G", added(damping, gyroscopic), given.rates))
+            pairs.append(("K + N", added(stiffness, circulatory), given.places))
             wrong |= {name for name, first, rows in pairs if gains or name != "B" if not _same(first, rows)}
             wrong |= {name for name, rows in zip("MDK", (mass, damping, stiffness), strict=True) if not _is(rows, 1)}
             wrong |= {name for name, rows in zip("GN", (gyroscopic, circulatory), strict=True) if not _is(rows, -1)}
@@ -110,10 +110,6 @@ def _follow(scene: Scene[Polynomial], algebra: Any, values: dict[str, Any]) -> N
     for _ in scene.system.relations:
         for one in scene.system.relations:
             values[one.name] = Lowering(algebra, values)(one.value)
-
-
-def _sum(first: Any, second: Any) -> list[list[Any]]:
-    return [[a + b for a, b in zip(*rows, strict=True)] for rows in zip(first, second, strict=True)]
 
 
 def _same(first: Any, second: Any) -> bool:

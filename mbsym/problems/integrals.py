@@ -32,6 +32,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from flint import arb, arb_mat, ctx, fmpq_mat
@@ -40,6 +41,7 @@ from mbsym.algebra.antiderivative import potential
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Failure, NotRational
+from mbsym.algebra.matrices import adjugate, determinant
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.vectors import axis_vector
 from mbsym.expressions.tree import names
@@ -441,22 +443,10 @@ def rate_on_motion(scene: Scene, equations: Equations, formula: Polynomial) -> t
         return None
     mass = [list(row) for row in equations.mass_matrix.polynomials]
     slopes = [ring.velocity_derivative(formula, name) for name in names]
-    cofactors = [[_cofactor(scene, mass, i, j) for j in range(n)] for i in range(n)]
-    determinant = ring.dot(mass[0], cofactors[0])
-    multipliers = [ring.dot(slopes, [cofactors[j][i] for j in range(n)]) for i in range(n)]
-    left = ring.times(determinant, total_rate(scene, formula))
+    adjoint = adjugate(mass, partial(determinant, ring))
+    whole = ring.dot(mass[0], [row[0] for row in adjoint])
+    multipliers = [ring.dot(slopes, row) for row in adjoint]
+    left = ring.times(whole, total_rate(scene, formula))
     for i in range(n):
         left = left - ring.times(multipliers[i], residual(scene, equations, i))
-    return ring.reduce(left), ring.reduce(determinant)
-
-
-def _cofactor(scene: Scene, matrix: list[list[Polynomial]], i: int, j: int) -> Polynomial:
-    ring = scene.ring
-    minor = [[x for k, x in enumerate(row) if k != j] for m, row in enumerate(matrix) if m != i]
-    if not minor:
-        return ring.one
-    if len(minor) == 1:
-        value = minor[0][0]
-    else:
-        value = ring.reduce(minor[0][0] * minor[1][1] - minor[0][1] * minor[1][0])
-    return value if (i + j) % 2 == 0 else -value
+    return ring.reduce(left), ring.reduce(whole)

@@ -18,9 +18,9 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import motion_values
 from mbsym.mechanics.rest import Rest, at_numbers, rest
 from mbsym.model.system import System
-from mbsym.problems.rest_candidates import candidate_at
-from mbsym.problems.rest_place import exact_rates
-from mbsym.problems.rest_verdict import linear_at_rest
+from mbsym.problems.relative_equilibria.candidates import candidate_at
+from mbsym.problems.relative_equilibria.place import exact_rates
+from mbsym.problems.relative_equilibria.verdict import linear_at_rest
 from mbsym.problems.stability.verdict import Verdict
 
 #: Larger systems are not derived again at their numbers.

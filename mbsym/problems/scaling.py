@@ -35,12 +35,13 @@ from typing import Any
 from flint import fmpq, fmpq_mat
 
 from mbsym.algebra.generators import occurring
+from mbsym.algebra.matrices import Operators, added, null_vectors, reduced_rows
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import relations
 from mbsym.problems.equations import Equations
-from mbsym.problems.speeds import SpeedEquations
-from mbsym.problems.stability.linear_form import LinearSystem, add
+from mbsym.problems.in_speeds.speeds import SpeedEquations
+from mbsym.problems.stability.linear_form import LinearSystem
 
 #: More choices of units than this are not compared: then the first parameters that will do are taken.
 MOST_CHOICES = 20_000
@@ -117,7 +118,7 @@ def linear_groups(scene: Scene, parts: Sequence[tuple[Ring, LinearSystem]]) -> G
     """The groups of the first approximation: of its subsystems, whose matrices hold polynomials of these rings."""
     made = _Equations(scene.ring)
     for number, (ring, part) in enumerate(parts):
-        matrices = (add(part.K, part.N), add(part.D, part.G), part.M)
+        matrices = (added(part.K, part.N), added(part.D, part.G), part.M)
         for order, matrix in enumerate(matrices):
             for i, row in enumerate(matrix):
                 for j, entry in enumerate(row):
@@ -217,22 +218,7 @@ class _Equations:
         for i, row in enumerate(self.rows):
             for key, value in row.items():
                 matrix[i, place[key]] = fmpq(value.numerator, value.denominator)
-        return unknowns, _kernel(matrix)
-
-
-def _kernel(matrix: Any) -> list[list[fmpq]]:
-    """A basis of the x with A x = 0."""
-    reduced, rank = matrix.rref()
-    columns = matrix.ncols()
-    pivots = [next(j for j in range(columns) if reduced[i, j] != 0) for i in range(rank)]
-    basis = []
-    for free in (j for j in range(columns) if j not in pivots):
-        vector = [fmpq(0)] * columns
-        vector[free] = fmpq(1)
-        for i, pivot in enumerate(pivots):
-            vector[pivot] = -reduced[i, free]
-        basis.append(vector)
-    return basis
+        return unknowns, null_vectors(Operators(fmpq(0), fmpq(1)), reduced_rows(matrix), len(unknowns))
 
 
 def _found(scene: Scene, made: _Equations, coordinates: Sequence[str]) -> Groups:

@@ -22,9 +22,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from mbsym.algebra.failures import Limit, NoClosedForm
-from mbsym.algebra.matrices import components, determinant
+from mbsym.algebra.matrices import adjugate, components, determinant
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Matrix
 from mbsym.formulas.notebook import Shown
@@ -108,15 +109,8 @@ def _solved(ring: Ring, mass: Rows, right: Rows) -> Rows:
             raise NoClosedForm(f"{listed} at most", limit=Limit.TERMS)
         own = [[mass[i][j] for j in block] for i in block]
         inverse = ring.reciprocal(determinant(ring, own))
-        for place, i in enumerate(block):
-            row = [_cofactor(ring, own, k, place) for k in range(len(block))]
+        for i, row in zip(block, adjugate(own, partial(determinant, ring)), strict=True):
             found[i] = [
                 ring.times(ring.dot(row, [right[j][column] for j in block]), inverse) for column in range(len(right[i]))
             ]
     return found
-
-
-def _cofactor(ring: Ring, rows: Rows, i: int, j: int) -> Polynomial:
-    minor = [[x for b, x in enumerate(row) if b != j] for a, row in enumerate(rows) if a != i]
-    value = determinant(ring, minor)
-    return value if (i + j) % 2 == 0 else -value

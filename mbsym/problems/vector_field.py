@@ -12,8 +12,8 @@ from mbsym.algebra.generators import occurring
 from mbsym.algebra.polynomial_field import PolynomialField, in_lowest_terms
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.mechanics.speeds import SpeedForm
-from mbsym.problems.speed_integrals import Field
-from mbsym.problems.speeds import SpeedEquations
+from mbsym.problems.in_speeds.speed_integrals import Field
+from mbsym.problems.in_speeds.speeds import SpeedEquations
 
 #: No relations between parameters.
 NOTHING: Mapping[int, Polynomial] = {}

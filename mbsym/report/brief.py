@@ -8,7 +8,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL, SINGULAR, UNDECIDED, Check
-from mbsym.report.claims import HELD, OPEN, REFUTED, claim_line
+from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from mbsym.algebra.ring import Ring
     from mbsym.analysis import Analysis
     from mbsym.analysis.stages import NoResult
-    from mbsym.problems.brackets import Brackets
-    from mbsym.problems.canonical import Hamilton, Routh
+    from mbsym.problems.canonical.brackets import Brackets
+    from mbsym.problems.canonical.canonical import Hamilton, Routh
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,9 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Formula, Matrix
 from mbsym.model.momenta import denominator_names
 from mbsym.model.system import System
-from mbsym.problems.canonical import DENOMINATORS
+from mbsym.problems.canonical.canonical import DENOMINATORS
 from mbsym.report.canonical import Forms
-from mbsym.report.latex_formulas import width
+from mbsym.report.latex.formulas import width
 from mbsym.report.lengths import formulas
 
 #: Denominators estimated wider than this (in ems) have a name.

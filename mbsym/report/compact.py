@@ -18,7 +18,7 @@ from mbsym.problems.equations import Equations
 from mbsym.problems.kinematics import Kinematics
 from mbsym.problems.telling import ToldSystem
 from mbsym.report.detail import FULL, detail
-from mbsym.report.passages import Passage, passages
+from mbsym.report.words.passages import Passage, passages
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis

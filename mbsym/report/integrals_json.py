@@ -204,7 +204,7 @@ def _others(there: Setting, found: OtherLevels | None) -> list[doc.OtherLevel] |
             looked=one.looked,
             complete=one.looked and one.complete and not one.drops and not one.undecided,
             at_any_value=one.looked and one.complete and one.whole,
-            known="proved" if not (one.by_rank and there.field.parameters) else "verified",
+            known="proved" if not (one.by_rank and there.field.parameters) else "verified numerically",
         )
         for one in found.levels
     ]

@@ -14,7 +14,7 @@ from mbsym.model.system import System
 from mbsym.problems.small_parameter.harmonics import Harmonics
 from mbsym.report.documents import oscillations as doc
 from mbsym.report.documents.writer import written
-from mbsym.report.oscillation_words import numerator
+from mbsym.report.words.oscillation_words import numerator
 
 if TYPE_CHECKING:
     from mbsym.analysis.oscillating import Oscillating

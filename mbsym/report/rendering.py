@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import Defect, Failure, Severity
 from mbsym.analysis.stages import NoResult
-from mbsym.report.parsing import unreadable
+from mbsym.report.code.parsing import unreadable
 from mbsym.report.targets import Target
 
 if TYPE_CHECKING:

@@ -18,7 +18,6 @@ from mbsym.model.system import System
 from mbsym.problems.claims import ClaimResult
 from mbsym.report.canonical import data as canonical_data
 from mbsym.report.canonical import forms_of
-from mbsym.report.claims import claim_line, left_side
 from mbsym.report.documents import results as doc
 from mbsym.report.documents.parts import Counted
 from mbsym.report.documents.results import linearisation
@@ -29,6 +28,7 @@ from mbsym.report.inertias import accepted_inertias
 from mbsym.report.lengths import COUNTED, FILE, withheld
 from mbsym.report.plain import Written, matrix_text
 from mbsym.report.sections import section_of
+from mbsym.report.words.claims import claim_line, left_side
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis

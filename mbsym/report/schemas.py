@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from enum import Enum
 from importlib import import_module
 from types import NoneType, UnionType
@@ -146,7 +146,7 @@ class _Writer:
         name, of_type, remarks = str(remarks[named]), remarks[:named], remarks[named + 1 :]
         return _remarked(self._defined(name, name, lambda: _remarked(self._of(kind, given), of_type)), remarks)
 
-    def _defined(self, key: Any, name: str, write: Any) -> Schema:
+    def _defined(self, key: Any, name: str, write: Callable[[], Schema]) -> Schema:
         if key not in self.named:
             while name in self.definitions:
                 name += "_2"
@@ -176,21 +176,19 @@ class _Writer:
 
     def _one_of(self, choices: list[Any], given: Mapping[Any, Any]) -> Schema:
         written = [self._of(choice, given) for choice in choices]
+        others = [one for one in written if one != {"type": "null"}]
         if len(written) == 1:
             return written[0]
-        empty = {"type": "null"} in written
-        others = [one for one in written if one != {"type": "null"}]
         if all(set(one) == {"type"} for one in written):
             return {"type": [one["type"] for one in written]}
-        if empty and len(others) == 1 and "enum" in others[0]:
-            return {
-                **others[0],
-                "enum": [*others[0]["enum"], None],
-                **({} if "type" not in others[0] else {"type": [others[0]["type"], "null"]}),
-            }
-        if empty and len(others) == 1 and isinstance(others[0].get("type"), str) and "properties" not in others[0]:
-            return {**others[0], "type": [others[0]["type"], "null"]}
-        return {"oneOf": [*([{"type": "null"}] if empty else []), *others]}
+        if len(others) == 1 and not {"$ref", "properties", "oneOf"} & set(others[0]):
+            return _or_null(others[0])
+        return {"oneOf": [*([{"type": "null"}] if len(others) < len(written) else []), *others]}
+
+
+def _or_null(found: Schema) -> Schema:
+    kinds = {"type": [found["type"], "null"]} if "type" in found else {}
+    return found | kinds | ({"enum": [*found["enum"], None]} if "enum" in found else {})
 
 
 def _generic(hint: Any, given: Mapping[Any, Any]) -> tuple[Any, Any, Mapping[Any, Any]]:

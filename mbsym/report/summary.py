@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from mbsym.model.system import System
 from mbsym.problems.checks import Check
-from mbsym.report.claims import ClaimLine, claim_line
 from mbsym.report.sections import section_of
+from mbsym.report.words.claims import ClaimLine, claim_line
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis

@@ -62,13 +62,13 @@ class Target:
 
 
 def _latex(analysis: Analysis, problems: Sequence[int]) -> str:
-    from mbsym.report.latex_report import render
+    from mbsym.report.latex.report import render
 
     return render(analysis, problems)
 
 
 def _appendix(analysis: Analysis, problems: Sequence[int]) -> str:
-    from mbsym.report.latex_appendix import render
+    from mbsym.report.latex.appendix import render
 
     return render(analysis, problems)
 
@@ -77,7 +77,7 @@ def _fragment(name: str, number: int | None, title: str) -> Target:
     """``fragments/NAME.tex``: of a problem, or of what is told besides."""
 
     def text(analysis: Analysis, problems: Sequence[int]) -> str:
-        from mbsym.report.latex_appendix import fragment
+        from mbsym.report.latex.appendix import fragment
 
         return fragment(analysis, problems, name, title)
 
@@ -119,25 +119,25 @@ def _wolfram(analysis: Analysis, problems: Sequence[int]) -> str:
 
 
 def _python(analysis: Analysis, problems: Sequence[int]) -> str:
-    from mbsym.report.python_module import render
+    from mbsym.report.code.python_module import render
 
     return render(analysis, problems)
 
 
 def _c(analysis: Analysis, problems: Sequence[int]) -> str:
-    from mbsym.report.c_source import render
+    from mbsym.report.code.c_source import render
 
     return render(analysis, problems)
 
 
 def _c_header(analysis: Analysis, problems: Sequence[int]) -> str:
-    from mbsym.report.c_source import header
+    from mbsym.report.code.c_source import header
 
     return header(analysis, problems)
 
 
 def _html(analysis: Analysis, problems: Sequence[int]) -> str:
-    from mbsym.report.html_report import render
+    from mbsym.report.html.report import render
 
     return render(analysis, problems)
 

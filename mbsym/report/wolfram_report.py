@@ -21,22 +21,22 @@ from mbsym.formulas.wolfram import (
     wolfram_text,
 )
 from mbsym.model.system import System
-from mbsym.report import oscillation_words
 from mbsym.report.canonical import forms_of
+from mbsym.report.code.functions import prescribed_value
+from mbsym.report.code.programs import programs_of
 from mbsym.report.conditions import Statement, provided, statements
 from mbsym.report.environment import rendered
-from mbsym.report.expansion_measured import averages
-from mbsym.report.expansion_words import coefficients
 from mbsym.report.first_order import first_order
-from mbsym.report.functions import prescribed_value
 from mbsym.report.lengths import COUNTED, FILE, FILE_PROGRAM, formulas, not_printed, program_not_printed, withheld
-from mbsym.report.normal_form_words import sentences as higher_sentences
-from mbsym.report.programs import programs_of
-from mbsym.report.said import filled
 from mbsym.report.sections import invariant_sets, polynomial_integrals, small_parameters
 from mbsym.report.sections.normal_forms import PLAIN as HIGHER
 from mbsym.report.sections.stabilisation import PLAIN
-from mbsym.report.stabilisation_words import sentences
+from mbsym.report.words import oscillation_words
+from mbsym.report.words.expansion_measured import averages
+from mbsym.report.words.expansion_words import coefficients
+from mbsym.report.words.normal_form_words import sentences as higher_sentences
+from mbsym.report.words.said import filled
+from mbsym.report.words.stabilisation_words import sentences
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis

@@ -157,7 +157,7 @@ def typed_formula(source: str) -> dict[str, Any]:
     from mbsym.expressions.parser import parse_expression
     from mbsym.expressions.tree import names
     from mbsym.formulas.mathml import MathNames
-    from mbsym.report.html_description import expression
+    from mbsym.report.html.description import expression
 
     wrong = Complaints()
     if len(source) > MOST_FORMULA:

@@ -65,7 +65,7 @@ def _system(task: Task) -> System:
 def _derive(task: Task, system: System) -> Iterator[Message]:
     from mbsym.analysis import USUAL_PROBLEMS, Analysis
     from mbsym.analysis.given import chosen
-    from mbsym.report.html_sections import title
+    from mbsym.report.html.sections import title
 
     asked = task.get("problems")
     problems = tuple(sorted(asked)) if asked else chosen(system, USUAL_PROBLEMS)
@@ -97,7 +97,7 @@ def _plan(analysis: Analysis) -> list[str | int]:
 
 
 def _section(analysis: Analysis, part: str | int, problems: tuple[int, ...]) -> Message:
-    from mbsym.report.html_sections import part_html, title
+    from mbsym.report.html.sections import part_html, title
 
     started, state = time.perf_counter(), "derived"
     if isinstance(part, int):
@@ -251,8 +251,8 @@ def _map(task: Task, system: System) -> Iterator[Message]:
     from mbsym.maps.result import LineMap, Of, PlaneMap
     from mbsym.maps.section import Axis, usable
     from mbsym.report.language import Language
-    from mbsym.report.line_figure import line_figure
-    from mbsym.report.map_figure import map_figure
+    from mbsym.report.maps.figure import map_figure
+    from mbsym.report.maps.line_figure import line_figure
 
     axes = []
     for key in ("x", "y"):

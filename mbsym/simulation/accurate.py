@@ -9,15 +9,15 @@ from math import isfinite
 
 from mbsym.model.system import System
 from mbsym.numerics.accuracy import ErrorEstimate, Lacking, NoEstimate
-from mbsym.numerics.choice import rates
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.models import Model
-from mbsym.numerics.pilot import finest
-from mbsym.numerics.plan import ENERGY, INTEGRATION, Accuracy, Bound, Plan
-from mbsym.numerics.plan_bounds import DOUBLED
-from mbsym.numerics.planning import FREE, Pins, planned
+from mbsym.numerics.planning.choice import rates
+from mbsym.numerics.planning.models import Model
+from mbsym.numerics.planning.pilot import finest
+from mbsym.numerics.planning.plan import ENERGY, INTEGRATION, Accuracy, Bound, Plan
+from mbsym.numerics.planning.plan_bounds import DOUBLED
+from mbsym.numerics.planning.planning import FREE, Pins, planned
 from mbsym.numerics.scenario import Scenario
 from mbsym.simulation.request import COORDINATES, Request, wrong_with
 from mbsym.simulation.result import Simulation

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from mbsym.numerics.choice import Choice, choose, resumed
 from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.events.switching import rates
 from mbsym.numerics.kernels.interface import FLOAT64
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.reduced import Reduced
+from mbsym.numerics.planning.choice import Choice, choose, resumed
+from mbsym.numerics.planning.reduced import Reduced
 from mbsym.numerics.separable import Separate, separated
-from mbsym.numerics.switching import rates
 from mbsym.simulation.request import TOLERANCE, Request
 from mbsym.simulation.result import Chosen, PartMethod
 from mbsym.simulation.sampling import sample_times

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from mbsym.numerics.models import Model
+from mbsym.numerics.planning.models import Model
 
 
 @dataclass(frozen=True, eq=False)

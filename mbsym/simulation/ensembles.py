@@ -10,11 +10,11 @@ import numpy as np
 
 from mbsym.expressions.tree import Expression
 from mbsym.mechanics.constraints.refusal import refuse_constraints
-from mbsym.numerics.ensemble import Ensemble, ensemble
+from mbsym.numerics.ensembles.ensemble import Ensemble, ensemble
+from mbsym.numerics.ensembles.parametrised import Parametrised
+from mbsym.numerics.ensembles.variation import RANDOM, Variation, drawn, members
 from mbsym.numerics.methods.interface import Setting
-from mbsym.numerics.parametrised import Parametrised
 from mbsym.numerics.scenario import Scenario
-from mbsym.numerics.variation import RANDOM, Variation, drawn, members
 from mbsym.simulation.request import TOLERANCE, Request
 from mbsym.simulation.sampling import sample_times
 

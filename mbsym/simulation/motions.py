@@ -12,12 +12,12 @@ from mbsym.expressions.parser import parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import Expression, names
 from mbsym.model.system import System
-from mbsym.numerics.adjoint import Gradient, gradient_at_end
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.lyapunov import Exponents, exponents
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.periodic import Guess, NotFound, Orbit, autonomous, conserves_energy, periodic_orbit
+from mbsym.numerics.orbits.adjoint import Gradient, gradient_at_end
+from mbsym.numerics.orbits.lyapunov import Exponents, exponents
+from mbsym.numerics.orbits.periodic import Guess, NotFound, Orbit, autonomous, conserves_energy, periodic_orbit
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.scenario import scenario as scenario_of
 
@@ -67,14 +67,14 @@ def lyapunov_exponents(
     tolerance: float = 1e-10,
     watch: Callable[[float], None] = lambda t: None,
 ) -> Exponents:
-    """The exponents of the scenario's motion from 0 to ``time``; see ``mbsym.numerics.lyapunov``."""
+    """The exponents of the scenario's motion from 0 to ``time``; see ``mbsym.numerics.orbits.lyapunov``."""
     return exponents(Dynamics(scenario), time, every or time / INTERVALS, count, tolerance, watch)
 
 
 def gradient_of(
     system: System, values: Mapping[str, Expression], functional: str, wanted: Sequence[str], time: float
 ) -> Gradient:
-    """See ``mbsym.numerics.adjoint``; raises ValueError for what cannot be read or differentiated by."""
+    """See ``mbsym.numerics.orbits.adjoint``; raises ValueError for what cannot be read or differentiated by."""
     complaints = Complaints()
     found = parse_expression(functional, complaints, lambda start, end: Span(1, start + 1, max(1, end - start)))
     known = {*system.coordinates, *system.velocities, *system.parameter_names, "pi"}

@@ -13,7 +13,7 @@ from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import Expression, names, number
 from mbsym.model.system import System
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.models import Model
+from mbsym.numerics.planning.models import Model
 from mbsym.numerics.stored import SHOWN
 from mbsym.simulation.earlier import Earlier
 from mbsym.simulation.watching import Watch
@@ -35,7 +35,7 @@ class Request:
     well; ``estimate``: whether the error is estimated (None: if the run was short); ``whole``: what rests is
     integrated, too, all parts in one, and no body is lumped into another; ``certify``: the exact solution is enclosed
     so narrowly, as a part of each quantity's size, within ``certify_seconds`` and for the counted work
-    ``certify_limit`` (``mbsym.numerics.prices``); ``events``: what is watched for;
+    ``certify_limit`` (``mbsym.numerics.planning.prices``); ``events``: what is watched for;
     ``model``: how much of the mechanics is in the equations; no step is longer than ``longest``; ``earlier``: the run
     that it goes on from, whose rows come first; ``store``: a file of nobody else's, open to be written and read, for
     the rows where they are very many: the result then has some of them, and the table of all;

@@ -12,10 +12,10 @@ from mbsym.numerics.accuracy import ErrorEstimate, NoEstimate
 from mbsym.numerics.conservation import Conservation
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.enclosure.compare import Certificate
-from mbsym.numerics.events import Occurrences
+from mbsym.numerics.events.events import Occurrences
 from mbsym.numerics.methods.interface import Breakdown, Method, Run, Setting
-from mbsym.numerics.plan import Plan
-from mbsym.numerics.reduced import Reduced
+from mbsym.numerics.planning.plan import Plan
+from mbsym.numerics.planning.reduced import Reduced
 from mbsym.numerics.scenario import Scenario
 from mbsym.simulation.dense import Dense
 from mbsym.simulation.request import Request

@@ -24,17 +24,17 @@ from mbsym.numerics.columns import columns
 from mbsym.numerics.conservation import Standing
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.enclosure.compare import analytic, certified
+from mbsym.numerics.extremes.stepped_over import stepped_over
 from mbsym.numerics.invariants import along, invariants
 from mbsym.numerics.linearised import LinearisedDynamics
 from mbsym.numerics.methods.interface import Method, Unusable
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.models import Model, scenario_of
-from mbsym.numerics.prices import cost
-from mbsym.numerics.reduced import reduced
+from mbsym.numerics.planning.models import Model, scenario_of
+from mbsym.numerics.planning.prices import cost
+from mbsym.numerics.planning.reduced import reduced
+from mbsym.numerics.planning.sizes import kinetic_between
 from mbsym.numerics.scenario import Scenario
-from mbsym.numerics.sizes import kinetic_between
 from mbsym.numerics.states import StateDynamics, scenario_in_states, state_names
-from mbsym.numerics.stepped_over import stepped_over
 from mbsym.numerics.unseen import between_rows, nearest_to_singular
 from mbsym.simulation.choosing import chosen_for
 from mbsym.simulation.kept import energies, kept_integrals
@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from mbsym.numerics.closing import Closed
     from mbsym.numerics.constrained import Drift
 
-#: The error of a run that costs less (``mbsym.numerics.prices``) is estimated without being asked for.
+#: The error of a run that costs less (``mbsym.numerics.planning.prices``) is estimated without being asked for.
 SOON_DONE = 2.0
 
 #: That estimate may cost so much, or so many times as much as the run.

@@ -13,9 +13,9 @@ from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.model.system import System
 from mbsym.numerics.methods.interface import Breakdown, Method, Setting
 from mbsym.numerics.methods.table import METHODS
+from mbsym.numerics.orbits.variational import Variational, sensitive, split
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.simulate import integrated
-from mbsym.numerics.variational import Variational, sensitive, split
 from mbsym.simulation.request import TOLERANCE, Request
 from mbsym.simulation.sampling import SAMPLES, sample_times
 

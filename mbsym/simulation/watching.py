@@ -15,12 +15,12 @@ from mbsym.expressions.tree import Expression, Name, names
 from mbsym.model.states import InStates
 from mbsym.model.system import System, velocity_name
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.events import Occurrence, Occurrences
+from mbsym.numerics.events.events import Occurrence, Occurrences
+from mbsym.numerics.events.surfaces import Action, Event, event, known_names, node
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.kernels.llvm import kernel
 from mbsym.numerics.methods.interface import STOPPED, Method
 from mbsym.numerics.simulate import Trajectory
-from mbsym.numerics.surfaces import Action, Event, event, known_names, node
 from mbsym.numerics.watched import Watched
 
 

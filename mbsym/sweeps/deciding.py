@@ -25,13 +25,14 @@ from flint import fmpq
 
 from mbsym.algebra.characteristic import Coefficients, Matrix, Polynomial, characteristic_polynomial, factor_in_lambda
 from mbsym.algebra.failures import SingularPoint
+from mbsym.algebra.matrices import added
 from mbsym.algebra.point import Rationals
 from mbsym.algebra.program import Program
 from mbsym.algebra.root_signs import changes, real_roots, routh_column, sturm_ends
 from mbsym.algebra.running_error import Approximate, RunningErrors, certain_sign
 from mbsym.numerics.kernels.interface import Code
 from mbsym.problems.stability.constant import Constant
-from mbsym.problems.stability.linear_form import LinearSystem, add, is_zero
+from mbsym.problems.stability.linear_form import LinearSystem, is_zero
 from mbsym.problems.stability.routh import ignoring_cyclic, momenta_are_constant, only_momenta
 from mbsym.sweeps.polynomials import Horner
 
@@ -195,7 +196,7 @@ class _Made:
                     self.sign(x)
 
     def _roots(self, system: LinearSystem) -> None:
-        polynomial = characteristic_polynomial(system.M, add(system.D, system.G), add(system.K, system.N))
+        polynomial = characteristic_polynomial(system.M, added(system.D, system.G), added(system.K, system.N))
         if self.constant is not None:
             polynomial = tuple(map(self.constant.reduced, polynomial))
         even, plain = split(polynomial)

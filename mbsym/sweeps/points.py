@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from mbsym.expressions.guessing import guess
-from mbsym.numerics.variation import RANDOM, SOBOL, Draw, Grid, Variation, badly_ranged, mixed
+from mbsym.numerics.ensembles.variation import RANDOM, SOBOL, Draw, Grid, Variation, badly_ranged, mixed
 
 #: More points than this are refused: a picture of so many says no more, and their numbers fill disks.
 MOST_POINTS = 1_000_000_000

@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
+from mbsym.algebra.matrices import added
 from mbsym.maps.section import Section
 from mbsym.numerics.kernels import llvm
 from mbsym.numerics.kernels.interface import Code
-from mbsym.problems.stability.linear_form import add
 from mbsym.sweeps.measure import Column
 from mbsym.sweeps.polynomials import written
 
@@ -39,7 +39,7 @@ class RootsMeasure:
         entries = [
             x
             for part in section.parts
-            for matrix in (part.M, add(part.D, part.G), add(part.K, part.N))
+            for matrix in (part.M, added(part.D, part.G), added(part.K, part.N))
             for row in matrix
             for x in row
         ]

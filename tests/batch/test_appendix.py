@@ -8,7 +8,7 @@ from pathlib import Path
 
 from click.testing import CliRunner
 
-from mbsym.report.latex_labels import labels
+from mbsym.report.latex.labels import labels
 from mbsym_cli.main import main
 from tests.conftest import SHIPPED, needs_pdflatex
 from tests.report.test_latex_documents import CLASSES, PREAMBLE, complaints

@@ -16,7 +16,7 @@ from scipy.optimize import fsolve
 
 import mbsym
 from mbsym.mechanics.rest import given_values
-from mbsym.problems.equilibria import equilibria
+from mbsym.problems.relative_equilibria.equilibria import equilibria
 
 SYSTEM = Path(__file__).parents[2] / "systems" / "orbital-gyrostat.yaml"
 CASES = (("1/20", "3/100", "1/50"), ("317/1000", "-41/100", "53/50"), ("-137/100", "211/100", "83/100"))

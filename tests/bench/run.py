@@ -321,8 +321,8 @@ def measure_command(path: str, arm: str | None = None) -> list[str]:
 FLOORS = {
     "Python starts": "pass",
     "imports": "import mbsym_cli.process, mbsym_cli.reports, mbsym_cli.show, mbsym.analysis, mbsym.source.document, "
-    "mbsym.report.latex_report, mbsym.report.html_report, mbsym.report.wolfram_report, mbsym.report.python_module, "
-    "mbsym.report.c_source, mbsym.report.results_json",
+    "mbsym.report.latex.report, mbsym.report.html.report, mbsym.report.wolfram_report, "
+    "mbsym.report.code.python_module, mbsym.report.code.c_source, mbsym.report.results_json",
     "everything derived and checked": "import os, pathlib\n"
     "from mbsym.analysis import Analysis\n"
     "from mbsym.report.whole_run import derive_all\n"

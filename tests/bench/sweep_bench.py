@@ -24,7 +24,7 @@ import numpy as np
 
 import mbsym
 from mbsym.maps.section import Axis, section
-from mbsym.numerics.variation import Grid
+from mbsym.numerics.ensembles.variation import Grid
 from mbsym.sweeps.judged import RIGHT, StabilityMeasure
 from mbsym.sweeps.points import Points
 from mbsym.sweeps.roots import RootsMeasure
@@ -52,9 +52,9 @@ def loop(found: Any, points: Any) -> Any:
 
 
 def _matrices(part: Any) -> Any:
-    from mbsym.problems.stability.linear_form import add
+    from mbsym.algebra.matrices import added
 
-    return part.M, add(part.D, part.G), add(part.K, part.N)
+    return part.M, added(part.D, part.G), added(part.K, part.N)
 
 
 def _function(x: Any) -> Any:

@@ -15,7 +15,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from mbsym.numerics.enclosure.enclose import OUT_OF_TIME, Enclosure
-from mbsym.report.certificate import spelled
+from mbsym.report.runs.certificate import spelled
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main
 

@@ -16,7 +16,7 @@ from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.analysis import PROBLEMS
 from mbsym.formulas.formula import Formula
 from mbsym.report import targets
-from mbsym.report.parsing import unreadable
+from mbsym.report.code.parsing import unreadable
 from mbsym.report.sections import section_of
 from mbsym_cli.files import MANIFEST
 from mbsym_cli.main import main

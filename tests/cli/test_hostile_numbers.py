@@ -17,7 +17,7 @@ from conftest import SHIPPED
 import mbsym
 from mbsym.analysis import Analysis
 from mbsym.problems.claims import DIFFERS, DIGITS, EXACT, NUMERICAL, UNDECIDED, ClaimResult
-from mbsym.report import c_source
+from mbsym.report.code import c_source
 from mbsym_cli.files import alone, obstacle
 from mbsym_cli.main import main
 

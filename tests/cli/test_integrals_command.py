@@ -124,6 +124,9 @@ def test_hess_relation_is_told_with_its_condition():
 def test_invariant_relations_and_levels_are_told_with_what_is_proved():
     data = json.loads(run("systems/hess-appelrot.yaml", "--degree", "2", "--relations", "--json").stdout)
     jsonschema.validate(data, schema("integrals"))
+    higher = json.loads(run("systems/hess-appelrot.yaml", "--relations", "--json").stdout)
+    jsonschema.validate(higher, schema("integrals"))
+    assert "verified numerically" in [one["known"] for one in higher["other_levels"]]  # by ranks at a random point
     assert [one["formula"] for one in data["darboux"]["polynomials"]] == ["A*x0*p + C*z0*r"]
     assert (data["darboux"]["complete"], data["darboux"]["not_found"]) == (True, [])
     text = " ".join(run("systems/goryachev-chaplygin.yaml", "--relations").stdout.split())

@@ -14,9 +14,9 @@ from jsonschema import Draft202012Validator
 
 import mbsym
 from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.ensembles.parametrised import Parametrised
 from mbsym.numerics.kernels.llvm import kernel
 from mbsym.numerics.machine_code import machine_code
-from mbsym.numerics.parametrised import Parametrised
 from mbsym.numerics.scenario import scenario
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main

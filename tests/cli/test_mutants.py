@@ -16,7 +16,7 @@ from test_reports import uncommented
 
 from mbsym.analysis import Analysis
 from mbsym.model.system import System
-from mbsym.report.parsing import unreadable
+from mbsym.report.code.parsing import unreadable
 from mbsym.report.rendering import rendered
 from mbsym.report.summary import summary
 from mbsym.report.targets import TARGETS

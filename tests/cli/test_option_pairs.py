@@ -20,10 +20,10 @@ import pytest
 from click.testing import CliRunner, Result
 from test_simulate import table
 
+from mbsym.numerics.ensembles.side_by_side import TABLEAUX
 from mbsym.numerics.kernels.interface import EXTENDED
 from mbsym.numerics.kernels.llvm import available
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.side_by_side import TABLEAUX
 from mbsym_cli.main import main
 from mbsym_cli.simulate import command
 from mbsym_cli.simulation_together import APART, NEEDED, Apart, Needed

@@ -69,7 +69,7 @@ ON_PAGES = {
 @pytest.mark.parametrize(
     "line",
     [line for line in commands() if said(line) not in ON_PAGES],
-    ids=lambda line: line.partition("#")[0].strip()[:70],
+    ids=lambda line: line.partition("#")[0][:70].strip(),
 )
 def test_commands_run(line: str, workplace: Path) -> None:
     if line.split()[1] in ("watch", "lsp", "edit"):

@@ -28,18 +28,18 @@ from PIL import Image
 import mbsym as library
 from mbsym.numerics.between import accelerations, between
 from mbsym.numerics.breakdowns import least_pivot
-from mbsym.numerics.choice import choose
 from mbsym.numerics.columns import columns
 from mbsym.numerics.conservation import Standing, energy_standing, visited
 from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.events.switching import rates
 from mbsym.numerics.methods.interface import SINGULAR, Setting
 from mbsym.numerics.methods.table import METHODS
+from mbsym.numerics.planning.choice import choose
 from mbsym.numerics.scenario import Incomplete, scenario
 from mbsym.numerics.simulate import simulate
-from mbsym.numerics.switching import rates
-from mbsym.report.drawing import thinned
-from mbsym.report.figures import CORNER, _curve, figures
-from mbsym.report.trajectory_csv import trajectory_csv
+from mbsym.report.figures.drawing import thinned
+from mbsym.report.figures.figures import CORNER, _curve, figures
+from mbsym.report.runs.trajectory_csv import trajectory_csv
 from mbsym.source import load
 from mbsym_cli import files
 from mbsym_cli.files import MANIFEST
@@ -251,7 +251,7 @@ def test_many_coordinates_are_spread_over_pages(tmp_path: Path) -> None:
 
 
 def test_pages_are_filled_evenly() -> None:
-    from mbsym.report.figures import _pages
+    from mbsym.report.figures.figures import _pages
 
     names = [f"q{i}" for i in range(11)]
     pages = list(_pages("histories", names, 5))
@@ -262,7 +262,7 @@ def test_pages_are_filled_evenly() -> None:
 
 def test_a_winding_angle_is_drawn_modulo_a_turn() -> None:
     """The top spins thirty times a second: its plane is crossed by gaps, not by lines from pi to -pi."""
-    from mbsym.report.figures import _wrapped
+    from mbsym.report.figures.figures import _wrapped
 
     q = np.linspace(-1, 20, 200)
     wrapped, speeds = _wrapped(q, np.ones(200))
@@ -275,7 +275,7 @@ def test_a_winding_angle_is_drawn_modulo_a_turn() -> None:
 
 
 def test_thinning_keeps_the_extremes() -> None:
-    from mbsym.report.drawing import thinned
+    from mbsym.report.figures.drawing import thinned
 
     times = np.linspace(0, 1, 100_000)
     values = np.sin(40_000 * times)
@@ -335,8 +335,8 @@ def test_accelerations_are_those_of_the_equations() -> None:
 
 def test_labels_are_within_the_page(tmp_path: Path) -> None:
     """Also where the room for labels is measured once; the page's own fonts and style end with it."""
-    from mbsym.report.drawing import fontManager, saved, styled
-    from mbsym.report.figures import _drift, _histories, _planes
+    from mbsym.report.figures.drawing import fontManager, saved, styled
+    from mbsym.report.figures.figures import _drift, _histories, _planes
 
     installed = fontManager.ttflist
     dynamics = dynamics_of(described(tmp_path, chain(2)))
@@ -358,7 +358,7 @@ def test_labels_are_within_the_page(tmp_path: Path) -> None:
 
 
 def test_numbers_along_axes_are_plain_text() -> None:
-    from mbsym.report.drawing import _Numbers, _Powers, saved, styled
+    from mbsym.report.figures.drawing import _Numbers, _Powers, saved, styled
 
     assert [_Powers()(x) for x in (1e-3, 1.0, 1e12)] == ["10⁻³", "10⁰", "10¹²"]
     with styled():
@@ -785,7 +785,7 @@ def test_files_that_it_did_not_write_survive(tmp_path: Path) -> None:
 
 def test_pages_are_let_go_once_they_are_drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Fifty pages of a chain of a hundred at once are a gigabyte."""
-    from mbsym.report import figures as drawn
+    from mbsym.report.figures import figures as drawn
 
     seen: list[Figure] = []
     most = 0

@@ -11,7 +11,7 @@ import jsonschema
 import pytest
 from click.testing import CliRunner, Result
 
-from mbsym.numerics.pilot import Bench
+from mbsym.numerics.planning.pilot import Bench
 from mbsym.report import schemas
 from mbsym_cli.main import main
 

@@ -160,8 +160,12 @@ STALE = "how old a file is that a killed process left behind"
 
 #: Every module that reads a clock or waits for a time, and why its results do not depend on that.
 READS = {
-    **dict.fromkeys(["reference", "reference_search", "ensemble", "extremes", "simulate", "rows", "fidelity"], TOLD),
-    **dict.fromkeys(["planning", "tradeoff", "ledger.formulas", "methods.landing"], TOLD),
+    **dict.fromkeys(
+        ["trade.reference", "trade.reference_search", "ensembles.ensemble", "extremes.extremes", "trade.fidelity"], TOLD
+    ),
+    **dict.fromkeys(
+        ["simulate", "rows", "planning.planning", "trade.tradeoff", "ledger.formulas", "methods.landing"], TOLD
+    ),
     "ledger.work": f"{TOLD}; how often a timing is repeated for its least value",
     "enclosure.enclose": ASKED,
 }

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 import mbsym
-from mbsym.numerics.kinds import CYCLIC
 from mbsym.numerics.ledger.table import OF_ANY_SYSTEM, ledger
+from mbsym.numerics.planning.kinds import CYCLIC
 
 SYSTEMS = Path(__file__).parents[2] / "systems"
 

@@ -11,17 +11,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mbsym.numerics import reference_search
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import Method, Run, Setting, Traits
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.reference import EXPLICIT, IMPLICIT, Reference
-from mbsym.numerics.reference_search import WAYS, _Search, whole_reference
 from mbsym.numerics.scenario import Scenario, scenario
-from mbsym.numerics.tradeoff import Tradeoff, tradeoff
-from mbsym.report.constrained_run_words import constraint_lines
-from mbsym.report.tradeoff_figure import work_precision
-from mbsym.report.tradeoff_table import tradeoff_csv
+from mbsym.numerics.trade import reference_search
+from mbsym.numerics.trade.reference import EXPLICIT, IMPLICIT, Reference
+from mbsym.numerics.trade.reference_search import WAYS, _Search, whole_reference
+from mbsym.numerics.trade.tradeoff import Tradeoff, tradeoff
+from mbsym.report.figures.tradeoff_figure import work_precision
+from mbsym.report.runs.constrained_run_words import constraint_lines
+from mbsym.report.runs.tradeoff_table import tradeoff_csv
 from mbsym.simulation import Request, simulate
 from mbsym.source import read
 

@@ -28,7 +28,7 @@ from mbsym.problems.stability.linear_form import NonholonomicForm
 from mbsym.problems.stability.nonholonomic import enclosed
 from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.word import Word
-from mbsym.report.map_located import stratum_at
+from mbsym.report.maps.located import stratum_at
 from mbsym.source import read
 
 TEXT = (Path(__file__).parent / "pulled-sleigh.yaml").read_text(encoding="utf-8")

@@ -18,7 +18,7 @@ from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
 from mbsym.problems.constraints import analysis, integrability
 from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.word import Word
-from mbsym.report.constraint_words import Writer, filled, reduction_sentences
+from mbsym.report.words.constraint_words import Writer, filled, reduction_sentences
 from mbsym.source import read
 
 BEAD = """

@@ -16,7 +16,8 @@ from mbsym.algebra.failures import Failure
 from mbsym.analysis import Analysis
 from mbsym.formulas.formula import Matrix
 from mbsym.problems.checks import EXACT
-from mbsym.report import python_module, results_json
+from mbsym.report import results_json
+from mbsym.report.code import python_module
 from mbsym.report.schemas import schema
 
 POLE = Path(__file__).parents[2] / "systems" / "cart-pole.yaml"

@@ -16,9 +16,9 @@ import pytest
 
 import mbsym
 from mbsym.analysis import Analysis
-from mbsym.report import c_source, python_module
+from mbsym.report.code import c_source, python_module
+from mbsym.report.code.parsing_exports import READERS
 from mbsym.report.exports import fmu, julia, modelica, octave
-from mbsym.report.parsing_exports import READERS
 
 POLE = Path(__file__).parents[2] / "systems" / "cart-pole.yaml"
 THETA, FORCE = 0.05, 3.0

@@ -13,7 +13,7 @@ from scipy.interpolate import CubicSpline
 
 import mbsym
 from mbsym.numerics.inverse import NotLinear
-from mbsym.report import python_module
+from mbsym.report.code import python_module
 from mbsym_cli.main import main
 
 POLE = Path(__file__).parents[2] / "systems" / "cart-pole.yaml"

@@ -13,7 +13,7 @@ from scipy.interpolate import CubicSpline
 import mbsym
 from mbsym import DescriptionError
 from mbsym.problems.checks import EXACT
-from mbsym.report.python_module import render
+from mbsym.report.code.python_module import render
 
 SHAKEN = """
 mbsym: 1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
@@ -24,8 +25,9 @@ from mbsym.maps.branches_events import Event, Named
 from mbsym.maps.branches_result import Branches, Doubt
 from mbsym.maps.section import Axis
 from mbsym.mechanics.rest import given_values
-from mbsym.report.branch_words import EVENTS, WORDS, remark_words
-from mbsym.report.latex_reading import read_latex
+from mbsym.report.latex.reading import read_latex
+from mbsym.report.maps.branch_words import EVENTS, remark_words
+from mbsym.report.messages import messages
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main
 
@@ -308,8 +310,8 @@ def test_what_is_left_when_interrupted_is_kept(tmp_path: Path) -> None:
 
 
 def test_every_word_has_its_translation() -> None:
-    for words in WORDS.values():
-        assert set(EVENTS.values()) <= words.keys()
+    for language in ("ru", "es"):
+        assert {("", text) for text in EVENTS.values()} <= messages(language).keys()
     told = schema("branches")["properties"]
     assert told["remarks"]["items"]["properties"]["doubt"]["enum"] == [one.value for one in Doubt]
     meeting = told["critical_values"]["items"]["properties"]["equilibria"]["items"]["properties"]

@@ -16,7 +16,7 @@ from mbsym.maps.mapping import plane_map
 from mbsym.maps.result import Of, PlaneMap, Shape
 from mbsym.maps.section import Axis
 from mbsym.maps.verdicts import Border
-from mbsym.report.map_located import located, stratum_at
+from mbsym.report.maps.located import located, stratum_at
 from mbsym_cli.main import main
 
 HEAD = "mbsym: 1\nname: {}\nparameters: {{a: {{sign: real}}, b: {{sign: real}}}}\nlinear system:\n  coordinates: [x]\n"

@@ -19,8 +19,9 @@ import mbsym.maps.equilibria_map as module
 from mbsym.maps.equilibria_map import EquilibriaMap, Origin, Standing, equilibria_map
 from mbsym.maps.section import Axis
 from mbsym.mechanics.rest import given_values
-from mbsym.report.equilibria_map_words import ORIGINS, STANDINGS, WORDS
-from mbsym.report.latex_reading import read_latex
+from mbsym.report.latex.reading import read_latex
+from mbsym.report.maps.equilibria_map_words import ORIGINS, STANDINGS
+from mbsym.report.messages import messages
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main
 
@@ -186,7 +187,7 @@ def test_what_is_no_polynomial_is_refused(tmp_path: Path) -> None:
 
 
 def test_every_word_is_translated() -> None:
-    for words in WORDS.values():
-        assert {*STANDINGS.values(), *ORIGINS.values()} <= words.keys()
+    for language in ("ru", "es"):
+        assert {("", text) for text in (*STANDINGS.values(), *ORIGINS.values())} <= messages(language).keys()
     told = schema("equilibria_map")["properties"]["regions"]["items"]["properties"]["standing"]["enum"]
     assert told == [one.value for one in Standing]

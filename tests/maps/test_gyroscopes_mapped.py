@@ -18,7 +18,7 @@ from mbsym.maps.mapping import plane_map
 from mbsym.maps.result import PlaneMap, Shape
 from mbsym.maps.section import Axis
 from mbsym.problems.stability.word import Word
-from mbsym.report.map_located import stratum_at
+from mbsym.report.maps.located import stratum_at
 from tests.maps.test_maps_against_models import Polynomial, Values, product, to_the_right, total
 
 

@@ -21,7 +21,7 @@ from mbsym.maps.result import LineMap, PlaneMap, Standing
 from mbsym.maps.section import Axis
 from mbsym.maps.verdicts import Border
 from mbsym.problems.stability.word import Word
-from mbsym.report.map_located import stratum_at
+from mbsym.report.maps.located import stratum_at
 
 HEAD = "mbsym: 1\nname: constants\nparameters: [x, y]\nlinear system:\n  coordinates: [s, u]\n  M: [[1, 0], [0, 1]]\n"
 SPRINGS = HEAD + "  K: [[x + sqrt(2)*y, 1], [1, x]]\n"

@@ -20,7 +20,7 @@ from mbsym.maps.section import Axis
 from mbsym.maps.verdicts import Border
 from mbsym.problems.stability.constant import constant_of
 from mbsym.problems.stability.word import Word
-from mbsym.report.map_located import located, stratum_at
+from mbsym.report.maps.located import located, stratum_at
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main
 

@@ -27,9 +27,9 @@ from mbsym.maps.section import Axis
 from mbsym.maps.verdicts import Border
 from mbsym.problems.stability.word import Word
 from mbsym.report.language import Language
-from mbsym.report.latex_reading import read_latex
-from mbsym.report.map_located import located, stratum_at
-from mbsym.report.map_words import _CONDITIONS, STANDINGS
+from mbsym.report.latex.reading import read_latex
+from mbsym.report.maps.located import located, stratum_at
+from mbsym.report.maps.words import _CONDITIONS, STANDINGS
 from mbsym.report.messages import messages
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main

@@ -24,7 +24,7 @@ from mbsym.maps.mapping import plane_map
 from mbsym.maps.result import LineMap, PlaneMap, Shape, Standing
 from mbsym.maps.section import Axis
 from mbsym.problems.stability.word import Word
-from mbsym.report.map_located import stratum_at
+from mbsym.report.maps.located import stratum_at
 
 #: Coefficients from the highest to the lowest.
 Polynomial = list[F]

@@ -21,7 +21,7 @@ from mbsym.maps.result import LineMap, PlaneMap
 from mbsym.maps.section import Axis
 from mbsym.maps.verdicts import Border
 from mbsym.problems.stability.word import Word
-from mbsym.report.map_located import stratum_at
+from mbsym.report.maps.located import stratum_at
 
 HARD = json.loads(Path("tests/references/hard_polynomials.json").read_text())["reference"]["routh"]
 

@@ -26,11 +26,11 @@ from mbsym.maps.section import Axis
 from mbsym.maps.slices import Missing, Stack, stack
 from mbsym.maps.verdicts import Border
 from mbsym.problems.stability.word import Word
-from mbsym.report.latex_reading import read_latex
-from mbsym.report.map_located import stratum_at
+from mbsym.report.latex.reading import read_latex
+from mbsym.report.maps.located import stratum_at
+from mbsym.report.maps.slice_figure import page_names, panels
+from mbsym.report.maps.slice_located import Locating
 from mbsym.report.schemas import schema
-from mbsym.report.slice_figure import page_names, panels
-from mbsym.report.slice_located import Locating
 from mbsym_cli.main import main
 
 HEAD = "mbsym: 1\nname: {name}\nparameters: [{parameters}]\n"

@@ -26,7 +26,7 @@ from mbsym.analysis import Analysis
 from mbsym.formulas.latex import LatexNames
 from mbsym.problems import checks
 from mbsym.report.language import Language
-from mbsym.report.latex_description import load_in_words
+from mbsym.report.latex.description import load_in_words
 from mbsym.source import read, to_text, to_yaml
 
 ORDERS = [2, 3, 4, "exact"]

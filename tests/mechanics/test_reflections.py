@@ -11,7 +11,7 @@ from conftest import SHIPPED
 import mbsym
 from mbsym.mechanics.reflections import reflections
 from mbsym.mechanics.rest import at_numbers, given_values, rest
-from mbsym.problems.equilibria import Equilibria, equilibria
+from mbsym.problems.relative_equilibria.equilibria import Equilibria, equilibria
 from mbsym_cli.equilibria import command
 
 TURNED = """

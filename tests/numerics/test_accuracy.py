@@ -13,10 +13,10 @@ from conftest import SHIPPED
 
 import mbsym
 from mbsym.numerics.accuracy import Against, ErrorEstimate, Lacking, NoEstimate, contradicted
-from mbsym.numerics.comparison import Comparison, Difference
 from mbsym.numerics.kernels.llvm import available
 from mbsym.numerics.methods.interface import Setting
-from mbsym.report.simulation_words import error_json, error_lines, warnings
+from mbsym.numerics.trade.comparison import Comparison, Difference
+from mbsym.report.runs.simulation_words import error_json, error_lines, warnings
 from mbsym.simulation import Simulation
 
 CASES = Path(__file__).parents[1] / "cases" / "statements"

@@ -10,13 +10,13 @@ import mbsym
 from mbsym.expressions.parser import parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import Expression
-from mbsym.numerics import adjoint
-from mbsym.numerics.adjoint import gradient_at_end
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
+from mbsym.numerics.orbits import adjoint
+from mbsym.numerics.orbits.adjoint import gradient_at_end
+from mbsym.numerics.orbits.variational import sensitive, split
 from mbsym.numerics.scenario import scenario
 from mbsym.numerics.simulate import integrated
-from mbsym.numerics.variational import sensitive, split
 
 NAMES = ("m1", "m2", "l1", "l2", "g", "theta1", "theta2_dot")
 

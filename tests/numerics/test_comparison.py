@@ -12,8 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from properties import settings
 
-from mbsym.numerics.comparison import Comparison, Ended, compared
 from mbsym.numerics.methods.interface import BLOW_UP, Breakdown
+from mbsym.numerics.trade.comparison import Comparison, Ended, compared
 
 END = 8.0
 

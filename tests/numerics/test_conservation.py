@@ -10,7 +10,7 @@ from conftest import SHIPPED
 
 import mbsym
 from mbsym.numerics.conservation import CONTRADICTION, Conservation, Doubt, Standing, confronted
-from mbsym.report.simulation_words import conservation_json, conservation_line, warnings
+from mbsym.report.runs.simulation_words import conservation_json, conservation_line, warnings
 from mbsym.simulation import Simulation
 
 CASES = Path(__file__).parents[1] / "cases" / "statements"

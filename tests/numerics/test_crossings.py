@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mbsym.numerics.crossings import Sign, free_of_zeros, nodes, passages, resolved, series
+from mbsym.numerics.events.crossings import Sign, free_of_zeros, nodes, passages, resolved, series
 
 BLUR = 1e-13
 

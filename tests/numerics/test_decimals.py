@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from properties import settings
 
 from mbsym.numerics.kernels import decimals
-from mbsym.report.trajectory_csv import written
+from mbsym.report.runs.trajectory_csv import written
 
 POWERS = [float(f"1e{k}") for k in range(-330, 309)]
 
@@ -64,7 +64,7 @@ def test_a_wrong_power_of_ten_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_large_tables_read_as_small_ones(monkeypatch: pytest.MonkeyPatch) -> None:
     table = np.random.default_rng(7).normal(size=(3, 25_000))
     small = written(["a", "b", "c"], list(table))
-    monkeypatch.setattr("mbsym.report.trajectory_csv.MANY", 1)
+    monkeypatch.setattr("mbsym.report.runs.trajectory_csv.MANY", 1)
     assert written(["a", "b", "c"], list(table)) == small
     assert small.startswith("a,b,c\n")
     assert small.count("\n") == 25_001

@@ -11,16 +11,16 @@ import pytest
 from conftest import SHIPPED
 
 import mbsym
-from mbsym.numerics import side_by_side
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.ensemble import QUANTILES, Ensemble, ensemble, statistics
+from mbsym.numerics.ensembles import side_by_side
+from mbsym.numerics.ensembles.ensemble import QUANTILES, Ensemble, ensemble, statistics
+from mbsym.numerics.ensembles.parametrised import Parametrised
+from mbsym.numerics.ensembles.variation import SOBOL, Draw, Grid, Unvaried, drawn, members
 from mbsym.numerics.methods.interface import BLOW_UP, Setting
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.parametrised import Parametrised
 from mbsym.numerics.scenario import scenario
 from mbsym.numerics.simulate import integrated
-from mbsym.numerics.variation import SOBOL, Draw, Grid, Unvaried, drawn, members
-from mbsym.report.ensemble_tables import sentences
+from mbsym.report.runs.ensemble_tables import sentences
 from mbsym.simulation import read_values
 
 PARTICLE = """
@@ -187,7 +187,7 @@ def test_parameters_and_what_follows_from_them_in_order() -> None:
 
 
 def test_a_slope_that_is_not_handed_on_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
-    from mbsym.numerics.ensemble_text import _Adaptive
+    from mbsym.numerics.ensembles.ensemble_text import _Adaptive
 
     monkeypatch.setattr(_Adaptive, "_kept_slope", lambda self, mask: None)
     with pytest.raises(AssertionError):

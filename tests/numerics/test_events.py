@@ -15,10 +15,10 @@ import mbsym
 from mbsym.expressions.condition import Condition, parse_condition
 from mbsym.expressions.place import Complaints, Span
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.events import Occurrences, Watcher
+from mbsym.numerics.events.events import Occurrences, Watcher
+from mbsym.numerics.events.surfaces import Action, Direction, event, known_names
 from mbsym.numerics.methods.interface import Piece
 from mbsym.numerics.scenario import scenario
-from mbsym.numerics.surfaces import Action, Direction, event, known_names
 
 OSCILLATOR = """
 mbsym: 1

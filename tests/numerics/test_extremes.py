@@ -27,20 +27,20 @@ from mbsym.expressions.tree import Number
 from mbsym.mechanics.variables import ring_of
 from mbsym.model.system import System
 from mbsym.numerics.borders import BORDER, Judged, LinearModel
-from mbsym.numerics.digits import FULL, Arithmetic, Quantity, Truth, compared, input_names, measured, quantities
-from mbsym.numerics.extremes import LISTED, extremes
-from mbsym.numerics.extremes_told import _onward, sentences
+from mbsym.numerics.extremes.extremes import LISTED, extremes
+from mbsym.numerics.extremes.extremes_told import _onward, sentences
+from mbsym.numerics.extremes.singular import singularities
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64, Code
 from mbsym.numerics.probes import RATIO, SINGULAR, ladders, ratios, scaled, singular
 from mbsym.numerics.scenario import changed, scenario
 from mbsym.numerics.scene_units import scene_units
 from mbsym.numerics.sequences import SEQUENCES, angles_of, orientation, rankings
-from mbsym.numerics.singular import singularities
+from mbsym.numerics.trade.digits import FULL, Arithmetic, Quantity, Truth, compared, input_names, measured, quantities
 from mbsym.problems.stability.exact import verdict_at
 from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word
-from mbsym.report.extremes_tables import extremes_csv, extremes_json, tables
+from mbsym.report.runs.extremes_tables import extremes_csv, extremes_json, tables
 from mbsym.report.schemas import schema
 from mbsym.source import load
 from mbsym_cli.main import main

@@ -16,10 +16,18 @@ from jsonschema import Draft202012Validator
 from scipy.special import mathieu_a, mathieu_b
 
 import mbsym
-from mbsym.numerics import floquet
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.floquet import Judged, NotPeriodic, Word, common_frequency, enclosed, jacobian_on_motion, judged
-from mbsym.numerics.flow import Flow
+from mbsym.numerics.orbits import floquet
+from mbsym.numerics.orbits.floquet import (
+    Judged,
+    NotPeriodic,
+    Word,
+    common_frequency,
+    enclosed,
+    jacobian_on_motion,
+    judged,
+)
+from mbsym.numerics.orbits.flow import Flow
 from mbsym.numerics.scenario import scenario
 from mbsym.report.schemas import schema
 from mbsym.simulation import read_values

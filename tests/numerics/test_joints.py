@@ -12,11 +12,11 @@ from scipy.special import erf
 
 import mbsym
 from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.events.switching import rates
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.reference_search import whole_reference
 from mbsym.numerics.scenario import scenario
-from mbsym.numerics.switching import rates
+from mbsym.numerics.trade.reference_search import whole_reference
 
 LINE = (
     "mbsym: 1\nname: one\nbodies:\n"
@@ -119,8 +119,8 @@ def test_a_parameter_that_varies_meets_its_own_push() -> None:
 
 
 def test_the_longest_step_holds_for_many_motions_and_for_derivatives() -> None:
+    from mbsym.numerics.ensembles.variation import Grid
     from mbsym.numerics.scenario import scenario as given
-    from mbsym.numerics.variation import Grid
     from mbsym.simulation import Request
     from mbsym.simulation.ensembles import Spread, simulate_many
 

@@ -41,8 +41,8 @@ from mbsym.numerics.kernels.balls import enclosures
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64, Code
 from mbsym.numerics.kernels.precise import precise
 from mbsym.numerics.scenario import Scenario, scenario
-from mbsym.report.c_source import RESERVED, proposed
-from mbsym.report.identifiers import prefix_of
+from mbsym.report.code.c_source import RESERVED, proposed
+from mbsym.report.code.identifiers import prefix_of
 from mbsym.report.targets import TARGETS
 
 BITS = {FLOAT32: 24, FLOAT64: 53, EXTENDED: 64}

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import mbsym
-from mbsym.numerics import kinds
 from mbsym.numerics.ledger.table import KINDS, ledger
-from mbsym.numerics.plan import Accuracy
-from mbsym.numerics.planning import Pins, planned
+from mbsym.numerics.planning import kinds
+from mbsym.numerics.planning.plan import Accuracy
+from mbsym.numerics.planning.planning import Pins, planned
 from mbsym.numerics.scenario import scenario
 from mbsym.simulation import Request, simulate
 from mbsym_cli.main import main

@@ -32,7 +32,6 @@ from mbsym.mechanics.variables import expressions, ring_of
 from mbsym.model.loads import GeneralizedForce
 from mbsym.model.system import System
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.kinds import PARTS
 from mbsym.numerics.ledger import code
 from mbsym.numerics.ledger.entry import (
     OPERATIONS,
@@ -44,9 +43,10 @@ from mbsym.numerics.ledger.entry import (
 )
 from mbsym.numerics.ledger.table import ledger
 from mbsym.numerics.ledger.work import Work
+from mbsym.numerics.planning.kinds import PARTS
 from mbsym.numerics.scenario import scenario
 from mbsym.numerics.simulate import simulate
-from mbsym.report.ledger import ledger_lines
+from mbsym.report.runs.ledger import ledger_lines
 from mbsym_cli.main import main
 
 GENERIC = """
@@ -481,7 +481,7 @@ def test_nothing_is_taken_out_off_the_plane(tmp_path: Path) -> None:
 
 
 def test_what_is_not_proved_is_integrated(plane: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from mbsym.numerics import reduced as module
+    from mbsym.numerics.planning import reduced as module
 
     proved = module.resting
     monkeypatch.setattr(

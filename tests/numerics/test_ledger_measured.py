@@ -13,14 +13,14 @@ from click.testing import CliRunner
 
 import mbsym
 from mbsym.algebra.certainty import Certainty
-from mbsym.numerics import model_choice
-from mbsym.numerics.kinds import GRAVITY, MASSES
 from mbsym.numerics.ledger import measured
 from mbsym.numerics.ledger.entry import NEEDED, NOT_NEEDED, OPEN, Saving
 from mbsym.numerics.ledger.work import Wanted, Work
-from mbsym.numerics.models import Model, emptied, parted
-from mbsym.numerics.plan import Accuracy
-from mbsym.numerics.planning import Pins, planned
+from mbsym.numerics.planning import model_choice
+from mbsym.numerics.planning.kinds import GRAVITY, MASSES
+from mbsym.numerics.planning.models import Model, emptied, parted
+from mbsym.numerics.planning.plan import Accuracy
+from mbsym.numerics.planning.planning import Pins, planned
 from mbsym.numerics.scenario import scenario
 from mbsym.simulation import Request, simulate
 from mbsym_cli.main import main

@@ -18,7 +18,7 @@ from conftest import SHIPPED
 from test_kernels import COMPILER, compiled
 
 import mbsym
-from mbsym.report.identifiers import prefix_of
+from mbsym.report.code.identifiers import prefix_of
 from mbsym.report.targets import TARGETS
 
 needs_compiler = pytest.mark.skipif(COMPILER is None, reason="no C compiler")

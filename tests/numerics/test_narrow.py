@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mbsym.numerics.features import DIP, PEAK, TURN
+from mbsym.numerics.events.features import DIP, PEAK, TURN
 from mbsym.numerics.methods import narrow
 
 

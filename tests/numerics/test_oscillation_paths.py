@@ -14,8 +14,8 @@ import mbsym
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.analysis import Analysis
 from mbsym.analysis.oscillating import oscillating
+from mbsym.report.figures.oscillation_figure import oscillation_figures
 from mbsym.report.language import Language
-from mbsym.report.oscillation_figure import oscillation_figures
 from mbsym.simulation.oscillation_paths import oscillation_paths
 from mbsym_cli.main import main
 

@@ -14,10 +14,10 @@ from jsonschema import Draft202012Validator
 from scipy.special import ellipk
 
 import mbsym
-from mbsym.numerics import lyapunov, variational
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.lyapunov import Parting, exponents
-from mbsym.numerics.periodic import NotFound, Orbit, guessed, periodic_orbit
+from mbsym.numerics.orbits import lyapunov, variational
+from mbsym.numerics.orbits.lyapunov import Parting, exponents
+from mbsym.numerics.orbits.periodic import NotFound, Orbit, guessed, periodic_orbit
 from mbsym.numerics.scenario import scenario
 from mbsym.report.schemas import schema
 from mbsym.simulation import read_values

@@ -14,17 +14,17 @@ from scipy.special import ellipj, ellipk
 
 import mbsym
 from mbsym.algebra.certainty import Certainty
-from mbsym.numerics import pilot, plan_bounds, planning
 from mbsym.numerics.accuracy import ErrorEstimate
-from mbsym.numerics.alternatives import COARSEST, _judged
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.models import Model
-from mbsym.numerics.plan import ENERGY, Accuracy, Bound, Share
-from mbsym.numerics.plan_items import Settled, _closest, _why_method, _worst
-from mbsym.numerics.planning import Pins, planned
+from mbsym.numerics.planning import pilot, plan_bounds, planning
+from mbsym.numerics.planning.alternatives import COARSEST, _judged
+from mbsym.numerics.planning.models import Model
+from mbsym.numerics.planning.plan import ENERGY, Accuracy, Bound, Share
+from mbsym.numerics.planning.plan_items import Settled, _closest, _why_method, _worst
+from mbsym.numerics.planning.planning import Pins, planned
 from mbsym.numerics.scenario import Scenario, scenario
-from mbsym.numerics.yardstick import Yardstick
+from mbsym.numerics.trade.yardstick import Yardstick
 from mbsym.simulation import Request, simulate
 from mbsym.simulation.accurate import simulate_accurately
 

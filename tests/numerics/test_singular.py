@@ -14,12 +14,12 @@ import pytest
 import mbsym
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.expressions.tree import Number
-from mbsym.numerics import singular as module
 from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.extremes import singular as module
+from mbsym.numerics.extremes.singular import Singularities, singularities
+from mbsym.numerics.extremes.singular_kinds import CHART, MODEL
 from mbsym.numerics.kernels.llvm import kernel
 from mbsym.numerics.scenario import Scenario, changed, scenario
-from mbsym.numerics.singular import Singularities, singularities
-from mbsym.numerics.singular_kinds import CHART, MODEL
 from mbsym.source import load
 
 ROOT = Path(__file__).parents[2]

@@ -7,9 +7,9 @@ import pytest
 
 import mbsym
 from mbsym.algebra.certainty import Certainty
-from mbsym.numerics.kinds import SKEW
 from mbsym.numerics.ledger.plane import skew_plane
 from mbsym.numerics.ledger.work import Wanted, Work
+from mbsym.numerics.planning.kinds import SKEW
 
 #: Hangs straight down at first, and is turned at the rate 3 about (0.6, 0.8, 0).
 SWUNG = """

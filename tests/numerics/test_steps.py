@@ -17,7 +17,7 @@ from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64
 from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Piece, Setting
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.reduced import reduced
+from mbsym.numerics.planning.reduced import reduced
 from mbsym.numerics.scenario import scenario
 
 NAMES = list(METHODS)

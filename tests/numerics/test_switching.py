@@ -9,13 +9,14 @@ import pytest
 from conftest import SHIPPED
 
 import mbsym
-from mbsym.numerics import choice, switching
 from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.events import switching
+from mbsym.numerics.events.switching import Switching
 from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Setting
 from mbsym.numerics.methods.library import METHODS as LIBRARY
 from mbsym.numerics.methods.runge_kutta import METHODS as COMPILED
+from mbsym.numerics.planning import choice
 from mbsym.numerics.scenario import scenario
-from mbsym.numerics.switching import Switching
 
 EXPLICIT = next(method for method in COMPILED if method.traits.name == "dop853")
 IMPLICIT = next(method for method in LIBRARY if method.traits.name == "radau")

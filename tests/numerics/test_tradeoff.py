@@ -18,13 +18,13 @@ import mbsym
 from mbsym.algebra.certainty import Certainty
 from mbsym.expressions.tree import number
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.fidelity import measured, model_advice
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.reduction import resting
-from mbsym.numerics.reference import Reference, reference
+from mbsym.numerics.planning.reduction import resting
 from mbsym.numerics.scenario import scenario
-from mbsym.numerics.trade_study import studied
-from mbsym.numerics.tradeoff import Tradeoff, advice, tradeoff
+from mbsym.numerics.trade.fidelity import measured, model_advice
+from mbsym.numerics.trade.reference import Reference, reference
+from mbsym.numerics.trade.trade_study import studied
+from mbsym.numerics.trade.tradeoff import Tradeoff, advice, tradeoff
 from mbsym_cli.main import main
 
 ROOT = Path(__file__).parents[2]
@@ -258,7 +258,7 @@ def test_the_command_writes_a_table_and_a_figure_and_gives_advice(tmp_path: Path
 
 
 def test_every_series_looks_different() -> None:
-    from mbsym.report.tradeoff_figure import _DASHES, _INSIDE, _styles
+    from mbsym.report.figures.tradeoff_figure import _DASHES, _INSIDE, _styles
 
     styles = _styles(METHODS)
     assert len({colour for colour, _ in styles.values()}) == len(METHODS)

@@ -11,12 +11,13 @@ import pytest
 
 from mbsym.expressions.tree import Number
 from mbsym.mechanics.variables import ring_of
-from mbsym.numerics import digits, scales
 from mbsym.numerics.borders import BORDER
-from mbsym.numerics.extremes import Extremes, extremes
-from mbsym.numerics.extremes_told import sentences
+from mbsym.numerics.extremes.extremes import Extremes, extremes
+from mbsym.numerics.extremes.extremes_told import sentences
+from mbsym.numerics.planning import scales
 from mbsym.numerics.scenario import scenario
-from mbsym.report.extremes_tables import tables
+from mbsym.numerics.trade import digits
+from mbsym.report.runs.extremes_tables import tables
 from mbsym.source import load
 
 ROOT = Path(__file__).parents[2]

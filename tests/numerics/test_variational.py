@@ -11,15 +11,15 @@ import pytest
 from conftest import SHIPPED
 
 import mbsym
-from mbsym.numerics import variational
 from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.ensembles.parametrised import Parametrised, dependent
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.kept import compiled_kernel
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.parametrised import Parametrised, dependent
+from mbsym.numerics.orbits import variational
+from mbsym.numerics.orbits.variational import Variational, sensitive, split, units
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.numerics.simulate import integrated
-from mbsym.numerics.variational import Variational, sensitive, split, units
 from mbsym.simulation import read_values
 
 OSCILLATOR = """

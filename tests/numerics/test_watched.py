@@ -12,7 +12,7 @@ from scipy.special import ellipk
 
 import mbsym
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.events import Watcher
+from mbsym.numerics.events.events import Watcher
 from mbsym.numerics.methods.interface import STEP_LIMIT, Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.scenario import scenario
@@ -167,7 +167,7 @@ def test_a_restart_that_is_dropped_is_caught() -> None:
 
             super().__init__(dynamics, events, tolerance, wrong)
 
-    from mbsym.numerics.surfaces import event
+    from mbsym.numerics.events.surfaces import event
 
     events = [event(dynamics, condition) for condition in watch.events]
     errors = []

@@ -22,10 +22,10 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.analysis import Analysis
 from mbsym.analysis.averaged import averaged_system, averaging_of
 from mbsym.problems import averaging
-from mbsym.report.expansion_measured import averages, contradicts
 from mbsym.report.schemas import schema
 from mbsym.report.sections.small_parameters import lines
 from mbsym.report.targets import TARGETS
+from mbsym.report.words.expansion_measured import averages, contradicts
 from mbsym.simulation.averaged import Measured, measured
 from mbsym_cli.main import main
 

@@ -11,7 +11,7 @@ import mbsym
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.analysis import Analysis
 from mbsym.analysis.averaged import averaged_system, averaging_of
-from mbsym.report.expansion_measured import contradicts
+from mbsym.report.words.expansion_measured import contradicts
 from mbsym.simulation.averaged import measured
 from mbsym.source import read, to_yaml
 from mbsym_cli.main import main

@@ -26,7 +26,7 @@ import pytest
 
 import mbsym
 from mbsym.problems.claims import BORDERS, EXACT, FAILS, UNDECIDED, ClaimResult
-from mbsym.report.claims import claim_line
+from mbsym.report.words.claims import claim_line
 
 CASES = Path(__file__).parents[1] / "cases" / "statements"
 STABLE, UNSTABLE, GROWS = "stable", "unstable", "growing like t"

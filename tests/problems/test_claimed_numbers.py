@@ -16,7 +16,7 @@ from test_claims import PENDULUM, analysed, judged
 
 import mbsym
 from mbsym.problems.claims import DIFFERS, DIGITS, DOUBLES, TOLERANCE, UNDECIDED
-from mbsym.report.claims import claim_line
+from mbsym.report.words.claims import claim_line
 from mbsym.source.schema import json_schema
 from mbsym.source.text_writer import to_text
 from mbsym.source.yaml_writer import to_yaml

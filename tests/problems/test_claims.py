@@ -26,7 +26,7 @@ from mbsym.problems.claims import (
     UNDECIDED,
     ClaimResult,
 )
-from mbsym.report.latex_report import render as latex
+from mbsym.report.latex.report import render as latex
 from mbsym.report.results_json import results
 from mbsym_cli.main import main
 

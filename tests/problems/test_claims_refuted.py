@@ -28,9 +28,9 @@ from mbsym.problems.claims import (
     SCALED,
     ClaimResult,
 )
-from mbsym.report.claims import claim_line
-from mbsym.report.latex_report import render as latex
+from mbsym.report.latex.report import render as latex
 from mbsym.report.results_json import results
+from mbsym.report.words.claims import claim_line
 from mbsym.source.text_writer import to_text
 from mbsym.source.yaml_writer import to_yaml
 from mbsym_cli.main import main

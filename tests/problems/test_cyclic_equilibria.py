@@ -12,7 +12,7 @@ from conftest import SHIPPED, TESTS
 
 import mbsym
 from mbsym.mechanics.rest import given_values
-from mbsym.problems.equilibria import Equilibria, RelativeEquilibrium, equilibria
+from mbsym.problems.relative_equilibria.equilibria import Equilibria, RelativeEquilibrium, equilibria
 
 FRAME = """
 mbsym: 1

@@ -27,7 +27,7 @@ from mbsym.analysis.resting import relative_equilibria
 from mbsym.mechanics.charts import joints
 from mbsym.mechanics.rest import given_values, missing_values
 from mbsym.numerics.scenario import exact
-from mbsym.problems.equilibria import CERTIFIED, EXACT, Equilibria, RelativeEquilibrium, equilibria
+from mbsym.problems.relative_equilibria.equilibria import CERTIFIED, EXACT, Equilibria, RelativeEquilibrium, equilibria
 from mbsym.problems.stability import parameter_values
 from mbsym.problems.stability.enclosed import enclosed_verdict
 from mbsym_cli.equilibria import command

@@ -11,7 +11,7 @@ import mbsym
 from mbsym.maps.mapping import plane_map
 from mbsym.maps.section import Axis
 from mbsym.problems.stability.word import Word
-from mbsym.report.map_located import located
+from mbsym.report.maps.located import located
 from mbsym.source import read, to_yaml
 
 TEXT = """

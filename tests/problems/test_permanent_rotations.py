@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 import mbsym
 from mbsym.mechanics.rest import given_values
-from mbsym.problems.equilibria import RelativeEquilibrium, equilibria
+from mbsym.problems.relative_equilibria.equilibria import RelativeEquilibrium, equilibria
 
 MOMENTS = np.diag([4.0, 5.0, 6.0])
 CENTRE = np.array([0.1, 0.2, 0.3])  # times m g = 1

@@ -16,7 +16,7 @@ import pytest
 import sympy
 
 import mbsym
-from mbsym.problems.equilibria import RelativeEquilibrium, equilibria
+from mbsym.problems.relative_equilibria.equilibria import RelativeEquilibrium, equilibria
 
 X, Y = sympy.symbols("x y")
 

@@ -265,7 +265,7 @@ def module_of(found, tmp_path):
     """model.py, imported."""
     from importlib.util import module_from_spec, spec_from_file_location
 
-    from mbsym.report.python_module import render
+    from mbsym.report.code.python_module import render
 
     file = tmp_path / "model.py"
     file.write_text(render(found, (3,)))

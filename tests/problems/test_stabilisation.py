@@ -23,7 +23,7 @@ from mbsym.report.language import Language
 from mbsym.report.results_json import results
 from mbsym.report.schemas import schema
 from mbsym.report.sections.stabilisation import PLAIN, lines
-from mbsym.report.stabilisation_words import FEEDBACK, LYAPUNOV, sentences
+from mbsym.report.words.stabilisation_words import FEEDBACK, LYAPUNOV, sentences
 from mbsym.source import read
 
 

@@ -8,9 +8,9 @@ from fractions import Fraction
 import mbsym
 from mbsym.analysis import Analysis
 from mbsym.problems.invariant_sets import Definiteness, Gap, Kind
-from mbsym.report import invariant_words
 from mbsym.report.messages import messages
 from mbsym.report.sections import invariant_sets as section
+from mbsym.report.words import invariant_words
 
 PLANE = """
 mbsym: 1

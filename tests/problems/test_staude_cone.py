@@ -19,9 +19,9 @@ from conftest import SHIPPED, TESTS
 
 import mbsym
 from mbsym.mechanics.rest import given_values
-from mbsym.problems import permanent_rotations as module
-from mbsym.problems.equilibria import equilibria
-from mbsym.problems.permanent_rotations import PermanentRotations, permanent_rotations
+from mbsym.problems.relative_equilibria import permanent_rotations as module
+from mbsym.problems.relative_equilibria.equilibria import equilibria
+from mbsym.problems.relative_equilibria.permanent_rotations import PermanentRotations, permanent_rotations
 from mbsym_cli.equilibria import command
 
 FILE = TESTS / "cases" / "statements" / "staude2.yaml"

@@ -11,7 +11,7 @@ from conftest import TESTS
 
 import mbsym
 from mbsym.mechanics.rest import given_values
-from mbsym.problems.equilibria import EXACT, Equilibria, equilibria
+from mbsym.problems.relative_equilibria.equilibria import EXACT, Equilibria, equilibria
 
 TORSION = (TESTS / "cases" / "statements" / "torsion.yaml").read_text(encoding="utf-8")
 

@@ -18,7 +18,7 @@ from mbsym.algebra.point import Balls, Rationals
 from mbsym.analysis import Analysis
 from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.programs import accelerated
-from mbsym.problems.equilibria import equilibria
+from mbsym.problems.relative_equilibria.equilibria import equilibria
 from mbsym.problems.stability.word import Word
 
 FILE = SHIPPED / "orbital-gyrostat.yaml"

@@ -16,7 +16,7 @@ import pytest
 import mbsym
 from mbsym.analysis import Analysis
 from mbsym.mechanics.rest import given_values
-from mbsym.problems.equilibria import CoordinateValue, equilibria
+from mbsym.problems.relative_equilibria.equilibria import CoordinateValue, equilibria
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.verdict import Verdict, combine
 from mbsym.problems.stability.word import Word

@@ -21,12 +21,12 @@ from PIL import Image
 
 import mbsym
 from mbsym.picture.motion import motion_of
-from mbsym.report.animation import Animation, animation, projection, view
-from mbsym.report.animation_gif import MOST, TALL, WIDE, animation_gif
-from mbsym.report.animation_page import animation_page, run_sentences
-from mbsym.report.figures import figures
-from mbsym.report.html_motion import animated
-from mbsym.report.parsing import unreadable
+from mbsym.report.code.parsing import unreadable
+from mbsym.report.figures.animation import Animation, animation, projection, view
+from mbsym.report.figures.animation_gif import MOST, TALL, WIDE, animation_gif
+from mbsym.report.figures.animation_page import animation_page, run_sentences
+from mbsym.report.figures.figures import figures
+from mbsym.report.html.motion import animated
 from mbsym.report.targets import TARGETS
 from mbsym.simulation import Simulation
 

@@ -14,11 +14,13 @@ import mbsym
 from mbsym.analysis import Analysis
 from mbsym.formulas.tree import angles_as
 from mbsym.report import compact as choice
-from mbsym.report import latex_report, latex_told, latex_words
 from mbsym.report.compact import compact, told_formulas
 from mbsym.report.detail import detailed
-from mbsym.report.passages import passages
+from mbsym.report.latex import report as latex_report
+from mbsym.report.latex import told as latex_told
+from mbsym.report.latex import words as latex_words
 from mbsym.report.targets import TARGETS
+from mbsym.report.words.passages import passages
 from mbsym_cli.main import main
 
 #: The systems of which some problem is told, by problem; all others keep closed formulas.  The tether's equations are

@@ -27,12 +27,12 @@ from mbsym.analysis import Analysis
 from mbsym.mechanics.constraints.oracle import oracle_rows
 from mbsym.mechanics.oracle import State
 from mbsym.model.system import acceleration_name
-from mbsym.report import c_source
-from mbsym.report.constrained_code import tied_of
+from mbsym.report.code import c_source
+from mbsym.report.code.constrained_code import tied_of
+from mbsym.report.code.identifiers import prefix_of
+from mbsym.report.code.parsing import unreadable
 from mbsym.report.exports import fmu
 from mbsym.report.exports.modelica import proposed
-from mbsym.report.identifiers import prefix_of
-from mbsym.report.parsing import unreadable
 from mbsym.report.targets import FORMATS
 
 SHIPPED = Path(__file__).parents[2] / "systems"

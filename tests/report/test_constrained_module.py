@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import mbsym
-from mbsym.report.python_module import render
+from mbsym.report.code.python_module import render
 
 ROOT = Path(__file__).parents[2]
 

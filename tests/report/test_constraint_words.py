@@ -11,9 +11,10 @@ import pytest
 import mbsym
 from mbsym.algebra.certainty import Certainty
 from mbsym.problems.constraints import Integrability
-from mbsym.report import constraint_description, constraint_words
-from mbsym.report.constraint_words import Writer, filled, sentences
+from mbsym.report import constraint_description
 from mbsym.report.language import Language
+from mbsym.report.words import constraint_words
+from mbsym.report.words.constraint_words import Writer, filled, sentences
 
 DISC = Path(__file__).parents[2] / "systems" / "rolling-disc.yaml"
 WRITE = Writer(", ".join)

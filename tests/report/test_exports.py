@@ -30,10 +30,10 @@ from truth_at_states import Point, differences, random_point, truth
 
 import mbsym
 from mbsym.analysis import Analysis
+from mbsym.report.code.identifiers import prefix_of
+from mbsym.report.code.parsing import unreadable
 from mbsym.report.exports import fmu
 from mbsym.report.exports.modelica import proposed
-from mbsym.report.identifiers import prefix_of
-from mbsym.report.parsing import unreadable
 from mbsym.report.targets import EXPORTS, FORMATS, TARGETS
 
 #: Functions of every kind, the time, a spring and a damper between points, a length that is driven.
@@ -293,7 +293,7 @@ def by_c(text: str, name: str, folder: Path) -> list[dict[str, Any]]:
     """model.c, compiled."""
     if COMPILER is None:
         pytest.skip("no C compiler")
-    from mbsym.report import c_source
+    from mbsym.report.code import c_source
 
     analysis = analysis_of(name)
     (folder / "model.c").write_text(text, encoding="utf-8")

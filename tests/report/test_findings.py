@@ -10,7 +10,7 @@ from urllib.parse import unquote
 import pytest
 from click.testing import CliRunner
 
-from mbsym.report.findings import Finding, found, github_annotations, json_lines, sarif
+from mbsym.report.words.findings import Finding, found, github_annotations, json_lines, sarif
 from mbsym.source import read
 from mbsym_cli.main import main
 

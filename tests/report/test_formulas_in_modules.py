@@ -12,7 +12,7 @@ from test_reports import NASTY, loaded
 
 import mbsym
 from mbsym.analysis import PROBLEMS, Analysis
-from mbsym.report.formula_code import FORMULAS
+from mbsym.report.code.formula_code import FORMULAS
 from mbsym.report.targets import TARGETS
 
 #: A system and a problem that has many formulas of it.

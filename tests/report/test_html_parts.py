@@ -8,9 +8,9 @@ from html import unescape
 import pytest
 
 from mbsym.analysis import Analysis
-from mbsym.report.html_formulas import inline, spelled
-from mbsym.report.html_report import render
-from mbsym.report.html_sections import PARTS, part_html, title
+from mbsym.report.html.formulas import inline, spelled
+from mbsym.report.html.report import render
+from mbsym.report.html.sections import PARTS, part_html, title
 from mbsym.source import read
 
 PENDULUM = """\

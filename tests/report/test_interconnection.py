@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 import mbsym
 from mbsym.formulas.latex import LatexNames
 from mbsym.model.system import System
-from mbsym.report.interconnection import MOST_COLUMNS, MOST_ROWS, Interconnection, Kind, interconnection
-from mbsym.report.latex_diagram import diagram
+from mbsym.report.code.interconnection import MOST_COLUMNS, MOST_ROWS, Interconnection, Kind, interconnection
+from mbsym.report.latex.diagram import diagram
 from mbsym.report.targets import TARGETS
 from tests.conftest import SHIPPED, compiled_latex, needs_pdflatex
 
@@ -118,7 +118,7 @@ loads:
 
 
 def test_planted_overlap_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
-    from mbsym.report import interconnection as module
+    from mbsym.report.code import interconnection as module
 
     monkeypatch.setattr(module, "_places", lambda strip: {k: (0.0, n) for n, k in enumerate(strip.children)})
     with pytest.raises(AssertionError):

@@ -17,9 +17,9 @@ from mbsym.problems.stability import theorems
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.sentences import sentence
 from mbsym.problems.stability.word import Word
-from mbsym.report import latex_description
 from mbsym.report.compact import compact
 from mbsym.report.language import LANGUAGES, Language
+from mbsym.report.latex import description as latex_description
 from mbsym.report.rendering import rendered
 from mbsym.report.targets import TARGETS
 from mbsym_cli.main import main

@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 import mbsym
-from mbsym.report.latex_abbreviated import abbreviated
-from mbsym.report.latex_reading import read_latex
-from mbsym.report.latex_report import render
+from mbsym.report.latex.abbreviated import abbreviated
+from mbsym.report.latex.reading import read_latex
+from mbsym.report.latex.report import render
 
 SHIPPED = Path(__file__).parents[2] / "systems"
 LONG = " + ".join(f"x_{{{k}}} \\sin y_{{{k}}}" for k in range(20))

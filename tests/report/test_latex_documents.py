@@ -16,9 +16,9 @@ from click.testing import CliRunner
 import mbsym
 from mbsym.analysis import Analysis
 from mbsym.report import conditions
-from mbsym.report.latex_appendix import joined
-from mbsym.report.latex_labels import labels, slug
-from mbsym.report.parsing import unreadable
+from mbsym.report.code.parsing import unreadable
+from mbsym.report.latex.appendix import joined
+from mbsym.report.latex.labels import labels, slug
 from mbsym.report.rendering import rendered
 from mbsym.report.targets import TARGETS
 from mbsym.source.meaning import meaning

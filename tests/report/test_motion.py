@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 from mbsym.numerics.body_motion import body_motions
 from mbsym.numerics.positions import AXIS, END, JOINT, MASS_CENTRE, ORIGIN, Positions, positions
 from mbsym.numerics.scenario import Scenario, scenario
-from mbsym.report.motion_figure import motion_figures
+from mbsym.report.figures.motion_figure import motion_figures
 from mbsym.report.outlines import outlines
 from mbsym.source import load
 

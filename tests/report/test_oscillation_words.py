@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from mbsym.report import oscillation_words
 from mbsym.report.messages import messages
+from mbsym.report.words import oscillation_words
 
 SAID = {x for name, x in vars(oscillation_words).items() if name.isupper() and isinstance(x, str)}
 

@@ -17,11 +17,11 @@ from conftest import SHIPPED
 import mbsym
 from mbsym.analysis import Analysis
 from mbsym.analysis.oscillating import oscillating
-from mbsym.report.expansion_measured import orders_or_why
 from mbsym.report.language import Language
 from mbsym.report.schemas import schema
 from mbsym.report.sections.small_parameters import PLAIN, lines, told
 from mbsym.report.targets import TARGETS
+from mbsym.report.words.expansion_measured import orders_or_why
 
 POINT = """mbsym: 1
 name: A point

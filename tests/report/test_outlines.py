@@ -11,8 +11,8 @@ from scipy.spatial.transform import Rotation as Turned
 import mbsym.report.outlines as module
 from mbsym.model.system import Rotation
 from mbsym.numerics.scenario import scenario
-from mbsym.report.animation import animation
-from mbsym.report.animation_page import animation_page
+from mbsym.report.figures.animation import animation
+from mbsym.report.figures.animation_page import animation_page
 from mbsym.report.outlines import shape_lines
 from mbsym.simulation import Request, Simulation, simulate
 from mbsym.source import read

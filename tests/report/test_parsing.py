@@ -10,8 +10,8 @@ import pytest
 from conftest import SHIPPED
 
 import mbsym
-from mbsym.report import parsing, python_reading
-from mbsym.report.parsing import unreadable
+from mbsym.report.code import parsing, python_reading
+from mbsym.report.code.parsing import unreadable
 from mbsym.report.targets import TARGETS
 
 GOOD = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shlex
 
 import mbsym
-from mbsym.report.plan_words import repeating_command, repeating_options
+from mbsym.report.runs.plan_words import repeating_command, repeating_options
 from mbsym.simulation import Request
 from mbsym.simulation.watching import Watch, read_watch
 

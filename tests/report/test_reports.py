@@ -29,10 +29,10 @@ from mbsym.formulas.latex import LatexNames
 from mbsym.problems.stability.requirements import Case, Requirement
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.report.conditions import Labels, Reference, Shown, Statement, cases, statements
-from mbsym.report.latex_description import expression
-from mbsym.report.latex_formulas import LONGEST_CONDITION, counted
-from mbsym.report.latex_words import LINE, broken
-from mbsym.report.latex_words import label as latex_label
+from mbsym.report.latex.description import expression
+from mbsym.report.latex.formulas import LONGEST_CONDITION, counted
+from mbsym.report.latex.words import LINE, broken
+from mbsym.report.latex.words import label as latex_label
 from mbsym.report.summary import summary
 from mbsym.report.targets import TARGETS
 

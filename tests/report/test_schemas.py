@@ -15,6 +15,7 @@ from msgspec import UNSET, Meta, UnsetType
 
 import mbsym
 from mbsym.algebra.failures import Limit
+from mbsym.batch.summary_json import schema as of_batches
 from mbsym.numerics.conservation import Doubt
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL, SINGULAR, UNDECIDED
 from mbsym.problems.normal_forms import Theorem
@@ -24,10 +25,10 @@ from mbsym.problems.stability.word import Word
 from mbsym.report.documents.base import Part, told_apart_by
 from mbsym.report.documents.writer import written
 from mbsym.report.results_json import render
+from mbsym.report.runs.simulation_json import simulation_json
 from mbsym.report.schemas import names, schema, schema_of
-from mbsym.report.simulation_json import simulation_json
 from mbsym_cli.main import main
-from mbsym_cli.schema import DESCRIPTION
+from mbsym_cli.schema import DESCRIPTION, SUMMARY
 
 SYSTEMS = sorted([*SHIPPED.glob("*.yaml"), *OWN.glob("*.yaml")])
 RESULTS = schema("results")
@@ -77,9 +78,9 @@ def test_results_without_closed_forms_follow_it_too() -> None:
     assert complaints("results", found) == []
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", [*names(), SUMMARY])
 def test_a_schema_is_one_and_describes_every_property(name: str) -> None:
-    whole = schema(name)
+    whole = of_batches() if name == SUMMARY else schema(name)
     Draft202012Validator.check_schema(whole)
     assert whole["$id"].startswith("urn:mbsym:") or whole["$id"].startswith("https://")
     assert undocumented(whole) == []

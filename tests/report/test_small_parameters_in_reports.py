@@ -13,11 +13,11 @@ import mbsym
 from mbsym.algebra.quotients import Series
 from mbsym.analysis import Analysis
 from mbsym.analysis.expanding import expansion
-from mbsym.report import expansion_words
 from mbsym.report.language import Language
 from mbsym.report.schemas import schema
 from mbsym.report.sections.small_parameters import lines
 from mbsym.report.targets import TARGETS
+from mbsym.report.words import expansion_words
 from mbsym.simulation.expanded import measured
 
 

@@ -19,8 +19,8 @@ from mbsym.analysis import Analysis
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.scenario import scenario
 from mbsym.numerics.states import StateDynamics, scenario_in_states
-from mbsym.report import c_source
-from mbsym.report.identifiers import prefix_of
+from mbsym.report.code import c_source
+from mbsym.report.code.identifiers import prefix_of
 from mbsym.report.targets import FORMATS
 
 COMPILER = shutil.which("cc")

@@ -14,11 +14,11 @@ from click.testing import CliRunner
 from matplotlib.figure import Figure
 
 import mbsym.report.exports.fmu_units as fmu_units_module
-import mbsym.report.figures as figures_module
-import mbsym.report.motion_figure as motion_module
-from mbsym.numerics.tradeoff import Tradeoff
+import mbsym.report.figures.figures as figures_module
+import mbsym.report.figures.motion_figure as motion_module
+from mbsym.numerics.trade.tradeoff import Tradeoff
+from mbsym.report.runs.tradeoff_table import tradeoff_csv
 from mbsym.report.schemas import schema
-from mbsym.report.tradeoff_table import tradeoff_csv
 from mbsym.report.unit_text import latex, modelica, pretty
 from mbsym_cli.main import main
 
@@ -195,7 +195,7 @@ def test_without_units_no_axis_and_no_header_changes(tmp_path: Path, monkeypatch
 @pytest.mark.parametrize("name", ["theta", "theta_dot", "energy"])
 def test_a_wrong_unit_in_a_header_is_caught(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Planted: the unit of a rate without its time, of an angle as of a length, of an energy as of a force."""
-    import mbsym.report.trajectory_csv as module
+    import mbsym.report.runs.trajectory_csv as module
 
     right = module.column_units
     wrong = {"theta": "mm", "theta_dot": "rad", "energy": "t*mm/s^2"}

@@ -12,7 +12,7 @@ import pytest
 
 import mbsym
 from mbsym.expressions.place import Complaints
-from mbsym.report.python_module import render
+from mbsym.report.code.python_module import render
 from mbsym.source import read
 from mbsym.source.robots import convert
 

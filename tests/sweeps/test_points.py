@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mbsym.numerics.variation import Draw, Grid
+from mbsym.numerics.ensembles.variation import Draw, Grid
 from mbsym.sweeps.points import Points, complaints
 from mbsym.sweeps.statistics import interval
 from mbsym.sweeps.sweep import chunks, shard

@@ -19,7 +19,7 @@ from truth.independent.solve import agreement, places, states_of
 
 import mbsym
 from mbsym.numerics.accuracy import ErrorEstimate
-from mbsym.numerics.plan import Accuracy
+from mbsym.numerics.planning.plan import Accuracy
 from mbsym.numerics.scenario import scenario
 from mbsym.simulation.accurate import simulate_accurately
 from mbsym.simulation.request import Request

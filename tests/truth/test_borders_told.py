@@ -11,8 +11,8 @@ from truth.statements import ASYMPTOTIC, UNSTABLE
 
 import mbsym
 from mbsym.mechanics.variables import ring_of
-from mbsym.numerics.extremes import extremes
-from mbsym.numerics.extremes_told import sentences
+from mbsym.numerics.extremes.extremes import extremes
+from mbsym.numerics.extremes.extremes_told import sentences
 from mbsym.numerics.scenario import scenario
 
 SENTENCE = re.compile(r"(\w+) -> ([-+.\de]+): a border of the first approximation, ([a-z ]+) below and ([a-z ]+) above")

@@ -30,7 +30,7 @@ from mbsym.problems.claims import BORDERS, FAILS, ClaimResult
 from mbsym.problems.claims.regions import Inequality, Region
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word
-from mbsym.report.claims import claim_line
+from mbsym.report.words.claims import claim_line
 
 GRID = [Fraction(k, 2) for k in range(-4, 5)]
 RELATIONS: dict[str, Any] = {

@@ -15,7 +15,7 @@ import pytest
 
 import mbsym
 from mbsym.analysis.exceptional import exceptional
-from mbsym.report.exceptional_values import as_text, lines
+from mbsym.report.words.exceptional_values import as_text, lines
 
 CASES = Path(__file__).parents[1] / "cases" / "statements"
 

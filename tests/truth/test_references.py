@@ -12,18 +12,18 @@ import pytest
 from flint import arb, arb_mat, ctx
 
 import mbsym
-from mbsym.numerics import reference_search
 from mbsym.numerics.accuracy import ErrorEstimate
-from mbsym.numerics.comparison import uneven
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.llvm import available
 from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.reference import COLUMNS, EXPLICIT, EXTRAPOLATION, IMPLICIT, Extrapolation, Reference
-from mbsym.numerics.reference_search import DISAGREE, whole_reference
 from mbsym.numerics.scenario import scenario
-from mbsym.numerics.tradeoff import tradeoff
-from mbsym.report.simulation_words import error_lines
+from mbsym.numerics.trade import reference_search
+from mbsym.numerics.trade.comparison import uneven
+from mbsym.numerics.trade.reference import COLUMNS, EXPLICIT, EXTRAPOLATION, IMPLICIT, Extrapolation, Reference
+from mbsym.numerics.trade.reference_search import DISAGREE, whole_reference
+from mbsym.numerics.trade.tradeoff import tradeoff
+from mbsym.report.runs.simulation_words import error_lines
 
 CASES = Path(__file__).parents[1] / "cases" / "statements"
 
@@ -234,7 +234,7 @@ def test_a_scale_of_zero_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     run = mbsym.simulate(CASES / "symmetric_cart.yaml", 3, estimate=True)
     assert isinstance(run.error, ErrorEstimate)
     assert run.error.parted is None
-    monkeypatch.setattr("mbsym.numerics.comparison.scaled", lambda own, usual: np.maximum(own, 1e-300))
+    monkeypatch.setattr("mbsym.numerics.trade.comparison.scaled", lambda own, usual: np.maximum(own, 1e-300))
     planted = mbsym.simulate(CASES / "symmetric_cart.yaml", 3, estimate=True)
     assert isinstance(planted.error, ErrorEstimate)
     assert planted.error.parted is not None

@@ -15,7 +15,7 @@ from truth.statements import Run, false_run
 
 import mbsym
 from mbsym.numerics.accuracy import ErrorEstimate
-from mbsym.numerics.comparison import uneven
+from mbsym.numerics.trade.comparison import uneven
 
 LINE = (
     "mbsym: 1\nname: one\nbodies:\n"

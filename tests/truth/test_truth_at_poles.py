@@ -8,9 +8,9 @@ import mbsym
 from mbsym.problems.normal_forms import Outcome, Why
 from mbsym.problems.stability.word import Word
 from mbsym.report.language import Language
-from mbsym.report.normal_form_words import REASONS
 from mbsym.report.sections.normal_forms import lines as normal_form_lines
 from mbsym.report.sections.stability import lines as stability_lines
+from mbsym.report.words.normal_form_words import REASONS
 
 #: U = -x^2/2 - x^4/(b - 4): its first approximation knows nothing of the pole.
 POLE = """

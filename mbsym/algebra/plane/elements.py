@@ -12,6 +12,9 @@ from typing import Any, Protocol
 
 from flint import fmpq
 
+from mbsym.algebra.base import Algebra
+from mbsym.algebra.matrices import echelon
+
 #: Up to this degree remainders are taken without inverses.
 MOST_PSEUDO = 4
 
@@ -258,7 +261,7 @@ class ElementMatrix:
     def __mul__(self, other: Any) -> ElementMatrix:
         columns = list(zip(*other.tolist(), strict=True))
         return ElementMatrix(
-            self._size[0], len(columns), [_dot(row, column) for row in self._rows for column in columns]
+            self._size[0], len(columns), [_ENTRIES.dot(row, column) for row in self._rows for column in columns]
         )
 
     def solve(self, right: ElementMatrix) -> ElementMatrix:
@@ -282,22 +285,7 @@ class ElementMatrix:
 
     def _reduced(self, columns: int) -> tuple[list[list[Any]], list[int]]:
         """Rows after elimination in the first ``columns``, and the columns of the pivots."""
-        work = self.tolist()
-        pivots: list[int] = []
-        for column in range(columns):
-            at = len(pivots)
-            pivot = next((r for r in range(at, len(work)) if work[r][column] != 0), None)
-            if pivot is None:
-                continue
-            work[at], work[pivot] = work[pivot], work[at]
-            inverse = 1 / work[at][column] if not isinstance(work[at][column], Element) else work[at][column].inverse()
-            work[at] = [x if _plain_zero(x) else x * inverse for x in work[at]]
-            for r, row in enumerate(work):
-                if r != at and row[column] != 0:
-                    factor = row[column]
-                    work[r] = [a if _plain_zero(b) else a - factor * b for a, b in zip(row, work[at], strict=True)]
-            pivots.append(column)
-        return work, pivots
+        return echelon(_ENTRIES, self._rows, columns)
 
     def charpoly(self) -> ElementPolynomial:
         """det(lambda - A), after a similarity that makes A of Hessenberg's form."""
@@ -310,7 +298,7 @@ class ElementMatrix:
                 a[pivot], a[k] = a[k], a[pivot]
                 for row in a:
                     row[pivot], row[k] = row[k], row[pivot]
-            inverse = 1 / a[k][k - 1] if not isinstance(a[k][k - 1], Element) else a[k][k - 1].inverse()
+            inverse = _ENTRIES.reciprocal(a[k][k - 1])
             for r in range(k + 1, n):
                 if a[r][k - 1] == 0:
                     continue
@@ -369,7 +357,7 @@ class ElementMatrix:
         return found
 
     def _applied(self, vector: Sequence[Any]) -> list[Any]:
-        return [_dot(row, vector) for row in self._rows]
+        return [_ENTRIES.dot(row, vector) for row in self._rows]
 
 
 def _plain_zero(x: Any) -> bool:
@@ -377,9 +365,16 @@ def _plain_zero(x: Any) -> bool:
     return not isinstance(x, Element) and x == 0
 
 
-def _dot(row: Sequence[Any], column: Sequence[Any]) -> Any:
-    total: Any = fmpq(0)
-    for a, b in zip(row, column, strict=True):
-        if not (_plain_zero(a) or _plain_zero(b)):
-            total = total + a * b
-    return total
+class _Entries(Algebra[Any]):
+    """Elements, and rational numbers among them."""
+
+    zero, one = fmpq(0), fmpq(1)
+
+    def vanishes(self, x: Any) -> bool:
+        return _plain_zero(x)
+
+    def reciprocal(self, x: Any) -> Any:
+        return x.inverse() if isinstance(x, Element) else 1 / x
+
+
+_ENTRIES = _Entries()

@@ -9,7 +9,7 @@ from mbsym.expressions.parser import parse_expression
 from mbsym.expressions.place import Complaints
 from mbsym.expressions.tree import Expression, names
 from mbsym.formulas.mathml import MathNames, row, table
-from mbsym.report.html_description import expression
+from mbsym.report.html.description import expression
 from mbsym.source.placed import Mapping, Node, Scalar, Sequence
 
 

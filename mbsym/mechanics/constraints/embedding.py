@@ -19,12 +19,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import combinations, islice
 from typing import Any
 
 from mbsym.algebra.base import Algebra, Scalar
 from mbsym.algebra.failures import Constrained, NoClosedForm
-from mbsym.algebra.matrices import determinant
+from mbsym.algebra.matrices import adjugate, determinant
 from mbsym.algebra.ring import Polynomial, Ring
 
 #: So many blocks of columns are tried for the shortest determinant.
@@ -125,8 +126,7 @@ def _cramer(algebra: Algebra, rows: dict[int, list[Scalar]], chosen: Sequence[in
     block = [[rows[i][k] for k in columns] for i in chosen]
     whole = determinant(algebra, block)
     inverse = algebra.reciprocal(whole)
-    size = range(len(chosen))
-    adjugate = [[_signed(algebra, i + j, determinant(algebra, _without(block, j, i))) for j in size] for i in size]
+    adjoint = adjugate(block, partial(determinant, algebra))
     old = [rows[i] for i in chosen]
     for a, i in enumerate(chosen):
         new = []
@@ -134,18 +134,10 @@ def _cramer(algebra: Algebra, rows: dict[int, list[Scalar]], chosen: Sequence[in
             if k in columns:
                 new.append(algebra.one if columns[a] == k else algebra.zero)
                 continue
-            total = algebra.dot(adjugate[a], [row[k] for row in old])
+            total = algebra.dot(adjoint[a], [row[k] for row in old])
             new.append(algebra.reduce(algebra.times(inverse, total)))
         rows[i] = new
     return whole
-
-
-def _signed(algebra: Algebra, exponent: int, x: Scalar) -> Scalar:
-    return -x if exponent % 2 else x
-
-
-def _without(block: Sequence[Sequence[Scalar]], row: int, column: int) -> list[list[Scalar]]:
-    return [[x for j, x in enumerate(line) if j != column] for i, line in enumerate(block) if i != row]
 
 
 def choose(

@@ -14,7 +14,7 @@ from mbsym.algebra.base import Scalar
 from mbsym.expressions.rates import velocity_name
 from mbsym.expressions.tree import Expression, subtract
 from mbsym.mechanics.constraints.rows import normals
-from mbsym.mechanics.oracle import Oracle, Placement, Series, State
+from mbsym.mechanics.oracle import Oracle, Placement, Series, State, cross, dot
 from mbsym.model.constraints import Coincide, Constraint, Distance, Parallel, Relation, Rolling, Velocity
 from mbsym.model.system import INERTIAL, Point, System
 
@@ -74,15 +74,15 @@ class _Rows:
             found = []
             for normal in normals(one.first.direction):
                 n = place.direction(one.first.body, place.lower.vector(normal))
-                found.append(_dot(n, e))
+                found.append(dot(n, e))
             return found
         assert isinstance(one, Coincide | Distance)
         apart = [a - b for a, b in zip(self._point(place, one.first), self._point(place, one.second), strict=True)]
         if isinstance(one, Distance):
             length, half = place.lower(one.length), place.algebra.number(Fraction(1, 2))
-            return [half * (_dot(apart, apart) - length * length)]
+            return [half * (dot(apart, apart) - length * length)]
         axes = place.axes[self._frame(one.first.body, one.second.body)]
-        return [_dot([axes[i][k] for i in range(3)], apart) for k in range(3)]
+        return [dot([axes[i][k] for i in range(3)], apart) for k in range(3)]
 
     def _point(self, place: Placement, point: Point) -> Any:
         return place.point(point.body, place.lower.vector(point.position))
@@ -152,19 +152,9 @@ class _Rows:
         omega, rate = place.spin(body) if body != INERTIAL else ([self.numbers.zero] * 3, [self.numbers.zero] * 3)
         origin, two = place.origin[body], self.numbers.number(2)
         arm = [c - o for c, o in zip(contact, origin, strict=True)]
-        turned = _cross(omega, [x.a for x in arm])
-        swung = [
-            a + b for a, b in zip(_cross(rate, [x.a for x in arm]), _cross(omega, [x.b for x in arm]), strict=True)
-        ]
+        turned = cross(omega, [x.a for x in arm])
+        swung = [a + b for a, b in zip(cross(rate, [x.a for x in arm]), cross(omega, [x.b for x in arm]), strict=True)]
         return [
             [x.b + y for x, y in zip(origin, turned, strict=True)],
             [two * x.c + y for x, y in zip(origin, swung, strict=True)],
         ]
-
-
-def _dot(u: Any, v: Any) -> Any:
-    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
-
-
-def _cross(u: Any, v: Any) -> list[Any]:
-    return [u[i] * v[j] - u[j] * v[i] for i, j in ((1, 2), (2, 0), (0, 1))]

@@ -54,7 +54,7 @@ def projected(scene: Scene, found: Expansion) -> Projected:
     constant, forms = [], []
     for k in range(len(found.speeds)):
         column = [found.null_space[i][k] for i in range(n)]
-        constant.append(ring.reduce(_dot(scene, column, [one.value for one in needed])))
+        constant.append(ring.dot(column, [one.value for one in needed]))
         parts: list[tuple[Polynomial, Form]] = list(zip(column, own, strict=True))
         parts += [(needed[i].value, found.slopes[i][k]) for i in range(n)]
         forms.append(combined(scene, parts))
@@ -82,7 +82,7 @@ def on_leaf(scene: Scene, found: Expansion, equations: Projected) -> tuple[Expan
     ring = scene.ring
     rows = [found.null_space[i] for i in found.coordinates]
     columns = list(zip(*rows, strict=True))
-    position = tuple(tuple(ring.reduce(_dot(scene, line, column)) for column in columns) for line in equations.C)
+    position = tuple(tuple(ring.dot(line, column) for column in columns) for line in equations.C)
     size = range(len(found.speeds))
     unit = tuple(tuple(ring.one if i == k else ring.zero for k in size) for i in size)
     still = tuple((ring.zero,) * len(size) for _ in size)
@@ -117,10 +117,3 @@ def _reached(rows: Sequence[set[int]], start: set[int]) -> set[int]:
 
 def _cut(scene: Scene, forms: Sequence[Form], columns: Sequence[int]) -> Rows:
     return tuple(tuple(form.get(j, scene.ring.zero) for j in columns) for form in forms)
-
-
-def _dot(scene: Scene, u: Sequence[Polynomial], v: Sequence[Polynomial]) -> Polynomial:
-    total = scene.ring.zero
-    for x, y in zip(u, v, strict=True):
-        total = total + scene.ring.times(x, y)
-    return total

@@ -15,7 +15,7 @@ from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.enclosure.enclose import GUARD, Enclosure, enclosed
 from mbsym.numerics.enclosure.field import function_of
 from mbsym.numerics.enclosure.passages import passage_radii
-from mbsym.numerics.events import Occurrences
+from mbsym.numerics.events.events import Occurrences
 
 #: How much further than the last row the solution is enclosed where events are looked at.
 AFTER = 1 + 1e-6

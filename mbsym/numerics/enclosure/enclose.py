@@ -42,7 +42,7 @@ TOO_DEAR = "too dear"
 CUT = (OUT_OF_TIME, TOO_DEAR, INTERRUPTED)
 
 #: What a step costs, an operation of rates and Jacobian and as many for all else, times the square of the bits: about
-#: seconds of a usual machine (``mbsym.numerics.prices``).
+#: seconds of a usual machine (``mbsym.numerics.planning.prices``).
 STEP, BESIDES = 2.5e-8, 30
 
 

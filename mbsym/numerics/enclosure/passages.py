@@ -18,8 +18,8 @@ from flint import arb, ctx
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.enclosure.enclose import GUARD, Enclosure
 from mbsym.numerics.enclosure.field import NotAnalytic, function_of
-from mbsym.numerics.events import Occurrences
-from mbsym.numerics.surfaces import slopes_code
+from mbsym.numerics.events.events import Occurrences
+from mbsym.numerics.events.surfaces import slopes_code
 
 #: An interval that is too short is made so many times longer, so often.
 LONGER, TRIALS = 8.0, 16

@@ -12,9 +12,9 @@ from mbsym.mechanics import factorisation
 from mbsym.mechanics.forward_dynamics import ARTICULATED, FACTORISED, forward_dynamics
 from mbsym.mechanics.programs import Programs, programs
 from mbsym.mechanics.variables import ring_of
-from mbsym.numerics.kinds import DEAD, ROUTE, SPARSITY, STEADY, SYMMETRY, VALUES, ZEROS
 from mbsym.numerics.ledger.entry import COUNT, OPERATIONS, Measure, Saving
 from mbsym.numerics.ledger.work import Work
+from mbsym.numerics.planning.kinds import DEAD, ROUTE, SPARSITY, STEADY, SYMMETRY, VALUES, ZEROS
 from mbsym.numerics.scenario import Scenario, changed
 from mbsym.numerics.specialise import bound, substituted
 

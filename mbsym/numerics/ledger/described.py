@@ -18,9 +18,9 @@ from mbsym.mechanics.variables import ring_of
 from mbsym.model.loads import EXACT, GRAVITY_ORDERS, NewtonianGravity
 from mbsym.model.system import Body, Inertia, Rotation, Tensor, acceleration_name, rational
 from mbsym.model.welded import lumped
-from mbsym.numerics.kinds import AXES, GRAVITY, MASSLESS, POINTS, TURNS, WELDED
 from mbsym.numerics.ledger.entry import OPERATIONS, SECONDS, Measure, Saving
 from mbsym.numerics.ledger.work import Symbols, Work, changed_bodies, moving_names
+from mbsym.numerics.planning.kinds import AXES, GRAVITY, MASSLESS, POINTS, TURNS, WELDED
 from mbsym.numerics.scenario import PRECISION, Scenario
 
 

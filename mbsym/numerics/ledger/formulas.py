@@ -12,9 +12,9 @@ from mbsym.algebra.characteristic import characteristic_polynomial
 from mbsym.algebra.failures import Failure, Limit
 from mbsym.analysis import PROBLEMS, USUAL_PROBLEMS
 from mbsym.formulas.formula import Matrix
-from mbsym.numerics.kinds import ENTRIES, NOT_ASKED, SUBSYSTEMS
 from mbsym.numerics.ledger.entry import COUNT, Measure, Saving
 from mbsym.numerics.ledger.work import Counted, Work
+from mbsym.numerics.planning.kinds import ENTRIES, NOT_ASKED, SUBSYSTEMS
 from mbsym.problems.linearisation import Linearisation, components
 
 #: What characteristic polynomials of all parts and of the whole cost, about.

@@ -14,15 +14,15 @@ from math import isfinite
 import numpy as np
 
 from mbsym.algebra.certainty import Certainty
-from mbsym.numerics.kinds import LEFT_OUT, LINEARITY, MASSES
 from mbsym.numerics.ledger import described
 from mbsym.numerics.ledger.entry import OPERATIONS, Measure, Saving
 from mbsym.numerics.ledger.work import Wanted, Work
 from mbsym.numerics.methods.interface import Breakdown
-from mbsym.numerics.model_choice import PART, Scene, Tried, model_chosen, model_settled
-from mbsym.numerics.models import Model, parted
-from mbsym.numerics.plan import Accuracy
-from mbsym.numerics.planning import outlined
+from mbsym.numerics.planning.kinds import LEFT_OUT, LINEARITY, MASSES
+from mbsym.numerics.planning.model_choice import PART, Scene, Tried, model_chosen, model_settled
+from mbsym.numerics.planning.models import Model, parted
+from mbsym.numerics.planning.plan import Accuracy
+from mbsym.numerics.planning.planning import outlined
 
 #: Times at which two motions are compared, besides the steps between.
 TIMES = 501

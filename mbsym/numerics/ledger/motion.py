@@ -16,10 +16,10 @@ from mbsym.mechanics.states import ball_states
 from mbsym.mechanics.variables import expressions, ring_environment, ring_of
 from mbsym.model.system import INERTIAL, System
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.kinds import CYCLIC, DROPPED, PARTS, PLANE, RESTING
 from mbsym.numerics.ledger.entry import COUNT, OPERATIONS, SECONDS, TERMS, Measure, Saving
 from mbsym.numerics.ledger.work import INSTRUCTION, Work, holds
-from mbsym.numerics.reduced import reduced
+from mbsym.numerics.planning.kinds import CYCLIC, DROPPED, PARTS, PLANE, RESTING
+from mbsym.numerics.planning.reduced import reduced
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.separable import separated
 from mbsym.problems.energy import Energy

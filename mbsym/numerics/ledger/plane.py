@@ -16,13 +16,13 @@ from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
 from mbsym.model.system import rational
 from mbsym.numerics.body_motion import BodyMotions, body_motions
-from mbsym.numerics.choice import choose
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels import arrays
-from mbsym.numerics.kinds import SKEW
 from mbsym.numerics.ledger.entry import COUNT, Measure, Saving
 from mbsym.numerics.ledger.work import Work
 from mbsym.numerics.methods.interface import Breakdown, Setting
+from mbsym.numerics.planning.choice import choose
+from mbsym.numerics.planning.kinds import SKEW
 from mbsym.numerics.rows import rows
 
 #: The run's tolerance, the times at which it is looked at, and the part of the motion that may be out of the plane.

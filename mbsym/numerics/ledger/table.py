@@ -6,7 +6,10 @@ from collections.abc import Callable, Iterator, Mapping
 
 from mbsym.algebra.failures import Failure
 from mbsym.analysis import Analysis
-from mbsym.numerics.kinds import (
+from mbsym.numerics.ledger import code, described, formulas, measured, motion, plane
+from mbsym.numerics.ledger.entry import Ledger, Saving
+from mbsym.numerics.ledger.work import BUDGET, TooDear, Wanted, Work
+from mbsym.numerics.planning.kinds import (
     AXES,
     CYCLIC,
     DEAD,
@@ -29,9 +32,6 @@ from mbsym.numerics.kinds import (
     VALUES,
     WELDED,
 )
-from mbsym.numerics.ledger import code, described, formulas, measured, motion, plane
-from mbsym.numerics.ledger.entry import Ledger, Saving
-from mbsym.numerics.ledger.work import BUDGET, TooDear, Wanted, Work
 
 #: What each function looks for; the order is that of the ledger.
 KINDS: Mapping[str, Callable[[Work], Iterator[Saving]]] = {

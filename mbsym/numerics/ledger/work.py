@@ -27,7 +27,7 @@ from mbsym.model.system import Body, Parameter, System
 from mbsym.numerics.ledger.entry import COUNT, OPERATIONS, SECONDS, TERMS, Measure
 from mbsym.numerics.scenario import Incomplete, Scenario, scenario
 
-#: What all counterfactuals together may cost (``mbsym.numerics.prices``), and steps of polynomial arithmetic that one
+#: What all counterfactuals together may cost (``planning.prices``), and steps of polynomial arithmetic that one
 #: may take.
 BUDGET, WORK = 20.0, 20_000_000
 

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from mbsym.numerics.crossings import NODES, free_of_zeros, nodes, series
+from mbsym.numerics.events.crossings import NODES, free_of_zeros, nodes, series
 from mbsym.numerics.methods.interface import Breakdown, Piece
 from mbsym.numerics.methods.narrow import harmless
 from mbsym.numerics.methods.runge_kutta import CompiledRun

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from mbsym.numerics.crossings import Sign, free_of_zeros, passages, resolved, series
+from mbsym.numerics.events.crossings import Sign, free_of_zeros, passages, resolved, series
 from mbsym.numerics.methods.interface import Piece
 from mbsym.numerics.methods.narrow import along
 from mbsym.numerics.methods.passed import MOST_KEPT, Passed

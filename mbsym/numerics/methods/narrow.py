@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from mbsym.numerics.crossings import NODES, Sign, nodes, passages, resolved, series
-from mbsym.numerics.features import DIP, PEAK, TURN
+from mbsym.numerics.events.crossings import NODES, Sign, nodes, passages, resolved, series
+from mbsym.numerics.events.features import DIP, PEAK, TURN
 from mbsym.numerics.methods.interface import Piece
 
 #: A feature whose width is a smaller part of the step than this is narrow; it is followed so many widths to each side

@@ -17,7 +17,7 @@ import numpy as np
 from mbsym.algebra.lookup import numbers_of
 from mbsym.expressions.table import Curve
 from mbsym.numerics.dynamics import Dynamics, Frozen
-from mbsym.numerics.features import SLIDING
+from mbsym.numerics.events.features import SLIDING
 from mbsym.numerics.kernels.llvm import kernel
 from mbsym.numerics.methods.interface import Breakdown
 from mbsym.numerics.methods.kept import compiled_kernel, once

@@ -24,7 +24,6 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.speeds import SpeedForm
-from mbsym.problems import speeds
 from mbsym.problems.claims.counterexample import rate_at_states
 from mbsym.problems.claims.differences import differing
 from mbsym.problems.claims.forms import by_place, in_parameters, on_relations
@@ -41,8 +40,9 @@ from mbsym.problems.claims.result import (
 )
 from mbsym.problems.claims.signs_under_roots import decided
 from mbsym.problems.claims.symbols import Symbols
+from mbsym.problems.in_speeds import speeds
+from mbsym.problems.in_speeds.speeds import SpeedEquations
 from mbsym.problems.integrals import residual
-from mbsym.problems.speeds import SpeedEquations
 
 #: States at which an expression must vanish before a proof is tried; coupled equations, and powers of accelerations,
 #: beyond which none is.

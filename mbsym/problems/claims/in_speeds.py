@@ -19,7 +19,6 @@ from mbsym.formulas.formula import Formula, Matrix, column
 from mbsym.mechanics.motion import relations
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.model.claims import Claim
-from mbsym.problems import speeds
 from mbsym.problems.claims.comparison import examined_formula
 from mbsym.problems.claims.conditions import examined_condition
 from mbsym.problems.claims.equations import NOT_LINEAR, NOTHING, SAME_ACCELERATIONS, Dynamics, along_motion
@@ -37,8 +36,9 @@ from mbsym.problems.claims.result import (
     Derived,
 )
 from mbsym.problems.claims.symbols import Symbols
-from mbsym.problems.speed_integrals import Field
-from mbsym.problems.speeds import SpeedEquations
+from mbsym.problems.in_speeds import speeds
+from mbsym.problems.in_speeds.speed_integrals import Field
+from mbsym.problems.in_speeds.speeds import SpeedEquations
 
 #: What is told in coordinates.
 _LINEAR = ("linear matrix", "subsystem matrix", "characteristic")

@@ -18,6 +18,7 @@ from flint import ctx
 
 from mbsym.algebra.base import Algebra
 from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.matrices import dot, null_vectors
 from mbsym.algebra.ring import Ring
 from mbsym.mechanics.constraints.oracle import OracleRow, oracle_rows
 from mbsym.mechanics.constraints.programs import ConstrainedPrograms
@@ -108,7 +109,7 @@ def check_embedded(
             for name, row in zip(found.names, rows, strict=True)
         ]
         for place, y in enumerate(null_space([row.partials for row in rows], len(names), state.numbers)):
-            work = sum((a * b for a, b in zip(y, residual, strict=True)), zero)
+            work = dot(y, residual)
             compared.append((f"work along displacement {place + 1}", work, zero))
         return compared
 
@@ -178,15 +179,7 @@ def accelerated(state: State, carry: Any, found: Constraints, embedded: Embedded
 def null_space(rows: Sequence[Sequence[Any]], n: int, numbers: Algebra) -> list[list[Any]]:
     """A basis of {y: J y = 0}, from J alone."""
     done = eliminated(rows, range(n))
-    owner = {column: row for row, column in done.pivots}
-    basis = []
-    for free in (k for k in range(n) if k not in owner):
-        y = [numbers.zero] * n
-        y[free] = numbers.one
-        for column, row in owner.items():
-            y[column] = -done.rows[row][free]
-        basis.append(y)
-    return basis
+    return null_vectors(numbers, {column: done.rows[row] for row, column in done.pivots}, n)
 
 
 def compared_on_manifold(

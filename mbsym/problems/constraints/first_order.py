@@ -26,8 +26,8 @@ from mbsym.problems.checks import Check, check_identities
 from mbsym.problems.constraints.in_speeds import dependent_speeds
 from mbsym.problems.equilibrium import Equilibrium, unsolved
 from mbsym.problems.first_order import FirstOrder, product, solved
+from mbsym.problems.in_speeds.speeds import SpeedEquations
 from mbsym.problems.reduction import Reduced
-from mbsym.problems.speeds import SpeedEquations
 
 
 def first_order(form: SpeedForm, equations: SpeedEquations, reduced: Reduced, at: Equilibrium) -> FirstOrder:

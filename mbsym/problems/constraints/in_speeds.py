@@ -36,7 +36,7 @@ from mbsym.model.system import velocity_name
 from mbsym.problems.constraints.analysis import POINTS, Fault, Unsound, regular_at
 from mbsym.problems.constraints.motion import Embedded
 from mbsym.problems.constraints.result import Constraints, Solved
-from mbsym.problems.speeds import SpeedEquations
+from mbsym.problems.in_speeds.speeds import SpeedEquations
 
 
 def constraints_in_speeds(

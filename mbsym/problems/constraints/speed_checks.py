@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.matrices import dot
 from mbsym.mechanics.constraints.oracle import oracle_rows
 from mbsym.mechanics.constraints.programs import ConstrainedPrograms
 from mbsym.mechanics.constraints.states import OnManifold
@@ -51,7 +52,7 @@ def check_rows(form: SpeedForm, found: Constraints, programs: ConstrainedProgram
             for place, free in enumerate(found.free if found.solved is not None else ()):
                 assert found.solved is not None
                 basis = [carry(x[place]) for x in found.solved.transformation.polynomials]
-                work = sum((x * y for x, y in zip(own, basis, strict=True)), zero)
+                work = dot(own, basis)
                 compared.append((f"{name.label} along {free}", work, zero))
         return compared
 
@@ -90,7 +91,7 @@ def check_embedded(
         rows = [truth[name.constraint][max(name.component - 1, 0)].partials for name in found.names]
         residual = [oracle.residuals[name] for name in system.coordinates]
         for place, y in enumerate(null_space(rows, len(system.coordinates), state.numbers)):
-            work = sum((a * b for a, b in zip(y, residual, strict=True)), zero)
+            work = dot(y, residual)
             compared.append((f"work along displacement {place + 1}", work, zero))
         return compared
 

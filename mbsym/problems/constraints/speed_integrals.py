@@ -22,9 +22,9 @@ from mbsym.problems.constraints.in_speeds import dependent_speeds
 from mbsym.problems.constraints.motion import Embedded
 from mbsym.problems.constraints.result import Constraints, Solved
 from mbsym.problems.energy import Energy
+from mbsym.problems.in_speeds.speed_integrals import GEOMETRIC, candidates, is_new
+from mbsym.problems.in_speeds.speeds import SpeedEquations
 from mbsym.problems.integrals import ENERGY, Integral
-from mbsym.problems.speed_integrals import GEOMETRIC, candidates, is_new
-from mbsym.problems.speeds import SpeedEquations
 
 #: Equations longer than this, or with more speeds, are not tried.
 MOST_TERMS, MOST_SPEEDS = 600, 4

@@ -17,12 +17,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from mbsym.algebra.characteristic import BUDGET, determinant, factor_in_lambda, leading_minors, subdiscriminants
+from mbsym.algebra.characteristic import (
+    BUDGET,
+    adjugate,
+    determinant,
+    factor_in_lambda,
+    leading_minors,
+    subdiscriminants,
+)
 from mbsym.algebra.failures import Failure
+from mbsym.algebra.matrices import Operators, ScalarMatrix, dot
 from mbsym.algebra.ring import Polynomial
 from mbsym.problems.invariant_sets.branches import Place, evaluate, rank
 from mbsym.problems.invariant_sets.result import Definiteness, FirstApproximation, Relation, SecondVariation
-from mbsym.problems.stability.routh import adjugate
 
 Rows = list[list[Polynomial]]
 
@@ -46,7 +53,9 @@ def on_level(place: Place, family: Polynomial) -> SecondVariation:
     try:
         divisor = place.shortened(determinant(block, BUDGET)) if block else arena.ring.one
         tangent = _tangent(place, rows, block, pivots, others, divisor)
-        form = _product(place, hessian, tangent)
+        operators = Operators(arena.ring.zero, arena.ring.one)
+        t, second = ScalarMatrix(operators, tangent), ScalarMatrix(operators, hessian)
+        form = [[place.shortened(x) for x in row] for row in t.T @ (second @ t)]
     except Failure:
         return SecondVariation(Definiteness.LEFT_OUT, len(others))
     return _definite(place, form, scale)
@@ -104,7 +113,7 @@ def _tangent(
     size = len(pivots) + len(others)
     zero = place.arena.ring.zero
     found = [[zero] * len(others) for _ in range(size)]
-    adjoint = adjugate(block) if len(block) > 1 else [[place.arena.ring.one]] if block else []
+    adjoint = adjugate(block) if block else []
     for b, j in enumerate(others):
         found[j][b] = divisor
         for a, i in enumerate(pivots):
@@ -113,14 +122,6 @@ def _tangent(
                 total -= adjoint[a][k] * row[j]
             found[i][b] = place.shortened(total)
     return found
-
-
-def _product(place: Place, hessian: Rows, tangent: Rows) -> Rows:
-    n, m, zero = len(hessian), len(tangent[0]), place.arena.ring.zero
-    half = [[sum((hessian[i][k] * tangent[k][b] for k in range(n)), zero) for b in range(m)] for i in range(n)]
-    return [
-        [place.shortened(sum((tangent[i][a] * half[i][b] for i in range(n)), zero)) for b in range(m)] for a in range(m)
-    ]
 
 
 def _definite(place: Place, form: Rows, scale: Polynomial) -> SecondVariation:
@@ -245,8 +246,8 @@ def _characteristic(place: Place, a: Rows) -> list[Polynomial] | None:
         tails = [ring.one, -a[r][r]]
         vector = column
         for _ in range(r):
-            tails.append(-place.shortened(sum((x * y for x, y in zip(row, vector, strict=True)), ring.zero)))
-            vector = [place.shortened(sum((a[i][j] * vector[j] for j in range(r)), ring.zero)) for i in range(r)]
+            tails.append(-place.shortened(dot(row, vector)))
+            vector = [place.shortened(dot(a[i][:r], vector)) for i in range(r)]
             if any(len(x) > 4 * MOST_TERMS for x in vector):
                 return None
         polynomial = [

@@ -20,6 +20,7 @@ from typing import Any
 from flint import acb_poly, arb, ctx, fmpq, fmpq_poly
 
 from mbsym.algebra.failures import Failure
+from mbsym.algebra.matrices import determinant_by_traces, faddeev, hurwitz
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.kinematics import Scene
@@ -29,7 +30,7 @@ from mbsym.problems.normal_forms.centre import matrix_of
 from mbsym.problems.normal_forms.dissipative import judged_field, state_field
 from mbsym.problems.normal_forms.equal import equal_frequencies
 from mbsym.problems.normal_forms.exact import even_part, over_tower, two_eigenvectors
-from mbsym.problems.normal_forms.expansion import Expansion, SingularMass, expansion, faddeev
+from mbsym.problems.normal_forms.expansion import Expansion, SingularMass, expansion
 from mbsym.problems.normal_forms.generalized_potential import taken_in
 from mbsym.problems.normal_forms.pairs import judged_on_border
 from mbsym.problems.normal_forms.problem import ORDER, PRECISION, at_numbers, at_zero_root, enclosed, twist
@@ -189,15 +190,10 @@ def _of_roots(found: Expansion, name: str, values: Mapping[str, Fraction]) -> tu
     m = len(coefficients) - 1
     if coefficients[m].is_zero():
         raise NotAlong(f"for all values of {name} a root is zero")
-    rows = [[_entry(coefficients, 2 * (j + 1) - (i + 1), tower) for j in range(m - 1)] for i in range(m - 1)]
-    last = faddeev(rows, tower.zero, tower.one)[1][0] if rows else tower.one
+    last = determinant_by_traces(hurwitz(coefficients, tower.zero, m - 1), tower.zero, tower.one)
     if last.is_zero():
         raise NotAlong(f"for all values of {name} there are roots whose sum is zero")
     return tower, {"root": coefficients[m], "pair": last}
-
-
-def _entry(coefficients: Sequence[Element], index: int, tower: Tower) -> Element:
-    return coefficients[index] if 0 <= index < len(coefficients) else tower.zero
 
 
 # --- exceptional values ---

@@ -18,8 +18,8 @@ from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from mbsym.algebra.matrices import faddeev
 from mbsym.algebra.truncated import Space, Truncated, flow
-from mbsym.problems.normal_forms.expansion import faddeev
 
 
 @dataclass(frozen=True)

@@ -28,8 +28,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from mbsym.algebra.matrices import adjugate_at, adjugate_slope_at, dot, inverted
 from mbsym.algebra.truncated import Space, Truncated
-from mbsym.problems.normal_forms.expansion import faddeev, inverted
 
 
 @dataclass(frozen=True)
@@ -56,9 +56,9 @@ def on_pair(
     zero, one = source.zero, source.one
     matrix = matrix_of(field)
     q, p, column = _eigenvectors(matrix, root, zero, one, inverse, size)
-    conjugate = [row[column] for row in adjugate(matrix, -root, zero, one)]
+    conjugate = [row[column] for row in adjugate_at(matrix, -root, zero, one)]
     third = _third(field, root, q, conjugate, matrix, inverse)
-    return Reduced(zero, _dot(p, third, zero), tuple(a * b for a, b in zip(q, conjugate, strict=True)))
+    return Reduced(zero, dot(p, third), tuple(a * b for a, b in zip(q, conjugate, strict=True)))
 
 
 def on_double_pair(
@@ -73,17 +73,14 @@ def on_double_pair(
     source = field[0].space
     m, zero, one = len(field), source.zero, source.one
     matrix = matrix_of(field)
-    whole, places = adjugate(matrix, root, zero, one), range(m)
+    whole, places = adjugate_at(matrix, root, zero, one), range(m)
     i, j = max(((i, j) for i in places for j in places), key=lambda at: size(whole[at[0]][at[1]]))
     q, p = [row[j] for row in whole], whole[i]
-    conjugate = [row[j] for row in adjugate(matrix, -root, zero, one)]
-    generalised = [row[j] for row in adjugate_slope(matrix, root, zero, one)]
-    factor = inverse(_dot(p, generalised, zero))
+    conjugate = [row[j] for row in adjugate_at(matrix, -root, zero, one)]
+    generalised = [row[j] for row in adjugate_slope_at(matrix, root, zero, one)]
+    factor = inverse(dot(p, generalised))
     third = _third(field, root, q, conjugate, matrix, inverse)
-    length = zero
-    for a, b in zip(q, conjugate, strict=True):
-        length = length + a * b
-    return _dot(p, third, zero) * factor * inverse(length)
+    return dot(p, third) * factor * inverse(dot(q, conjugate))
 
 
 def _third(
@@ -101,8 +98,8 @@ def _third(
     plane = [space.linear((q[i], conjugate[i])) for i in range(m)]
     second = [row.beyond(1).composed(plane) for row in field]
     doubled = [[(root * 2 if i == j else zero) - matrix[i][j] for j in range(m)] for i in range(m)]
-    h20 = _applied(inverted(doubled, inverse, zero, one), [x[2, 0] for x in second], zero)
-    h11 = [-x for x in _applied(inverted(matrix, inverse, zero, one), [x[1, 1] for x in second], zero)]
+    h20 = _applied(inverted(doubled, inverse, zero, one), [x[2, 0] for x in second])
+    h11 = [-x for x in _applied(inverted(matrix, inverse, zero, one), [x[1, 1] for x in second])]
     bent = [row + Truncated(space, {(2, 0): a, (1, 1): b}) for row, a, b in zip(plane, h20, h11, strict=True)]
     return [row.beyond(1).composed(bent)[2, 1] for row in field]
 
@@ -116,14 +113,14 @@ def on_zero(field: Sequence[Truncated], inverse: Callable[[Any], Any], size: Cal
     space = Space(1, 3, zero, one)
     line = [space.linear((q[i],)) for i in range(m)]
     second = [row.beyond(1).composed(line)[2,] for row in field]
-    quadratic = _dot(p, second, zero)
+    quadratic = dot(p, second)
     # (q p - A) h = second - quadratic q: regular, and p h = 0
     moved = [[q[i] * p[j] - matrix[i][j] for j in range(m)] for i in range(m)]
     right = [x - quadratic * y for x, y in zip(second, q, strict=True)]
-    h = _applied(inverted(moved, inverse, zero, one), right, zero)
+    h = _applied(inverted(moved, inverse, zero, one), right)
     bent = [row + Truncated(space, {(2,): x}) for row, x in zip(line, h, strict=True)]
     third = [row.beyond(1).composed(bent)[3,] for row in field]
-    return Reduced(quadratic, _dot(p, third, zero), tuple(q))
+    return Reduced(quadratic, dot(p, third), tuple(q))
 
 
 def _eigenvectors(
@@ -138,39 +135,12 @@ def _eigenvectors(
 
     adj(root - A) is q p times a number, for a simple root.
     """
-    whole, places = adjugate(matrix, root, zero, one), range(len(matrix))
+    whole, places = adjugate_at(matrix, root, zero, one), range(len(matrix))
     i, j = max(((i, j) for i in places for j in places), key=lambda at: size(whole[at[0]][at[1]]))
     q, p = [row[j] for row in whole], whole[i]
-    factor = inverse(_dot(p, q, zero))
+    factor = inverse(dot(p, q))
     return q, [x * factor for x in p], j
 
 
-def adjugate(matrix: Sequence[Sequence[Any]], root: Any, zero: Any, one: Any) -> list[list[Any]]:
-    """adj(root - A)."""
-    adjugates, _ = faddeev(matrix, zero, one)
-    whole = adjugates[0]
-    for further in adjugates[1:]:
-        whole = [[x * root + y for x, y in zip(*rows, strict=True)] for rows in zip(whole, further, strict=True)]
-    return whole
-
-
-def adjugate_slope(matrix: Sequence[Sequence[Any]], root: Any, zero: Any, one: Any) -> list[list[Any]]:
-    """d/ds adj(s - A) at the root: Horner's rule for the derivative of sum B_k s^(m-1-k)."""
-    adjugates, _ = faddeev(matrix, zero, one)
-    m = len(matrix)
-    whole, slope = adjugates[0], [[zero] * m for _ in range(m)]
-    for further in adjugates[1:]:
-        slope = [[x * root + y for x, y in zip(*rows, strict=True)] for rows in zip(slope, whole, strict=True)]
-        whole = [[x * root + y for x, y in zip(*rows, strict=True)] for rows in zip(whole, further, strict=True)]
-    return slope
-
-
-def _applied(matrix: Sequence[Sequence[Any]], vector: Sequence[Any], zero: Any) -> list[Any]:
-    return [_dot(row, vector, zero) for row in matrix]
-
-
-def _dot(a: Sequence[Any], b: Sequence[Any], zero: Any) -> Any:
-    total = zero
-    for x, y in zip(a, b, strict=True):
-        total = total + x * y
-    return total
+def _applied(matrix: Sequence[Sequence[Any]], vector: Sequence[Any]) -> list[Any]:
+    return [dot(row, vector) for row in matrix]

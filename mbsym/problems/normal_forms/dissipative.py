@@ -12,6 +12,7 @@ from typing import Any
 
 from flint import acb_poly, arb, ctx, fmpq, fmpq_poly
 
+from mbsym.algebra.matrices import faddeev
 from mbsym.algebra.tower import Element, Tower
 from mbsym.algebra.truncated import Space, Truncated
 from mbsym.formulas.formula import Formula
@@ -23,7 +24,7 @@ from mbsym.problems.normal_forms.exact import (
     over_tower,
     rational_values,
 )
-from mbsym.problems.normal_forms.expansion import Expansion, Numbers, faddeev
+from mbsym.problems.normal_forms.expansion import Expansion, Numbers
 from mbsym.problems.normal_forms.result import Focus, Judged, Outcome, Theorem, Why
 
 

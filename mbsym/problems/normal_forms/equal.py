@@ -29,12 +29,12 @@ from typing import Any
 
 from flint import acb, arb
 
+from mbsym.algebra.matrices import dot, faddeev
 from mbsym.algebra.truncated import Space, Truncated
 from mbsym.problems.normal_forms.averages import at_point, averaged
 from mbsym.problems.normal_forms.birkhoff import Linear, NormalForm, matrix_of, normal_form
 from mbsym.problems.normal_forms.centre import on_double_pair
 from mbsym.problems.normal_forms.checks import defects
-from mbsym.problems.normal_forms.expansion import faddeev
 from mbsym.problems.normal_forms.nilpotent import on_double_root, pairing
 from mbsym.problems.normal_forms.result import Judged, Outcome, Theorem, Why
 from mbsym.problems.normal_forms.twist import NotVerified, definite
@@ -141,7 +141,7 @@ def _verify_on_the_cone(
         xi = [acb(0, f).exp() / weights[0].sqrt(), 1 / acb(weights[1]).sqrt()]
         eta = [acb(0, -1) * d * x.conjugate() for d, x in zip(weights, xi, strict=True)]
         rows = zip(*form.linear.columns, strict=True)
-        point = [sum((a * b for a, b in zip(row, (*xi, *eta), strict=True)), acb(0)) for row in rows]
+        point = [dot(row, (*xi, *eta)) for row in rows]
         real = all(x.imag.contains(0) for x in point)
         on_cone = at_point(hamiltonian.part(2), point).contains(0)
         value, other = _at(series, f), at_point(mean, point).real

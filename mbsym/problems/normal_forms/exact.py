@@ -12,9 +12,10 @@ from flint import arb, fmpq, fmpq_poly
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import Failure, NoClosedForm, NoValue
 from mbsym.algebra.generators import occurring
+from mbsym.algebra.matrices import faddeev
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.tower import Element, Tower
-from mbsym.problems.normal_forms.expansion import Expansion, Numbers, faddeev
+from mbsym.problems.normal_forms.expansion import Expansion, Numbers
 
 
 def over_tower(found: Expansion, tower: Tower, values: Mapping[str, Fraction]) -> Numbers:

@@ -19,6 +19,7 @@ from flint import acb
 
 from mbsym.algebra.failures import Failure, SingularPoint
 from mbsym.algebra.jet import Jet, Terms
+from mbsym.algebra.matrices import inverted
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.truncated import Space, Truncated
 from mbsym.mechanics.energy import kinetic_energy
@@ -176,42 +177,4 @@ def _sum(space: Space, items: Any) -> Truncated:
     total = space.nothing
     for item in items:
         total = total + item
-    return total
-
-
-def inverted(matrix: Sequence[Sequence[Any]], inverse: Callable[[Any], Any], zero: Any, one: Any) -> list[list[Any]]:
-    """The inverse matrix by the adjugate (Faddeev and LeVerrier): one division, by the determinant.
-
-    Raises what ``inverse`` raises where the determinant is zero.
-    """
-    adjugates, coefficients = faddeev(matrix, zero, one)
-    factor = -inverse(coefficients[0])
-    return [[value * factor for value in row] for row in adjugates[-1]]
-
-
-def faddeev(matrix: Sequence[Sequence[Any]], zero: Any, one: Any) -> tuple[list[list[list[Any]]], list[Any]]:
-    """(B_0 ... B_(m-1)) and (c_0 ... c_m):  adj(s - A) = sum B_k s^(m-1-k),  det(s - A) = sum c_k s^k.
-
-    Source: Faddeev & LeVerrier (Gantmacher, The Theory of Matrices, chapter IV, section 5).
-    """
-    m = len(matrix)
-    identity = [[one if i == j else zero for j in range(m)] for i in range(m)]
-    found, coefficients, now = [identity], [one], identity
-    for k in range(1, m + 1):
-        product = [[_dot(matrix[i], [now[r][j] for r in range(m)], zero) for j in range(m)] for i in range(m)]
-        trace = zero
-        for i in range(m):
-            trace = trace + product[i][i]
-        c = -trace / k
-        coefficients.append(c)
-        now = [[product[i][j] + c if i == j else product[i][j] for j in range(m)] for i in range(m)]
-        if k < m:
-            found.append(now)
-    return found, coefficients[::-1]
-
-
-def _dot(row: Sequence[Any], column: Sequence[Any], zero: Any) -> Any:
-    total = zero
-    for a, b in zip(row, column, strict=True):
-        total = total + a * b
     return total

@@ -26,9 +26,9 @@ from collections.abc import Callable, Sequence
 
 from flint import acb
 
+from mbsym.algebra.matrices import adjugate_at, adjugate_slope_at
 from mbsym.algebra.truncated import Truncated, bracket, flow
 from mbsym.problems.normal_forms.birkhoff import Linear, NormalForm, diagonalised, matrix_of
-from mbsym.problems.normal_forms.centre import adjugate, adjugate_slope
 
 #: chi of a product with lambda.(a - b) = 0 that does not stay; None where it stays.
 Solves = Callable[[tuple[int, ...], acb], "tuple[tuple[int, ...], acb] | None"]
@@ -49,9 +49,9 @@ def _size(x: acb) -> float:
 def chain(hamiltonian: Truncated, root: acb) -> tuple[list[acb], list[acb]]:
     """v and u with A v = root v, A u = root u + v: a column of adj(s - A) and of its derivative at a double root."""
     matrix, m = matrix_of(hamiltonian), hamiltonian.space.variables
-    whole = adjugate(matrix, root, acb(0), acb(1))
+    whole = adjugate_at(matrix, root, acb(0), acb(1))
     column = max(range(m), key=lambda j: sum(_size(row[j]) for row in whole))
-    return [row[column] for row in whole], [row[column] for row in adjugate_slope(matrix, root, acb(0), acb(1))]
+    return [row[column] for row in whole], [row[column] for row in adjugate_slope_at(matrix, root, acb(0), acb(1))]
 
 
 def on_double_root(whole: Truncated, root: acb) -> tuple[NormalForm, acb]:

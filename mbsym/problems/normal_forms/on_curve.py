@@ -18,10 +18,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from mbsym.algebra.failures import SingularPoint
+from mbsym.algebra.matrices import determinant_by_traces, faddeev
 from mbsym.algebra.tower import Element, Tower
 from mbsym.algebra.truncated import Truncated
 from mbsym.problems.normal_forms.centre import matrix_of, on_pair
-from mbsym.problems.normal_forms.expansion import faddeev
 
 
 @dataclass(frozen=True)
@@ -82,18 +82,13 @@ def subresultant(tower: Tower, p: Sequence[Element], q: Sequence[Element], j: in
     for i in range(j + 1):
         columns = [*(m + n - j - 1 - k for k in range(size - 1)), i]
         table = [[row[c] for c in columns] for row in rows]
-        found.append(_determinant(tower, table))
+        found.append(determinant_by_traces(table, tower.zero, tower.one))
     return found
 
 
 def _shifted(tower: Tower, p: Sequence[Element], by: int, length: int) -> list[Element]:
     row = [tower.zero] * by + list(p)
     return row + [tower.zero] * (length - len(row))
-
-
-def _determinant(tower: Tower, table: list[list[Element]]) -> Element:
-    value = faddeev(table, tower.zero, tower.one)[1][0]
-    return -value if len(table) % 2 else value
 
 
 def _trimmed(polynomial: Sequence[Element]) -> list[Element]:

@@ -12,10 +12,11 @@ from typing import Any
 
 from flint import acb, acb_poly, arb, ctx
 
+from mbsym.algebra.matrices import faddeev
 from mbsym.algebra.truncated import Truncated
 from mbsym.problems.normal_forms.centre import matrix_of, on_pair, on_zero
 from mbsym.problems.normal_forms.dissipative import state_field
-from mbsym.problems.normal_forms.expansion import Expansion, faddeev
+from mbsym.problems.normal_forms.expansion import Expansion
 from mbsym.problems.normal_forms.result import Judged, Outcome, Theorem, Why
 
 

@@ -27,11 +27,10 @@ from typing import Any
 
 from flint import acb, acb_poly, arb, ctx
 
+from mbsym.algebra.matrices import adjugate_at, determinant_by_traces, faddeev, inverted
 from mbsym.algebra.truncated import Space, Truncated
 from mbsym.problems.normal_forms.birkhoff import matrix_of
-from mbsym.problems.normal_forms.centre import adjugate
 from mbsym.problems.normal_forms.checks import defects
-from mbsym.problems.normal_forms.expansion import faddeev, inverted
 from mbsym.problems.normal_forms.nilpotent import on_zero_root
 from mbsym.problems.normal_forms.result import Judged, Outcome, Theorem, Why
 from mbsym.problems.normal_forms.twist import NotVerified, signed
@@ -114,7 +113,7 @@ def _along(whole: Truncated, scalars: Scalars) -> int | None:
     adj(A) is of rank one where the kernel of A is of dimension one, and zero else.
     """
     space = whole.space
-    table = adjugate(matrix_of(whole), space.zero, space.zero, space.one)
+    table = adjugate_at(matrix_of(whole), space.zero, space.zero, space.one)
     m = space.variables
     for i in range(m):
         for j in range(m):
@@ -162,8 +161,7 @@ def _leading(energy: Truncated, scalars: Scalars) -> tuple[int | None, Any]:
 
 
 def _determinant(rows: list[list[Any]], scalars: Scalars) -> arb:
-    constant = faddeev(rows, rows[0][0] * 0, rows[0][0] * 0 + 1)[1][0]
-    return scalars.enclosed(constant) * (-1) ** len(rows)
+    return scalars.enclosed(determinant_by_traces(rows, rows[0][0] * 0, rows[0][0] * 0 + 1))
 
 
 def _verify(

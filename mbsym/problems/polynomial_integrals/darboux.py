@@ -29,6 +29,7 @@ from flint import fmpq_mpoly_ctx
 
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.matrices import faddeev
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.problems.polynomial_integrals.gradings import Grading
 from mbsym.problems.polynomial_integrals.lifting import lifted, monomial
@@ -156,7 +157,10 @@ def rest_factors(field: PolynomialField, power: Exponents) -> list[RestFactor] |
     wide = fmpq_mpoly_ctx.get(["#", *context.names()], context.ordering())
     root, gens = wide.gen(0), wide.gens()
     characteristic = sum(
-        (c.compose(*gens[1:], ctx=wide) * root**k for k, c in enumerate(_characteristic(matrix, context))),
+        (
+            c.compose(*gens[1:], ctx=wide) * root**k
+            for k, c in enumerate(faddeev(matrix, context.constant(0), context.constant(1))[1])
+        ),
         wide.constant(0),
     )
     found = []
@@ -171,20 +175,6 @@ def rest_factors(field: PolynomialField, power: Exponents) -> list[RestFactor] |
 def _coefficient(context: Any, p: Any, power: int) -> Any:
     """Of the first generator to that power."""
     return context.from_dict({(0, *m[1:]): c for m, c in p.to_dict().items() if int(m[0]) == power})
-
-
-def _characteristic(matrix: list[list[Any]], context: Any) -> list[Any]:
-    """The coefficients of det(x - A), that of x^0 first: Faddeev and Le Verrier."""
-    size = len(matrix)
-    zero, one = context.constant(0), context.constant(1)
-    found = [one]
-    kept = [[zero] * size for _ in range(size)]
-    for k in range(1, size + 1):
-        for i in range(size):
-            kept[i][i] = kept[i][i] + found[-1]
-        kept = [[sum((row[j] * kept[j][c] for j in range(size)), zero) for c in range(size)] for row in matrix]
-        found.append(-sum((kept[i][i] for i in range(size)), zero) / k)
-    return found[::-1]
 
 
 def _sums(means: Sequence[Any], most: int, zero: Any) -> list[Any]:

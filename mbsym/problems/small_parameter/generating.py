@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.matrices import faddeev
 from mbsym.algebra.tower import Element, Tower
-from mbsym.problems.normal_forms.expansion import faddeev
 
 #: Exponents of the variables -> coefficient.
 Terms = Mapping[tuple[int, ...], Element]

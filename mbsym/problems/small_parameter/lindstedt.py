@@ -19,8 +19,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.matrices import faddeev
 from mbsym.algebra.tower import MOST_ROOTS, Element
-from mbsym.problems.normal_forms.expansion import faddeev
 from mbsym.problems.small_parameter.generating import Generating, Mode, without_zeros
 from mbsym.problems.small_parameter.harmonics import Harmonics
 from mbsym.problems.small_parameter.linear_waves import solved

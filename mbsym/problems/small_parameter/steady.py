@@ -11,7 +11,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from mbsym.algebra import matrices
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.matrices import determinant_by_traces, faddeev
 from mbsym.algebra.quotients import Quotient, Series
 from mbsym.problems.small_parameter.result import Hurwitz, SteadyStates
 from mbsym.problems.small_parameter.scaled import ScaledField
@@ -85,20 +87,13 @@ def steady_states(
 
 def characteristic(context: object, matrix: Sequence[Sequence[Series]]) -> list[Series]:
     """det(S - A), coefficients from S^n down, by Faddeev and LeVerrier."""
-    from flint import fmpq
+    return faddeev(matrix, *_units(context))[1][::-1]
 
-    n = len(matrix)
+
+def _units(context: object) -> tuple[Series, Series]:
+    """0 and 1."""
     one = Series.constant(Quotient.of(context.constant(1)))  # type: ignore[attr-defined]
-    nothing = one - one
-    found = [one]
-    power = [[one if i == j else nothing for j in range(n)] for i in range(n)]
-    for k in range(1, n + 1):
-        product = [[sum((matrix[i][m] * power[m][j] for m in range(n)), nothing) for j in range(n)] for i in range(n)]
-        part = Series.constant(Quotient.of(context.constant(fmpq(-1, k))))  # type: ignore[attr-defined]
-        c = part * sum((product[i][i] for i in range(n)), nothing)
-        found.append(c)
-        power = [[product[i][j] + (c if i == j else nothing) for j in range(n)] for i in range(n)]
-    return found
+    return one - one, one
 
 
 def divided(dividend: Sequence[Series], divisor: Sequence[Series]) -> tuple[list[Series], list[Series]]:
@@ -114,16 +109,8 @@ def divided(dividend: Sequence[Series], divisor: Sequence[Series]) -> tuple[list
 def hurwitz(context: object, polynomial: Sequence[Series]) -> Hurwitz:
     """The leading minors of Hurwitz's matrix of a monic polynomial."""
     n = len(polynomial) - 1
-    one = Series.constant(Quotient.of(context.constant(1)))  # type: ignore[attr-defined]
-    nothing = one - one
-    matrix = [
-        [polynomial[k] if 0 <= (k := 2 * (j + 1) - (i + 1)) <= n else nothing for j in range(n)] for i in range(n)
-    ]
-    minors = []
-    for size in range(1, n + 1):
-        block = [row[:size] for row in matrix[:size]]
-        last = characteristic(context, block)[-1]
-        minors.append(last if size % 2 == 0 else -last)
+    nothing, one = _units(context)
+    minors = [determinant_by_traces(matrices.hurwitz(polynomial, nothing, k), nothing, one) for k in range(1, n + 1)]
     return Hurwitz(tuple(polynomial), tuple(minors))
 
 

@@ -9,6 +9,7 @@ Hautus' test off lambda = 0 does not see them.  They move with  D x' = 0  exactl
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import combinations
 from math import comb
 
@@ -53,7 +54,7 @@ def without_drift(rank: Rank, whole: Cleared, gyro: Rows, stiff: Rows, damping: 
     return Rank(True, rank.certainty, (), Locus(factors, locus.together, tuple(provided.values())), rank.why_not)
 
 
-def _paired(u: list[Polynomial], gyro: Rows, v: list[Polynomial]) -> Polynomial:
+def _paired(u: Sequence[Polynomial], gyro: Rows, v: Sequence[Polynomial]) -> Polynomial:
     places = range(len(v))
     return sum((u[i] * gyro[i][j] * v[j] for i in places for j in places), v[0] * 0)
 

@@ -14,6 +14,7 @@ from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.characteristic import determinant
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Failure, TooLargeError
+from mbsym.algebra.matrices import added, dot
 from mbsym.algebra.point import Rationals
 from mbsym.algebra.signs import Signs
 from mbsym.formulas.formula import Formula, Matrix
@@ -37,7 +38,7 @@ from mbsym.problems.stabilisation.result import (
     Rank,
     Stabilisation,
 )
-from mbsym.problems.stability.exact import is_positive
+from mbsym.problems.stability.exact import is_positive, observed
 from mbsym.problems.stability.requirements import Definite, definiteness
 
 #: Sets of inputs are compared of so many; numbers are looked at in so many coordinates.
@@ -194,19 +195,9 @@ def _semidefinite(damping: Rows, known: Signs) -> bool | None:
 def feels_everything(there: AtValues, damped: Any) -> bool:
     """Whether D x' = 0 at all times leaves rest only, of M x'' + G x' + K x = 0: exactly."""
     n = there.size
-    free = AtValues(there.mass, there.rates - damped, there.places, None)
-    a = free.state
-    row = fmpq_mat(n, 2 * n, [x for line in damped.tolist() for x in [fmpq(0)] * n + line])
-    felt: list[Any] = []
-    for _ in range(2 * n):
-        felt += row.tolist()
-        row = row * a
+    felt = observed(AtValues(there.mass, there.rates - damped, there.places, None).state, damped)
     unit = [[fmpq(int(j == n + i)) for j in range(2 * n)] for i in range(n)]
-
-    def rank(rows: list[Any]) -> int:
-        return int(fmpq_mat(len(rows), 2 * n, [x for line in rows for x in line]).rank())
-
-    return rank(felt) == rank(felt + unit)
+    return bool(fmpq_mat(felt).rank() == fmpq_mat(felt + unit).rank())
 
 
 def _undamped(
@@ -224,7 +215,7 @@ def _undamped(
         shape = kernel[0]
     elif all(x == 0 for row in gyro for x in row):
         rows = [[k * above - m * below for k, m in zip(*pair, strict=True)] for pair in zip(stiff, mass, strict=True)]
-        reduced = [[sum((x * y for x, y in zip(row, v, strict=True)), below * 0) for v in kernel] for row in rows]
+        reduced = [[dot(row, v) for v in kernel] for row in rows]
         weights = _null_vector(reduced)
         if weights is not None:
             shape = [sum((w * v[i] for w, v in zip(weights, kernel, strict=True)), below * 0) for i in range(len(mass))]
@@ -247,8 +238,7 @@ def _null_vector(rows: Rows) -> list[Any] | None:
             block = [[rows[i][j] for j in range(width) if j != column] for i in at]
             minors.append(determinant(block) * (-1) ** column)
         if any(x != 0 for x in minors):
-            zero = minors[0] * 0
-            right = all(sum((a * b for a, b in zip(row, minors, strict=True)), zero) == 0 for row in rows)
+            right = all(dot(row, minors) == 0 for row in rows)
             return minors if right else None
     return None
 
@@ -294,7 +284,7 @@ def _ranked(whole: Cleared, at: Sequence[int], columns: Sequence[int]) -> Rank:
 
     mass, damped, gyro, stiff, circulatory = (cut(rows) for rows in whole.matrices[:5])
     inputs = [[whole.matrices[5][i][j] for j in columns] for i in at]
-    rates, places = _sum(damped, gyro), _sum(stiff, circulatory)
+    rates, places = added(damped, gyro), added(stiff, circulatory)
     try:
         return rank_of(whole, mass, rates, places, inputs)
     except TooLargeError as error:
@@ -314,10 +304,6 @@ def _at_random(whole: Cleared, mass: Rows, rates: Rows, places: Rows, inputs: Ro
         if there.mass.det() != 0 and numbers.is_controllable(there):
             return Rank(True, Certainty.PROVED, (), None, why)
     return Rank(False, Certainty.UNDECIDED, why_not=why)
-
-
-def _sum(first: Rows, second: Rows) -> Rows:
-    return [[a + b for a, b in zip(*pair, strict=True)] for pair in zip(first, second, strict=True)]
 
 
 def _least(whole: Cleared, linear: Linearisation) -> tuple[tuple[str, ...], ...]:

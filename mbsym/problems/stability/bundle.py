@@ -23,14 +23,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
 from flint import arb, arb_mat, fmpq, fmpq_poly
 
-from mbsym.algebra.polynomial_systems import inverse_modulo
+from mbsym.algebra.matrices import leading_determinants, null_space
+from mbsym.algebra.polynomial_systems import Residues
 
 Element = Any  # flint.fmpq_poly, an element of QQ[t]/modulus
 Rows = Sequence[Sequence[Element]]
@@ -42,42 +42,12 @@ ATTEMPTS = 60
 _TURNS = 16
 
 
-@dataclass(frozen=True)
-class NumberField:
+class NumberField(Residues):
     """QQ[t]/modulus with one real root of the modulus; ``enclose`` gives a ball around an element there."""
 
-    modulus: Any
-    enclose: Callable[[Element], Any]
-
-    def times(self, a: Element, b: Element) -> Element:
-        return a * b % self.modulus
-
-    def null_space(self, rows: Rows, size: int) -> list[list[Element]]:
-        """A basis of the vectors of ``size`` components that every row annuls; exact."""
-        zero, one = fmpq_poly([0]), fmpq_poly([1])
-        work = [[x % self.modulus for x in row] for row in rows]
-        pivots: list[int] = []
-        for column in range(size):
-            at = len(pivots)
-            pivot = next((r for r in range(at, len(work)) if work[r][column] != 0), None)
-            if pivot is None:
-                continue
-            work[at], work[pivot] = work[pivot], work[at]
-            inverse = inverse_modulo(work[at][column], self.modulus)
-            work[at] = [self.times(x, inverse) for x in work[at]]
-            for r, row in enumerate(work):
-                if r != at and row[column] != 0:
-                    factor = row[column]
-                    work[r] = [a - self.times(factor, b) for a, b in zip(row, work[at], strict=True)]
-            pivots.append(column)
-        basis = []
-        for free in (k for k in range(size) if k not in pivots):
-            vector = [zero] * size
-            vector[free] = one
-            for r, column in enumerate(pivots):
-                vector[column] = -work[r][free]
-            basis.append(vector)
-        return basis
+    def __init__(self, modulus: Any, enclose: Callable[[Element], Any]) -> None:
+        super().__init__(modulus)
+        self.enclose = enclose
 
 
 def definite_combination(gradients: Rows, hessians: Sequence[Rows], field: NumberField) -> tuple[Any, ...] | None:
@@ -86,10 +56,10 @@ def definite_combination(gradients: Rows, hessians: Sequence[Rows], field: Numbe
     ``gradients`` m x N, ``hessians`` m times N x N.  Zeros where the integrals alone determine all of z.
     """
     count, size = len(gradients), len(gradients[0])
-    tangent = field.null_space(gradients, size)
+    tangent = null_space(field, gradients, size)
     if not tangent:
         return (arb(0),) * count
-    annulling = field.null_space([[gradients[k][i] for k in range(count)] for i in range(size)], count)
+    annulling = null_space(field, [[gradients[k][i] for k in range(count)] for i in range(size)], count)
     if not annulling:
         return None
     restricted = [_restricted(hessian, tangent, field) for hessian in hessians]
@@ -113,12 +83,8 @@ def definite_combination(gradients: Rows, hessians: Sequence[Rows], field: Numbe
 
 def _restricted(hessian: Rows, tangent: Rows, field: NumberField) -> list[list[Element]]:
     """The values v_i . H v_j for the vectors of ``tangent``."""
-    zero = fmpq_poly([0])
-    images = [[sum((field.times(a, x) for a, x in zip(row, v, strict=True)), zero) for row in hessian] for v in tangent]
-    return [
-        [sum((field.times(a, x) for a, x in zip(v, image, strict=True)), zero) % field.modulus for image in images]
-        for v in tangent
-    ]
+    images = [[field.dot(row, v) for row in hessian] for v in tangent]
+    return [[field.dot(v, image) for image in images] for v in tangent]
 
 
 def definite_combination_of(forms: Sequence[Sequence[Sequence[Any]]]) -> list[fmpq] | None:
@@ -201,4 +167,4 @@ def _is_positive(forms: Sequence[Sequence[Sequence[Any]]], weights: Sequence[fmp
         [sum((form[i][j] * w for form, w in zip(forms, weights, strict=True)), arb(0)) for j in range(size)]
         for i in range(size)
     ]
-    return all(arb_mat(s, s, [x for row in total[:s] for x in row[:s]]).det() > 0 for s in range(1, size + 1))
+    return all(minor > 0 for minor in leading_determinants(arb_mat, total))

@@ -17,6 +17,7 @@ from typing import Any
 
 from flint import arb_mat, fmpq_poly
 
+from mbsym.algebra.matrices import leading_determinants, null_space
 from mbsym.problems.stability.bundle import Element, NumberField
 
 #: Derivatives of a potential in one coordinate are looked at up to this order.
@@ -56,13 +57,14 @@ def of_fourth_order(
 ) -> bool:
     """Whether V has a strict minimum of order 4 along the one null direction of ``second``, its second derivative."""
     size, span = len(second), range(len(second))
-    null = field.null_space(second, size)
+    null = null_space(field, second, size)
     if len(null) != 1:
         return False
     v = null[0]
     left_out = next(i for i in span if v[i] != 0)
     others = [i for i in span if i != left_out]
-    if not _is_positive([[field.enclose(second[i][j]) for j in others] for i in others]):
+    block = [[field.enclose(second[i][j]) for j in others] for i in others]
+    if not all(x > 0 for x in leading_determinants(arb_mat, block)):
         return False
     cubic = {key: third(*key) for key in _sorted_indices(size, 3)}
     quartic = {key: fourth(*key) for key in _sorted_indices(size, 4)}
@@ -81,12 +83,12 @@ def of_fourth_order(
         return total % field.modulus
 
     w = [contracted(cubic, (i,), 2) for i in span]
-    along = sum((field.times(a, b) for a, b in zip(v, w, strict=True)), zero) % field.modulus
+    along = field.dot(v, w)
     if along != 0:
         return False
     # K u = w with u = 0 at the place left out: a vector (u, -1) that the rows [K | w] annul.
     table = [[*(second[i][j] for j in others), w[i]] for i in others]
-    solutions = field.null_space(table, size)
+    solutions = null_space(field, table, size)
     u = solutions[-1]  # the only free place is the last, as K across v is not singular
     product = sum((field.times(-x, w[i]) for x, i in zip(u, others, strict=False)), zero)
     value = contracted(quartic, (), 4) - product * 3
@@ -97,7 +99,3 @@ def _sorted_indices(size: int, count: int) -> list[tuple[int, ...]]:
     if count == 0:
         return [()]
     return [(*rest, i) for rest in _sorted_indices(size, count - 1) for i in range(rest[-1] if rest else 0, size)]
-
-
-def _is_positive(rows: Sequence[Sequence[Any]]) -> bool:
-    return all(arb_mat([row[:s] for row in rows[:s]]).det() > 0 for s in range(1, len(rows) + 1))

@@ -14,7 +14,7 @@ from typing import Any
 
 from flint import acb_mat, arb, arb_mat, ctx
 
-from mbsym.algebra.matrices import components
+from mbsym.algebra.matrices import components, leading_determinants
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.state_matrix import state_matrix
 from mbsym.problems.stability.theorems import Fact, implied
@@ -148,14 +148,12 @@ def on_axis(root: Any, roots: Sequence[Any]) -> bool:
 
 
 def _positive(rows: Rows) -> bool:
-    size = len(rows)
-    return all(arb_mat(s, s, [x for row in rows[:s] for x in row[:s]]).det() > 0 for s in range(1, size + 1))
+    return all(minor > 0 for minor in leading_determinants(arb_mat, rows))
 
 
 def _not_positive(rows: Rows) -> bool:
     """Whether a symmetric matrix is certainly not positive definite."""
-    size = len(rows)
-    return any(arb_mat(s, s, [x for row in rows[:s] for x in row[:s]]).det() < 0 for s in range(1, size + 1))
+    return any(minor < 0 for minor in leading_determinants(arb_mat, rows))
 
 
 def _no(rows: Rows) -> bool:

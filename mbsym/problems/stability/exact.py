@@ -12,6 +12,7 @@ from flint import fmpq, fmpq_mat
 
 from mbsym.algebra.characteristic import Matrix, Polynomial
 from mbsym.algebra.generators import occurring
+from mbsym.algebra.matrices import leading_determinants
 from mbsym.algebra.roots import RootCount, counted, rational
 from mbsym.problems.stability import linear_theory, nonholonomic
 from mbsym.problems.stability.linear_form import LinearSystem
@@ -191,23 +192,28 @@ def _facts(m: Numbers, d: Numbers, g: Numbers, k: Numbers, n: Numbers, conservat
     return frozenset(fact for fact, holds in shown.items() if holds)
 
 
+def observed(a: Numbers, d: Numbers) -> list[list[Any]]:
+    """The rows of (0 D), (0 D) A, (0 D) A^2, ...: what D x' = 0 at all times says of (x, x')' = A (x, x')."""
+    n, found = d.nrows(), list[list[Any]]()
+    rows = type(d)(n, 2 * n, [x for line in d.tolist() for x in [fmpq(0)] * n + line])
+    for _ in range(2 * n):
+        found += rows.tolist()
+        rows = rows * a
+    return found
+
+
 def _undamped(a: Numbers, d: Numbers) -> list[int]:
     """The coordinates that take part in motions (x, x')' = A (x, x') on which D x' = 0 at all times.
 
-    They are the ones not observed by D x': the unit row e_i depends on the rows of (0 D), (0 D) A, (0 D) A^2, ...
+    They are the ones not observed by D x': the unit row e_i does not depend on the rows of ``observed``.
     """
-    n = d.nrows()
-    row = type(d)(n, 2 * n, [x for line in d.tolist() for x in [fmpq(0)] * n + line])
-    observed: list[Any] = []
-    for _ in range(2 * n):
-        observed += row.tolist()
-        row = row * a
+    n, rows = d.nrows(), observed(a, d)
 
     def rank(rows: Sequence[Sequence[Any]]) -> int:
         return int(type(d)(len(rows), len(rows[0]), [x for row in rows for x in row]).rref()[1])
 
-    least = rank(observed)
-    return [i for i in range(n) if rank([*observed, [fmpq(int(j == i)) for j in range(2 * n)]]) > least]
+    least = rank(rows)
+    return [i for i in range(n) if rank([*rows, [fmpq(int(j == i)) for j in range(2 * n)]]) > least]
 
 
 def _judge_turned(whole_polynomial: Any, turned: Sequence[Any], whole: Verdict) -> Verdict:
@@ -298,8 +304,7 @@ def evaluated(matrix: Matrix, at: ExactPoint) -> Numbers:
 
 def is_positive(matrix: Numbers) -> bool:
     """Whether a symmetric rational matrix is positive definite: all leading minors are positive."""
-    n, rows = matrix.nrows(), matrix.tolist()
-    return all(fmpq_mat(s, s, [x for row in rows[:s] for x in row[:s]]).det() > 0 for s in range(1, n + 1))
+    return all(minor > 0 for minor in leading_determinants(fmpq_mat, matrix.tolist()))
 
 
 def _no(matrix: Numbers) -> bool:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from mbsym.algebra.characteristic import Matrix, Polynomial
+from mbsym.algebra.matrices import dot
 from mbsym.problems.displacements import Basis
 from mbsym.problems.stability.theorems import Fact
 
@@ -183,14 +184,6 @@ def kind_of(system: LinearSystem) -> str:
     elif not damped:
         words.append(CONSERVATIVE)
     return " ".join(words)
-
-
-def add(left: Matrix, right: Matrix) -> Matrix:
-    return tuple(tuple(a + b for a, b in zip(*rows, strict=True)) for rows in zip(left, right, strict=True))
-
-
-def dot(left: Sequence[Polynomial], right: Sequence[Polynomial]) -> Polynomial:
-    return sum((a * b for a, b in zip(left, right, strict=True)), start=left[0] * 0)
 
 
 def is_zero(matrix: Matrix) -> bool:

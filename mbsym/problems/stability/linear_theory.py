@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from mbsym.algebra.matrices import Operators, null_vectors, reduced_rows
 from mbsym.algebra.roots import RootCount, counted
 from mbsym.problems.stability.theorems import Fact
 from mbsym.problems.stability.verdict import Verdict, bounded, coasting, concluded, drifting, exactly, only_drifts
@@ -64,16 +65,8 @@ def growing(first_order: Numbers) -> Verdict:
 
 def _still(first_order: Numbers) -> Numbers:
     """Rows v that span what A makes zero: positions that may be shifted, as x' = 0 there."""
-    reduced, rank = first_order.rref()
-    rows, n = reduced.tolist()[:rank], first_order.nrows()
-    pivots = [next(i for i, x in enumerate(row) if x != 0) for row in rows]
-    found = []
-    for free in (k for k in range(n) if k not in pivots):
-        vector = [first_order[0, 0] * 0] * n
-        vector[free] = vector[free] + 1
-        for at, row in zip(pivots, rows, strict=True):
-            vector[at] = -row[free]
-        found.append(vector)
+    n, zero = first_order.nrows(), first_order[0, 0] * 0
+    found = null_vectors(Operators(zero, zero + 1), reduced_rows(first_order), n)
     return type(first_order)(len(found), n, [x for v in found for x in v])
 
 
@@ -88,14 +81,12 @@ def is_calm(first_order: Numbers) -> bool:
 
 def across(first_order: Numbers, shifts: Numbers) -> Numbers:
     """A on the states modulo (v, 0), v the rows of ``shifts``: A (v, 0) = 0."""
-    reduced, rank = shifts.rref()
-    basis, rows = reduced.tolist()[:rank], first_order.tolist()
-    pivots = [next(i for i, x in enumerate(v) if x != 0) for v in basis]
-    kept = [i for i in range(len(rows)) if i not in pivots]
+    basis, rows = reduced_rows(shifts), first_order.tolist()
+    kept = [i for i in range(len(rows)) if i not in basis]
     found = []
     for i in kept:
         row = rows[i]
-        for at, v in zip(pivots, basis, strict=True):
+        for at, v in basis.items():
             if i < len(v) and v[i] != 0:
                 row = [x - v[i] * y for x, y in zip(row, rows[at], strict=True)]
         found += [row[j] for j in kept]

@@ -16,6 +16,7 @@ from mbsym.algebra.elimination import Elimination, eliminate
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.generators import occurring
+from mbsym.algebra.matrices import added
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.ring import ParameterRing, Polynomial, Ring
 from mbsym.algebra.signs import MOST_TERMS, Signs
@@ -38,7 +39,7 @@ from mbsym.problems.stability.algebraic_values import algebraic_point
 from mbsym.problems.stability.covering import Cell, Lift, cells_of, everywhere, joined
 from mbsym.problems.stability.enclosed import enclosed_verdict_with_cyclic
 from mbsym.problems.stability.exact import verdict_at, verdict_over
-from mbsym.problems.stability.linear_form import LinearSystem, NonholonomicForm, add, null_rows
+from mbsym.problems.stability.linear_form import LinearSystem, NonholonomicForm, null_rows
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.requirements import Requirement
 from mbsym.problems.stability.spectrum import Spectrum, from_characteristic, from_matrices
@@ -335,7 +336,7 @@ class Prepared:
 
     @cached_property
     def _shifts(self) -> Polynomials:
-        rows = add(self.system.K, self.system.N)
+        rows = added(self.system.K, self.system.N)
         return null_rows(rows, self.known.normalised) if self.drifts else ()
 
     def exactly(self, exact: bool) -> LinearSystem:

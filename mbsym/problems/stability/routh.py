@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mbsym.algebra.characteristic import Matrix, Polynomial, determinant
+from mbsym.algebra.characteristic import Matrix, adjugate, determinant
 from mbsym.problems.stability.linear_form import LinearSystem, is_zero
 from mbsym.problems.stability.theorems import Fact
 
@@ -97,15 +97,3 @@ def besides_cyclic(system: LinearSystem) -> Matrix:
     """K of the coordinates that are not cyclic."""
     rest = [i for i in range(system.size) if i not in system.cyclic]
     return tuple(tuple(system.K[i][j] for j in rest) for i in rest)
-
-
-def adjugate(block: Matrix) -> Matrix:
-    n = len(block)
-    one = block[0][0] * 0 + 1
-
-    def cofactor(i: int, j: int) -> Polynomial:
-        rows = [[x for col, x in enumerate(row) if col != i] for at, row in enumerate(block) if at != j]
-        value = determinant(rows) if rows else one
-        return -value if (i + j) % 2 else value
-
-    return tuple(tuple(cofactor(i, j) for j in range(n)) for i in range(n))

@@ -48,6 +48,7 @@ from mbsym.algebra.characteristic import (
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import Failure, NoClosedForm, TooLargeError
 from mbsym.algebra.generators import occurring
+from mbsym.algebra.matrices import added
 from mbsym.algebra.signs import MOST_TERMS, Condition, ContradictionError, Signs, conditions
 from mbsym.problems.stability import nonholonomic
 from mbsym.problems.stability.covering import alone, cells_of
@@ -56,7 +57,6 @@ from mbsym.problems.stability.linear_form import (
     CONSERVATIVE,
     LinearSystem,
     NonholonomicForm,
-    add,
     dot,
     is_potential,
     is_zero,
@@ -177,7 +177,7 @@ def analyse(
     except TooLargeError as error:
         found = _left_out(system, signs, str(error))
     if system.exact:
-        null = null_rows(add(system.K, system.N), signs.normalised) if found.zero_power else ()
+        null = null_rows(added(system.K, system.N), signs.normalised) if found.zero_power else ()
         calm = len(null) == found.zero_power  # the zero roots have no Jordan blocks, where there are no others
         cases = tuple(
             replace(case, verdict=exactly(case.verdict, calm and _without_further_zeros(found, signs, case)))
@@ -245,7 +245,7 @@ def _left_out(system: LinearSystem, signs: Signs, reason: str) -> Theory:
 
 
 def _analyse(system: LinearSystem, signs: Signs, borders: bool) -> Theory:
-    written = characteristic_polynomial(system.M, add(system.D, system.G), add(system.K, system.N))
+    written = characteristic_polynomial(system.M, added(system.D, system.G), added(system.K, system.N))
     raw = tuple(signs.normalised(c) for c in written[: len(written) - len(system.following)])
     mass = definiteness(system.kinetic, signs, "M") if system.kinetic else Definiteness(Definite.POSITIVE, ())
     # A mass matrix is positive definite, so its minors may be used to judge everything else.
@@ -333,7 +333,7 @@ def _has_blocks(system: LinearSystem, factor: Factor, known: Signs, further: boo
         return False
     in_lambda = tuple(c for v in factor.coefficients for c in (v, v * 0))[:-1]
     try:
-        for minor in first_minors(system.M, add(system.D, system.G), add(system.K, system.N)):
+        for minor in first_minors(system.M, added(system.D, system.G), added(system.K, system.N)):
             without = minor[0] if len(minor) == 1 else resultant(minor, in_lambda)
             if known.never_zero(without):
                 return True
@@ -548,7 +548,7 @@ def _simple(system: LinearSystem, factors: tuple[Factor, ...], known: Signs, rem
 
 def _is_semisimple(system: LinearSystem, factor: Factor) -> bool:
     in_lambda = tuple(c for v in factor.coefficients for c in (v, v * 0))[:-1]
-    c, k = add(system.D, system.G), add(system.K, system.N)
+    c, k = added(system.D, system.G), added(system.K, system.N)
     return is_semisimple(system.M, c, k, in_lambda, factor.multiplicity)
 
 
@@ -611,7 +611,7 @@ def _cases_of_linear(system: LinearSystem, found: Theory, known: Signs) -> tuple
     directions V at constant velocity, (D + G) V = 0, z = 2 r, they are drifts, and nothing but drifts.
     """
     unstable = _unstable(found.requirements, known)
-    places, rates = add(system.K, system.N), add(system.D, system.G)
+    places, rates = added(system.K, system.N), added(system.D, system.G)
     null = null_rows(places, known.normalised)
     if not null:
         return ()
@@ -674,7 +674,7 @@ def _cases_with_zero_roots(system: LinearSystem, found: Theory, known: Signs) ->
         standing = bool(system.turned) and system.turned[1] == 0  # in any direction of space: two zero roots
         if standing and found.zero_power == 2 and found.variable == "lambda":
             return (Case(found.requirements, (), _all_left(True)), *unstable), None
-        null = null_rows(add(system.K, system.N), known.normalised)
+        null = null_rows(added(system.K, system.N), known.normalised)
         if len(null) != found.zero_power:  # Jordan blocks
             return unstable, None
         why = Reason(Because.ZERO_ROOT), Reason(Because.HIGHER_ORDER)

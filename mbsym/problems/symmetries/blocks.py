@@ -13,8 +13,8 @@ from mbsym.mechanics.speeds import SpeedForm
 from mbsym.problems import integrals
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations, convective_rate
-from mbsym.problems.speed_integrals import Field
-from mbsym.problems.speeds import SpeedEquations
+from mbsym.problems.in_speeds.speed_integrals import Field
+from mbsym.problems.in_speeds.speeds import SpeedEquations
 from mbsym.problems.vector_field import put_in
 
 Images = Mapping[int, Polynomial]

@@ -23,9 +23,16 @@ class Part(Struct, frozen=True, forbid_unknown_fields=True, rename=lambda name: 
     """An object within a JSON file."""
 
 
+#: The items of a list belong to the coordinates, one each.
+BY_COORDINATE = Meta(extra_json_schema={"x-indices": "coordinates"})
+#: It is no result: versions, measured seconds, sentences beside codes.
+ASIDE = Meta(extra_json_schema={"x-aside": True})
+#: 256 bits in hexadecimal digits.
+SHA256 = Meta(pattern="^[0-9a-f]{64}$")
+
 #: The version of every format, and of the program that wrote it.
 Format = Annotated[Literal[1], "version of this format"]
-Version = Annotated[str, "version of mbsym that wrote it", Meta(extra_json_schema={"x-aside": True})]
+Version = Annotated[str, "version of mbsym that wrote it", ASIDE]
 SystemName = Annotated[str, "name of the description"]
 
 
@@ -35,6 +42,12 @@ class Head(Part, frozen=True, kw_only=True):
     format: Format = 1
     version: Version = field(default_factory=version)
     system: SystemName
+
+
+class Hashed(Head, frozen=True, kw_only=True):
+    """What files begin with that belong to what a description means."""
+
+    description_sha256: Annotated[str, "SHA-256 of the description as 'mbsym convert' writes it in YAML", SHA256]
 
 
 class Named(str):
@@ -55,17 +68,3 @@ def told_apart_by(*properties: str) -> Meta:
 def counted_from(number: int) -> Meta:
     """The items of a list are counted from this number."""
     return Meta(extra_json_schema={"x-first": number})
-
-
-#: The items of a list belong to the coordinates, one each.
-BY_COORDINATE = Meta(extra_json_schema={"x-indices": "coordinates"})
-#: It is no result: versions, measured seconds, sentences beside codes.
-ASIDE = Meta(extra_json_schema={"x-aside": True})
-#: 256 bits in hexadecimal digits.
-SHA256 = Meta(pattern="^[0-9a-f]{64}$")
-
-
-class Hashed(Head, frozen=True, kw_only=True):
-    """What files begin with that belong to what a description means."""
-
-    description_sha256: Annotated[str, "SHA-256 of the description as 'mbsym convert' writes it in YAML", SHA256]

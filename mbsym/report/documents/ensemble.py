@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from msgspec import UNSET, UnsetType
 
@@ -60,7 +60,7 @@ class Compared(Part, frozen=True):
 class Ensemble(Hashed, frozen=True, kw_only=True):
     """Many motions of one system: what varied, who ended early, how the members are spread at the end."""
 
-    status: Annotated[str, words("whole", "partial"), "whether it was interrupted"]
+    status: Annotated[Literal["whole", "partial"], "whether it was interrupted"]
     inputs: Annotated[
         dict[str, str] | UnsetType,
         "what the inputs of the description were: formulas by name; only where it has inputs",

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
-from mbsym.numerics.floquet import Word
+from mbsym.numerics.orbits.floquet import Word
 from mbsym.report.documents.base import ASIDE, Hashed, Part, words
 
 
@@ -25,8 +25,7 @@ class Floquet(Hashed, frozen=True, kw_only=True):
         str, words(Word), "what is proved of the unperturbed motion; of the first approximation only where it says so"
     ]
     motion: Annotated[
-        str,
-        words("proved", "verified numerically"),
+        Literal["proved", "verified numerically"],
         "how far it is known that the unperturbed motion satisfies the equations",
     ]
     lagrangian: Annotated[

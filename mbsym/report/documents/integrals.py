@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from msgspec import field
 
@@ -191,8 +191,7 @@ class OtherLevel(Part, frozen=True):
         "10^9",
     ]
     known: Annotated[
-        str,
-        words("proved", "verified numerically"),
+        Literal["proved", "verified numerically"],
         "how the two before are known; verified: at random parameters modulo a prime",
     ]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from mbsym.numerics.lyapunov import Parting
+from mbsym.numerics.orbits.lyapunov import Parting
 from mbsym.report.documents.base import Hashed, Part, words
 
 

@@ -70,7 +70,9 @@ class Place(Part, frozen=True, kw_only=True):
     point: Annotated[list[Number], "the exact point at which it was judged, a coordinate for each axis"]
     standing: Annotated[Standing, "whether there is a verdict, and if not, why"]
     broken: Annotated[list[str], "what is not kept there"]
-    stability: Annotated[Verdict | None, "the verdict of problem 6; nothing where none is given"]
+    stability: Annotated[
+        Verdict | None, "the verdict of problem 6, without terms of higher order; nothing where none is given"
+    ]
     unstable_roots: Annotated[int | None, "roots with a positive real part, with multiplicity, over all subsystems"]
     real_unstable_roots: Annotated[int | None, "how many of them are real"]
     negative_eigenvalues_of_K: Annotated[int | None, "Poincare's degree of instability"]
@@ -120,7 +122,7 @@ class SoftOrHard(Part, frozen=True):
             "mixed-roots",
             "coefficient-open",
             "constraints",
-            "given-by-matrices",
+            "exactly-linear",
             "unsolved-conditions",
             "no-expansion",
             "no-loss",
@@ -141,7 +143,11 @@ class SoftOrHard(Part, frozen=True):
 class Arc(Place, frozen=True, kw_only=True):
     """an arc"""
 
-    soft_or_hard: Annotated[SoftOrHard | UnsetType | None, "what terms of third order decide there"] = UNSET
+    soft_or_hard: Annotated[
+        SoftOrHard | UnsetType | None,
+        "where a pair of roots is imaginary and none to the right: what terms of third order decide; nothing "
+        "elsewhere, or where that was not asked",
+    ] = UNSET
     curves: Annotated[list[int], "the curves that it is part of"]
     regions: Annotated[
         list[int | None],
@@ -154,7 +160,11 @@ class Arc(Place, frozen=True, kw_only=True):
 class Corner(Place, frozen=True, kw_only=True):
     """a corner"""
 
-    soft_or_hard: Annotated[SoftOrHard | UnsetType | None, "what terms of third order decide there"] = UNSET
+    soft_or_hard: Annotated[
+        SoftOrHard | UnsetType | None,
+        "where a pair of roots is imaginary and none to the right: what terms of third order decide; nothing "
+        "elsewhere, or where that was not asked",
+    ] = UNSET
     curves: Annotated[list[int], "the curves through it"]
     arcs: Annotated[list[int], "the arcs that meet there"]
     kind: Annotated[str, words("crossing", "singular", "isolated", "edge", "zero"), "what it is"]
@@ -206,7 +216,9 @@ class Statement(Part, frozen=True):
 
     standing: Annotated[Standing, "whether there is a verdict, and if not, why"]
     broken: Annotated[list[str], "what is not kept there"]
-    stability: Annotated[Verdict | None, "the verdict of problem 6; nothing where none is given"]
+    stability: Annotated[
+        Verdict | None, "the verdict of problem 6, without terms of higher order; nothing where none is given"
+    ]
     unstable_roots: Annotated[int | None, "roots with a positive real part, with multiplicity, over all subsystems"]
     real_unstable_roots: Annotated[int | None, "how many of them are real"]
     negative_eigenvalues_of_K: Annotated[int | None, "Poincare's degree of instability"]

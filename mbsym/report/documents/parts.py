@@ -44,7 +44,7 @@ class Reason(Part, frozen=True):
 class Verdict(Part, frozen=True):
     """its stability"""
 
-    verdict: Annotated[Word, "what is proved of the motion"]
+    verdict: Annotated[Word, "what is proved of the motion, in the words of every output"]
     theorems: Annotated[list[TheoremName], "the theorems that prove it; none where none applies"]
     reasons: Annotated[list[Reason], "why, as codes with data"]
     explanation: Annotated[str, "the reasons in sentences", ASIDE]

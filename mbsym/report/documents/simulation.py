@@ -8,7 +8,7 @@ from msgspec import UNSET, Meta, UnsetType
 
 from mbsym.numerics.accuracy import Lacking
 from mbsym.numerics.conservation import Doubt, Standing
-from mbsym.numerics.surfaces import Action, Direction
+from mbsym.numerics.events.surfaces import Action, Direction
 from mbsym.report.documents.base import ASIDE, SHA256, Format, Part, told_apart_by, words
 
 
@@ -139,7 +139,7 @@ class Work(Part, frozen=True):
 class Energy(Part, frozen=True):
     """the energy T - U"""
 
-    is_: Annotated[str, words("T - U"), "what it is"]
+    is_: Annotated[Literal["T - U"], "what it is"]
     conserved: Annotated[bool | None, "true, false, or null where it is undecided"]
     how: Annotated[Standing, "how that is known"]
     doubt: Annotated[str | None, "why it is undecided", words(Doubt)]
@@ -152,7 +152,7 @@ class Energy(Part, frozen=True):
 class GeneralizedEnergy(Part, frozen=True):
     """the generalised energy, where it is another quantity than the energy"""
 
-    is_: Annotated[str, words("T2 - T0 - U"), "what it is"]
+    is_: Annotated[Literal["T2 - T0 - U"], "what it is"]
     conserved: Annotated[bool | None, "true, false, or null where it is undecided"]
     how: Annotated[Standing, "how that is known"]
     doubt: Annotated[str | None, "why it is undecided", words(Doubt)]
@@ -221,7 +221,7 @@ class Estimate(Part, frozen=True):
     available: Annotated[Literal[True], "true"]
     final: Annotated[float | str, "at the end"]
     largest: Annotated[float | str, "at worst"]
-    how: Annotated[str, words("better run"), "how it is estimated"]
+    how: Annotated[Literal["better run"], "how it is estimated"]
     against: Against
     lower_bound: Annotated[bool, "whether the error may be larger: this run and the better one have parted"]
     parted: Annotated[float | None, "by when they differ by a tenth of a quantity's scale; null where they never do"]
@@ -405,7 +405,7 @@ class Simulation(Part, frozen=True, kw_only=True):
     format: Format = 1
     system: Annotated[str, "name of the description"]
     description_sha256: Annotated[str, "SHA-256 of the description as 'mbsym convert' writes it in YAML", SHA256]
-    status: Annotated[str, words("whole", "partial"), "whether it reached its end"]
+    status: Annotated[Literal["whole", "partial"], "whether it reached its end"]
     ended: Ended | None
     time: TimeSpan
     reached: Reached

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from msgspec import field
 
@@ -30,7 +30,7 @@ class SymmetryBasis(Part, frozen=True, kw_only=True):
     bound
     """
 
-    directions: Annotated[str, words("coordinates", "speeds"), "what fields move"]
+    directions: Annotated[Literal["coordinates", "speeds"], "what fields move"]
     complete: Annotated[
         bool, "proved: every symmetry of this kind is a combination of those listed, for almost all parameters"
     ]

@@ -28,11 +28,11 @@ from mbsym.expressions.tree import Expression, names
 from mbsym.formulas.names import free_name, injective
 from mbsym.model.system import System
 from mbsym.numerics.scenario import exact
-from mbsym.report import c_source
+from mbsym.report.code import c_source
+from mbsym.report.code.model_code import programs_of, solved
 from mbsym.report.environment import rendered
 from mbsym.report.exports.fmu_units import Unit, time_and_energy, variable_unit
 from mbsym.report.exports.interface import Export, Language, export, told_in
-from mbsym.report.model_code import programs_of, solved
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis

@@ -91,7 +91,7 @@ def _labels(analysis: Analysis) -> tuple[str, ...]:
     """What the rows of constraints are called."""
     if not analysis.system.constraints:
         return ()
-    from mbsym.report.constrained_code import tied_of  # few systems have constraints
+    from mbsym.report.code.constrained_code import tied_of  # few systems have constraints
 
     tied = tied_of(analysis)
     return () if isinstance(tied, str) else tied.labels

@@ -16,8 +16,8 @@ from mbsym.report.plain import Write, column_text, matrix_text
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
     from mbsym.problems.constraints import Constraints, Solved
+    from mbsym.problems.in_speeds.speeds import SpeedEquations
     from mbsym.problems.reactions import Reaction
-    from mbsym.problems.speeds import SpeedEquations
 
 
 def data(found: Equations, system: System, write: Write) -> doc.Equations:
@@ -135,7 +135,7 @@ def lines(found: Equations, analysis: Analysis) -> Iterator[str]:
     size = counted(found.mass_matrix.terms, "term")
     yield f"{counted(n, 'equation')}; mass matrix {size}, right-hand sides {counted(terms, 'term')}"
     if found.constraints is not None:
-        from mbsym.report.constraint_words import Writer, filled, sentences
+        from mbsym.report.words.constraint_words import Writer, filled, sentences
 
         yield from map(filled, sentences(found.constraints, Writer(", ".join)))
     if found.embedded is not None:

@@ -17,9 +17,9 @@ from mbsym.problems.invariant_sets import (
 )
 from mbsym.report.documents.results import invariant_sets as doc
 from mbsym.report.even_powers import in_even_powers
-from mbsym.report.invariant_words import Medium, closing, family_title, of_family, of_set, opening, told_families
 from mbsym.report.plain import LONGEST, Write
-from mbsym.report.said import filled
+from mbsym.report.words.invariant_words import Medium, closing, family_title, of_family, of_set, opening, told_families
+from mbsym.report.words.said import filled
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis

@@ -55,7 +55,7 @@ def _reduction(about: Reduction, write: Write) -> doc.Reduction:
 def lines(found: Linearisation, analysis: Analysis) -> Iterator[str]:
     """The lines in the terminal."""
     if found.constrained is not None:
-        from mbsym.report.constraint_words import Writer, filled, reduction_sentences
+        from mbsym.report.words.constraint_words import Writer, filled, reduction_sentences
 
         yield from map(filled, reduction_sentences(found.constrained, Writer(", ".join)))
     if analysis.system.linear is not None and analysis.system.linear.of_first_order:

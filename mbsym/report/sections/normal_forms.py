@@ -12,9 +12,9 @@ from mbsym.model.system import System
 from mbsym.problems.normal_forms import Focus, InSymbols, Judged, NormalForms
 from mbsym.report.documents.nonlinear import Determinant
 from mbsym.report.documents.results import normal_forms as doc
-from mbsym.report.normal_form_words import Medium, sentences
 from mbsym.report.plain import LONGEST, Write
-from mbsym.report.said import filled
+from mbsym.report.words.normal_form_words import Medium, sentences
+from mbsym.report.words.said import filled
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis

@@ -9,13 +9,13 @@ from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
 from mbsym.problems.polynomial_integrals import Polynomials
 from mbsym.problems.symmetries import Symmetry
-from mbsym.report import symmetry_words
 from mbsym.report.documents import integrals
 from mbsym.report.documents.results import polynomial_integrals as doc
-from mbsym.report.integrals_words import level_title, sentences, title, weights
 from mbsym.report.plain import LONGEST, Write
-from mbsym.report.said import filled
 from mbsym.report.symmetries_json import symmetries_data
+from mbsym.report.words import symmetry_words
+from mbsym.report.words.integrals_words import level_title, sentences, title, weights
+from mbsym.report.words.said import filled
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, Any
 from mbsym.analysis.small import SmallParameters
 from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
-from mbsym.report import oscillation_words
 from mbsym.report.documents.results import small_parameters as doc
 from mbsym.report.expansion_json import expansion_data, measured_data
-from mbsym.report.expansion_measured import JudgedAverage, averages, flow_measured, oscillation_measured
-from mbsym.report.expansion_words import (
+from mbsym.report.oscillation_json import oscillation_data
+from mbsym.report.plain import LONGEST, Write
+from mbsym.report.words import oscillation_words
+from mbsym.report.words.expansion_measured import JudgedAverage, averages, flow_measured, oscillation_measured
+from mbsym.report.words.expansion_words import (
     Medium,
     coefficients,
     of_averaging,
@@ -21,9 +23,7 @@ from mbsym.report.expansion_words import (
     opening,
     sentences,
 )
-from mbsym.report.oscillation_json import oscillation_data
-from mbsym.report.plain import LONGEST, Write
-from mbsym.report.said import Said, filled
+from mbsym.report.words.said import Said, filled
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis

@@ -13,9 +13,9 @@ from mbsym.model.system import System
 from mbsym.problems.stabilisation import Feedback, Locus, Rank, Stabilisation
 from mbsym.report.documents.results import stabilisation as doc
 from mbsym.report.plain import LONGEST, Write
-from mbsym.report.said import filled
 from mbsym.report.sections.stability import verdict_data
-from mbsym.report.stabilisation_words import FEEDBACK, LYAPUNOV, Medium, sentences
+from mbsym.report.words.said import filled
+from mbsym.report.words.stabilisation_words import FEEDBACK, LYAPUNOV, Medium, sentences
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis

@@ -7,6 +7,7 @@ from decimal import Context, Decimal, InvalidOperation
 from fractions import Fraction
 
 from mbsym.expressions.parser import MAX_DIGITS
+from mbsym.model.admissibility import principal_minors
 
 Texts = tuple[str, str, str]
 NOWHERE: Texts = ("0", "0", "0")
@@ -99,6 +100,4 @@ def is_of_a_body(xx: Fraction, xy: Fraction, xz: Fraction, yy: Fraction, yz: Fra
 
 def is_nonnegative(xx: Fraction, xy: Fraction, xz: Fraction, yy: Fraction, yz: Fraction, zz: Fraction) -> bool:
     """Whether a symmetric matrix is positive semidefinite: all its principal minors are nonnegative."""
-    pairs = (xx * yy - xy * xy, xx * zz - xz * xz, yy * zz - yz * yz)
-    whole = xx * yy * zz + 2 * xy * xz * yz - xx * yz * yz - yy * xz * xz - zz * xy * xy
-    return all(minor >= 0 for minor in (xx, yy, zz, *pairs, whole))
+    return all(minor >= 0 for minor in principal_minors(((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))))

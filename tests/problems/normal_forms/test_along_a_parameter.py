@@ -16,8 +16,8 @@ from mbsym.analysis.exceptional import exceptional
 from mbsym.analysis.stages import Unavailable
 from mbsym.problems.normal_forms import Outcome, Theorem, Why
 from mbsym.problems.normal_forms.along import NotAlong
-from mbsym.report.exceptional_values import lines
 from mbsym.report.schemas import schema
+from mbsym.report.words.exceptional_values import lines
 from mbsym_cli.main import main
 
 SYSTEMS = Path(__file__).parents[3] / "systems"

@@ -15,7 +15,7 @@ from mbsym.analysis.exceptional import exceptional
 from mbsym.problems.normal_forms import Judged, Outcome, Theorem, Why, equal, zero_root
 from mbsym.problems.normal_forms.equal import equal_frequencies
 from mbsym.problems.normal_forms.twist import NotVerified
-from mbsym.report.exceptional_values import lines
+from mbsym.report.words.exceptional_values import lines
 
 SYSTEMS = Path(__file__).parents[3] / "systems"
 HALF = acb("0.5")

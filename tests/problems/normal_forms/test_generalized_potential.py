@@ -13,7 +13,7 @@ from mbsym.algebra.failures import Failure
 from mbsym.analysis.exceptional import exceptional
 from mbsym.analysis.higher import ignorable
 from mbsym.problems.normal_forms import NormalForms, Outcome, Theorem, generalized_potential
-from mbsym.report.exceptional_values import lines
+from mbsym.report.words.exceptional_values import lines
 
 POINT = """
 mbsym: 1

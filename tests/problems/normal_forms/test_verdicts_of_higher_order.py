@@ -15,7 +15,7 @@ from mbsym.analysis.stages import Unavailable
 from mbsym.problems.normal_forms import Focus, Judged, Outcome, Theorem, Why
 from mbsym.problems.normal_forms.exact import Resonant
 from mbsym.problems.normal_forms.twist import judged, vectors
-from mbsym.report.normal_form_words import Medium, sentences
+from mbsym.report.words.normal_form_words import Medium, sentences
 
 SYSTEMS = Path(__file__).parents[3] / "systems"
 

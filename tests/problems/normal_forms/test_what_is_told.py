@@ -13,13 +13,13 @@ import mbsym
 from mbsym.analysis.exceptional import exceptional
 from mbsym.mechanics.rest import given_values
 from mbsym.problems.normal_forms import NormalForms, Outcome, Theorem, Why
-from mbsym.report.exceptional_values import VANISHING, as_text
 from mbsym.report.messages import messages
-from mbsym.report.normal_form_words import REASONS, THEOREMS, sentences
 from mbsym.report.results_json import render
 from mbsym.report.schemas import schema
 from mbsym.report.sections.normal_forms import PLAIN
 from mbsym.report.sections.stability import lines
+from mbsym.report.words.exceptional_values import VANISHING, as_text
+from mbsym.report.words.normal_form_words import REASONS, THEOREMS, sentences
 
 SYSTEMS = Path(__file__).parents[3] / "systems"
 SOFT = """

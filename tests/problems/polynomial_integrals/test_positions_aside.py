@@ -10,10 +10,10 @@ from click.testing import CliRunner
 
 import mbsym
 from mbsym.analysis import Analysis
-from mbsym.report import integrals_words
 from mbsym.report.messages import messages
-from mbsym.report.said import filled
 from mbsym.report.schemas import schema
+from mbsym.report.words import integrals_words
+from mbsym.report.words.said import filled
 from mbsym_cli.main import main
 
 FREE_BODY = """

@@ -16,8 +16,8 @@ from mbsym.analysis import polynomial
 from mbsym.analysis.pipeline import Analysis
 from mbsym.formulas.formula import Formula
 from mbsym.problems.polynomial_integrals import linear_relations
-from mbsym.report import integrals_words
 from mbsym.report.schemas import schema
+from mbsym.report.words import integrals_words
 from mbsym_cli.main import main
 
 SYSTEMS = Path(__file__).parents[3] / "systems"
@@ -130,8 +130,8 @@ def test_a_wrong_sign_in_angles_is_found():
 
 
 def test_every_sentence_has_its_translations():
-    from mbsym.report import integrals_words
     from mbsym.report.messages import messages
+    from mbsym.report.words import integrals_words
 
     said = {integrals_words.LISTED, integrals_words.LEVEL, integrals_words.OPENING, *integrals_words._NONE.values()}
     said |= {*integrals_words._DEPENDENT.values(), *integrals_words._NONE_BUT_LENGTHS.values()}
@@ -213,8 +213,8 @@ def test_symmetries_that_are_denied():
 
 def test_sentences_of_symmetries_have_their_translations():
     from mbsym.problems.symmetries import Symmetries
-    from mbsym.report import symmetry_words
     from mbsym.report.messages import messages
+    from mbsym.report.words import symmetry_words
 
     found = Analysis(mbsym.load(SYSTEMS / "spherical-pendulum.yaml").system, problems=(9,)).polynomial_integrals
     listed = found.symmetries.symmetries

@@ -16,7 +16,7 @@ import mbsym
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.analysis import polynomial
 from mbsym.problems.polynomial_integrals import grading, polynomial_integrals
-from mbsym.report.integrals_words import sentences
+from mbsym.report.words.integrals_words import sentences
 
 SYSTEMS = Path(__file__).parents[3] / "systems"
 BODY = """mbsym: 1

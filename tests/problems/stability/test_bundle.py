@@ -11,8 +11,10 @@ from flint import arb, fmpq, fmpq_poly
 
 import mbsym
 from mbsym.mechanics.rest import given_values
-from mbsym.problems.equilibria import equilibria
+from mbsym.problems.relative_equilibria.equilibria import equilibria
+from mbsym.problems.stability import Stability
 from mbsym.problems.stability.bundle import NumberField, definite_combination
+from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word
 
 RATIONALS = NumberField(fmpq_poly([0, 1]), lambda element: arb(element[0]))
@@ -101,7 +103,12 @@ def test_on_the_border_of_sleep_nothing_is_claimed() -> None:
     assert verdict.word is Word.UNDECIDED
 
 
-def test_a_top_without_its_symmetry_is_left_open() -> None:
+def before(found: Stability) -> Verdict | None:
+    """What energies and integrals say; terms of higher order may decide more (Arnold-Moser)."""
+    return found.before_higher_order or found.numerical
+
+
+def test_a_top_without_its_symmetry_is_left_open_by_integrals() -> None:
     """With a weak spring across, the momentum about the vertical is no integral: gyroscopic stabilisation, no more.
 
     Nor is that of a slim top's spin about its axis; in axes that turn with it, moments A, B, C, P = m g l, the tilts
@@ -109,12 +116,13 @@ def test_a_top_without_its_symmetry_is_left_open() -> None:
     """
     text = (SHIPPED / "heavy-top.yaml").read_text(encoding="utf-8")
     pulled = text.replace("loads:\n", "loads:\n  - potential: sin(beta)**2/100\n")
-    verdict = mbsym.loads(pulled).stability.numerical
+    verdict = before(mbsym.loads(pulled).stability)
     assert verdict is not None
     assert verdict.word is Word.GYROSCOPIC
     slim = mbsym.loads(text.replace("inertia: [A, A, C]", "inertia: [A, A*11/10, C]")).stability
-    assert slim.numerical is not None
-    assert slim.numerical.word is Word.GYROSCOPIC
+    open_ = before(slim)
+    assert open_ is not None
+    assert open_.word is Word.GYROSCOPIC
     (tilts,) = (part for part in slim.subsystems if len(part.coordinates) == 2)
     values = {"A": 10, "C": 5, "m": 2, "g": 3, "l": 7, "Omega": 13}
     k1, k2, spin = (5 - 11) * 169 - 42, (5 - 10) * 169 - 42, (10 + 11 - 5) ** 2 * 169
@@ -202,9 +210,12 @@ def test_hanging_is_stable_in_whatever_frame(rate: str) -> None:
     still = mbsym.loads(HANGING.format(W=rate, spring="")).stability.numerical
     assert still is not None
     assert still.word is Word.STABLE
-    turning = mbsym.loads(HANGING.format(W=rate, spring="  - potential: sin(x)**2/20\n")).stability.numerical
+    whole = mbsym.loads(HANGING.format(W=rate, spring="  - potential: sin(x)**2/20\n")).stability
+    turning = before(whole)
     assert turning is not None
     assert turning.word is (Word.STABLE if Fraction(rate) ** 2 < 10 else Word.GYROSCOPIC)
+    assert whole.numerical is not None
+    assert whole.numerical.word is Word.STABLE
 
 
 DUAL_SPIN = """
@@ -256,6 +267,6 @@ def test_a_spring_to_the_outside_takes_the_angular_momentum_away() -> None:
     ).stability.numerical
     assert held is not None
     assert held.word is Word.UNSTABLE
-    loose = mbsym.loads(text + "loads:\n  - potential: -sin(a)**2/100 - sin(b)**2/100\n").stability.numerical
+    loose = before(mbsym.loads(text + "loads:\n  - potential: -sin(a)**2/100 - sin(b)**2/100\n").stability)
     assert loose is not None
     assert loose.word in (Word.GYROSCOPIC, Word.UNDECIDED)

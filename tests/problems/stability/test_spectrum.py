@@ -15,7 +15,7 @@ from conftest import SHIPPED
 
 import mbsym
 from mbsym.problems.stability.spectrum import RootNumbers, numbers
-from mbsym.report.latex_formulas import eigenvalues, scientific
+from mbsym.report.latex.formulas import eigenvalues, scientific
 from mbsym.report.sections.stability import root_text
 from mbsym_cli.main import main
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from msgspec import UNSET, Meta, UnsetType, field
 
@@ -82,8 +82,7 @@ class SelfCheck(Part, frozen=True):
     first: Annotated[str, "the first route"]
     second: Annotated[str, "the second route"]
     outcome: Annotated[
-        str,
-        words("exact", "verified numerically", "undecided", "singular", "FAILED"),
+        Literal["exact", "verified numerically", "undecided", "singular", "FAILED"],
         "how certain it is that they agree",
     ]
     detail: Annotated[str, "how they were compared, or what differs, in words", ASIDE]

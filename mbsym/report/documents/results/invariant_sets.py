@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from msgspec import Meta
 
@@ -71,8 +71,7 @@ class InvariantSet(Part, frozen=True):
     second_variation: Annotated[SecondVariation | None, "definiteness of K: sufficient conditions of stability"]
     first_approximation: Annotated[FirstApproximation | None, "roots of the first approximation at a steady motion"]
     gap: Annotated[
-        str,
-        words("found", "none found", "untried"),
+        Literal["found", "none found", "untried"],
         "whether parameters were found at which the necessary conditions hold and the sufficient ones do not",
     ]
 

@@ -1,0 +1,1 @@
+"""Many motions side by side: one compiled kernel, one lane of it a motion."""

@@ -1,0 +1,246 @@
+"""Which members an ensemble has: values of parameters and of the initial state, on a grid or drawn at random.
+
+A grid takes every combination of equally spaced values, ends included; draws are joint, each member one point of the
+space of all that varies, from NumPy's PCG64 or from Sobol's sequence (scrambled, SciPy), the same for the same seed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import isfinite, prod
+from typing import Any
+
+import numpy as np
+
+from mbsym.algebra.base import Lowering
+from mbsym.expressions.tree import names
+from mbsym.expressions.tree import text as spelled
+from mbsym.model.comparison import has_sign, holds
+from mbsym.model.system import System
+from mbsym.numerics.ensembles.parametrised import Names, Parametrised, dependent, released
+from mbsym.numerics.kernels import arrays
+from mbsym.numerics.kernels.interface import Code
+
+#: More members than this are refused.
+MOST_MEMBERS = 1_000_000
+
+NORMAL, UNIFORM = "normal", "uniform"
+RANDOM, SOBOL = "random", "sobol"
+
+
+@dataclass(frozen=True)
+class Grid:
+    """``count`` values from ``low`` to ``high``."""
+
+    name: str
+    low: float
+    high: float
+    count: int
+
+    @property
+    def values(self) -> Any:
+        """In increasing or decreasing order, ends included."""
+        return np.linspace(self.low, self.high, self.count)
+
+
+@dataclass(frozen=True)
+class Draw:
+    """normal(mean ``first``, standard deviation ``second``) or uniform(from ``first`` to ``second``)."""
+
+    name: str
+    kind: str
+    first: float
+    second: float
+
+    def at(self, chances: Any) -> Any:
+        """The values whose distribution function is ``chances``, between 0 and 1."""
+        if self.kind == UNIFORM:
+            return self.first + (self.second - self.first) * chances
+        from scipy.special import ndtri
+
+        tiny = np.finfo(float).tiny
+        return self.first + self.second * ndtri(np.clip(chances, tiny, 1 - 2.0**-53))
+
+
+Variation = Grid | Draw
+
+
+def variation(name: str, given: Sequence[float | str]) -> Variation:
+    """(low, high, count), ("normal", mean, deviation) or ("uniform", low, high); else ValueError."""
+    first, *rest = given
+    if len(rest) != 2:
+        raise ValueError(f"{name}: (low, high, count), ('normal', mean, deviation) or ('uniform', low, high)")
+    if isinstance(first, str):
+        if first not in (NORMAL, UNIFORM):
+            raise ValueError(f"{name}: there is no distribution {first}: choose from {NORMAL}, {UNIFORM}")
+        return Draw(name, first, float(rest[0]), float(rest[1]))
+    count = int(rest[1])
+    if count < 2:
+        raise ValueError(f"{name}: a grid has 2 values at least, not {count}")
+    return Grid(name, float(first), float(rest[0]), count)
+
+
+class Unvaried(ValueError):
+    """What cannot be varied; ``reasons`` are (name, sentence, hint), all of them."""
+
+    def __init__(self, reasons: Sequence[tuple[str, str, str]]) -> None:
+        super().__init__("; ".join(text for _, text, _ in reasons))
+        self.reasons = tuple(reasons)
+
+
+def complaints(system: System, variations: Sequence[Variation], members: int | None) -> Iterator[tuple[str, str, str]]:
+    """What is wrong with them: (name, sentence, hint)."""
+    known = (*system.parameter_names, *system.coordinates, *system.velocities)
+    following = {relation.name for relation in system.relations}
+    seen: set[str] = set()
+    for one in variations:
+        if one.name not in known:
+            from mbsym.expressions.guessing import guess
+
+            yield one.name, f"there is nothing called '{one.name}' to vary{guess(one.name, known)}", ""
+        elif one.name in following:
+            yield one.name, f"{one.name} follows from other parameters", "vary those of which its relation is made"
+        if one.name in seen:
+            yield one.name, f"{one.name} is varied twice", "join the two"
+        seen.add(one.name)
+        yield from badly_ranged(one)
+    clash = list(mixed(variations))
+    yield from clash
+    grids = [one for one in variations if isinstance(one, Grid)]
+    if not clash and grids and members is not None:
+        yield grids[0].name, "a grid says itself how many members it has", "leave --members out"
+    elif not grids and members is None and variations:
+        yield variations[0].name, "how many members to draw is not said", "for example --members 1000"
+    count = prod(one.count for one in grids) if grids else members or 0
+    if count > MOST_MEMBERS:
+        yield variations[0].name, f"{count} members are too many", f"at most {MOST_MEMBERS}"
+
+
+def badly_ranged(one: Variation) -> Iterator[tuple[str, str, str]]:
+    """What is wrong with one range: (name, sentence, hint)."""
+    ends = (one.low, one.high) if isinstance(one, Grid) else (one.first, one.second)
+    if not all(map(isfinite, ends)):
+        yield one.name, f"the range of {one.name} is not finite", ""
+    if isinstance(one, Draw) and one.kind == NORMAL and not one.second > 0:
+        yield one.name, f"the standard deviation of {one.name} must be positive, not {one.second:g}", ""
+    if isinstance(one, Draw) and one.kind == UNIFORM and not one.second > one.first:
+        yield one.name, f"the range of {one.name} is empty: {one.first:g} to {one.second:g}", "the smaller one first"
+
+
+def mixed(variations: Sequence[Variation]) -> Iterator[tuple[str, str, str]]:
+    """That grids and draws stand side by side: (name, sentence, hint)."""
+    grids = [one for one in variations if isinstance(one, Grid)]
+    if grids and len(grids) < len(variations):
+        told = "a grid and draws at random do not go together"
+        yield grids[0].name, told, "draw all of them: name=uniform(low, high)"
+
+
+def drawn(
+    system: System, variations: Sequence[Variation], members: int | None = None, seed: int = 1, sampling: str = RANDOM
+) -> Any:
+    """The values, shape (len(variations), m).  Raises Unvaried with everything that is wrong."""
+    wrong = list(complaints(system, variations, members))
+    if wrong:
+        raise Unvaried(wrong)
+    grids = [one for one in variations if isinstance(one, Grid)]
+    if grids:
+        mesh = np.meshgrid(*(one.values for one in grids), indexing="ij")
+        return np.array([axis.reshape(-1) for axis in mesh])
+    draws = [one for one in variations if isinstance(one, Draw)]
+    return np.array(
+        [one.at(row) for one, row in zip(draws, _chances(len(draws), members or 1, seed, sampling), strict=True)]
+    )
+
+
+def _chances(count: int, members: int, seed: int, sampling: str) -> Any:
+    """Points of the unit cube, shape (count, members)."""
+    if sampling == SOBOL:
+        import warnings
+
+        from scipy.stats import qmc
+
+        with warnings.catch_warnings():  # that a number of points is no power of 2 costs some evenness, no more
+            warnings.simplefilter("ignore", UserWarning)
+            return qmc.Sobol(count, scramble=True, rng=seed).random(members).T
+    # Member by member, so that the first of 2000 are those of 1000.
+    return np.random.default_rng(seed).random((members, count)).T
+
+
+@dataclass(frozen=True)
+class Members:
+    """Members ready to be integrated: ``starts`` (2n, m), ``parameters`` (p, m) in the order of ``dynamics.free``."""
+
+    dynamics: Parametrised
+    names: tuple[str, ...]
+    values: Any
+    starts: Any
+    parameters: Any
+
+    def described(self, member: int) -> str:
+        """``theta = 0.3, m1 = 2`` of a member."""
+        pairs = zip(self.names, self.values[:, member], strict=True)
+        return ", ".join(f"{name} = {value:.12g}" for name, value in pairs)
+
+
+def members(dynamics: Parametrised, varied: Sequence[str], values: Any) -> Members:
+    """Initial states and parameters of members with ``values`` (k, m) of ``varied`` names.
+
+    ``dynamics.free`` must be those of them that are parameters.
+
+    Raises Unvaried where a member's parameters break a declared sign or give no initial state.
+    """
+    system, count = dynamics.system, values.shape[1]
+    own = dict(zip(varied, values, strict=True))
+    states = (*system.coordinates, *system.velocities)
+    fixed = dict(zip(states, map(float, dynamics.scenario.state), strict=True))
+    parameters = np.array([own[name] for name in dynamics.free]).reshape(len(dynamics.free), count)
+    given = [own.get(name, np.full(count, fixed[name])) for name in states]
+    starts = arrays.kernel(dynamics.start)(np.vstack([parameters, np.array(given)]))
+    for place, name in enumerate(states):
+        if name in own:
+            starts[place] = own[name]
+    wrong = [*_signs(dynamics, parameters), *_assumptions(dynamics, parameters)]
+    bad = np.flatnonzero(~np.all(np.isfinite(starts), axis=0))
+    if len(bad):
+        wrong.append((varied[0], f"{len(bad)} of {count} members have no initial state", ""))
+    if wrong:
+        raise Unvaried(wrong)
+    return Members(dynamics, tuple(varied), values, starts, parameters)
+
+
+def _signs(dynamics: Parametrised, parameters: Any) -> Iterator[tuple[str, str, str]]:
+    """Members whose parameters break their declared signs."""
+    if not dynamics.free:
+        return
+    moving = (*dynamics.free, *dependent(dynamics.system, dynamics.free))
+    found = arrays.kernel(dynamics.parameters)(parameters)
+    signs = {parameter.name: parameter.sign for parameter in dynamics.system.parameters}
+    for name, row in zip(moving, found, strict=True):
+        ends = [float(np.min(row)), float(np.max(row))]
+        if not np.all(np.isfinite(row)):
+            yield name, f"{name} has no value in {int(np.sum(~np.isfinite(row)))} members", ""
+            continue
+        values = [*ends, *([0.0] if np.any(row == 0) else [])]
+        wrong = next((value for value in values if not has_sign(Fraction(value), signs[name])), None)
+        if wrong is not None:
+            yield name, f"{name} = {wrong:.12g} in some member, but it is declared {signs[name]}", "narrow its range"
+
+
+def _assumptions(dynamics: Parametrised, parameters: Any) -> Iterator[tuple[str, str, str]]:
+    """Members that break an assumption of the description."""
+    moving = {*dynamics.free, *dependent(dynamics.system, dynamics.free)}
+    for assumption in dynamics.system.assumptions:
+        used = names(assumption.left) | names(assumption.right)
+        if not used & moving or not used <= {*dynamics.system.parameter_names, "pi"}:
+            continue
+        fresh = released(dynamics.scenario, dynamics.free)
+        lowering = Lowering(fresh, Names(fresh))
+        gap = lowering(assumption.left) - lowering(assumption.right)
+        values = arrays.kernel(Code(fresh, dynamics.free, (gap,)))(parameters)[0]
+        broken = np.flatnonzero(~np.array([holds(value, assumption.relation) for value in values]))
+        if len(broken):
+            told = f"{spelled(assumption.left)} {assumption.relation} {spelled(assumption.right)}"
+            count = f"{len(broken)} of {len(values)} members break the assumption {told}"
+            yield next(name for name in dynamics.free), count, "narrow the range"

@@ -1,0 +1,1 @@
+"""How digits are lost at the extremes of states; where the mass matrix, or constraints, are singular."""

@@ -1,0 +1,304 @@
+"""Where the mass matrix is singular, found: det M as a polynomial of the exact ring at the scenario's numbers.
+
+    det M(q) = 0,     and of each joint of three turns the determinant of (x1', x2', x3') -> omega, +-cos x2 or +-sin x2
+
+Factors and their real zeros come from ``mbsym.algebra.zero_sets``.  On a set M v = 0 for some v = q', and
+
+* if v moves nothing that the description shows (no joint, no mass centre, no body with inertia about that axis), the
+  coordinates fail there: two of them do the same.  Others are regular there;
+* if v moves something, but nothing that has mass, the model fails: it has a massless direction in that position, and no
+  choice of coordinates helps.
+
+Where every joint's own body tells its velocities (``mbsym.mechanics.own_energy``), that proves M regular, however many
+joints there are; det M itself is expanded where that is not so.  Where it is too long for the ring, the joints' maps
+are all that is proved; M is then looked at by balls at multiples of pi/12 of one coordinate at a time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from flint import arb, ctx, fmpq, fmpq_mat
+
+from mbsym.algebra.failures import Failure, NoClosedForm
+from mbsym.algebra.matrices import components, determinant
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.zero_kinds import UNDECIDED, Zero, Zeros, ZeroSet
+from mbsym.algebra.zero_sets import zero_sets
+from mbsym.expressions.angles import linear_form
+from mbsym.formulas.python import python_text
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.own_energy import own_determinants
+from mbsym.mechanics.programs import programs
+from mbsym.mechanics.rest import at_numbers
+from mbsym.mechanics.variables import ring_environment, ring_of
+from mbsym.model.system import System
+from mbsym.numerics.extremes.singular_kinds import BITS, CHART, Kinds, exact_ball
+from mbsym.numerics.scenario import Scenario, rounded
+
+#: Determinants of more coordinates are not expanded, nor ones that need more steps of polynomial arithmetic.
+MOST_COORDINATES, MOST_WORK = 9, 12_000_000
+
+#: Coordinates that are no angles are looked at up to so many times their size, where that matters.
+RANGE = 10
+
+#: Sets with a longer formula are told by a point of theirs.
+SHOWN = 90
+
+
+@dataclass(frozen=True)
+class Value:
+    """A value of a coordinate: ``label`` is exact (``pi/2``, ``0``) or has twelve digits; ``exact`` has 256 bits."""
+
+    label: str
+    exact: Fraction
+
+
+@dataclass(frozen=True)
+class SingularSet:
+    """One part of the configurations at which M is singular.
+
+    names       the coordinates that decide; whatever the others are
+    values      of the one name; with several names empty, and ``equation`` = 0 says where
+    places      points of the set, values by name (of one name, one point for every value)
+    finite      with several names: the places are all there are
+    kind        CHART, MODEL, BOTH, or OPEN where ranks could not be told
+    joint       the body whose three turns cannot be told apart there, if that is why
+    proved      that M is singular there and whether it is all of this factor; otherwise it was found by a search
+    """
+
+    names: tuple[str, ...]
+    values: tuple[Value, ...]
+    equation: str
+    places: tuple[Mapping[str, Fraction], ...]
+    finite: bool
+    kind: str
+    joint: str
+    proved: bool
+
+
+@dataclass(frozen=True)
+class Singularities:
+    """``complete``: proved that there are no others; ``how`` says by what, or what was searched instead.
+
+    ``ranges`` are bounds of coordinates within which that holds, where it depends on any.
+    """
+
+    sets: tuple[SingularSet, ...]
+    complete: bool
+    how: str
+    ranges: Mapping[str, Fraction]
+    undecided: tuple[str, ...] = ()
+
+
+def singularities(given: Scenario, ranges: Mapping[str, Fraction]) -> Singularities:
+    """All that is found at the scenario's numbers; ``ranges`` bounds the coordinates that are no angles.
+
+    Raises Failure where the system has no ring.
+    """
+    system = at_numbers(given.system, given.parameters)
+    ring = ring_of(system)
+    kinds = Kinds(given, system, ring, {name: bound / RANGE for name, bound in ranges.items()})
+    joints = _joint_sets(system, ring, ranges)
+    try:
+        with ring.budget(MOST_WORK):
+            own = zero_sets(ring, own_determinants(system, ring), ranges)
+        if own.complete and all(any(_same(one, other) for _, other in joints) for one in own.sets):
+            return _told(ring, own, kinds, joints, OWN, ranges)
+    except Failure:
+        own = None
+    try:
+        with ring.budget(MOST_WORK):
+            found = _of_determinant(ring, system, ranges)
+    except Failure as reason:
+        if own is not None and own.complete and all(len(one.names) == 1 for one in own.sets):
+            seen = [one for one in own.sets if all(kinds.singular({one.names[0]: zero.ball}) for zero in one.zeros)]
+            if len(seen) == len(own.sets):
+                return _told(ring, own, kinds, joints, OWN, ranges, proved=False)
+        return _searched(given, kinds, joints, str(reason))
+    return _told(ring, found, kinds, joints, WHOLE, ranges)
+
+
+#: What a list of singular sets stands on.
+WHOLE = "the factors of det M at these numbers"
+OWN = "the kinetic energy that every joint gives its own body while what carries it rests"
+
+
+def _told(
+    ring: Ring,
+    found: Zeros,
+    kinds: Kinds,
+    joints: Sequence[tuple[str, ZeroSet]],
+    how: str,
+    ranges: Mapping[str, Fraction],
+    proved: bool = True,
+) -> Singularities:
+    decided = [one for one in found.sets if one.known != UNDECIDED]
+    sets = [_described(ring, one, kinds, joints, proved) for one in decided]
+    undecided = tuple(_text(ring, one.factor) for one in found.sets if one.known == UNDECIDED)
+    bounds = {name: ranges[name] for name in found.bounded if name in ranges}
+    return Singularities(_joined(sets), found.complete, how, bounds, undecided)
+
+
+def _of_determinant(ring: Ring, system: System, ranges: Mapping[str, Fraction]) -> Zeros:
+    n = len(system.coordinates)
+    if n > MOST_COORDINATES:
+        raise NoClosedForm(f"a determinant of {n} coordinates")
+    whole = programs(system, ring, open_tree=True)
+    nodes = [x for row in whole.mass_matrix for x in row]
+    entries = [ring.reduce(x) for x in whole.program.evaluate(nodes, ring_environment(system, ring), ring)]
+    blocks = components(n, lambda i, j: not entries[n * i + j].is_zero())
+    factors = [determinant(ring, [[entries[n * i + j] for j in block] for i in block]) for block in blocks]
+    if any(x.is_zero() for x in factors):
+        raise NoClosedForm("det M vanishes everywhere")
+    return zero_sets(ring, factors, ranges)
+
+
+# --- joints ----------------------------------------------------------------------------------------------------------
+
+
+def _joint_sets(system: System, ring: Ring, ranges: Mapping[str, Fraction]) -> list[tuple[str, ZeroSet]]:
+    """(body, set) for every body that three turns about independent coordinates orient."""
+    found = []
+    scene = Scene(system, ring, ring_environment(system, ring), ring, frozen=True)
+    for body in system.bodies:
+        turns = scene.motions[body.name].turns
+        if len(turns) != 3 or turns[0].axis == turns[1].axis or turns[1].axis == turns[2].axis:
+            continue
+        if _independent([turn.angle for turn in turns], system.coordinates) < 3:
+            continue
+        volume = turns[1].sine if turns[0].axis == turns[2].axis else turns[1].cosine
+        try:
+            found += [(body.name, one) for one in zero_sets(ring, [ring.reduce(volume)], ranges).sets]
+        except NoClosedForm:
+            continue
+    return found
+
+
+def _independent(angles: Sequence[Any], coordinates: Sequence[str]) -> int:
+    """The rank of d angles / d coordinates where that is constant; else 0."""
+    forms = [linear_form(angle) for angle in angles]
+    if any(form is None for form in forms):
+        return 0
+    rows = [dict(form.coefficients) for form in forms if form is not None]
+    numbers = [[row.get(name, Fraction(0)) for name in coordinates] for row in rows]
+    matrix = fmpq_mat(len(rows), len(coordinates), [fmpq(x.numerator, x.denominator) for row in numbers for x in row])
+    return int(matrix.rank())
+
+
+def _same(one: ZeroSet, other: ZeroSet) -> bool:
+    """Whether two sets of one name are the same, or the first holds some of the second's values."""
+    if one.names != other.names or len(one.names) != 1:
+        return False
+    return all(any(_equal(a, b) for b in other.zeros) for a in one.zeros)
+
+
+def _equal(a: Zero, b: Zero) -> bool:
+    if a.turns is not None and b.turns is not None:
+        return (a.turns - b.turns) % 2 == 0
+    return bool(a.ball.overlaps(b.ball))
+
+
+# --- descriptions ----------------------------------------------------------------------------------------------------
+
+
+def _described(
+    ring: Ring, one: ZeroSet, kinds: Kinds, joints: Sequence[tuple[str, ZeroSet]], proved: bool
+) -> SingularSet:
+    joint = next((body for body, other in joints if _same(one, other)), "")
+    places: tuple[Mapping[str, Fraction], ...]
+    if len(one.names) == 1:
+        values = tuple(_value(zero) for zero in one.zeros)
+        places = tuple({one.names[0]: value.exact} for value in values)
+        first: Mapping[str, Any] = {one.names[0]: one.zeros[0].ball}
+    else:
+        values, first = (), one.points[0]
+        places = tuple({name: _exact(x) for name, x in point.items()} for point in one.points)
+    kind = CHART if joint else kinds.kind(first)
+    return SingularSet(
+        one.names, values, _text(ring, one.factor), places, one.isolated, kind, joint, proved or bool(joint)
+    )
+
+
+def _exact(x: Any) -> Fraction:
+    with ctx.workprec(256):
+        return rounded(x.mid())
+
+
+def _value(zero: Zero) -> Value:
+    if zero.rational is not None:
+        return Value(_number(zero.rational), zero.rational)
+    exact = _exact(zero.ball)
+    return Value(_multiple_of_pi(zero.turns) if zero.turns is not None else f"{float(exact):.12g}", exact)
+
+
+def _number(value: Fraction) -> str:
+    return str(value) if value.denominator < 10_000 else f"{float(value):.12g}"
+
+
+def _multiple_of_pi(turns: Fraction) -> str:
+    """``pi/2``, ``-pi``, ``0``, ``2*pi/3``."""
+    if not turns:
+        return "0"
+    top, bottom = turns.numerator, turns.denominator
+    sign, top = ("-" if top < 0 else ""), abs(top)
+    return sign + ("pi" if top == 1 else f"{top}*pi") + ("" if bottom == 1 else f"/{bottom}")
+
+
+def _text(ring: Ring, factor: Polynomial) -> str:
+    text = python_text(ring, factor)
+    return text if len(text) <= SHOWN else f"a factor of det M of {len(factor)} terms"
+
+
+def _joined(sets: Sequence[SingularSet]) -> tuple[SingularSet, ...]:
+    """Sets of one coordinate and one kind are one set with several values."""
+    kept: dict[tuple[Any, ...], SingularSet] = {}
+    for number, one in enumerate(sets):
+        key = (one.names, one.kind, one.joint) if len(one.names) == 1 else (one.names, number)
+        before = kept.get(key)
+        if before is None:
+            kept[key] = one
+            continue
+        new = [i for i, value in enumerate(one.values) if value not in before.values]
+        values = (*before.values, *(one.values[i] for i in new))
+        places = (*before.places, *(one.places[i] for i in new))
+        order = sorted(range(len(values)), key=lambda i: (abs(values[i].exact), -values[i].exact))
+        kept[key] = SingularSet(
+            one.names, tuple(values[i] for i in order), before.equation, tuple(places[i] for i in order),
+            before.finite, one.kind, one.joint, before.proved and one.proved,
+        )  # fmt: skip
+    return tuple(kept.values())
+
+
+# --- searching -------------------------------------------------------------------------------------------------------
+
+_TWELFTHS = tuple(Fraction(k, 12) for k in range(-11, 13))
+
+
+def _searched(given: Scenario, kinds: Kinds, joints: Sequence[tuple[str, ZeroSet]], reason: str) -> Singularities:
+    """The joints' own sets, and one coordinate at a time at multiples of pi/12."""
+    known = [
+        SingularSet(
+            one.names, tuple(map(_value, one.zeros)), "", tuple({one.names[0]: _exact(z.ball)} for z in one.zeros),
+            False, CHART, body, True,
+        )
+        for body, one in joints
+        if len(one.names) == 1 and one.names[0] in given.system.coordinates
+    ]  # fmt: skip
+    covered = {one.names[0] for one in known}
+    found = []
+    for name in given.system.coordinates:
+        if name in covered:
+            continue
+        for turns in _TWELFTHS:
+            with ctx.workprec(BITS):
+                ball = arb.pi() * exact_ball(turns)
+            if kinds.singular({name: ball}):
+                value = Value(_multiple_of_pi(turns), _exact(ball))
+                kind = kinds.kind({name: ball})
+                found.append(SingularSet((name,), (value,), "", ({name: value.exact},), False, kind, "", False))
+    how = f"multiples of pi/12 of one coordinate at a time; det M itself was not to be had: {reason}"
+    return Singularities(_joined([*known, *found]), False, how, {})

@@ -1,0 +1,339 @@
+"""Positions in which constraints lose their rank, as a four-bar's do whose links are in line: searched, then decided.
+
+    f(0, q) = 0,    J(0, q)^T lambda = 0,    lambda^T lambda = 1         (the rows that are kept)
+
+are more equations than unknowns, so that most mechanisms have no such position.  Gauss-Newton steps, damped, start from
+random positions of the constraints; what they find is a position in which the rank falls by singular values, to
+roundings.  Where all its angles are quarter turns and its other coordinates rational, rank and position are decided
+exactly (``proved``).  A search does not show that there are no others.
+
+Source: Gosselin & Angeles, Singularity analysis of closed-loop kinematic chains, IEEE Trans. Robotics Autom. 6 (1990),
+281-290, for what such positions are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from math import pi
+from typing import Any
+
+import numpy as np
+from flint import fmpq, fmpq_mat
+
+from mbsym.algebra.failures import Failure
+from mbsym.algebra.point import Rationals
+from mbsym.mechanics.variables import angle_denominators
+from mbsym.numerics.constrained import Constraints
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.scenario import Scenario
+
+#: Starts of the search, steps from each, and distinct positions that are kept.
+STARTS, STEPS, MOST = 120, 60, 12
+
+#: What a step costs, and what it costs more for the square of the number of unknowns (``planning.prices``).
+STEP, UNKNOWNS = 2e-4, 3e-6
+
+#: A residual that counts as zero, and the part of the largest singular value below which one counts as lost.
+SETTLED, LOST = 1e-11, 1e-8
+
+#: Coordinates that differ by less are the same; what is no further from a quarter turn or a short fraction is it.
+SAME, NEAR = 1e-6, 1e-8
+
+#: Denominators of coordinates that are taken for rational.
+SHORT = 1000
+
+
+@dataclass(frozen=True)
+class SingularPosition:
+    """``place`` by coordinate; of ``usual`` rows that are independent elsewhere ``rank`` are here.
+
+    ``labels`` are exact values where ``proved``: the position is on the constraints, and the rank is that one, by
+    rational arithmetic; else floats.  ``family``: it lies on a curve or surface of such positions.
+    """
+
+    place: Mapping[str, float]
+    labels: Mapping[str, str]
+    exact: Mapping[str, Fraction] | None
+    rank: int
+    usual: int
+    family: bool
+
+    @property
+    def proved(self) -> bool:
+        return self.exact is not None
+
+    @property
+    def text(self) -> str:
+        """``q1 = 0, q2 = pi``."""
+        return ", ".join(f"{name} = {label}" for name, label in self.labels.items())
+
+
+@dataclass(frozen=True)
+class SingularPositions:
+    """What a search from so many ``starts`` found; ``more`` positions than are listed."""
+
+    found: tuple[SingularPosition, ...]
+    starts: int
+    more: bool
+    moving: bool  # rows depend on the time: at t = 0
+
+
+def singular_positions(given: Scenario, sizes: Sequence[float], limit: float) -> SingularPositions | None:
+    """Those that a search finds for a cost of about ``limit`` (``planning.prices``); None without constraints.
+
+    ``sizes`` of the coordinates: those that are no angles are begun within twice that.
+    """
+    constraints = Dynamics(given).constraints
+    if constraints is None or not constraints.kept:
+        return None
+    search = Search(given, constraints, np.asarray(sizes, dtype=float))
+    return search.found(limit)
+
+
+class Search:
+    """Gauss-Newton steps to singular positions, with the time held at ``time`` (0 unless said otherwise).
+
+    ``steps`` counts them.
+    """
+
+    time = 0.0
+    steps = 0
+
+    def __init__(self, given: Scenario, constraints: Constraints, sizes: Any) -> None:
+        self.given, self.constraints, self.sizes = given, constraints, sizes
+        self.names, self.n = given.system.coordinates, constraints.size
+        self.kept = list(constraints.kept)
+        self.h = constraints.holonomic
+        self.denominators = angle_denominators(given.system)
+        self.angular = np.array([name in self.denominators for name in self.names])
+        self.scales = np.where(self.angular, 1.0, self.sizes)
+        self.source = np.random.default_rng(11)
+
+    def reached(self, state: Any, time: float) -> Any | None:
+        """A singular position that is reached from a state at a time, or None."""
+        self.time = time
+        return self._from(state)
+
+    def falls(self, position: Any, time: float) -> bool:
+        """Whether rows become dependent at a position, to roundings."""
+        self.time = time
+        return self._rank(position) < len(self.kept)
+
+    def difference(self, one: Any, other: Any) -> Any:
+        """By how much positions differ, angles by the shorter way, in parts of the coordinates' sizes."""
+        return self._wrapped(one - other) / self.scales
+
+    @property
+    def spent(self) -> float:
+        """What all steps have cost."""
+        return self.steps * (STEP + UNKNOWNS * (self.n + len(self.kept)) ** 2)
+
+    def found(self, limit: float) -> SingularPositions:
+        places: list[Any] = []
+        starts = 0
+        for number in range(STARTS):
+            if number and self.spent > limit:
+                break
+            starts += 1
+            place = self._from(self._start(number))
+            if place is not None and not any(self._same(place, one) for one in places):
+                places.append(place)
+        shown = [one for one in map(self._described, places[:MOST]) if one is not None]
+        shown.sort(key=lambda one: (not one.proved, [abs(x) for x in one.place.values()]))
+        return SingularPositions(tuple(shown), starts, len(places) > MOST, self._moving())
+
+    def _start(self, number: int) -> Any:
+        given = np.array([float(x) for x in self.given.state])
+        if number:
+            spread = np.where(self.angular, pi, 2 * self.sizes)
+            given[: self.n] = np.where(self.angular, 0.0, given[: self.n]) + self.source.uniform(-1, 1, self.n) * spread
+        return given
+
+    # --- the equations ---
+
+    def _values(self, q: Any) -> tuple[Any, Any]:
+        """(f (h, m), J (r, n, m)) at positions in columns."""
+        states = np.vstack([q, np.zeros_like(q)])
+        found = self.constraints.along(np.full(q.shape[1], self.time), states)
+        return found.positions, found.partials[self.kept]
+
+    def _residual(self, x: Any, rows: Any, lengths: Any) -> Any:
+        """At unknowns (q, lambda) in columns; ``lengths`` (n,) weigh coordinates, ``rows`` (r,) rows."""
+        q, weights = x[: self.n], x[self.n :]
+        f, partials = self._values(q)
+        scaled = partials * lengths[None, :, None] / rows[:, None, None]
+        return np.vstack(
+            [f / self._of_positions(rows)[:, None], np.einsum("rnm,rm->nm", scaled, weights), np.sum(weights**2, 0) - 1]
+        )
+
+    def _of_positions(self, rows: Any) -> Any:
+        """What f is measured by: the rows that are kept have theirs, others the largest."""
+        found = np.full(self.h, np.max(rows))
+        for size, number in zip(rows, self.kept, strict=True):
+            if number < self.h:
+                found[number] = size
+        return found
+
+    def _slopes(self, x: Any, rows: Any, lengths: Any) -> Any:
+        steps = 1e-6 * np.concatenate([lengths, np.ones(len(self.kept))])
+        ahead, behind = (x[:, None] + sign * np.diag(steps) for sign in (1, -1))
+        change = self._residual(ahead, rows, lengths) - self._residual(behind, rows, lengths)
+        return change / (2 * steps)
+
+    def _from(self, state: Any) -> Any | None:
+        """A singular position that is reached from a state, or None."""
+        with np.errstate(all="ignore"):
+            led = self.constraints.led(self.time, state)
+            q = (state if led is None else led)[: self.n]
+            lengths = self.scales
+            _, partials = self._values(q[:, None])
+            scaled = partials[:, :, 0] * lengths
+            rows = self._lengths[self.kept]
+            if not np.all(np.isfinite(scaled)):
+                return None
+            left = np.linalg.svd((scaled / rows[:, None]).T)[2][-1]
+            x, damping = np.concatenate([q, left]), 1e-3
+            residual = self._residual(x[:, None], rows, lengths)[:, 0]
+            for _ in range(STEPS):
+                self.steps += 1
+                size = float(np.linalg.norm(residual))
+                if not np.isfinite(size):
+                    return None
+                if size < SETTLED:
+                    break
+                slopes = self._slopes(x, rows, lengths) * np.concatenate([lengths, np.ones(len(left))])
+                if not np.all(np.isfinite(slopes)):
+                    return None
+                whole = np.vstack([slopes, np.sqrt(damping) * np.eye(len(x))])
+                step = np.linalg.lstsq(whole, np.concatenate([-residual, np.zeros(len(x))]), rcond=None)[0]
+                moved = x + step * np.concatenate([lengths, np.ones(len(left))])
+                new = self._residual(moved[:, None], rows, lengths)[:, 0]
+                if np.linalg.norm(new) < size:
+                    x, residual, damping = moved, new, max(damping / 10, 1e-16)
+                elif (damping := damping * 10) > 1e8:
+                    return None
+            return self._wrapped(x[: self.n]) if np.linalg.norm(residual) < 1e-9 else None
+
+    def _wrapped(self, q: Any) -> Any:
+        """Angles within (-pi d, pi d], d their denominators."""
+        found = np.array(q)
+        for k, name in enumerate(self.names):
+            if self.angular[k]:
+                period = 2 * pi * self.denominators[name]
+                found[k] -= period * np.ceil(found[k] / period - 0.5 - SAME)
+        return found
+
+    def _same(self, one: Any, other: Any) -> bool:
+        return bool(np.all(np.abs(self._wrapped(one - other)) < SAME * self.scales))
+
+    # --- what is said of one ---
+
+    def _described(self, q: Any) -> SingularPosition | None:
+        """None where the rank does not fall after all."""
+        exact = self._decided(q)
+        if exact is not None:
+            values, labels, rank = exact
+        else:
+            values, labels = None, {name: f"{x:.9g}" for name, x in zip(self.names, q.tolist(), strict=True)}
+            rank = self._rank(q)
+        if rank >= len(self.kept):
+            return None
+        place = dict(zip(self.names, q.tolist(), strict=True))
+        return SingularPosition(place, labels, values, rank, len(self.kept), self._family(q, rank))
+
+    def _weighted(self, q: Any, every: bool = False) -> Any:
+        """J at a position, or ``every`` row, by the lengths that rows have elsewhere."""
+        states = np.concatenate([q, np.zeros(self.n)])
+        found = self.constraints.at(self.time, states).partials * self.scales
+        found = found / self._lengths[:, None]
+        return found if every else found[self.kept]
+
+    @cached_property
+    def _lengths(self) -> Any:
+        """The largest length of every row at the starts."""
+        starts = [np.concatenate([self._start(k)[: self.n], np.zeros(self.n)]) for k in range(8)]
+        rows = [self.constraints.at(0.0, x).partials * np.where(self.angular, 1.0, self.sizes) for x in starts]
+        found = np.max(np.nan_to_num(np.linalg.norm(np.array(rows), axis=2)), axis=0)
+        return np.where(found > 0, found, 1.0)
+
+    def _rank(self, q: Any) -> int:
+        """Of all rows: where others take over from those that are kept, nothing is lost."""
+        sizes = np.linalg.svd(self._weighted(q, every=True), compute_uv=False)
+        return int(np.sum(sizes > LOST * max(1.0, sizes[0])))
+
+    def _family(self, q: Any, rank: int) -> bool:
+        """Whether the equations leave a direction free, beside those of lambda."""
+        lengths = self.scales
+        rows = self._lengths[self.kept]
+        left = np.linalg.svd(self._weighted(q).T)[2][-1]
+        slopes = self._slopes(np.concatenate([q, left]), rows, lengths)
+        slopes = slopes * np.concatenate([lengths, np.ones(len(left))])
+        sizes = np.linalg.svd(slopes, compute_uv=False)
+        free = len(q) + len(left) - int(np.sum(sizes > 1e-6 * sizes[0]))
+        return free > len(self.kept) - rank - 1
+
+    def _decided(self, q: Any) -> tuple[dict[str, Fraction], dict[str, str], int] | None:
+        """(angles in turns of pi/2 as they stand, labels, rank) by rational arithmetic; None where that is no way."""
+        basic: dict[str, tuple[fmpq, fmpq]] = {}
+        values: dict[str, Any] = {}
+        labels, exact = {}, {}
+        for name, x in zip(self.names, q.tolist(), strict=True):
+            if name in self.denominators:
+                quarters = round(x / (pi / 2))
+                if self.denominators[name] != 1 or abs(x - quarters * pi / 2) > NEAR:
+                    return None
+                sine, cosine = ((0, 1), (1, 0), (0, -1), (-1, 0))[quarters % 4]
+                basic[name] = fmpq(sine), fmpq(cosine)
+                labels[name] = _quarter(quarters)
+                exact[name] = Fraction(quarters, 2)
+                continue
+            value = Fraction(x).limit_denominator(SHORT)
+            if abs(x - value) > NEAR * (1 + abs(x)):
+                return None
+            values[name] = fmpq(value.numerator, value.denominator)
+            labels[name], exact[name] = str(value), value
+        # An angle itself is irrational: only its sine and cosine may be asked for.
+        values |= dict.fromkeys(basic, _Irrational()) | {"pi": _Irrational()}
+        values |= dict.fromkeys(self.given.system.velocities, fmpq(0)) | {"t": fmpq(0)}
+        numbers = Rationals({}, self.denominators)
+        numbers.basic.update(basic)
+        code = self.constraints.code
+        try:
+            found = code.program.evaluate(code.outputs, values, numbers)
+        except (Failure, KeyError, ZeroDivisionError):
+            return None
+        if any(isinstance(x, _Irrational) for x in found):
+            return None
+        h, r = self.h, len(self.constraints)
+        if any(x != 0 for x in found[:h]):
+            return None
+        flat = found[h + r :]
+        return exact, labels, int(fmpq_mat(r, self.n, flat).rank())
+
+    def _moving(self) -> bool:
+        state = np.array([float(x) for x in self.given.state])
+        one, other = (self.constraints.at(t, state) for t in (0.0, 0.37))
+        pairs = ((one.positions, other.positions), (one.partials, other.partials))
+        return any(not np.array_equal(a, b) for a, b in pairs)
+
+
+class _Irrational:
+    """A number that is not looked at; what is computed with it is another one."""
+
+    def _another(self, *others: object) -> _Irrational:
+        return self
+
+    __add__ = __radd__ = __sub__ = __rsub__ = __mul__ = __rmul__ = __truediv__ = __rtruediv__ = __neg__ = _another
+    __pow__ = _another
+
+
+def _quarter(quarters: int) -> str:
+    """``0``, ``pi/2``, ``-pi/2``, ``pi``."""
+    top, bottom = Fraction(quarters, 2).as_integer_ratio()
+    if not top:
+        return "0"
+    sign, top = ("-" if top < 0 else ""), abs(top)
+    return sign + ("pi" if top == 1 else f"{top}*pi") + ("" if bottom == 1 else f"/{bottom}")

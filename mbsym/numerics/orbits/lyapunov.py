@@ -1,0 +1,162 @@
+"""Lyapunov exponents: how fast motions that begin close together part, over a finite time.
+
+    Q_k R_k = Phi(t_k, t_k-1) Q_k-1,      lambda_i(T) = 1/T sum_k log |R_k,ii|
+
+(Benettin, Galgani, Giorgilli & Strelcyn, Meccanica 15 (1980) 9).  These are numbers of a finite time: that a motion is
+chaotic is proved by none of them.  The uncertainty is that of the mean of blocks of the second half of the time, by
+Student's distribution, and how far the mean of that half is from that of the whole time (the directions need a while to
+turn where they grow most); it knows nothing of what comes later.  The sum of all exponents is checked against the mean
+divergence of the equations, which is integrated without any Q or R (Liouville).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from mbsym.mechanics.constraints.refusal import refuse_constraints
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.methods.interface import Breakdown
+from mbsym.numerics.methods.kept import compiled_kernel
+from mbsym.numerics.orbits.flow import Flow
+
+#: Blocks of the second half of the time; Student's factor for 95 % with BLOCKS - 1 degrees of freedom.
+BLOCKS, STUDENT = 16, 2.131
+
+#: So many intervals at least.
+LEAST_INTERVALS = 64
+
+#: Points of Gauss and Legendre for about every step, for the mean divergence.
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(5)
+
+
+class Parting(Enum):
+    """What a largest exponent over a finite time says."""
+
+    POSITIVE = "positive over this time"
+    NOT_TOLD_FROM_ZERO = "not told from zero"
+    NEGATIVE = "negative over this time"
+
+
+@dataclass(frozen=True)
+class Exponents:
+    """``values`` (k,) in decreasing order with their ``uncertainty`` (95 %, statistics only), over ``time``.
+
+    ``history`` (intervals, k) are the exponents up to ``times``.  ``divergence`` is the mean of tr J along the motion
+    and ``sum_error`` how far the sum of all exponents is from it; nan where not all were asked for.
+    """
+
+    values: Any
+    uncertainty: Any
+    times: Any
+    history: Any
+    divergence: float
+    sum_error: float
+    time: float
+    ended: Breakdown | None = None
+
+    @property
+    def falling(self) -> bool:
+        """Whether the largest exponent falls about as log(t)/t from half the time to the end, as in regular motion.
+
+        The mean over the second half is then much smaller than over the first.
+        """
+        half = len(self.times) // 2
+        early = self.history[half - 1, 0]
+        late = 2 * self.history[-1, 0] - early
+        return bool(abs(late) < 0.5 * abs(early))
+
+    @property
+    def parting(self) -> Parting:
+        """The largest exponent beside its uncertainty, and beside log(T)/T to which that of regular motion falls."""
+        first, doubt = float(self.values[0]), 3 * float(self.uncertainty[0])
+        regular = max(float(np.log(self.time)), 1.0) / self.time
+        if first > doubt and first > 3 * regular and not self.falling:
+            return Parting.POSITIVE
+        if first < -doubt and first < -3 * regular:
+            return Parting.NEGATIVE
+        return Parting.NOT_TOLD_FROM_ZERO
+
+
+def exponents(
+    dynamics: Dynamics,
+    time: float,
+    every: float,
+    count: int | None = None,
+    tolerance: float = 1e-10,
+    watch: Callable[[float], None] = lambda t: None,
+) -> Exponents:
+    """The ``count`` largest exponents (all of them by default) of the scenario's motion from 0 to ``time``.
+
+    ``every``: how often the columns are made orthogonal again.  A motion that breaks down, or Ctrl-C, ends it early.
+    """
+    refuse_constraints(dynamics.system, "Lyapunov exponents")
+    flow = Flow(dynamics, tolerance, count)
+    intervals = max(LEAST_INTERVALS, int(np.ceil(time / every)))
+    ends = np.linspace(0.0, time, intervals + 1)
+    state = np.array([float(x) for x in dynamics.scenario.state])
+    tangents = _directions(flow.size, flow.columns)
+    growth, divergences, ended = [], [], None
+    try:
+        for start, end in pairwise(ends):
+            before = state
+            state, tangents = flow.passage(state, float(start), float(end), tangents)
+            tangents, triangle = np.linalg.qr(tangents)
+            growth.append(np.log(np.abs(np.diag(triangle))))
+            divergences.append((before, float(start), float(end)))
+            watch(float(end))
+    except Breakdown as found:
+        ended = found
+    except KeyboardInterrupt:
+        ended = Breakdown("interrupted", "stopped by the user", float(ends[len(growth)]), state)
+    rates, times = np.array(growth).reshape(len(growth), flow.columns), ends[1 : len(growth) + 1]
+    if not len(rates):
+        none = np.full(flow.columns, np.nan)
+        return Exponents(none, none, times, rates, float("nan"), float("nan"), 0.0, ended)
+    history = np.cumsum(rates, axis=0) / times[:, None]
+    values = history[-1]
+    panels = max(1, flow.run.work.steps // len(rates))
+    divergence = _mean_divergence(dynamics, divergences, panels, tolerance)
+    error = abs(float(np.sum(values)) - divergence) if flow.columns == flow.size else float("nan")
+    return Exponents(values, _uncertainty(rates, times), times, history, divergence, error, float(times[-1]), ended)
+
+
+def _directions(size: int, columns: int) -> Any:
+    """Orthogonal directions of which none is special to a system: coordinates may be cyclic, or at rest."""
+    return np.linalg.qr(np.random.default_rng(1).normal(size=(size, columns)))[0]
+
+
+def _uncertainty(rates: Any, times: Any) -> Any:
+    """Half the width of the 95 % interval of the mean, from blocks of the second half; nan where these are too few.
+
+    With it goes how far the second half's mean is from that of the whole.
+    """
+    late = rates[len(rates) // 2 :]
+    if len(late) < 2 * BLOCKS:
+        return np.full(rates.shape[1], np.nan)
+    length = times[0]
+    blocks = np.array([np.mean(part, axis=0) / length for part in np.array_split(late, BLOCKS)])
+    turning = np.mean(late, axis=0) / length - np.mean(rates, axis=0) / length
+    return np.hypot(STUDENT * np.std(blocks, axis=0, ddof=1) / np.sqrt(BLOCKS), turning)
+
+
+def _mean_divergence(dynamics: Dynamics, starts: Any, panels: int, tolerance: float) -> float:
+    """1/T int tr J dt, the motion integrated once more without changes, by Gauss's formula on parts of every interval.
+
+    It begins where the exponents' own intervals begin: two runs of a chaotic motion part.
+    """
+    plain, jacobian, size = Flow(dynamics, tolerance, 0), compiled_kernel(dynamics, "jacobian"), 2 * dynamics.size
+    middles = (np.arange(panels)[:, None] + (1 + _NODES) / 2).reshape(-1) / panels
+    weights = np.tile(_WEIGHTS / 2, panels) / panels
+    total = 0.0
+    for state, start, end in starts:
+        times = start + (end - start) * middles
+        states = plain.along(state, start, times)
+        rows = jacobian(np.vstack([times, states]))
+        total += (end - start) * float(weights @ rows[:: size + 1].sum(axis=0))
+    return total / float(starts[-1][2])

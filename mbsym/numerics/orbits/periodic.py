@@ -1,0 +1,386 @@
+"""Periodic motions by shooting, their monodromy matrices and Floquet multipliers.
+
+    x(T; x0) - x0 = turns,     Newton:   [Phi(T) - 1   f(x(T))] [dx0; dT] = -(x(T) - x0 - turns)
+
+with the exact Phi of the variational equations; of all solutions that of least length is taken, so that along a family
+of periodic motions the nearest one is found.  Where the equations know the time, T is given and its column is left out;
+so it is where a period is asked for.  ``turns``: angles may come back turned by whole revolutions.
+
+The multipliers are the eigenvalues of Phi(T).  Some are 1 for a reason (``Trivial``): f(x0) is an eigenvector where the
+equations do not know the time, a cyclic coordinate's unit vector is one, and the gradients of energy and of cyclic
+momenta are left ones where these are conserved.  Everything here is computed in floating point: nothing is proved.
+
+Sources: Stoer & Bulirsch, Introduction to Numerical Analysis, 7.3.5; Meyer, Hall & Offin, Introduction to Hamiltonian
+Dynamical Systems, 2nd ed. 2009, chapters 8 and 9.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mbsym.mechanics.constraints.refusal import refuse_constraints
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
+from mbsym.numerics.kernels.llvm import available
+from mbsym.numerics.methods.interface import Breakdown, Setting, Unusable
+from mbsym.numerics.methods.kept import compiled_kernel
+from mbsym.numerics.methods.table import METHODS
+from mbsym.numerics.orbits.flow import Flow
+
+#: Newton's steps at most, and how small what is left over must be, as part of the state's size.
+MOST_STEPS, CLOSED = 40, 1e-11
+
+#: What rounding and a motion that is hard to follow may leave over, once so many steps bring nothing more.
+NEARLY, PATIENCE = 1e-8, 3
+
+#: A period that has become so much shorter than the guess is on its way to nothing; so many times a step is halved.
+SHORTEST, HALVINGS = 0.05, 4
+
+#: How strongly singular values are damped, as multiples of what is left over; tried one after the other.
+DAMPINGS = (0.01, 0.1, 1.0, 1e-4, 0.0)
+
+#: Where the motion's speed times its period is this part of the state's size only, it rests.
+RESTING = 1e-6
+
+#: Singular values below this part of the largest are those of directions along which the orbit may be moved.
+RANK = 1e-9
+
+#: A vector is an eigenvector for 1 if Phi moves it by less, as part of |Phi| and its own length.
+FIXED = 1e-7
+
+
+class NotFound(Exception):
+    """No periodic motion was found; the message says how far it got."""
+
+
+@dataclass(frozen=True)
+class Trivial:
+    """Why a multiplier is 1: a reason, its vector, and by how much Phi moves it (relatively)."""
+
+    reason: str
+    moved: float
+
+
+@dataclass(frozen=True)
+class Orbit:
+    """A periodic motion x(t + T) = x(t) + turns.
+
+    ``closure`` is |x(T) - x0 - turns| as part of the state's size, by the method that found it; ``verified`` the same
+    by ``verifier``, another method.  ``multipliers`` are in decreasing order of size; ``uncertainty`` is how far they
+    move when Phi is computed with another tolerance.  ``trivial`` of them are 1 for the ``reasons``.
+    """
+
+    names: tuple[str, ...]
+    state: Any
+    period: float
+    turns: Any
+    closure: float
+    verified: float
+    verifier: str
+    steps: int
+    monodromy: Any
+    multipliers: Any
+    uncertainty: float
+    trivial: int
+    reasons: tuple[Trivial, ...]
+    energy: float
+    autonomous: bool
+    determinant: float
+
+    @property
+    def others(self) -> Any:
+        """The multipliers without the trivial ones: those nearest to 1 are taken away."""
+        rest = sorted(self.multipliers, key=lambda mu: abs(mu - 1))[self.trivial :]
+        return np.array(sorted(rest, key=lambda mu: -abs(mu)))
+
+
+@dataclass(frozen=True)
+class Guess:
+    """Where to begin: a state, a period, angles' revolutions; whether period or energy are kept as they are."""
+
+    state: Any
+    period: float
+    turns: Mapping[str, int]
+    keep_period: bool = False
+    keep_energy: bool = False
+
+
+def autonomous(dynamics: Dynamics) -> bool:
+    """Whether the equations do not know the time, as their program shows."""
+    code = dynamics.right_hand_side
+    live = code.program.live(code.outputs)
+    return all(code.program.instructions[number].payload != "t" for number in live)
+
+
+def conserves_energy(dynamics: Dynamics) -> bool:
+    """Whether dh/dt vanishes as a program at these numbers."""
+    return not dynamics.energy_power.outputs
+
+
+def cyclic_coordinates(dynamics: Dynamics) -> tuple[str, ...]:
+    """Coordinates that the equations do not know, as their program shows."""
+    code = dynamics.right_hand_side
+    used = {code.program.instructions[number].payload for number in code.program.live(code.outputs)}
+    return tuple(name for name in dynamics.system.coordinates if name not in used)
+
+
+def periodic_orbit(
+    dynamics: Dynamics, guess: Guess, tolerance: float = 1e-13, watch: Callable[[int, float], None] = lambda k, r: None
+) -> Orbit:
+    """The periodic motion near a guess.
+
+    Raises NotFound where Newton's method does not converge, or converges to rest (period and state say so).
+    """
+    refuse_constraints(dynamics.system, "periodic motions")
+    flow = Flow(dynamics, tolerance)
+    known_time = not autonomous(dynamics)
+    free_period = not (known_time or guess.keep_period)
+    names = (*dynamics.system.coordinates, *dynamics.system.velocities)
+    turns = np.array([2 * np.pi * guess.turns.get(name, 0) for name in names])
+    rates, energy = compiled_kernel(dynamics, "right_hand_side"), _Energy(dynamics)
+    search = _Search(flow, turns, energy, energy(guess.state) if guess.keep_energy else None)
+    here = search.at(np.array(guess.state, float), float(guess.period))
+    if here is None:
+        raise NotFound("the motion of the guess breaks down before its period is over")
+    best, since = here, 0
+    for count in range(MOST_STEPS):
+        watch(count, here.size)
+        if here.size < CLOSED or (best.size < NEARLY and since >= PATIENCE):
+            return _orbit(dynamics, flow, best, turns, count, not known_time, rates)
+        forward = np.append(rates(np.concatenate(([0.0], here.state))), 0.0) if free_period else None
+        ahead = rates(np.concatenate(([here.period], here.end))) if free_period else None
+        found = search.towards(here, search.step(here, forward, ahead))
+        if found is None:
+            break
+        here = found
+        if here.period < SHORTEST * guess.period:
+            raise NotFound(_vanishing(here.period, turns))
+        best, since = (here, 0) if here.size < 0.5 * best.size else (best, since + 1)
+    left = min(best.size, here.size)
+    raise NotFound(f"no convergence: what is left over after {count + 1} steps is {left:.1e} of the state's size")
+
+
+def _vanishing(period: float, turns: Any) -> str:
+    """In no time every motion closes: a search that gets there tells of itself, not of what is near the guess."""
+    told = f"the search runs to ever shorter periods ({period:.3g}), over which any motion closes: begin nearer"
+    return told if np.any(turns) else f"{told}, and say which angle comes back turned, if one does (--turns NAME=1)"
+
+
+@dataclass(frozen=True)
+class _Place:
+    """A state and period of the search: where its motion ends, Phi, what is left over and its size."""
+
+    state: Any
+    period: float
+    end: Any
+    phi: Any
+    rest: Any
+    size: float
+
+
+class _Search:
+    """Newton's method with steps that are shortened until what is left over becomes smaller."""
+
+    def __init__(self, flow: Flow, turns: Any, energy: _Energy, wanted: float | None) -> None:
+        self.flow, self.turns, self.energy, self.wanted = flow, turns, energy, wanted
+
+    def at(self, state: Any, period: float) -> _Place | None:
+        """None where the motion breaks down."""
+        try:
+            end, phi = self.flow.passage(state, 0.0, period)
+        except Breakdown:
+            return None
+        rest = end - state - self.turns
+        size = float(np.max(np.abs(rest) / (1 + np.abs(state))))
+        if self.wanted is not None:
+            off = self.wanted - self.energy(state)
+            rest = np.append(rest, -off)
+            size = max(size, abs(off) / (1 + abs(self.wanted)))
+        return _Place(state, period, end, phi, rest, size)
+
+    def step(self, here: _Place, forward: Any, ahead: Any) -> Callable[[float], Any]:
+        """(dx0, dT), or dx0 alone, by the damping; ``forward`` is f at the start, orthogonal to dx0, ``ahead`` f at the
+        end.
+
+        Off the orbit the singular values that vanish on it are about what is left over: below that they mean nothing.
+        """
+        size = self.flow.size
+        matrix, right = here.phi - np.eye(size), -here.rest
+        if self.wanted is not None:
+            matrix = np.vstack([matrix, self.energy.gradient(here.state)])
+        scale = 1 + np.abs(here.state)
+        if forward is not None:
+            column = np.zeros((len(matrix), 1))
+            column[:size, 0] = ahead
+            matrix = np.vstack([np.hstack([matrix, column]), forward])
+            right, scale = np.append(right, 0.0), np.append(scale, here.period)
+        return lambda damping: _least_squares(matrix, right, scale, damping * here.size)
+
+    def towards(self, here: _Place, step: Callable[[float], Any]) -> _Place | None:
+        """The next place: the first that halves what is left over, else the best; None where nothing is better."""
+        best: _Place | None = None
+        for damping in DAMPINGS:
+            whole, share = step(damping), 1.0
+            for _ in range(HALVINGS):
+                found = self._moved(here, share * whole)
+                if found is not None and (best is None or found.size < best.size):
+                    best = found
+                if best is not None and best.size < max(0.5 * here.size, NEARLY):
+                    return best
+                share /= 2
+        return best if best is not None and best.size < here.size else None
+
+    def _moved(self, here: _Place, step: Any) -> _Place | None:
+        size = self.flow.size
+        period = here.period + float(step[size]) if len(step) > size else here.period
+        if not 0.3 * here.period < period < 3 * here.period:
+            return None
+        return self.at(here.state + step[:size], period)
+
+
+def _least_squares(matrix: Any, right: Any, scale: Any, damping: float) -> Any:
+    """The shortest solution, lengths measured in ``scale``, damped as by Levenberg and Marquardt."""
+    u, s, v = np.linalg.svd(matrix * scale, full_matrices=False)
+    kept = s > RANK * s[0]
+    weights = np.where(kept, s / (s**2 + (damping * s[0]) ** 2 + np.where(kept, 0.0, 1.0)), 0.0)
+    return v.T @ (weights * (u.T @ right)) * scale
+
+
+class _Energy:
+    """h = T2 - T0 - U and its gradient."""
+
+    def __init__(self, dynamics: Dynamics) -> None:
+        self._energies = compiled_kernel(dynamics, "energies")
+
+    def __call__(self, state: Any) -> float:
+        return float(self._energies(np.concatenate(([0.0], state)))[1])
+
+    def gradient(self, state: Any) -> Any:
+        """By central differences of sixth order, good to some 11 digits."""
+        return _differences(self, state)
+
+
+def _differences(function: Callable[[Any], Any], state: Any) -> Any:
+    rows = []
+    for place in range(len(state)):
+        h = 1e-2 * (1 + abs(state[place]))
+        total = 0.0
+        for k, weight in ((1, 0.75), (2, -0.15), (3, 1 / 60)):
+            for sign in (1, -1):
+                moved = np.array(state, float)
+                moved[place] += sign * k * h
+                total = total + sign * weight * function(moved) / h
+        rows.append(total)
+    return np.array(rows)
+
+
+def _orbit(dynamics: Dynamics, flow: Flow, found: _Place, turns: Any, steps: int, free: bool, rates: Any) -> Orbit:
+    state, period = found.state, found.period
+    speeds = rates(np.concatenate(([0.0], state)))
+    if free and float(np.max(np.abs(speeds) / (1 + np.abs(state)))) * period < RESTING:
+        raise NotFound("Newton's method has found a state of rest: begin farther away from it, or keep the energy")
+    _, phi = flow.passage(state, 0.0, period)
+    _, other = Flow(dynamics, 1e-10).passage(state, 0.0, period)
+    multipliers = _sorted(np.linalg.eigvals(phi))
+    uncertainty = _distance(multipliers, _sorted(np.linalg.eigvals(other)))
+    reasons, count = _trivial(dynamics, state, phi, free)
+    verified, verifier = _verified(dynamics, state, period, turns)
+    names = (*dynamics.system.coordinates, *dynamics.system.velocities)
+    energy = _Energy(dynamics)(state)
+    det = float(np.linalg.det(phi))
+    return Orbit(
+        names,
+        state,
+        period,
+        turns,
+        found.size,
+        verified,
+        verifier,
+        steps,
+        phi,
+        multipliers,
+        uncertainty,
+        count,
+        reasons,
+        energy,
+        free,
+        det,
+    )
+
+
+def _sorted(values: Any) -> Any:
+    return np.array(sorted(values, key=lambda mu: (-round(abs(mu), 9), -mu.imag)))
+
+
+def _distance(a: Any, b: Any) -> float:
+    """The largest distance of a multiplier from its partner, partners chosen one after the other, nearest first."""
+    left = list(b)
+    worst = 0.0
+    for one in a:
+        near = min(left, key=lambda other: abs(other - one))
+        worst = max(worst, abs(near - one))
+        left.remove(near)
+    return float(worst)
+
+
+def _trivial(dynamics: Dynamics, state: Any, phi: Any, free: bool) -> tuple[tuple[Trivial, ...], int]:
+    """The reasons for multipliers 1 that hold at this Phi, and for how many of them they stand.
+
+    Right eigenvectors span V, left ones W; where W vanishes on V, 1 has at least the multiplicity dim V + dim W.
+    """
+    n, names = dynamics.size, dynamics.system.coordinates
+    right: list[Any] = []
+    left: list[Any] = []
+    reasons = []
+    cyclic = cyclic_coordinates(dynamics)
+    candidates: list[tuple[str, Any, bool]] = []
+    if free:
+        rates = compiled_kernel(dynamics, "right_hand_side")(np.concatenate(([0.0], state)))
+        candidates.append(("the motion itself: the equations do not know the time", rates, True))
+    if free and conserves_energy(dynamics):
+        candidates.append(("the energy is conserved", _Energy(dynamics).gradient(state), False))
+    momenta = compiled_kernel(dynamics, "momenta")
+    slopes = _differences(lambda x: momenta(np.concatenate(([0.0], x))), state) if cyclic else None
+    for name in cyclic:
+        unit = np.zeros(2 * n)
+        unit[names.index(name)] = 1.0
+        candidates.append((f"{name} is cyclic", unit, True))
+        assert slopes is not None
+        candidates.append((f"the momentum of {name} is conserved", slopes[:, names.index(name)], False))
+    size = float(np.linalg.norm(phi))
+    for reason, vector, is_right in candidates:
+        length = float(np.linalg.norm(vector))
+        if length < 1e-12:
+            continue
+        image = phi @ vector if is_right else vector @ phi
+        moved = float(np.linalg.norm(image - vector)) / (length * size)
+        if moved < FIXED:
+            reasons.append(Trivial(reason, moved))
+            (right if is_right else left).append(vector / length)
+    ranks = [int(np.linalg.matrix_rank(np.array(rows), tol=1e-6)) if rows else 0 for rows in (right, left)]
+    crossing = bool(right and left) and float(np.max(np.abs(np.array(left) @ np.array(right).T))) > 1e-6
+    return tuple(reasons), max(ranks) if crossing else sum(ranks)
+
+
+def _verified(dynamics: Dynamics, state: Any, period: float, turns: Any) -> tuple[float, str]:
+    """The closure by another method: Taylor series where heyoka is there, else rk45, in extended arithmetic if any."""
+    scalar = EXTENDED if available(EXTENDED) else FLOAT64
+    for name, tolerance in (("taylor", 1e-17), ("rk45", 1e-15)):
+        try:
+            setting = Setting(tolerance if scalar == EXTENDED else 1e-14, step_limit=2_000_000)
+            run = METHODS[name].start(dynamics, setting, scalar, initial=np.array(state))
+            end = np.array(run.advance(period), float)
+        except (Unusable, Breakdown):
+            continue
+        return float(np.max(np.abs(end - state - turns) / (1 + np.abs(state)))), f"{name}, {scalar}"
+    return float("nan"), "no other method"
+
+
+def guessed(dynamics: Dynamics, period: float, turns: Mapping[str, int] | None = None, **kept: bool) -> Guess:
+    """A guess from the scenario's initial state."""
+    state = np.array([float(x) for x in dynamics.scenario.state])
+    return Guess(state, period, dict(turns or {}), **kept)

@@ -1,0 +1,189 @@
+"""Variational equations: how a motion answers to small changes of its initial state and of its parameters.
+
+    x' = f(t, x, p),    y' = J(t, x) y + df/dp,    J = df/dx,    y = dx/dc
+
+``c`` is an initial value (then y(0) is a unit vector and df/dp is missing) or a parameter (then y(0) = dx(0)/dp, which
+vanishes unless the initial state is made of it).  The matrix Phi of all initial values has Phi' = J Phi, Phi(0) = 1.
+Derivatives are those of the straight-line program, exact, and share its instructions.  A ``Variational`` is a Dynamics
+of its own: every method integrates it like any other, with the error of y under control as that of x.
+
+Sources: Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, I.14; Griewank & Walther, Evaluating
+Derivatives, 2nd ed. 2008, chapter 3.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from mbsym.algebra.derivative import directional, gradient, jacobian
+from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.program import Node, Program
+from mbsym.expressions.tree import Expression
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.ensembles.parametrised import Parametrised
+from mbsym.numerics.kernels.interface import Code
+from mbsym.numerics.scenario import Scenario
+from mbsym.numerics.specialise import Specialised, bound, substituted
+
+
+@dataclass(frozen=True)
+class Direction:
+    """A direction of change: its name, y(0) of 2n numbers, and the ``parameter`` whose change it is, if it is one."""
+
+    name: str
+    initial: tuple[Fraction, ...]
+    parameter: str | None = None
+
+
+@dataclass(frozen=True)
+class Extended(Scenario):
+    """A scenario whose state goes on behind (q, q')."""
+
+    further: tuple[Fraction, ...] = ()
+
+    @property
+    def state(self) -> tuple[Fraction, ...]:
+        """(q, q', y) at t = 0."""
+        return (*self.positions, *self.velocities, *self.further)
+
+
+def extended(scenario: Scenario, further: Sequence[Fraction]) -> Extended:
+    """The scenario with a longer state."""
+    known = {field.name: getattr(scenario, field.name) for field in fields(Scenario)}
+    return Extended(**known, further=tuple(further))
+
+
+class Variational(Dynamics):
+    """The motion of ``base`` with ``directions`` of change: a state (x, y_1, ..., y_k) of 2n (1 + k) numbers.
+
+    ``base`` may be ``Parametrised``; its free parameters have the scenario's values here.
+
+    Raises NoClosedForm where the rates are not smooth: the columns would miss what the jumps do to them.
+    """
+
+    def __init__(self, base: Dynamics, directions: Sequence[Direction]) -> None:
+        if base.switches.outputs:
+            raise NoClosedForm(
+                "the variational equations of rates that jump (sign, abs, step): they miss what the jumps do"
+            )
+        further = [value for direction in directions for value in direction.initial]
+        super().__init__(extended(base.scenario, further), base.ring)
+        self.base, self.directions = base, tuple(directions)
+        self.states = (*self.system.coordinates, *self.system.velocities)
+        self.inputs = ("t", *self.states, *(f"{name}~{k}" for k in range(len(directions)) for name in self.states))
+        self.size = len(self.system.coordinates) * (1 + len(self.directions))
+
+    @cached_property
+    def _specialised(self) -> Specialised:
+        return bound(self.scenario)
+
+    @cached_property
+    def right_hand_side(self) -> Code:
+        """(t, x, y_1, ..., y_k) -> (f, J y_1 + df/dp_1, ...), by sweeps or by the whole J, whichever costs less."""
+        rhs = self.base.right_hand_side
+        program = rhs.program
+        inputs = [program.input(name) for name in self.states]
+        offsets = [self._offset(program, rhs.outputs, direction) for direction in self.directions]
+        tangents = [[program.input(f"{name}~{k}") for name in self.states] for k in range(len(self.directions))]
+        swept = [directional(program, rhs.outputs, inputs, tangent) for tangent in tangents]
+        choices = [swept]
+        if len(tangents) > 1:
+            matrix = jacobian(program, rhs.outputs, inputs)
+            choices.append([_applied(program, matrix, tangent) for tangent in tangents])
+        found = []
+        for columns in choices:
+            nodes = list(rhs.outputs)
+            for column, offset in zip(columns, offsets, strict=True):
+                nodes += [a + b for a, b in zip(column, offset, strict=True)]
+            found.append(nodes)
+        cheapest = min(found, key=program.operations)
+        return Code(self._specialised, self.inputs, tuple(substituted(program, cheapest, self._specialised)))
+
+    def _offset(self, program: Program, outputs: Sequence[Node], direction: Direction) -> Sequence[Node]:
+        """df/dp, zeros for an initial value."""
+        if direction.parameter is None:
+            return [program.zero] * len(outputs)
+        (by,) = [program.input(direction.parameter)]
+        return directional(program, outputs, [by], [program.one])
+
+
+def require_smooth(dynamics: Dynamics) -> None:
+    """Raises NoClosedForm where signs, moduli or steps are in the rates."""
+    if dynamics.switches.outputs:
+        raise NoClosedForm("derivatives of rates with switches (sign, abs, step): they miss what the jumps do")
+
+
+def _applied(program: Program, matrix: Sequence[Sequence[Node]], vector: Sequence[Node]) -> tuple[Node, ...]:
+    """matrix times vector."""
+    rows = []
+    for row in matrix:
+        total = program.zero
+        for a, b in zip(row, vector, strict=True):
+            total = total + program.product(a, b)
+        rows.append(total)
+    return tuple(rows)
+
+
+def units(dynamics: Dynamics) -> tuple[Direction, ...]:
+    """The directions of all initial values: y_1 ... y_2n are the columns of Phi."""
+    names = (*dynamics.system.coordinates, *dynamics.system.velocities)
+    return tuple(_unit(name, names) for name in names)
+
+
+def _unit(name: str, names: Sequence[str]) -> Direction:
+    return Direction(name, tuple(Fraction(int(name == other)) for other in names))
+
+
+def sensitive(
+    scenario: Scenario, wanted: Sequence[str], overrides: Mapping[str, Expression] | None = None
+) -> Variational:
+    """The motion with its derivatives by ``wanted`` names: of parameters, of coordinates and velocities at t = 0.
+
+    What follows from a parameter (relations, prescribed motions, an initial state made of it) is part of its
+    derivative.  Raises ValueError for a name that is neither, or for a parameter that itself follows from others.
+    """
+    system = scenario.system
+    states = (*system.coordinates, *system.velocities)
+    following = {relation.name for relation in system.relations}
+    for name in wanted:
+        if name not in (*states, *system.parameter_names):
+            raise ValueError(f"there is nothing called {name} to differentiate by")
+        if name in following:
+            raise ValueError(f"{name} follows from other parameters: differentiate by those")
+    free = tuple(name for name in wanted if name not in states)
+    base = Parametrised(scenario, free, overrides)
+    directions = []
+    for name in wanted:
+        if name in states:
+            directions.append(_unit(name, states))
+        else:
+            directions.append(Direction(name, start_column(base, name), name))
+    return Variational(base, directions)
+
+
+def start_column(base: Parametrised, name: str) -> tuple[Fraction, ...]:
+    """dx(0)/dc, rounded to the program's precision."""
+    code = base.start
+    program, fresh = code.program, bound(base.scenario)
+    nodes = [gradient(program, output, [program.input(name)])[0] for output in code.outputs]
+    states = dict(zip(code.inputs[len(base.free) :], base.scenario.state, strict=True))
+    fresh.bound.update({key: fresh.number(value) for key, value in states.items()})
+    values = []
+    for node in substituted(program, nodes, fresh):
+        value = fresh.instructions[node.number].payload
+        if not isinstance(value, Fraction):
+            raise ValueError(f"the initial state's derivative by {name} is no number")
+        values.append(value)
+    return tuple(values)
+
+
+def split(states: Any, size: int) -> tuple[Any, Any]:
+    """(x, y) of a variational state: arrays of shapes (2n, ...) and (k, 2n, ...); ``size`` is n."""
+    found = np.asarray(states)
+    return found[: 2 * size], found[2 * size :].reshape(-1, 2 * size, *found.shape[1:])

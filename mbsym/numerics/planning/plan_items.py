@@ -1,0 +1,257 @@
+"""The items of a plan: what was chosen of each kind, what was refused, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import inf, isfinite
+
+import numpy as np
+
+from mbsym.algebra.certainty import Certainty
+from mbsym.model.loads import GRAVITY_ORDERS
+from mbsym.model.welded import lumped
+from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64
+from mbsym.numerics.planning.choice import Choice
+from mbsym.numerics.planning.kinds import (
+    FINENESS,
+    GRAVITY,
+    KERNEL,
+    LEFT_OUT,
+    LINEARITY,
+    MASSES,
+    METHOD,
+    PARTS,
+    RESTING,
+    SCALAR,
+    WELDED,
+)
+from mbsym.numerics.planning.model_choice import PART, ModelChoice, Scene, Tried
+from mbsym.numerics.planning.models import Model, described, parted
+from mbsym.numerics.planning.pilot import ALIKE, WASTEFUL, Bench, Trial
+from mbsym.numerics.planning.plan import SECONDS, Item, Refused
+from mbsym.numerics.planning.reduced import Reduced
+from mbsym.numerics.separable import Part
+from mbsym.numerics.trade.yardstick import Yardstick
+
+#: Arithmetic by its digits.
+DIGITS = (FLOAT32, FLOAT64, EXTENDED)
+
+
+@dataclass(frozen=True)
+class Settled:
+    """Everything that was found out; ``pinned`` names the kinds that the user settled.
+
+    ``goal`` is what rho had to be; ``enough``: it is, and the bound beside it is within what was asked for.
+    """
+
+    scene: Scene
+    model: ModelChoice
+    choice: Choice
+    resting: Reduced | None
+    parts: tuple[Part, ...]
+    bench: Bench
+    stick: Yardstick
+    found: Trial
+    pinned: frozenset[str]
+    enough: bool
+    goal: float
+
+    @property
+    def fitting(self) -> list[Trial]:
+        """Whatever was tried and is good enough."""
+        return [one for one in self.bench.trials if one.ratio <= self.goal]
+
+
+def items_of(settled: Settled) -> tuple[Item, ...]:
+    """In the order of the choices."""
+    return (*_models(settled), *_resting(settled), *_parts(settled), *_welded(settled), *_settings(settled))
+
+
+def _models(settled: Settled) -> Iterator[Item]:
+    scene, model = settled.scene, settled.model
+    taken = model.taken
+    given = described(scene.scenario)
+    why = "as asked for" if GRAVITY in settled.pinned else _why_model(model)
+    if given.gravity is not None:
+        refused = tuple(_refused(settled, one) for one in model.tried if _other_order(one.model, taken.model))
+        richer = taken.model.gravity is not None and GRAVITY_ORDERS.index(taken.model.gravity) > GRAVITY_ORDERS.index(
+            given.gravity
+        )
+        why = f"{why}; richer than described (order {given.gravity})" if richer else why
+        alone = not (taken.model.linear or taken.model.without)
+        error = _worst(settled, taken) if alone else None
+        yield Item(GRAVITY, (), str(taken.model.gravity), why, error, taken.how, taken.operations, refused=refused)
+    lines = [one for one in model.tried if one.model.linear]
+    if lines or taken.model.linear:
+        chosen = "linear" if taken.model.linear else "nonlinear"
+        refused = tuple(_refused(settled, one) for one in lines if one.model != taken.model)
+        error = _worst(settled, taken) if taken.model.linear else None
+        why = "as asked for" if LINEARITY in settled.pinned else _why_model(model)
+        yield Item(LINEARITY, (), chosen, why, error, taken.how, taken.operations, refused=refused)
+    if taken.model.without:
+        why = "as asked for" if LEFT_OUT in settled.pinned else "this motion does not feel them"
+        bodies, others = parted(scene.scenario, taken.model)
+        left = ", ".join(taken.model.without)
+        if bodies:
+            yield Item(MASSES, bodies, f"without {left}", why, _worst(settled, taken), taken.how, taken.operations)
+        if others:
+            error = None if bodies else _worst(settled, taken)  # that of all together stands with the bodies
+            yield Item(LEFT_OUT, others, ", ".join(others), why, error, taken.how, taken.operations)
+
+
+def _why_model(model: ModelChoice) -> str:
+    if model.taken.model == model.faithful:
+        return "nothing simpler is good enough" if len(model.tried) > 1 else "nothing simpler is known"
+    able = [one.operations for one in model.tried if one.ratio <= PART and one.how is not Certainty.UNDECIDED]
+    fewest = model.taken.operations <= min(able, default=0)
+    return "good enough, with the fewest operations of those tried" if fewest else "good enough, with fewer operations"
+
+
+def _other_order(one: Model, taken: Model) -> bool:
+    return one.gravity != taken.gravity and not one.linear and not one.without
+
+
+def _refused(settled: Settled, one: Tried) -> Refused:
+    word = "linear" if one.model.linear else one.model.label
+    return Refused(word, _told(settled, one), one.operations, one.why)
+
+
+def _resting(settled: Settled) -> Iterator[Item]:
+    found = settled.resting
+    if found is not None:
+        before, after = found.operations
+        why = f"{after} operations a right-hand side instead of {before}"
+        yield Item(RESTING, found.names, "not integrated", why, 0.0, Certainty.PROVED, after)
+
+
+def _parts(settled: Settled) -> Iterator[Item]:
+    if settled.parts and not settled.found.method.traits.fixed:
+        names = tuple(" ".join(part.names) for part in settled.parts)
+        yield Item(PARTS, names, "each by itself", "nothing links them in these equations", 0.0, Certainty.PROVED)
+
+
+def _welded(settled: Settled) -> Iterator[Item]:
+    found = lumped(settled.scene.scenario.system)
+    if found and WELDED not in settled.pinned and not settled.model.taken.model.linear:
+        carriers = ", ".join(dict.fromkeys(found.values()))
+        yield Item(
+            WELDED, tuple(found), f"one with {carriers}", "no coordinate moves them against it", 0.0, Certainty.PROVED
+        )
+
+
+def _settings(settled: Settled) -> Iterator[Item]:
+    found, pinned = settled.found, settled.pinned
+    name = found.method.traits.name
+    others = _cheapest_others(settled)
+    chosen = _why_method(settled, bool(others)) if settled.enough else _closest(settled)
+    why = "as asked for" if METHOD in pinned else chosen
+    if FINENESS in pinned:
+        why = f"as asked for{_fitting(found)}"
+    if settled.choice.method.traits.implicit and METHOD not in pinned:
+        why += f"; motions die out at rates up to {settled.choice.decay:.3g}"
+    yield Item(
+        METHOD, (found.method.traits.title,), name, why, None, Certainty.MEASURED, found.seconds, SECONDS, others
+    )
+    why = "as asked for" if FINENESS in pinned else _why_fineness(settled)
+    word = f"tolerance {found.fineness:g}" if found.setting.step is None else f"step {found.fineness:g}"
+    yield Item(FINENESS, (), word, why, None, Certainty.MEASURED, found.seconds, SECONDS)
+    refused = tuple(_other_scalars(settled))
+    fits = _why_scalar(found) if settled.enough or found.scalar == EXTENDED else "none tried is accurate enough"
+    why = "as asked for" if SCALAR in pinned else fits
+    yield Item(SCALAR, (), found.scalar, why, None, Certainty.MEASURED, found.seconds, SECONDS, refused)
+    yield Item(KERNEL, (), "scalar", "one motion: nothing to lay side by side", 0.0, Certainty.PROVED)
+
+
+def _why_method(settled: Settled, others: bool) -> str:
+    """What is called the cheapest is that by counted work, and is so."""
+    fits = "its measured error, doubled, is small enough"
+    if not others:
+        return f"{fits}; no other method came to the end here"
+    least = min((one.cost for one in settled.fitting), default=inf)
+    if settled.found.cost > ALIKE * least:
+        return fits
+    return "by counted work the cheapest tried here whose measured error, doubled, is small enough"
+
+
+def _closest(settled: Settled) -> str:
+    """Of a plan that is not accurate enough."""
+    found, none = settled.found, "none tried is accurate enough"
+    least = min((one.ratio for one in settled.bench.trials), default=inf)
+    near = [one.cost for one in settled.bench.trials if one.ratio <= 2 * least]
+    if found.ratio > 2 * least or found.cost > ALIKE * min(near, default=0.0):
+        return none
+    return f"{none}: by counted work the cheapest of those within twice the least error"
+
+
+def _why_fineness(settled: Settled) -> str:
+    if not settled.enough:
+        return "none tried is good enough"
+    found = settled.found
+    same = [one for one in settled.fitting if (one.method, one.scalar) == (found.method, found.scalar)]
+    if any(one.fineness > found.fineness for one in same):
+        return "good enough, and cheaper by counted work than what is coarser"
+    return "the coarsest tried that is good enough"
+
+
+def _fitting(found: Trial) -> str:
+    if found.ratio > 1:
+        return ", too coarse for this accuracy"
+    return ", finer than this accuracy needs" if found.ratio < WASTEFUL else ""
+
+
+def _why_scalar(found: Trial) -> str:
+    if found.scalar == FLOAT32:
+        return "its rounding stays below the error, and it costs less by counted work"
+    return "its rounding stays below the error" if found.scalar == FLOAT64 else "float64 does not reach the error"
+
+
+def _cheapest_others(settled: Settled) -> tuple[Refused, ...]:
+    """The best of every other method: what it cost where it was good enough, else how wrong it was."""
+    best: dict[str, Trial] = {}
+    for trial in settled.bench.trials:
+        name = trial.method.traits.name
+        known = best.get(name)
+        if trial.scalar == FLOAT64 and (known is None or _rank(trial) < _rank(known)):
+            best[name] = trial
+    own = settled.found.method.traits.name
+    return tuple(
+        Refused(trial.label, _told(settled, trial), _priced(settled, trial))
+        for name, trial in best.items()
+        if name != own
+    )
+
+
+def _priced(settled: Settled, trial: Trial) -> float:
+    """Seconds of a trial: those of what was taken, as many times as its counted work is more."""
+    return settled.found.seconds * trial.cost / settled.found.cost
+
+
+def _rank(trial: Trial) -> tuple[bool, float]:
+    return (trial.ratio > 1, trial.cost if trial.ratio <= 1 else trial.ratio)
+
+
+def _worst(settled: Settled, one: Trial | Tried) -> float:
+    """The error of that quantity which is farthest from what was asked of it; of others nothing was asked.
+
+    With one target for every coordinate and velocity it is the largest of their errors.
+    """
+    targets = settled.bench.targets
+    asked = np.flatnonzero(np.isfinite(targets))
+    return float(one.errors[asked[np.argmax(one.errors[asked] / targets[asked])]])
+
+
+def _told(settled: Settled, one: Trial | Tried) -> float | None:
+    worst = _worst(settled, one)
+    return worst if isfinite(worst) else None
+
+
+def _other_scalars(settled: Settled) -> Iterator[Refused]:
+    best: dict[str, Trial] = {}
+    for trial in settled.bench.trials:
+        known = best.get(trial.scalar)
+        coarser = DIGITS.index(trial.scalar) < DIGITS.index(settled.found.scalar)
+        if coarser and (known is None or _rank(trial) < _rank(known)):
+            best[trial.scalar] = trial
+    for scalar, trial in best.items():
+        yield Refused(scalar, _told(settled, trial), _priced(settled, trial))

@@ -1,0 +1,269 @@
+"""An accuracy becomes a plan: model, method, tolerance or step, and arithmetic, the cheapest that reach it.
+
+The model is chosen first (``model_choice``); then settings are tried out on it over the whole time (``pilot``) against
+a run of known error (``yardstick``).  Nothing is taken for granted: what is printed as an error was measured on this
+scene, and doubled.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from math import inf
+from typing import Any
+
+import numpy as np
+
+from mbsym.algebra.failures import Failure
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64
+from mbsym.numerics.methods.interface import Method, Setting, Unusable
+from mbsym.numerics.methods.kept import compiled_kernel
+from mbsym.numerics.methods.table import METHODS
+from mbsym.numerics.planning.alternatives import alternatives
+from mbsym.numerics.planning.choice import Choice, choose
+from mbsym.numerics.planning.contenders import Contender, contenders, first_setting, in_more_digits
+from mbsym.numerics.planning.kinds import FINENESS, GRAVITY, LEFT_OUT, LINEARITY, METHOD, PARTS, RESTING, SCALAR, WELDED
+from mbsym.numerics.planning.model_choice import ModelChoice, Scene, model_chosen, model_settled, richest
+from mbsym.numerics.planning.models import Model, described
+from mbsym.numerics.planning.pilot import Bench, Trial, searched
+from mbsym.numerics.planning.plan import ENERGY, Accuracy, Plan
+from mbsym.numerics.planning.plan_bounds import bounds_of, shares_of, worth_of
+from mbsym.numerics.planning.plan_items import Settled, items_of
+from mbsym.numerics.planning.reduced import Reduced, reduced
+from mbsym.numerics.planning.sizes import scaled, usual_sizes
+from mbsym.numerics.rows import MOST, places, rows
+from mbsym.numerics.scenario import Scenario
+from mbsym.numerics.separable import Part, Separate, separated
+from mbsym.numerics.trade.yardstick import yardstick
+
+#: Methods whose steps end at every row are judged where there are so many rows at least.
+GRID = 1_001
+
+#: The outline of the motion, from which sizes are taken.
+COARSE = 1e-6
+
+#: Another method is looked at while trying costs less than this, or so many times the best run.
+EFFORT, TIMES_BEST = 3.0, 20.0
+
+#: A plan whose bound comes out above the target is made again with a smaller goal, so many times.
+REPEATS = 3
+
+
+@dataclass(frozen=True)
+class Pins:
+    """What the user has settled: these are measured, not chosen."""
+
+    model: Model | None = None
+    method: str | None = None
+    tolerance: float | None = None
+    step: float | None = None
+    scalar: str | None = None
+    whole: bool = False
+    longest: float | None = None
+
+    @property
+    def kinds(self) -> frozenset[str]:
+        """The kinds of items that it settles."""
+        fineness = None if self.setting is None else self.setting
+        given = {METHOD: self.method, FINENESS: fineness, SCALAR: self.scalar, GRAVITY: self.model}
+        given |= {LINEARITY: self.model, LEFT_OUT: self.model}
+        together = (RESTING, PARTS, WELDED) if self.whole else ()
+        return frozenset((*(kind for kind, value in given.items() if value is not None), *together))
+
+    @property
+    def setting(self) -> Setting | None:
+        if self.tolerance is None and self.step is None:
+            return None
+        return Setting(self.tolerance, self.step)
+
+
+#: Nothing is settled.
+FREE = Pins()
+
+
+def planned(
+    scenario: Scenario,
+    accuracy: Accuracy,
+    times: Any,
+    pins: Pins = FREE,
+    watch: Callable[[str], None] = lambda text: None,
+) -> Plan:
+    """The plan for a run from 0 to ``times[-1]`` with rows at ``times``.
+
+    Raises Breakdown where the motion does not come to the end, Failure where the equations have no program.
+    """
+    started = time.perf_counter()
+    times = np.asarray(times, dtype=float)
+    end = float(times[-1])
+    watch("the motion in outline")
+    scene, choice, remark = outlined(scenario, accuracy, times)
+    model = _model(scene, pins, watch)
+    resting = None if pins.whole or model.taken.model.linear else _resting(model.dynamics)
+    worth, goal, too_simple = worth_of(scene, model.taken)
+    complete, parts = _completing(model.dynamics, resting, pins, model.taken.model.linear)
+    bench = Bench(model.dynamics, scene.times, times, worth, complete, scene.scale, longest=pins.longest)
+    watch("a run to measure by")
+    first = _first_tolerance(scene)
+    stick = yardstick(bench, _base(choice), first, goal)
+    bench.reference, bench.known = stick.quantities, stick.known
+    for _ in range(REPEATS):
+        found = _settled(
+            bench, model.taken.model, choice, goal, pins, stick.start, watch, len(times) >= GRID, stick.cost
+        )
+        shares = shares_of(bench, found, stick, model)
+        bounds = bounds_of(scene, accuracy, shares)
+        over = max(one.total / one.target for one in bounds)
+        if over <= 1 or too_simple or pins.setting is not None or found.ratio > goal:
+            break
+        goal *= 0.7 / over
+    enough = found.ratio <= goal and (over <= 1 or bool(too_simple))
+    settled = Settled(scene, model, choice, resting, parts, bench, stick, found, pins.kinds, enough, goal)
+    more, less = alternatives(bench, found, model.tried, model.taken, accuracy, goal)
+    return Plan(
+        accuracy,
+        end,
+        items_of(settled),
+        bounds,
+        model.taken.model,
+        found.method.traits.name,
+        found.setting,
+        found.scalar,
+        found.seconds,
+        time.perf_counter() - started,
+        more,
+        less,
+        tuple(text for text in (remark, too_simple) if text),
+    )
+
+
+# --- the scene ---
+
+
+def outlined(scenario: Scenario, accuracy: Accuracy, times: Any) -> tuple[Scene, Choice, str]:
+    """The most faithful model with a coarse run, which says what quantities are measured by."""
+    model, rich, remark = richest(scenario)
+    end = float(times[-1])
+    choice = choose(rich, COARSE, end)
+    compared = times[:: -(-len(times) // MOST)] if len(times) > MOST else times
+    grid = np.union1d(np.append(compared, end), places(choice.method, rich, Setting(COARSE), end))
+    names = (*rich.system.coordinates, *rich.system.velocities, ENERGY)
+    targets = accuracy.targets(names)
+    run = rows(choice.method, rich, Setting(COARSE), grid)
+    states = run.states
+    kinetic = compiled_kernel(rich, "relative_energy")(np.vstack([grid, states]))[1]
+    largest = float(np.max(np.abs(kinetic[np.isfinite(kinetic)]), initial=0.0))
+    try:
+        usual = usual_sizes(rich, grid, states, largest)
+    except Failure:
+        usual = np.zeros(len(states))
+    scale = np.append(scaled(np.max(np.abs(states), axis=1), usual), largest or 1.0)
+    return Scene(scenario, rich, model, grid, states, scale, targets, choice.method), choice, remark
+
+
+def _model(scene: Scene, pins: Pins, watch: Callable[[str], None]) -> ModelChoice:
+    """Chosen; or as settled by the user."""
+    if pins.model is None:
+        return model_chosen(scene, watch)
+    order = pins.model.gravity or described(scene.scenario).gravity
+    return model_settled(scene, replace(pins.model, gravity=order))
+
+
+def _resting(dynamics: Dynamics) -> Reduced | None:
+    found = reduced(dynamics)
+    return found if found is not None and found.proved else None
+
+
+def _completing(
+    dynamics: Dynamics, resting: Reduced | None, pins: Pins, linear: bool
+) -> tuple[Callable[[Method], Method], tuple[Part, ...]]:
+    """How a method is made of one for the coordinates that move, part by part; and the parts, if there are several."""
+    moving = dynamics if resting is None else resting.dynamics
+    parts = () if pins.whole or linear else separated(moving)
+    several = parts if len(parts) > 1 else ()
+
+    def complete(method: Method) -> Method:
+        inner = Separate(moving, several, [method] * len(several)) if several and not method.traits.fixed else method
+        return inner if resting is None else resting.method(inner)
+
+    return complete, several
+
+
+def _first_tolerance(scene: Scene) -> float:
+    """About the tolerance of the run that is looked for."""
+    small = min(1.0, float(np.min(scene.scale[:-1])))
+    return float(f"{min(1e-4, max(0.1 * float(np.min(scene.targets)) * small, 1e-14)):.0e}")
+
+
+def _base(choice: Choice) -> Method:
+    return choice.method if choice.method.traits.implicit else METHODS["dop853"]
+
+
+# --- the setting ---
+
+
+def _settled(
+    bench: Bench,
+    model: Model,
+    choice: Choice,
+    goal: float,
+    pins: Pins,
+    first: float,
+    watch: Callable[[str], None],
+    many: bool,
+    dearest: float,
+) -> Trial:
+    """The cheapest setting that is good enough, else the best that there is.
+
+    A method that costs more than ``dearest`` without being good enough is given up.
+
+    Raises Breakdown, Unusable.
+    """
+    if pins.setting is not None:
+        name = pins.method or choice.method.traits.name
+        return bench.run(METHODS[name], pins.scalar or FLOAT64, pins.setting, often=True)
+    found: Trial | None = None
+    begun = len(bench.trials)
+    stiff = choice.method.traits.implicit
+    for one in _allowed(bench, model, pins, stiff, many):
+        spent = sum(trial.cost for trial in bench.trials[begun:])
+        if found is not None and spent > max(EFFORT, TIMES_BEST * found.cost):
+            break
+        watch(f"{one.method.traits.name}, {one.scalar}")
+        if found is None and one.scalar == FLOAT32:
+            break  # what float64 does not reach, fewer digits will not
+        limit = dearest if found is None else found.cost
+        setting = first_setting(one, first, found, float(bench.times[-1]), bench.spacing)
+        trial = _searched(bench, one, setting, goal, limit)
+        if trial is not None and (found is None or trial.cost < found.cost):
+            found = trial
+    if found is None and pins.scalar is None:
+        for one in in_more_digits():
+            if pins.method in (None, one.method.traits.name):
+                watch(f"{one.method.traits.name}, {one.scalar}")
+                found = found or _searched(bench, one, Setting(first), goal, inf)
+    if found is None:
+        if not bench.trials:
+            raise Unusable("no method comes to the end of this motion")
+        least = min(trial.ratio for trial in bench.trials)
+        found = min((one for one in bench.trials if one.ratio <= 2 * least), key=lambda trial: trial.cost)
+    return found
+
+
+def _allowed(bench: Bench, model: Model, pins: Pins, stiff: bool, many: bool) -> list[Contender]:
+    if pins.method is not None:
+        scalars = [pins.scalar] if pins.scalar is not None else [FLOAT64, FLOAT32]
+        method = METHODS[pins.method]
+        return [Contender(method, scalar) for scalar in scalars if scalar in method.traits.scalars]
+    found = list(contenders(bench.dynamics, model, bench.finest_target, stiff, many))
+    if pins.scalar == EXTENDED:
+        return list(in_more_digits())
+    return [one for one in found if pins.scalar in (None, one.scalar)]
+
+
+def _searched(bench: Bench, one: Contender, setting: Setting, goal: float, limit: float) -> Trial | None:
+    try:
+        return searched(bench, one.method, one.scalar, setting, goal, limit)
+    except (Unusable, Failure):
+        return None

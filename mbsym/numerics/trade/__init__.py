@@ -1,0 +1,1 @@
+"""Accuracy against cost: references with errors of their own, and trials that are judged by them."""

@@ -1,0 +1,177 @@
+"""What a simpler model costs in accuracy: the same scenario with less of the mechanics in it.
+
+``variants`` lists the models that a description allows:
+
+* Newtonian gravity of order 2, 3, 4 (where such an expansion converges) and exact;
+* the equations linearised about the unperturbed motion,  x' = x0' + J(t, x0) (x - x0)  with J = d rhs/dx;
+* coordinates that rest taken out (a plane motion of a spatial system), which changes nothing but the cost.
+
+``measured`` integrates each one far more accurately than models differ, and compares it with the most faithful one.
+"""
+
+from __future__ import annotations
+
+import statistics
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from math import inf, isfinite
+from typing import Any
+
+import numpy as np
+
+from mbsym.algebra.failures import Failure
+from mbsym.model.loads import EXACT, GRAVITY_ORDERS, NewtonianGravity
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels.interface import FLOAT64
+from mbsym.numerics.ledger.described import relative_size
+from mbsym.numerics.linearised import LinearisedDynamics
+from mbsym.numerics.methods.interface import Breakdown, Method, Setting
+from mbsym.numerics.planning.prices import cost
+from mbsym.numerics.planning.reduction import Reduction, resting
+from mbsym.numerics.scenario import Scenario
+
+#: Tolerance at which variants are integrated, and what differences below ``RESOLVED`` mean nothing.
+TIGHT, RESOLVED = 1e-13, 1e-11
+
+#: The label of the model that the description gives.
+DESCRIBED = "as described"
+
+#: Runs timed for each variant, and what they may cost together (``mbsym.numerics.planning.prices``).
+REPEATS, MOST = 5, 2.0
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A model: ``rank`` orders models of one family by faithfulness (the largest is the most faithful).
+
+    ``free`` says where its states stand among those of the whole system (None: it has them all).
+    """
+
+    label: str
+    neglected: str
+    dynamics: Dynamics
+    rank: int
+    free: tuple[int, ...] | None = None
+
+
+@dataclass(frozen=True)
+class ModelError:
+    """A variant with the error of its model against the most faithful one, and what it costs.
+
+    ``operations`` are those of one right-hand side; ``seconds`` of the processor the median for the same
+    tolerance.
+    """
+
+    variant: Variant
+    error: float
+    operations: int
+    evaluations: int
+    seconds: float
+    trouble: str = ""
+
+
+def variants(scenario: Scenario) -> Iterator[Variant]:
+    """Every model of the scenario, the given one first; those that cannot be derived are left out."""
+    system = scenario.system
+    fields = system.newtonian_fields
+    faithful = min((GRAVITY_ORDERS.index(load.order) + 1 for load in fields), default=0)
+    yield Variant(DESCRIBED, "nothing that the description has", Dynamics(scenario), faithful)
+    for rank, order in enumerate(GRAVITY_ORDERS if fields else (), start=1):
+        if all(load.order == order for load in fields) or (order != EXACT and not _expandable(scenario, fields)):
+            continue
+        dropped = "nothing of the field" if order == EXACT else f"terms of the field above order {order} in size/R"
+        name = "exact gravity" if order == EXACT else f"gravity of order {order}"
+        yield Variant(name, dropped, Dynamics(replace(scenario, system=system.with_field_order(order))), rank)
+    if system.motion:
+        label = "linearised"
+        yield Variant(label, "all that is not linear in the deviation", LinearisedDynamics(scenario), -1)
+    found = resting(scenario)
+    if found is not None:
+        yield _reduced(scenario, found)
+
+
+def _expandable(scenario: Scenario, fields: Sequence[NewtonianGravity]) -> bool:
+    """Whether fields that the description has exactly can be expanded at all: the bodies are nearer to O1 than it is
+    to the centre."""
+    sizes = [relative_size(scenario, load) for load in fields if load.order == EXACT]
+    return all(size is not None and size < 1 for size in sizes)
+
+
+def _reduced(scenario: Scenario, found: Reduction) -> Variant:
+    names = ", ".join(found.values)
+    free, _ = found.expanded(scenario)
+    what = f"{names}, which rest ({found.how})"
+    return Variant(f"without {names}", what, Dynamics(found.scenario), 0, free)
+
+
+def measured(
+    scenario: Scenario,
+    method: Method,
+    times: Sequence[float],
+    watch: Callable[[str], None] = lambda label: None,
+    scale: Any | None = None,
+) -> tuple[ModelError, ...]:
+    """The error of every variant at ``times`` against the most faithful one, and its cost at a tight tolerance.
+
+    The error is the largest difference over coordinates, velocities and times, each relative to ``scale``, shape (2n,);
+    by default its largest value at the times.
+    """
+    runs = []
+    for variant in variants(scenario):
+        watch(variant.label)
+        try:
+            runs.append((variant, *_run(scenario, variant, method, times)))
+        except Failure as reason:
+            runs.append((variant, None, 0, 0, 0.0, str(reason)))
+    solved = [(variant.rank, states) for variant, states, *_ in runs if states is not None]
+    if not solved:
+        return ()
+    truth = max(solved, key=lambda item: item[0])[1]
+    if scale is None:
+        size = np.max(np.abs(truth), axis=1)
+        scale = np.where(size > 0, size, 1.0)
+    scale = np.asarray(scale)[:, np.newaxis]
+    rows = []
+    for variant, states, operations, evaluations, seconds, trouble in runs:
+        error = inf if states is None else float(np.max(np.abs(states - truth) / scale))
+        rows.append(ModelError(variant, error if isfinite(error) else inf, operations, evaluations, seconds, trouble))
+    return tuple(rows)
+
+
+def model_advice(models: Sequence[ModelError], target: float) -> str:
+    """How far the model that was simulated is from the most faithful one; empty where that is the same or unknown."""
+    own = next((row for row in models if row.variant.label == DESCRIBED), None)
+    best = max((row for row in models if not row.trouble), key=lambda row: row.variant.rank, default=None)
+    if own is None or best is None or best is own or own.trouble or not own.error > RESOLVED:
+        return ""
+    text = f"The model as described is {own.error:.1e} away from {best.variant.label}"
+    if own.error > target:
+        return f"{text}: an error of {target:.0e} is one of its equations, not of the motion."
+    return f"{text}, which adds to the error."
+
+
+def _run(
+    scenario: Scenario, variant: Variant, method: Method, times: Sequence[float]
+) -> tuple[Any, int, int, float, str]:
+    operations = variant.dynamics.right_hand_side.operations
+    seconds: list[float] = []
+    evaluations, dear = 0, 0.0
+    states: Any = None
+    while not seconds or len(seconds) < min(REPEATS, MOST / dear):
+        run = method.start(variant.dynamics, Setting(tolerance=TIGHT))
+        found = [np.array(run.state, dtype=float)]
+        started = time.thread_time()
+        try:
+            for t in times[1:]:
+                found.append(np.array(run.advance(float(t)), dtype=float))
+        except Breakdown as reason:
+            return None, operations, run.work.evaluations, time.thread_time() - started, str(reason)
+        seconds.append(time.thread_time() - started)
+        states, evaluations = np.array(found).T, run.work.evaluations
+        dear = cost(variant.dynamics, method.traits.name, FLOAT64, run.work)
+    if variant.free is not None:
+        whole = np.tile(np.array([float(x) for x in scenario.state])[:, np.newaxis], (1, len(times)))
+        whole[list(variant.free)] = states
+        states = whole
+    return states, operations, evaluations, statistics.median(seconds), ""

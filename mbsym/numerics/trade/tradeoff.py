@@ -1,0 +1,366 @@
+"""What accuracy costs: ladders over method, tolerance or step, and arithmetic, measured on one system on this machine.
+
+error    largest |x_i(t) - reference_i(t)| over all coordinates, velocities and the thousands of times at which the
+         reference is known, each relative to its size in the whole motion (``mbsym.numerics.planning.sizes``)
+drift    largest change of the energy h at the same times, relative to the largest kinetic energy
+strayed  largest drift of positions and of velocities from constraints at the same times, where there are any
+         (``mbsym.numerics.constrained``: in parts of the motion's size)
+seconds  median processor time of the integration from 0 to the end; compiling is not counted (it happens once), nor
+         are rows
+
+Which settings are measured is a matter of counted work (``planning.prices``): on every machine, however busy, the
+same rows come out with the same errors and counts.  Seconds, and the front that they make, are those of this machine.
+
+An error is measured against a reference solution of a different method and arithmetic, never against a tolerance; what
+is smaller than a hundred times the reference's own error is not called an error at all.
+"""
+
+from __future__ import annotations
+
+import statistics
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import inf, isfinite, log2
+from typing import Any
+
+import numpy as np
+
+from mbsym.numerics.constrained import drift
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
+from mbsym.numerics.kernels.llvm import available, kernels
+from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Method, Setting, Unusable, Work
+from mbsym.numerics.planning.prices import STARTED, STARTED_EACH, cost
+from mbsym.numerics.trade.reference import Reference
+
+#: A reference must be so much better than what it judges.
+MARGIN = 100.0
+
+#: Runs that cost less than this are repeated, and the median of their seconds taken.
+SHORT = 0.25
+REPEATS = 5
+
+#: A run is stopped when it has cost so much at the earliest, and looked at in so many places meanwhile.
+LEAST, BLOCKS = 0.05, 64
+
+#: What comparing one row costs.
+COMPARED = 1e-6
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """One way to integrate: a method in an arithmetic with a tolerance or a step."""
+
+    method: Method
+    scalar: str
+    setting: Setting
+
+    @property
+    def label(self) -> str:
+        """``dop853 1e-09``, ``rk4 h=0.001, float32``."""
+        arithmetic = "" if self.scalar == FLOAT64 else f", {self.scalar}"
+        return f"{self.method.traits.name} {self.shown}{arithmetic}"
+
+    @property
+    def shown(self) -> str:
+        """The tolerance or the step."""
+        if self.setting.step is not None:
+            return f"h={self.setting.step:.3g}"
+        return f"{self.setting.tolerance:.0e}"
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What one candidate cost and how wrong it was; ``trouble`` says why there is no error.
+
+    ``strayed``: the largest drift from constraints on positions, and on velocities; None where there are none.
+    ``carried``: at how many singular positions of constraints it was carried over.
+    """
+
+    candidate: Candidate
+    error: float
+    drift: float
+    evaluations: int
+    steps: int
+    seconds: float
+    trouble: str = ""
+    front: bool = False
+    strayed: tuple[float, float] | None = None
+    carried: int = 0
+
+
+@dataclass(frozen=True)
+class Order:
+    """The measured order of a fixed-step method beside its nominal one; ``pairs`` of steps it was fitted to."""
+
+    method: str
+    scalar: str
+    nominal: int
+    measured: float
+    pairs: int
+
+
+@dataclass(frozen=True)
+class Tradeoff:
+    """All rows, in the order measured; ``unusable`` methods with the reason; ``interrupted``: not all are there."""
+
+    rows: tuple[Measured, ...]
+    reference: Reference
+    orders: tuple[Order, ...]
+    unusable: tuple[tuple[str, str], ...]
+    interrupted: bool = False
+
+    def cheapest(self, target: float) -> Measured | None:
+        """The least expensive row whose error, with that of the reference, is at most ``target``."""
+        good = [row for row in self.rows if row.error + self.reference.error <= target]
+        return min(good, key=lambda row: row.seconds, default=None)
+
+    @property
+    def smallest_judged(self) -> float:
+        """Errors below this cannot be told from the reference's own, or from the rounding of what is compared."""
+        return max(MARGIN * self.reference.error, float(np.finfo(float).eps))
+
+
+def tradeoff(
+    dynamics: Dynamics,
+    methods: Sequence[Method],
+    reference: Reference,
+    budget: float = 60.0,
+    watch: Callable[[str], None] = lambda label: None,
+) -> Tradeoff:
+    """Measures every method's ladder against ``reference`` (whose times are the sampled ones), as ``budget`` allows.
+
+    The budget is one of counted work, of everything that happens here, compiling included, about as many seconds on a
+    usual machine.  It is shared evenly between the ladders; a ladder stops where its next rung would cost too much, or
+    where a finer setting no longer gives a smaller error.  Ctrl-C ends the measuring and keeps the rows that there are.
+    """
+    judge = _Judge(dynamics, reference)
+    rows: list[Measured] = []
+    unusable = []
+    pairs = [(method, scalar) for method in methods for scalar in method.traits.scalars if available(scalar)]
+    interrupted = False
+    for place, (method, scalar) in enumerate(pairs):
+        share = (budget - judge.spent) / (len(pairs) - place)
+        try:
+            for row in _ladder(judge, method, scalar, max(share, 0.0), watch):
+                rows.append(row)
+        except Unusable as reason:
+            unusable.append((method.traits.name, str(reason)))
+        except KeyboardInterrupt:
+            interrupted = True
+            break
+    orders = tuple(_orders(rows))
+    return Tradeoff(_with_front(rows), reference, orders, tuple(dict.fromkeys(unusable)), interrupted)
+
+
+class _Judge:
+    """Runs candidates and compares them with the reference; ``spent`` is what all have cost."""
+
+    def __init__(self, dynamics: Dynamics, reference: Reference) -> None:
+        self.dynamics = dynamics
+        self.reference = reference
+        self.scale = np.asarray(reference.scale)[:, np.newaxis]
+        self.energy = kernels({"energy": dynamics.relative_energy})["energy"]
+        self.spent = self.starting = 0.0
+        self._ladders: set[tuple[str, str]] = set()
+
+    def measure(self, candidate: Candidate, limit: float = inf) -> Measured:
+        """Error, drift and median seconds of a candidate; a breakdown is a result too, so is a ``limit`` of cost."""
+        with np.errstate(over="ignore"):  # extended numbers beyond the range of float64
+            return self._measure(candidate, limit)
+
+    def _measure(self, candidate: Candidate, limit: float) -> Measured:
+        times = self.reference.times
+        run = candidate.method.start(self.dynamics, candidate.setting, candidate.scalar)
+        self.starting = self._compiling(candidate)
+        self.spent += self.starting
+        states = [np.array(run.state, dtype=float)[:, np.newaxis]]
+        started, before = time.thread_time(), self.spent
+        try:
+            for some in np.array_split(times[1:], min(BLOCKS, len(times) - 1)):
+                states.append(np.asarray(run.fill(some), dtype=float))
+                self.spent = before + self._cost(candidate, run.work)
+                if self.spent - before > limit and some[-1] < times[-1]:
+                    raise Breakdown(STEP_LIMIT, "too dear to be measured", float(some[-1]), states[-1][:, -1])
+            work, typical = self._seconds(candidate, time.thread_time() - started, run.work, before + limit)
+        except Breakdown as found:
+            wasted = time.thread_time() - started
+            self.spent = max(self.spent, before + self._cost(candidate, run.work))
+            return Measured(candidate, inf, inf, run.work.evaluations, run.work.steps, wasted, str(found))
+        matrix = np.hstack(states)
+        self.spent += COMPARED * len(times)
+        error, changed, strayed = self._error(matrix), self._drift(times, matrix), self._strayed(times, matrix)
+        carried = len(run.work.singular)
+        return Measured(
+            candidate, error, changed, work.evaluations, work.steps, typical, strayed=strayed, carried=carried
+        )
+
+    def _cost(self, candidate: Candidate, work: Work) -> float:
+        return cost(self.dynamics, candidate.method.traits.name, candidate.scalar, work)
+
+    def _compiling(self, candidate: Candidate) -> float:
+        """What a method costs before its first step: once, but for those that compile every setting."""
+        traits = candidate.method.traits
+        ladder = (traits.name, candidate.scalar)
+        again = ladder in self._ladders and traits.name not in STARTED_EACH
+        self._ladders.add(ladder)
+        return 0.0 if again else STARTED * self.dynamics.right_hand_side.operations
+
+    def _seconds(self, candidate: Candidate, with_rows: float, work: Work, until: float) -> tuple[Work, float]:
+        """What the run takes without the places at which it was compared, where these count."""
+        if self._cost(candidate, work) > SHORT:
+            return work, with_rows
+        end, taken, spent = float(self.reference.times[-1]), list[float](), 0.0
+        while not taken or (spent < SHORT and len(taken) < REPEATS and self.spent < until):
+            run = candidate.method.start(self.dynamics, candidate.setting, candidate.scalar)
+            started = time.thread_time()
+            run.advance(end)
+            taken.append(time.thread_time() - started)
+            own = self._cost(candidate, run.work)
+            spent, self.spent = spent + own, self.spent + own
+        return run.work, statistics.median(taken)
+
+    def _error(self, states: Any) -> float:
+        with np.errstate(all="ignore"):
+            worst = float(np.max(np.abs(states - self.reference.states) / self.scale))
+        return worst if isfinite(worst) else inf
+
+    def _drift(self, times: Any, states: Any) -> float:
+        with np.errstate(all="ignore"):
+            h, kinetic = self.energy(np.vstack([times, states]))
+            scale = np.max(np.abs(kinetic)) or abs(h[0]) or 1.0
+            worst = float(np.max(np.abs(h - h[0])) / scale)
+        return worst if isfinite(worst) else inf
+
+    def _strayed(self, times: Any, states: Any) -> tuple[float, float] | None:
+        """The drift from constraints, positions and velocities, measured by the sizes of the reference."""
+        known = self.dynamics.constraints
+        if known is None:
+            return None
+        with np.errstate(all="ignore"):
+            positions, velocities = drift(known, times, states, np.asarray(self.reference.scale)).largest
+        return (positions if isfinite(positions) else inf), (velocities if isfinite(velocities) else inf)
+
+
+def _ladder(
+    judge: _Judge, method: Method, scalar: str, share: float, watch: Callable[[str], None]
+) -> Iterator[Measured]:
+    """From coarse to fine, until the next rung costs too much or brings nothing."""
+    begun = judge.spent
+    idle, best, dearest = 0, inf, 0.0
+    for setting in _settings(method, scalar, float(judge.reference.times[-1])):
+        candidate = Candidate(method, scalar, setting)
+        watch(candidate.label)
+        before = judge.spent
+        row = judge.measure(candidate, max(share - (before - begun), LEAST))
+        yield row
+        now = judge.spent
+        idle = 0 if row.error < 0.5 * best else idle + (best < inf)
+        best = min(best, row.error)
+        growth = max(1.3, (now - before) / dearest) if dearest else 1.3
+        # What was compiled for the first rung is there for the next one, but for methods that compile every setting.
+        dearest = now - before - (0.0 if dearest else judge.starting)
+        if idle >= 3 or now - begun + min(growth, 4.0) * dearest > share:
+            return
+
+
+def _settings(method: Method, scalar: str, duration: float) -> Iterator[Setting]:
+    """Tolerances decade by decade down to the arithmetic's own, or steps halved again and again."""
+    if method.traits.fixed:
+        count = 16
+        while count <= 2**26:
+            yield Setting(step=duration / count)
+            count *= 2
+    else:
+        finest = {FLOAT32: -6, FLOAT64: -14}.get(scalar, -18)
+        for power in range(-3, finest - 1, -1):
+            yield Setting(tolerance=10.0**power)
+
+
+def _with_front(rows: Sequence[Measured]) -> tuple[Measured, ...]:
+    """A row is on the Pareto front if none is no worse in cost and error, and better in one of them."""
+    best = inf
+    front = set()
+    for place in sorted(range(len(rows)), key=lambda k: (rows[k].seconds, rows[k].error)):
+        if rows[place].error < best:
+            best = rows[place].error
+            front.add(place)
+    return tuple(replace(row, front=place in front) for place, row in enumerate(rows))
+
+
+def _orders(rows: Sequence[Measured]) -> Iterator[Order]:
+    """log2 of the ratio of errors when the step is halved, in the range where neither roundoff nor coarseness rules."""
+    ladders: dict[tuple[str, str], list[Measured]] = {}
+    for row in rows:
+        traits = row.candidate.method.traits
+        if traits.fixed and traits.order is not None and isfinite(row.error):
+            ladders.setdefault((traits.name, row.candidate.scalar), []).append(row)
+    for (name, scalar), ladder in ladders.items():
+        floor = min(row.error for row in ladder)
+        slopes = []
+        for coarse, fine in pairwise(ladder):
+            if coarse.error < 0.05 and fine.error > 30 * floor:
+                slopes.append(log2(coarse.error / fine.error))
+        if slopes:
+            nominal = ladder[0].candidate.method.traits.order
+            assert nominal is not None
+            yield Order(name, scalar, nominal, statistics.median(slopes[-3:]), len(slopes))
+
+
+def advice(found: Tradeoff, target: float) -> str:
+    """One sentence: which setting reaches the target in the least time, and what a digit more or less would cost.
+
+    Nothing is said to be reached but what was measured, with the reference's own error added.
+    """
+    known = found.reference.error
+    if target < found.smallest_judged:
+        return (
+            f"The reference itself is known to {known:.1e} only: an error of {target:.0e} cannot be "
+            f"judged here; choose a target of at least {found.smallest_judged:.0e}."
+        )
+    best = found.cheapest(target)
+    if best is None:
+        nearest = min(found.rows, key=lambda row: row.error)
+        if nearest.error == inf:
+            return f"Nothing tried reaches {target:.0e}: no run came to the end."
+        return (
+            f"Nothing tried reaches {target:.0e}; the most accurate is {nearest.candidate.label} with an error of "
+            f"{nearest.error:.1e} in {duration(nearest.seconds)}."
+        )
+    judged = best.error > found.smallest_judged
+    error = f"{best.error:.1e}" if judged else f"below {found.smallest_judged:.0e}"
+    return (
+        f"{best.candidate.label} reaches {target:.0e} in the least time measured here: error {error} over the whole "
+        f"interval (the reference is good to {known:.1e}), in {duration(best.seconds)}; one digit more "
+        f"{_more(found, best, target / 10)}, one digit less {_less(found, best, target * 10)}."
+    )
+
+
+def _more(found: Tradeoff, best: Measured, target: float) -> str:
+    if target < found.smallest_judged:
+        return "cannot be judged by this reference"
+    other = found.cheapest(target)
+    if other is None:
+        return "costs more than anything tried here can give"
+    if other is best:
+        return "costs nothing extra (it is there already)"
+    return f"costs {_compared(other, best)}"
+
+
+def _less(found: Tradeoff, best: Measured, target: float) -> str:
+    other = found.cheapest(target)
+    return "saves nothing" if other is None or other is best else f"costs {_compared(other, best)}"
+
+
+def _compared(other: Measured, best: Measured) -> str:
+    return f"{duration(other.seconds)}, {other.seconds / best.seconds:.2g} times as much ({other.candidate.label})"
+
+
+def duration(seconds: float) -> str:
+    """``3.2 ms``."""
+    for limit, factor, unit in ((1e-3, 1e6, "µs"), (1.0, 1e3, "ms")):
+        if seconds < limit:
+            return f"{seconds * factor:.3g} {unit}"
+    return f"{seconds:.3g} s"

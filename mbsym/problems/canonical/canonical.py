@@ -1,0 +1,200 @@
+"""Problem 3 in other forms: Hamilton's canonical equations, and Routh's with cyclic coordinates left out.
+
+With L = T + U, T = 1/2 q'.M q' + A1.q' + A0, and the momenta p = dL/dq' = M q' + A1,
+
+    H(q, p, t) = p.q' - L = 1/2 (p - A1).M^-1 (p - A1) - A0 - U
+    q' = dH/dp,      p' = -dH/dq + Q
+
+(H is the generalised energy T_2 - T_0 - U.)  Where L does not contain the
+coordinates c and no other force acts on them, their momenta beta are constants.  Routh's function of the others, s, is
+
+    R(s, s', beta, t) = L - beta.c',      c' = M_cc^-1 (beta - M_cs s' - A1_c)
+
+    d/dt dR/ds' - dR/ds = Q,      that is      M_R s'' = f_R,      and then      c' = -dR/dbeta
+
+    R = 1/2 s'.M_R s' + b.s' - W,      W(s, beta, t) the reduced potential: where b = 0 and W and Q contain neither
+    the time nor s', the motions with s constant are its stationary points.
+
+Both are derived in a ring of their own, in which the momenta are generators.  They are compared with d'Alembert's
+principle at random exact states (``mbsym.problems.canonical.canonical_checks``).
+
+Source: Landau & Lifshitz, Mechanics, sections 40 and 41; Pars, A Treatise on Analytical Dynamics, ch. 10.
+
+Example:
+
+    >>> import mbsym
+    >>> pendulum = mbsym.load("systems/spherical-pendulum.yaml")
+    >>> print(pendulum.routh.ignored, pendulum.routh.momenta)
+    ('psi',) ('p_psi',)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from mbsym.algebra.failures import Failure, NoClosedForm, SingularPoint
+from mbsym.algebra.matrices import cramer, determinant
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.formulas.formula import Column, Formula, Matrix, column
+from mbsym.formulas.notebook import Shown
+from mbsym.mechanics.generalized import generalized_forces
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.variables import ring_environment, ring_of
+from mbsym.model.momenta import denominator_names, momentum_names
+from mbsym.model.system import System
+from mbsym.problems import energy as energies
+from mbsym.problems.equations import convective_rate
+
+#: A matrix is inverted in closed form up to this size.
+MOST = 6
+
+#: Names that the rings keep for long denominators, where somebody wants to write these once.
+DENOMINATORS = 6
+
+
+@dataclass(frozen=True, repr=False)
+class Hamilton(Shown):
+    """``momenta`` are the names of p, ``momenta_in_velocities`` dL/dq'; ``hamiltonian`` is H(q, p, t).
+
+    ``velocities`` are q' = dH/dp and ``rates`` p' = -dH/dq + Q, in the order of the coordinates.
+    """
+
+    momenta: tuple[str, ...]
+    momenta_in_velocities: Column
+    hamiltonian: Formula
+    velocities: Column
+    rates: Column
+
+    @property
+    def terms(self) -> int:
+        """Terms of H."""
+        return self.hamiltonian.terms
+
+
+@dataclass(frozen=True, repr=False)
+class Routh(Shown):
+    """``ignored`` are the cyclic coordinates c, ``momenta`` the names of their constants beta; ``function`` is R.
+
+    M_R (m x m) and f_R belong to ``coordinates`` s; ``ignored_rates`` are c'; ``linear`` is b, and
+    ``reduced_potential`` W, of R = 1/2 s'.M_R s' + b.s' - W.
+    """
+
+    ignored: tuple[str, ...]
+    momenta: tuple[str, ...]
+    coordinates: tuple[str, ...]
+    function: Formula
+    mass_matrix: Matrix
+    forcing: Column
+    ignored_rates: Column
+    linear: Column
+    reduced_potential: Formula
+
+    @property
+    def terms(self) -> int:
+        """Terms of R."""
+        return self.function.terms
+
+
+class NothingIgnored(Failure):
+    """Routh's form is Lagrange's where nothing can be left out, and says nothing where nothing is left."""
+
+    code = "nothing-ignored"
+
+
+def hamilton(system: System, terms: int) -> Hamilton:
+    """The canonical equations.  Raises NoClosedForm where they outgrow the budget, SingularPoint where det M = 0."""
+    names, momenta = system.coordinates, momentum_names(system)
+    spare = denominator_names(system, DENOMINATORS)
+    ring = ring_of(system, terms, moving=tuple(momenta.values()), fixed=spare)
+    scene = Scene(system, ring, ring_environment(system, ring), ring)
+    found = energies.energy(scene)
+    values = [ring.generator("prescribed", momenta[name]) for name in names]
+    linear = [x.polynomial for x in found.A1]
+    free = [p - a for p, a in zip(values, linear, strict=True)]
+    velocities = _solved(ring, found.A2.polynomials, free)
+    half = ring.number(Fraction(1, 2))
+    quadratic = sum((ring.times(a, b) for a, b in zip(free, velocities, strict=True)), ring.zero)
+    whole = ring.reduce(ring.times(half, quadratic) - found.A0.polynomial - found.force_function.polynomial)
+    applied = generalized_forces(scene)
+    back = {ring.index("velocity", name): x for name, x in zip(names, velocities, strict=True)}
+    rates = [ring.reduce(ring.substitute(applied[name], back) - ring.derivative(whole, name)) for name in names]
+    in_velocities = [ring.velocity_derivative(found.kinetic_energy.polynomial, name) for name in names]
+    return Hamilton(
+        momenta=tuple(momenta[name] for name in names),
+        momenta_in_velocities=column(ring, in_velocities),
+        hamiltonian=Formula(ring, whole),
+        velocities=column(ring, [ring.derivative(whole, momenta[name]) for name in names]),
+        rates=column(ring, rates),
+    )
+
+
+def routh(system: System, terms: int) -> Routh:
+    """Routh's equations of what is left of a system without its cyclic coordinates.
+
+    Raises NothingIgnored where there is no cyclic coordinate without a force on it, or nothing else is left,
+    NoClosedForm where formulas outgrow the budget.
+    """
+    all_momenta = momentum_names(system)
+    ring = ring_of(system, terms, fixed=(*all_momenta.values(), *denominator_names(system, DENOMINATORS)))
+    scene = Scene(system, ring, ring_environment(system, ring), ring)
+    found = energies.energy(scene)
+    applied = generalized_forces(scene)
+    ignored = tuple(name for name in system.coordinates if name in found.cyclic and ring.vanishes(applied[name]))
+    if any(ring.dependencies(applied[name], ignored) for name in system.coordinates):
+        ignored = tuple(x for x in ignored if not any(ring.dependencies(q, (x,)) for q in applied.values()))
+    left = tuple(name for name in system.coordinates if name not in ignored)
+    if not ignored:
+        cyclic = ", ".join(name for name in found.cyclic if name in system.coordinates)
+        raise NothingIgnored(
+            f"cyclic are {cyclic}, but other forces act on them, or depend on them"
+            if cyclic
+            else "no coordinate is cyclic"
+        )
+    if not left:
+        raise NothingIgnored("all coordinates are cyclic, so that no other is left")
+    beta = [ring.generator("parameter", all_momenta[name]) for name in ignored]
+    kinetic = found.kinetic_energy.polynomial
+    at_rest = {ring.index("velocity", name): ring.zero for name in ignored}
+    momenta = [ring.velocity_derivative(kinetic, name) for name in ignored]
+    own = [[ring.velocity_derivative(p, name) for name in ignored] for p in momenta]
+    rest = [b - ring.substitute(p, at_rest) for b, p in zip(beta, momenta, strict=True)]
+    rates = _solved(ring, own, rest)
+    back = {ring.index("velocity", name): x for name, x in zip(ignored, rates, strict=True)}
+    lagrangian = ring.substitute(kinetic, back) + ring.substitute(found.force_function.polynomial, back)
+    function = ring.reduce(lagrangian - sum((ring.times(b, c) for b, c in zip(beta, rates, strict=True)), ring.zero))
+    slopes = [ring.velocity_derivative(function, name) for name in left]
+    forcing = []
+    for name, slope in zip(left, slopes, strict=True):
+        force = ring.substitute(applied[name], back) + ring.derivative(function, name)
+        forcing.append(ring.reduce(force - _convective(scene, ring, slope, left)))
+    rest_of = {ring.index("velocity", name): ring.zero for name in left}
+    return Routh(
+        ignored=ignored,
+        momenta=tuple(all_momenta[name] for name in ignored),
+        coordinates=left,
+        function=Formula(ring, function),
+        mass_matrix=Matrix.of(ring, [[ring.velocity_derivative(p, name) for name in left] for p in slopes]),
+        forcing=column(ring, forcing),
+        ignored_rates=column(ring, rates),
+        linear=column(ring, [ring.substitute(slope, rest_of) for slope in slopes]),
+        reduced_potential=Formula(ring, -ring.substitute(function, rest_of)),
+    )
+
+
+def _convective(scene: Scene, ring: Ring, x: Polynomial, left: Sequence[str]) -> Polynomial:
+    """dx/dt at s'' = 0; x does not contain the ignored coordinates."""
+    assert not ring.dependencies(x, [name for name in scene.system.coordinates if name not in left])
+    return convective_rate(scene, ring, x)
+
+
+def _solved(ring: Ring, matrix: Sequence[Sequence[Polynomial]], right: Sequence[Polynomial]) -> list[Polynomial]:
+    """matrix^-1 right by Cramer's rule: the only denominator is the determinant."""
+    if len(right) > MOST:
+        raise NoClosedForm(f"the inverse of a matrix of {len(right)} rows: at most {MOST} are inverted in closed form")
+    whole = determinant(ring, matrix)
+    if ring.vanishes(whole):
+        raise SingularPoint("the mass matrix is singular")
+    inverse = ring.reciprocal(whole)
+    return [ring.reduce(ring.times(x, inverse)) for x in cramer(ring, matrix, right)]

@@ -1,0 +1,1 @@
+"""Energy, equations and integrals in speeds of their own, and their second routes."""

@@ -1,0 +1,262 @@
+"""All relative equilibria of a system with numerical parameters.
+
+A relative equilibrium is a motion on which every coordinate is constant, except those that the description lets turn
+at a constant rate; prescribed quantities go on running.  With  M(q) q'' = f(q, q', t)  it solves
+
+    f_i(q, rates, t) = 0,        i = 1..n,  identically in t
+
+Where the f_i are polynomials in sines, cosines and plain coordinates (roots and reciprocals included), the system with
+s^2 + c^2 = 1 for every angle is solved exactly (``algebra.polynomial_systems``): a solution is a point of a number
+field, every f_i is zero there exactly, and the list is complete.  Where that outgrows its limits, direction cosines in
+place of angles may do (``problems.rest_oriented``).  Where the f_i are no such polynomials (an angle that also stands
+outside sine and cosine, exponentials), or where the exact solution outgrows its limits, solutions are found by
+bisection or from many starting points, and each is proved to exist and to be unique in a box (Krawczyk), or put to the
+test exactly where it can be guessed (zero, springs at rest).  The list is complete where the bisection is and the
+equations bound every coordinate; otherwise it **may be incomplete**, and the result says so.
+
+Angles that are singular somewhere (a gimbal) are replaced there by others, so that no orientation is lost, and
+coordinates that describe one configuration twice are counted once.  Where the equations do not know an angle (the whole
+may be turned about an axis) they are counted up to that angle, whose value is any.  Negative lengths of polar
+coordinates are the same places again, or no states of the system meant (``mechanics.reflections``).
+
+Each equilibrium is judged by the theorems of problem 6: at rational sines and cosines by exact counting, otherwise by
+enclosures of the roots.  Solutions that are not isolated are families.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from flint import fmpq_poly
+
+from mbsym.algebra.polynomial_systems import AlgebraicPoint, Family, Limits, solve
+from mbsym.mechanics.charts import charts, with_cyclic_last_angles
+from mbsym.mechanics.constraints.refusal import refuse_constraints
+from mbsym.mechanics.rest import Rest, Value, at_numbers, rest
+from mbsym.model.system import System
+from mbsym.problems.relative_equilibria.listing import Solution, groups
+from mbsym.problems.relative_equilibria.oriented import orientations
+from mbsym.problems.relative_equilibria.place import PRECISION, Place, angle_of, exact_rates
+from mbsym.problems.relative_equilibria.result import (
+    CERTIFIED,
+    EXACT,
+    CoordinateValue,
+    Equilibria,
+    EquilibriumFamily,
+    RelativeEquilibrium,
+)
+from mbsym.problems.relative_equilibria.sampling import STARTS
+from mbsym.problems.relative_equilibria.search import WITHIN, SearchInBoxes
+from mbsym.problems.relative_equilibria.unknowns import Unknowns
+from mbsym.problems.stability.word import Word
+
+__all__ = [
+    "CERTIFIED",
+    "EXACT",
+    "WITHIN",
+    "CoordinateValue",
+    "Equilibria",
+    "EquilibriumFamily",
+    "RelativeEquilibrium",
+    "_ChartSearch",
+    "equilibria",
+]
+
+
+def equilibria(
+    system: System, values: Mapping[str, Value], within: float = WITHIN, limits: Limits | None = None
+) -> Equilibria:
+    """All relative equilibria of a system at parameter values.
+
+    Raises KeyError for a missing value, NoClosedForm where the equations outgrow their budget, SingularPoint,
+    Constrained.
+    """
+    refuse_constraints(system, "relative equilibria")
+    first = rest(at_numbers(system, values))
+    found = _listed(first, first.system, within, limits or Limits())
+    if found.complete or not found.families:
+        return found
+    symmetric, changed = with_cyclic_last_angles(first)
+    if not changed:
+        return found
+    counted = _listed(symmetric, first.system, within, limits or Limits())
+    if not counted.complete:
+        return found
+    turns = (f"counted up to turns of {body} about its axis {axis}, on which nothing depends" for body, axis in changed)
+    return replace(counted, remarks=(*counted.remarks, *turns))
+
+
+def _listed(first: Rest, described_by: System, within: float, limits: Limits) -> Equilibria:
+    """The relative equilibria of a system at numbers, in sets of angles that begin with those of ``first``."""
+    remarks: list[str] = []
+    found: list[Solution] = []
+    families: list[EquilibriumFamily] = []
+    complete = True
+    covering = charts(first, described_by)
+    for chart in covering:
+        search = _ChartSearch(chart, within, limits)
+        search.run()
+        if families and chart.restrictions:
+            search.points = _off_families(search, within, limits)
+        found += search.points
+        families += search.families
+        remarks += search.remarks
+        complete = complete and search.complete
+        if not search.equations and not search.impossible:  # everywhere: other angles have nothing to add
+            break
+    listed = [_described(group) for group in groups(found)]
+    listed.sort(key=lambda x: (_ORDER[x.verdict.word], x.coordinates_of, _sort_key(x)))
+    singular = tuple(x for x in listed if x.verdict.coordinates_singular)
+    beyond = tuple(x for x in listed if x.beyond and x not in singular)
+    listed = [x for x in listed if x not in singular and x not in beyond]
+    if singular or any(x.verdict.coordinates_singular for x in families):
+        remarks.append(
+            "where the mass matrix is singular so are the coordinates: such a solution need not be an equilibrium, "
+            "which is to be seen in other coordinates"
+        )
+    if families and covering[0].joints:
+        remarks.append("families are listed in coordinates: one set of configurations may be described more than once")
+    turning = tuple(
+        (name, float(first.ring.evaluate(first.rates[first.ring.index("velocity", name)], {}).mid()))
+        for name in first.turning
+    )
+    return Equilibria(
+        tuple(listed),
+        tuple(families),
+        complete,
+        tuple(dict.fromkeys(remarks)),
+        turning,
+        len(covering),
+        singular,
+        beyond,
+    )
+
+
+def _off_families(search: _ChartSearch, within: float, limits: Limits) -> list[Solution]:
+    """The points of a chart that are not limits of families which run on outside its restrictions."""
+    whole = _ChartSearch(replace(search.chart, restrictions=()), within, limits)
+    whole.run()
+    search.complete = search.complete and whole.complete
+    return [
+        point
+        for point in search.points
+        if not any(
+            all((value := point.place.residue(x)) is not None and value == 0 for x in equations)
+            for equations in whole.family_equations
+        )
+    ]
+
+
+_ORDER = {word: k for k, word in enumerate(Word)}
+
+
+def _sort_key(x: RelativeEquilibrium) -> tuple[tuple[float, float], ...]:
+    return tuple((round(abs(item.value), 9), -item.value) for item in x.values)
+
+
+def _described(group: Sequence[Solution]) -> RelativeEquilibrium:
+    """The configuration in its simplest coordinates, judged there."""
+    best = min(
+        group, key=lambda c: (c.chart.chart.label, sum(abs(x.value) for x in c.values), [-x.value for x in c.values])
+    )
+    judged = best.chart.verdict(best.place)
+    return RelativeEquilibrium(
+        best.values,
+        best.proof,
+        judged,
+        best.chart.chart.label,
+        best.free,
+        len(group),
+        best.beyond,
+        {x.name: best.place.balls[x.name] for x in best.values},
+    )
+
+
+class _ChartSearch(SearchInBoxes):
+    """Conditions, solutions and verdicts in one set of coordinates."""
+
+    def run(self) -> None:
+        self._conditions()
+        if self.impossible:
+            return
+        if not self.equations:
+            self._add_free_point()
+            return
+        if self.reason:
+            self.remarks.append(f"not solved exactly: {self.reason}")
+            self._search_numerically(bisect=True)
+            return
+        self._solve_exactly()
+
+    def _solve_exactly(self) -> None:
+        table = Unknowns(self.ring, [*self.equations, *self.singular_where])
+        equations = [table.polynomial(x) for x in self.equations] + table.relations()
+        usable = [x for x in self.nonzero if table.holds(x)]
+        result = solve(equations, [table.polynomial(x) for x in usable], table.bounded(), self.limits)
+        for point in result.points:
+            if not table.roots_agree(point):
+                continue
+            self._add(self._place(table, point), EXACT)
+        for family in result.families:
+            if table.roots_agree(family.sample):
+                self._add_family(table, family)
+        if result.unfinished:
+            if self._solve_in_direction_cosines():
+                return
+            reasons = "; ".join(result.unfinished)
+            self._incomplete(
+                f"the exact solution is not finished ({reasons}); the rest was searched for from {STARTS} points"
+            )
+            self._search_numerically(bisect=False)
+
+    def _solve_in_direction_cosines(self) -> bool:
+        """The second way to a complete list; False where it does not lead to one."""
+        if self.families:
+            return False
+        found = orientations(self.chart, self.occurring, self.nonzero, self._for_all_times, self.limits)
+        if found is None or any(not self._may_rest(place) for place in found.places):
+            return False
+        known = [x.place for x in self.points]
+        for place in found.places:
+            if not any(self._same(place, other) for other in known):
+                self._add(place, EXACT)
+        self.remarks.append(f"solved exactly in the direction cosines of {', '.join(found.joints)}")
+        return True
+
+    def _place(self, table: Unknowns, point: AlgebraicPoint) -> Place:
+        ring = self.ring
+        exact = dict(zip(table.indices, point.values, strict=True))
+        balls = {}
+        for name in self.occurring:
+            if ring.has("sine", name) and ring.index("sine", name) in exact:
+                s, c = (point.enclosure(exact[ring.index(kind, name)], PRECISION) for kind in ("sine", "cosine"))
+                balls[name] = angle_of(s, c, ring.angles[name])
+            else:
+                balls[name] = point.enclosure(exact[ring.index("coordinate", name)], PRECISION)
+        for name in self.free:  # any value does; 0 is one
+            exact |= {ring.index("coordinate", name): fmpq_poly([0])}
+            if name in ring.angles:
+                exact |= {ring.index("sine", name): fmpq_poly([0]), ring.index("cosine", name): fmpq_poly([1])}
+        return Place(self.found, balls, exact | exact_rates(self.found), point.modulus, point.enclosure)
+
+    def _add_free_point(self) -> None:
+        self._add(self._zero(), EXACT)
+        self.remarks.append("every position is an equilibrium")
+
+    def _add_family(self, table: Unknowns, family: Family) -> None:
+        place = self._place(table, family.sample)
+        free = [self.ring.generators[table.indices[k]] for k in family.free]
+        names = [g.name if g.argument is None else table.names[k] for k, g in zip(family.free, free, strict=True)]
+        texts = tuple(table.text(x) for x in family.equations if not table.is_relation(x))
+        self.family_equations.append([table.back(x) for x in family.equations])
+        self.families.append(
+            EquilibriumFamily(
+                family.dimension,
+                tuple(dict.fromkeys(names)),
+                texts,
+                self._values(place),
+                self.verdict(place),
+                self.chart.label,
+            )
+        )

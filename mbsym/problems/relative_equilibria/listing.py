@@ -1,0 +1,209 @@
+"""Places of rest as entries of a list: their coordinates as text, what tells configurations apart, their verdicts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+from flint import ctx, fmpq, fmpq_poly
+
+from mbsym.algebra.failures import Failure
+from mbsym.algebra.polynomial_systems import (
+    Limits,
+)
+from mbsym.algebra.ring import Polynomial
+from mbsym.mechanics.charts import Chart
+from mbsym.mechanics.charts import features as direction_features
+from mbsym.mechanics.reflections import Reflection, reflections
+from mbsym.problems.relative_equilibria.conditions import Conditions
+from mbsym.problems.relative_equilibria.place import PRECISION, Place, exact_rates
+from mbsym.problems.relative_equilibria.result import CoordinateValue, EquilibriumFamily
+from mbsym.problems.relative_equilibria.sampling import turned
+from mbsym.problems.relative_equilibria.verdict import LinearAtRest, linear_at_rest
+from mbsym.problems.stability.reasons import Because, Reason
+from mbsym.problems.stability.verdict import Verdict, undecided
+from mbsym.problems.stability.word import Word
+
+#: Other values of coordinates that may have any, where their verdicts are compared: t, or 2 atan(t) of angles.
+ELSEWHERE = (fmpq(1, 3), fmpq(-2), fmpq(7, 5))
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A solution in one chart; ``features`` are numbers that belong to the configuration, whatever the coordinates."""
+
+    values: tuple[CoordinateValue, ...]
+    features: tuple[Any, ...]
+    proof: str
+    place: Place
+    chart: Listing
+    free: tuple[str, ...]
+    beyond: tuple[str, ...] = ()
+
+
+def groups(found: Iterable[Solution]) -> list[list[Solution]]:
+    """Candidates that mean one configuration: their features cannot be told apart at the working precision."""
+    together: list[list[Solution]] = []
+    table: dict[tuple[float, ...], list[list[Solution]]] = {}
+    for candidate in found:
+        # Rounded features only say where to look; overlapping balls decide.
+        key = tuple(round(float(x.mid()), 6) + 0.0 for x in candidate.features)
+        for group in table.get(key, []):
+            if all(a.overlaps(b) for a, b in zip(group[0].features, candidate.features, strict=True)):
+                group.append(candidate)
+                break
+        else:
+            together.append([candidate])
+            table.setdefault(key, []).append(together[-1])
+    return together
+
+
+class Listing(Conditions):
+    """Solutions of one chart, as they are found."""
+
+    def __init__(self, chart: Chart, within: float, limits: Limits) -> None:
+        super().__init__(chart, within, limits)
+        self.points: list[Solution] = []
+        self.families: list[EquilibriumFamily] = []
+        self.family_equations: list[list[Polynomial]] = []
+
+    def _zero(self) -> Place:
+        """The place where every coordinate is 0, exactly."""
+        ring, zero, one = self.ring, fmpq_poly([0]), fmpq_poly([1])
+        exact = {}
+        for name in self.found.constant:
+            exact[ring.index("coordinate", name)] = zero
+            if name in ring.angles:
+                exact |= {ring.index("sine", name): zero, ring.index("cosine", name): one}
+        return Place(self.found, {}, exact | exact_rates(self.found), fmpq_poly([0, 1]))
+
+    def _may_rest(self, place: Place) -> bool:
+        """Whether no equation is proved not to vanish there: the second route of every list in balls."""
+        with ctx.workprec(PRECISION):
+            return all(self.ring.evaluate(x, place.balls).contains(0) for x in self.equations)
+
+    def _same(self, one: Place, other: Place) -> bool:
+        """Whether two places have coordinates that balls of PRECISION bits cannot tell apart."""
+        ring = self.ring
+        compared = [
+            ring.generator(kind, name)
+            for name in self.occurring
+            for kind in (("sine", "cosine") if self._periodic(name) else ("coordinate",))
+        ]
+        return all(one.ball(x).overlaps(other.ball(x)) for x in compared)
+
+    def _known(self, place: Sequence[float], tolerance: float) -> bool:
+        """Whether a solution is listed already, within ``tolerance``."""
+        return any(
+            all(
+                abs(turned(x - item.value, self.ring.angles[item.name]) if item.angle else x - item.value) < tolerance
+                for x, item in zip(place, other.values, strict=True)
+            )
+            for other in self.points
+        )
+
+    def _add(self, place: Place, proof: str) -> None:
+        self.points.append(self._candidate(place, proof))
+
+    def _candidate(self, place: Place, proof: str) -> Solution:
+        beyond = []
+        for reflection in self._reflections:
+            if place.balls[reflection.length] < 0 and reflection.same_forces:
+                place = place.reflected(reflection.length, reflection.angle)
+            elif place.balls[reflection.length] < 0:
+                beyond.append(reflection.length)
+        return Solution(self._values(place), self._features(place), proof, place, self, self.free, tuple(beyond))
+
+    @cached_property
+    def _reflections(self) -> tuple[Reflection, ...]:
+        """Polar coordinates; none for the search of a family's points."""
+        return reflections(self.found)
+
+    def _values(self, place: Place) -> tuple[CoordinateValue, ...]:
+        return tuple(self._value(place, name) for name in self.occurring)
+
+    def _value(self, place: Place, name: str) -> CoordinateValue:
+        ring, ball = self.ring, place.balls[name]
+        periodic = self._periodic(name)
+        value = float(ball.mid())
+        if not periodic:
+            residue = place.residue(ring.generator("coordinate", name))
+            if residue is not None and residue.degree() <= 0:
+                exact = Fraction(int(residue[0].p), int(residue[0].q))
+                text = str(exact)
+                return CoordinateValue(name, text if len(text) <= 14 else short(value), value, False, len(text) <= 14)
+            return CoordinateValue(name, short(value), value, False, False)
+        if proof_of := self._twelfths(place, name, value):
+            return CoordinateValue(name, proof_of, value, True, True)
+        value = turned(value, ring.angles[name])
+        return CoordinateValue(name, short(value), value, True, False)
+
+    def _twelfths(self, place: Place, name: str, value: float) -> str:
+        """``k*pi/12`` if the angle is such a multiple, proved by (cos + i sin)^24 = 1 in the number field."""
+        s, c = (place.residue(self.ring.generator(kind, name)) for kind in ("sine", "cosine"))
+        if s is None or c is None or self.ring.angles[name] != 1:
+            return ""
+        real, imaginary = fmpq_poly([1]), fmpq_poly([0])
+        for _ in range(24):
+            real, imaginary = (real * c - imaginary * s) % place.modulus, (real * s + imaginary * c) % place.modulus
+        if real != fmpq_poly([1]) or imaginary != fmpq_poly([0]):
+            return ""
+        part = Fraction(round(12 * value / math.pi), 12)
+        if part == 0:
+            return "0"
+        top = {1: "pi", -1: "-pi"}.get(part.numerator, f"{part.numerator}*pi")
+        return top if part.denominator == 1 else f"{top}/{part.denominator}"
+
+    def _features(self, place: Place) -> tuple[Any, ...]:
+        """Direction cosines of the joints that have other angles; sines, cosines or values of the other coordinates."""
+        features, done = [], set(self.free)
+        for joint in self.chart.joints:
+            cyclic = joint.angles[:1] * joint.first_free + joint.angles[2:] * joint.last_free
+            if set(joint.angles) & set(self.free) - set(cyclic):
+                continue
+            features += [place.ball(x) for x in direction_features(self.found, joint)]
+            done |= set(joint.angles)
+        for name in self.found.constant:
+            if name in done:
+                continue
+            if self._periodic(name):
+                features += [place.ball(self.ring.generator(kind, name)) for kind in ("sine", "cosine")]
+            else:
+                features.append(place.balls[name])
+        return tuple(features)
+
+    # --- stability ---
+
+    @cached_property
+    def _linear(self) -> LinearAtRest | str:
+        """The matrices as formulas, or why there are none."""
+        try:
+            return linear_at_rest(self.found)
+        except Failure as reason:
+            return str(reason)
+
+    def verdict(self, place: Place) -> Verdict:
+        """The verdict of problem 6 at a place."""
+        if isinstance(self._linear, str):
+            return undecided(Because.NO_EQUATIONS, self._linear)
+        found = self._linear.verdict(place)
+        ring, free = self.ring, self.free
+        every = (x for rows in self._linear.matrices for row in rows for x in row)
+        varying = tuple(dict.fromkeys(name for x in every for name in ring.dependencies(x, free)))
+        if not varying or found.word is Word.UNDECIDED:
+            return found
+        # Any value of these is an equilibrium, but not the same first approximation.
+        words = {self._linear.verdict(place.elsewhere(varying, t)).word for t in ELSEWHERE}
+        names = ", ".join(varying)
+        if words != {found.word}:
+            told = " or ".join(sorted(words - {found.word}))
+            return undecided(Because.DIFFERS_ALONG, names, found.word, told)
+        return replace(found, reasons=(*found.reasons, Reason(Because.ALSO_ELSEWHERE, (names,))))
+
+
+def short(value: float) -> str:
+    return f"{value + 0.0:.10g}" if abs(value) > 1e-15 else "0"

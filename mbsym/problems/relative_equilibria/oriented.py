@@ -1,0 +1,286 @@
+"""All rests in one set of angles, solved exactly with direction cosines as unknowns (``rest_cosines``).
+
+It is the second way for systems that outgrow the exact solution in sines and cosines (a gyrostat in an orbit with any
+gyrostatic moment).  The system here is equivalent to f = 0 wherever the angles are regular: all components of the
+moment of every joint in one frame, what acts on the other coordinates, and the relations of the direction cosines.
+So a complete list of its real solutions (``polynomial_systems.solve``) is a complete list of the orientations at rest.
+
+The angles follow:  of three turns about different axes one entry of R is +-sin x2, four are +-sin x1 cos x2,
++-cos x1 cos x2, +-sin x3 cos x2, +-cos x3 cos x2, with  cos x2 = +-sqrt(1 - sin^2 x2):  two descriptions of one
+orientation (sine and cosine of x2 exchanged where the first axis is repeated).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import Any
+
+from flint import ctx, fmpq, fmpq_poly, fmpz
+
+from mbsym.algebra.polynomial_systems import AlgebraicPoint, Limits, context, solve
+from mbsym.algebra.ring import Polynomial
+from mbsym.mechanics.charts import Chart, Joint, moment_components
+from mbsym.problems.relative_equilibria.cosines import Choice, Cosines, choices
+from mbsym.problems.relative_equilibria.place import PRECISION, Place, angle_of, exact_rates
+from mbsym.problems.relative_equilibria.unknowns import Unknowns
+
+#: Bits of a coefficient that are allowed, as a multiple of those in sines and cosines; the part of the work (the
+#: general gyrostat takes 150,000 steps of ten million); and the size of one interreduction (the gyrostat: 40 million).
+BITS, PART, REDUCTION = 3, 20, 100_000_000
+
+Split = Callable[[Polynomial], Iterable[Polynomial]]
+
+
+@dataclass(frozen=True)
+class Orientations:
+    """The places of rest in one chart, every one and each in all its sets of angles.
+
+    ``joints``: the bodies whose direction cosines were the unknowns.
+    """
+
+    places: tuple[Place, ...]
+    joints: tuple[str, ...]
+
+
+def orientations(
+    chart: Chart, names: Sequence[str], nonzero: Sequence[Polynomial], split: Split, limits: Limits
+) -> Orientations | None:
+    """All real solutions of f = 0 in a chart at which no polynomial of ``nonzero`` vanishes.
+
+    ``names``: the coordinates that occur in f.  ``split``: what must vanish so that a polynomial does at all times.
+    None where the equations are no polynomials in direction cosines, where their solutions are not isolated, or where
+    the solution is not finished within ``limits``: nothing is known then.
+    """
+    replaced = [joint for joint in chart.joints if len(joint.angles) == 3 and set(joint.angles) & set(names)]
+    if not replaced:
+        return None
+    per_joint = [[(frame, choice) for frame in (0, 1) for choice in choices(joint)] for joint in replaced]
+    components = [moment_components(chart.found, joint) for joint in replaced]
+    for picked in product(*per_joint):
+        moments = [components[k][frame] for k, (frame, _) in enumerate(picked)]
+        if any(not part or any(x is None for x in part) for part in moments):
+            continue
+        system = _System.of(chart, replaced, [choice for _, choice in picked], moments, split)
+        if system is not None:
+            return system.solved(names, nonzero, limits)
+    return None
+
+
+class _System:
+    """The equations in direction cosines and in the other unknowns."""
+
+    def __init__(self, chart: Chart, cosines: Sequence[Cosines], equations: Sequence[Polynomial]) -> None:
+        self.chart, self.ring, self.cosines = chart, chart.found.ring, cosines
+        self.original = list(equations)
+
+    @staticmethod
+    def of(
+        chart: Chart,
+        joints: Sequence[Joint],
+        chosen: Sequence[Choice],
+        moments: Sequence[Sequence[Polynomial | None]],
+        split: Split,
+    ) -> _System | None:
+        found, ring = chart.found, chart.found.ring
+        inside = {name for joint in joints for name in joint.angles}
+        conditions = [x for name, x in zip(found.system.coordinates, found.at_rest, strict=True) if name not in inside]
+        conditions += [x for part in moments for x in part if x is not None]
+        parts = [y for x in conditions for y in split(x)]
+        equations = [ring.fraction(x)[0] for x in (*parts, *chart.restrictions)]
+        cosines = [Cosines(found, joint, choice) for joint, choice in zip(joints, chosen, strict=True)]
+        system = _System(chart, cosines, [x for x in equations if not x.is_zero()])
+        return system if system._written() else None
+
+    def _written(self) -> bool:
+        """Whether the equations are polynomials in the entries; they are made on the way."""
+        terms: list[dict[tuple[tuple[int, ...], ...], Any]] = [{(): x} for x in self.original]
+        for one in self.cosines:
+            fresh: list[dict[tuple[tuple[int, ...], ...], Any]] = []
+            for item in terms:
+                written = one.written(list(item.values()))
+                if written is None:
+                    return False
+                grown: dict[tuple[tuple[int, ...], ...], Any] = {}
+                for key, pairs in zip(item, written, strict=True):
+                    for exponents, rest in pairs:
+                        grown[(*key, exponents)] = self.ring.context.from_dict(rest)
+                fresh.append(grown)
+            terms = fresh
+        others = [x for item in terms for x in item.values() if not x.is_constant()]
+        self.table = Unknowns(self.ring, others)
+        entries = [f"r{k}_{i}{j}" for k, one in enumerate(self.cosines) for i, j in one.choice.entries]
+        self.context = context([*entries, *(f"y{k}" for k in range(len(self.table.indices)))])
+        self.equations = [self._integral(item) for item in terms] + self._relations(len(entries))
+        return True
+
+    def _integral(self, item: Mapping[tuple[tuple[int, ...], ...], Polynomial]) -> Any:
+        """One equation times the least positive integer that leaves no fractions."""
+        terms = {
+            (*(e for part in key for e in part), *(int(m[k]) for k in self.table.indices)): fmpq(c)
+            for key, x in item.items()
+            for m, c in x.terms()
+        }
+        common = fmpz(1)
+        for c in terms.values():
+            common = common.lcm(c.q)
+        return self.context.from_dict({m: (c * common).p for m, c in terms.items()})
+
+    def _relations(self, entries: int) -> list[Any]:
+        """Unit vectors, at right angles; and the relations of the other unknowns."""
+        gens = iter(self.context.gens())
+        found = []
+        for one in self.cosines:
+            vectors = [[next(gens) for _ in vector] for vector in one.choice.vectors]
+            found += [sum(x * x for x in v) - 1 for v in vectors]
+            if len(vectors) == 2:
+                found.append(sum(x * y for x, y in zip(*vectors, strict=True)))
+        for x in self.table.relations():
+            found.append(self.context.from_dict({((0,) * entries + tuple(m)): c for m, c in x.terms()}))
+        return found
+
+    # --- solutions ---------------------------------------------------------------------------------------------------
+
+    def solved(self, names: Sequence[str], nonzero: Sequence[Polynomial], limits: Limits) -> Orientations | None:
+        entries = sum(len(one.choice.entries) for one in self.cosines)
+        bounded = [*range(entries), *(entries + k for k in self.table.bounded())]
+        used = {k for x in self.equations for k, degree in enumerate(x.degrees()) if degree > 0}
+        if used != set(range(self.context.nvars())):
+            return None
+        result = solve(
+            self.equations,
+            (),
+            bounded,
+            replace(limits, bits=BITS * limits.bits, work=limits.work // PART, reduction=REDUCTION),
+        )
+        if result.unfinished or result.families:
+            return None
+        places: list[Place] = []
+        for point in result.points:
+            rest = AlgebraicPoint(point.modulus, point.index, point.values[entries:])
+            if not self.table.roots_agree(rest):
+                continue
+            described = self._described(point, names)
+            if described is None:
+                return None
+            for place in described:
+                values = [place.ball(x) for x in nonzero]
+                if any(x == 0 for x in values):
+                    continue
+                if any(x.contains(0) for x in values):
+                    return None
+                places.append(place)
+        return Orientations(tuple(places), tuple(one.joint.body for one in self.cosines))
+
+    def _described(self, point: AlgebraicPoint, names: Sequence[str]) -> list[Place] | None:
+        """The place in each of its sets of angles; [] where the angles are singular, None where that is not known."""
+        ring, found = self.ring, self.chart.found
+        start = 0
+        sets: list[list[_Angles]] = []
+        for one in self.cosines:
+            count = len(one.choice.entries)
+            angles = _angles(one, point, point.values[start : start + count], names)
+            if not angles:
+                return None if angles is None else []
+            sets.append(angles)
+            start += count
+        others = dict(zip(self.table.indices, point.values[start:], strict=True))
+        places = []
+        for chosen in product(*sets):
+            exact: dict[int, Any] = dict(others)
+            balls: dict[str, Any] = {}
+            for item in chosen:
+                exact |= item.exact
+                balls |= item.balls
+            for name in (x for x in found.constant if x not in balls):
+                if name not in names:  # any value does; 0 is one
+                    exact |= {ring.index("coordinate", name): fmpq_poly([0])}
+                    if name in ring.angles:
+                        exact |= {ring.index("sine", name): fmpq_poly([0]), ring.index("cosine", name): fmpq_poly([1])}
+                elif ring.has("sine", name) and ring.index("sine", name) in exact:
+                    s, c = (point.enclosure(exact[ring.index(kind, name)], PRECISION) for kind in ("sine", "cosine"))
+                    balls[name] = angle_of(s, c, ring.angles[name])
+                elif ring.index("coordinate", name) in exact:
+                    balls[name] = point.enclosure(exact[ring.index("coordinate", name)], PRECISION)
+                else:
+                    return None
+            places.append(Place(found, balls, exact | exact_rates(found), point.modulus, point.enclosure))
+        return places
+
+
+@dataclass(frozen=True)
+class _Angles:
+    """One set of angles of a joint: balls by name, and sines and cosines that lie in the field, by their generators."""
+
+    balls: Mapping[str, Any]
+    exact: Mapping[int, Any]
+
+
+def _angles(one: Cosines, point: AlgebraicPoint, values: Sequence[Any], names: Sequence[str]) -> list[_Angles] | None:
+    """The sets of angles at a solution: two, none ([]) where they are singular; None where that cannot be told."""
+    ring, joint, choice = one.ring, one.joint, one.choice
+    known = dict(zip(choice.entries, values, strict=True))
+    if len(choice.vectors) == 2:
+        (u, v), p = (([known[x] for x in vector]) for vector in choice.vectors), point.modulus
+        for k, entry in enumerate(choice.third()):
+            a, b = (k + 1) % 3, (k + 2) % 3
+            known[entry] = (u[a] * v[b] - u[b] * v[a]) * choice.sign() % p
+    seen = list(_simple(one, known))
+    middle = joint.angles[1]
+    kinds = {ring.index(kind, middle): kind for kind in ("sine", "cosine")}
+    first = next(((key, value) for key, value in seen if len(key) == 1 and key[0] in kinds), None)
+    if first is None:
+        return None
+    (index,), inner = first
+    other = next(k for k in kinds if k != index)
+    square = (1 - inner * inner) % point.modulus
+    if square == 0:
+        return []
+    with ctx.workprec(PRECISION):
+        length = point.enclosure(square, PRECISION)
+        if not length > 0:
+            return None
+        length = length.sqrt()
+    root = _rational_root(square)
+    found = []
+    for sign in (1, -1):
+        exact = {index: inner}
+        with ctx.workprec(PRECISION):
+            balls = {index: point.enclosure(inner, PRECISION), other: length * sign}
+        if root is not None:
+            exact[other] = fmpq_poly([root * sign])
+        for key, value in seen:
+            outer = [k for k in key if k != other]
+            if len(key) == 2 and len(outer) == 1 and outer[0] not in kinds:
+                with ctx.workprec(PRECISION):
+                    balls[outer[0]] = point.enclosure(value, PRECISION) / balls[other]
+                if root is not None:
+                    exact[outer[0]] = value * (1 / (root * sign))
+        angles = {}
+        for name in (x for x in joint.angles if x in names):
+            s, c = (balls.get(ring.index(kind, name)) for kind in ("sine", "cosine"))
+            if s is None or c is None:
+                return None
+            angles[name] = angle_of(s, c, ring.angles[name])
+        inside = {ring.index(kind, name) for name in angles for kind in ("sine", "cosine")}
+        found.append(_Angles(angles, {k: value for k, value in exact.items() if k in inside}))
+    return found
+
+
+def _simple(one: Cosines, known: Mapping[tuple[int, int], Any]) -> Iterator[tuple[tuple[int, ...], Any]]:
+    """(generators, value of their product) for each entry that is +- a product of different sines and cosines."""
+    for (k, j), value in known.items():
+        terms = list(one.matrix[k][j].terms())
+        if len(terms) == 1:
+            ((monomial, coefficient),) = terms
+            if coefficient in (1, -1) and all(e in (0, 1) for e in monomial):
+                yield tuple(i for i, e in enumerate(monomial) if e), value * coefficient
+
+
+def _rational_root(x: Any) -> fmpq | None:
+    """The square root of a positive rational number in the field, where it is rational."""
+    if x.degree() > 0:
+        return None
+    p, q = (fmpz(y).isqrt() for y in (x[0].p, x[0].q))
+    return fmpq(p, q) if fmpq(p * p, q * q) == x[0] else None

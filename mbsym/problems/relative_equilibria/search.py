@@ -1,0 +1,158 @@
+"""Rests by bisection or from many starting points, each proved to exist and to be unique in a box (Krawczyk)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from flint import arb, ctx
+
+from mbsym.algebra import krawczyk
+from mbsym.algebra.ring import Polynomial
+from mbsym.problems.relative_equilibria.bounds import reach
+from mbsym.problems.relative_equilibria.candidates import Candidate, candidates, only_root
+from mbsym.problems.relative_equilibria.listing import Listing, short
+from mbsym.problems.relative_equilibria.place import PRECISION, Place, exact_rates
+from mbsym.problems.relative_equilibria.result import CERTIFIED, EXACT
+from mbsym.problems.relative_equilibria.sampling import STARTS, from_many_points
+
+#: Plain coordinates that no formula bounds are searched for in [-WITHIN, WITHIN], where no exact solution is possible.
+WITHIN = 10.0
+#: Farther out than this they are not searched for, even where it is proved that they are not farther out.
+FARTHEST = 1_000.0
+#: Boxes that a bisection looks at.
+MOST_BOXES = 6_000
+#: More unknowns than this are not searched for by bisection.
+MOST_BISECTED = 3
+
+
+class SearchInBoxes(Listing):
+    """The search where there is no exact solution, or beside an unfinished one."""
+
+    def _search_numerically(self, bisect: bool) -> None:
+        names, ring = self.occurring, self.ring
+        n = len(names)
+        independent = self._square_system()
+        if independent is None or n == 0:
+            self._incomplete("these equations cannot be searched numerically: they are not as many as their unknowns")
+            return
+        slopes = [[ring.derivative(x, name) for name in names] for x in independent]
+        zero = dict.fromkeys(ring.names(), arb(0))
+
+        def function(box: krawczyk.Box) -> list[Any]:
+            at = zero | dict(zip(names, box, strict=True))
+            return [ring.evaluate(x, at) for x in independent]
+
+        def jacobian(box: krawczyk.Box) -> list[list[Any]]:
+            at = zero | dict(zip(names, box, strict=True))
+            return [[ring.evaluate(x, at) for x in row] for row in slopes]
+
+        special = list(candidates(self.found, names, self.equations)) if not self.chart.restrictions else []
+        special = [x for x in special if not any(x.vanishes(y) for y in self.nonzero)]
+        for candidate in special:
+            place = candidate.place(self.found, exact_rates(self.found))
+            if not self._known([float(place.balls[name].mid()) for name in names], 1e-12):
+                self._add(place, EXACT)
+        limited = [name for name in names if not self._periodic(name)]
+        held = {k: x for k, x in reach(ring, independent, limited).items() if x <= FARTHEST}
+        bounds = [self._range(name, held.get(name)) for name in names]
+        starts: list[list[float]] = []
+        proved: tuple[krawczyk.Box, ...] = ()
+        if bisect and n <= MOST_BISECTED:
+            result = krawczyk.search(function, jacobian, bounds, MOST_BOXES)
+            proved, left = result.roots, result.open_boxes
+            if n == 1:
+                left = self._unexplained(independent[0], left, special)
+            if left:
+                self._incomplete(f"{len(left)} boxes of the bisection are undecided: there may be more equilibria")
+            starts += [[float(x.mid()) for x in box] for box in (*proved, *left[:200])]
+        elif bisect:
+            self._incomplete(f"searched for from {STARTS} points: there may be more equilibria")
+        if not proved and (not starts or not bisect):
+            starts += from_many_points(ring, independent, slopes, names, bounds)
+        if bisect and limited:
+            ranges = ", ".join(f"{name} within {short(self._range(name, held.get(name))[1])}" for name in limited)
+            if set(limited) <= held.keys():
+                self.remarks.append(f"looked for with {ranges} of zero; the equations prove that none lies farther out")
+            else:
+                self._incomplete(f"looked for with {ranges} of zero only")
+        for number, start in enumerate(starts):
+            if not bisect and (self._known(start, 1e-6) or self._is_excluded(start)):
+                continue
+            box = krawczyk.certified(function, jacobian, start, PRECISION)
+            closely = box is not None and (
+                number >= len(proved) or all(x.overlaps(y) for x, y in zip(box, proved[number], strict=True))
+            )
+            if number < len(proved) and not closely:
+                self._incomplete("an equilibrium that was proved to exist could not be enclosed closely")
+            if box is not None and all(
+                low - 1e-9 <= float(x.mid()) <= high + 1e-9 for x, (low, high) in zip(box, bounds, strict=True)
+            ):
+                self._add_certified(dict(zip(names, box, strict=True)))
+
+    def _unexplained(
+        self, equation: Polynomial, boxes: Sequence[krawczyk.Box], special: Sequence[Candidate]
+    ) -> tuple[krawczyk.Box, ...]:
+        """Open boxes of one unknown, without groups in which a known place is the only root, simple or multiple."""
+        (name,) = self.occurring
+        groups: list[list[krawczyk.Box]] = []
+        for box in sorted(boxes, key=lambda x: float(x[0].mid())):
+            if groups and groups[-1][-1][0].overlaps(box[0]):
+                groups[-1].append(box)
+            else:
+                groups.append([box])
+        left: list[krawczyk.Box] = []
+        for group in groups:
+            hull = group[0][0].union(group[-1][0])
+            inside = [x for x in special if hull.contains(x.place(self.found, {}).balls[name])]
+            if len(inside) != 1 or not only_root(self.ring, equation, name, inside[0], hull):
+                left += group
+        return tuple(left)
+
+    def _is_excluded(self, start: Sequence[float]) -> bool:
+        """Whether some polynomial that must not vanish is about zero there: no root of this chart will be found."""
+        at = dict.fromkeys(self.ring.names(), arb(0)) | {
+            name: arb(x) for name, x in zip(self.occurring, start, strict=True)
+        }
+        return any(abs(float(self.ring.evaluate(x, at).mid())) < 1e-5 for x in self.nonzero)
+
+    def _square_system(self) -> list[Polynomial] | None:
+        """As many of the equations at rest as unknowns: those of the occurring coordinates."""
+        ring, found = self.ring, self.found
+        chosen = [
+            ring.fraction(x)[0]
+            for name, x in zip(found.system.coordinates, found.at_rest, strict=True)
+            if name in self.occurring
+        ]
+        varying = any(len(list(self._for_all_times(x))) != 1 for x in chosen)
+        others = [
+            x for name, x in zip(found.system.coordinates, found.at_rest, strict=True) if name not in self.occurring
+        ]
+        if (
+            varying
+            or any(not x.is_zero() for x in others)
+            or self.chart.restrictions
+            or any(x.is_zero() for x in chosen)
+        ):
+            return None
+        return chosen
+
+    def _add_certified(self, box: Mapping[str, Any]) -> None:
+        place = Place(self.found, box, {}, None)
+        with ctx.workprec(PRECISION):
+            if any(self.ring.evaluate(x, place.balls).contains(0) for x in self.nonzero):
+                return
+        if not self._may_rest(place):
+            return
+        if not self._known([float(box[name].mid()) for name in self.occurring], 1e-12):
+            self._add(place, CERTIFIED)
+
+    def _range(self, name: str, held: float | None = None) -> tuple[float, float]:
+        """Where ``name`` is looked for; ``held`` is a proved bound."""
+        if self._periodic(name):
+            # Slightly more than a turn, and not symmetric: no root on the border.
+            turn = math.pi * self.ring.angles[name]
+            return -turn - 0.0123, turn + 0.0171
+        farthest = self.within if held is None else held
+        return -farthest - 0.00123, farthest + 0.00171

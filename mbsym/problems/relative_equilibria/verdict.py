@@ -1,0 +1,231 @@
+"""Linear equations at states of rest, as formulas in the coordinates, and the verdict of problem 6 on one of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from itertools import combinations
+
+from flint import ctx, fmpq, fmpq_mpoly_ctx
+
+from mbsym.algebra.failures import Failure, NotRational
+from mbsym.algebra.matrices import ScalarMatrix, added, skew, symmetric
+from mbsym.algebra.ring import Polynomial
+from mbsym.mechanics.rest import Rest
+from mbsym.mechanics.symmetry import free_spin
+from mbsym.problems import dissipation, knowledge
+from mbsym.problems import energy as energies
+from mbsym.problems.conserved import Conserved, by_integrals, conserved
+from mbsym.problems.dissipation import EnergyLaw
+from mbsym.problems.energy import Energy
+from mbsym.problems.relative_equilibria.place import PRECISION, Place
+from mbsym.problems.stability.bundle import Element, NumberField
+from mbsym.problems.stability.degenerate import Extremum, in_one_coordinate, of_fourth_order
+from mbsym.problems.stability.enclosed import blocks, enclosed_verdict_with_cyclic
+from mbsym.problems.stability.exact import verdict_at
+from mbsym.problems.stability.linear_form import LinearSystem, null_rows
+from mbsym.problems.stability.reasons import Because, Reason
+from mbsym.problems.stability.theorems import Fact
+from mbsym.problems.stability.verdict import Verdict, combine, concluded, drifting, undecided
+
+#: Derivatives of fourth order of a potential in more coordinates than this are not formed.
+MOST_DEGENERATE = 4
+
+
+@dataclass(frozen=True)
+class LinearAtRest:
+    """M, D, G, K, N as formulas in the coordinates, valid wherever f vanishes.
+
+    ``law``: what the energy does near all of these states; ``ignorable``: coordinates that no equation contains.
+    """
+
+    matrices: tuple[Sequence[Sequence[Polynomial]], ...]
+    law: EnergyLaw
+    cyclic: tuple[int, ...]
+    varying: tuple[str, ...]
+    tilts: tuple[int, ...]
+    spin: Polynomial | None
+    found: Rest
+    energy: Energy | None
+    ignorable: tuple[str, ...]
+    #: The equations of motion have no terms of higher order.
+    exact: bool = False
+
+    def verdict(self, place: Place) -> Verdict:
+        """By the first approximation, and where that leaves it open by the integrals of the motion."""
+        verdict = self._by_first_approximation(place)
+        return self.decided(verdict, place)
+
+    def decided(self, verdict: Verdict, place: Place) -> Verdict:
+        """An open verdict decided by terms of higher order of the energy, or by further integrals; else as it is."""
+        if not verdict.word.open or verdict.coordinates_singular or self.varying or place.modulus is None:
+            return verdict
+        field = NumberField(place.modulus, place.enclose)
+        try:
+            with ctx.workprec(PRECISION):
+                by_energy = self._by_higher_order(place, field)
+                if by_energy is not None:
+                    return by_energy
+                names = None if self._conserved is None else self._conserved.combination(place.residue, field)
+        except NotRational:
+            return verdict
+        return verdict if names is None else by_integrals(names, bool(self.ignorable))
+
+    def _by_higher_order(self, place: Place, field: NumberField) -> Verdict | None:
+        """Where no coordinate turns, V = T_2 part of the energy apart: K = V'' as a formula gives all derivatives."""
+        ring, names = self.found.ring, self.found.system.coordinates
+        if not self.conservative or self.found.turning or any(x != 0 for row in self.matrices[4] for x in row):
+            return None
+        kept = [i for i, name in enumerate(names) if name not in self.ignorable]
+        if not kept or len(kept) > MOST_DEGENERATE:
+            return None
+        stiffness = [[self.matrices[3][i][j] for j in kept] for i in kept]
+        of = [names[i] for i in kept]
+
+        def derivative(i: int, j: int, *further: int) -> Element | None:
+            x = stiffness[i][j]
+            for k in further:
+                x = ring.derivative(x, of[k])
+            return place.residue(x)
+
+        if len(kept) == 1:
+            extremum, order = in_one_coordinate(lambda n: derivative(0, 0, *(0 for _ in range(n - 2))), field)
+            if extremum is Extremum.NONE and len(names) == 1 and self.law is EnergyLaw.CONSERVED:
+                facts = {Fact.NO_MINIMUM_IN_ONE_COORDINATE, Fact.ENERGY_CONSERVED}
+                return concluded(facts, Reason(Because.NO_MINIMUM, (order,)))
+            if extremum is not Extremum.MINIMUM:
+                return None
+        else:
+            second = [[derivative(i, j) for j in range(len(kept))] for i in range(len(kept))]
+            if any(x is None for row in second for x in row):
+                return None
+            if not of_fourth_order(second, derivative, derivative, field):
+                return None
+            order = 4
+        facts = {Fact.MINIMUM_OF_HIGHER_ORDER, Fact.ENERGY_NEVER_GROWS}
+        found = concluded(facts, Reason(Because.HIGHER_MINIMUM, (order,)))
+        return drifting(found) if self.ignorable else found
+
+    @property
+    def conservative(self) -> bool:
+        """Whether the energy does not grow near any of these states, in all orders."""
+        return self.law.bounded
+
+    @cached_property
+    def _conserved(self) -> Conserved | None:
+        """The integrals, where the energy is conserved and some momentum is."""
+        if self.energy is None or not self.conservative:
+            return None
+        return conserved(self.found.scene, self.energy, self.ignorable, self.found.turning)
+
+    def _by_first_approximation(self, place: Place) -> Verdict:
+        if self.varying:
+            return undecided(Because.VARIES, ", ".join(self.varying))
+        values = [[[place.ball(x) for x in row] for row in rows_] for rows_ in self.matrices]
+        exact = [[[place.residue(x) for x in row] for row in rows_] for rows_ in self.matrices]
+        rational = all(x is not None and x.degree() <= 0 for rows_ in exact for row in rows_ for x in row)
+        verdicts = []
+        for indices in blocks(*values):
+            cyclic = tuple(
+                at
+                for at, i in enumerate(indices)
+                if i in self.cyclic and all(values[m][i][j] == 0 for m in (3, 4) for j in indices)
+            )
+            if rational:
+                parts = [[[exact[m][i][j][0] for j in indices] for i in indices] for m in range(5)]
+                names = tuple(self.found.system.coordinates[i] for i in indices)
+                rate = self._rate(place) if {*self.tilts} <= {*indices} else None
+                verdicts.append(_rational_verdict(parts, self.conservative, cyclic, rate, names, self.exact))
+            else:
+                parts = [[[values[m][i][j] for j in indices] for i in indices] for m in range(5)]
+                verdicts.append(enclosed_verdict_with_cyclic(parts, self.conservative, cyclic, PRECISION, self.exact))
+        return combine(verdicts, self.conservative)
+
+    def _rate(self, place: Place) -> fmpq | None:
+        """The rate of a steady spin that may be turned in space, where it is a rational number."""
+        residue = None if self.spin is None else place.residue(self.spin)
+        return None if residue is None or residue.degree() > 0 else residue[0]
+
+
+def linear_at_rest(found: Rest) -> LinearAtRest:
+    """M = mass matrix, D + G = -df/dq', K + N = -df/dq, on the steady motions."""
+    ring, names = found.ring, found.system.coordinates
+    rates = dict(found.rates)
+    mass = found.mass_matrix()
+    slopes = [[ring.velocity_derivative(f, name) for name in names] for f in found.forcing]
+    C = -ScalarMatrix(ring, slopes).map(lambda x: ring.substitute(x, dict(rates)))
+    S = -ScalarMatrix(ring, [[ring.derivative(f, name) for name in names] for f in found.at_rest])
+    moving = [*found.turning, *(item.name for item in found.system.prescribed), "t"]
+    every = (x for rows_ in (mass, C, S) for row in rows_ for x in row)
+    varying = tuple(dict.fromkeys(name for x in every for name in ring.dependencies(x, moving)))
+    scene = found.scene
+    try:
+        known = energies.energy(scene)
+    except Failure:
+        known = None
+    balance = dissipation.balance(scene, known, knowledge.signs(scene), somewhere=True)
+    cyclic = tuple(names.index(name) for name in balance.ignorable if name not in balance.driven)
+    # Momenta of cyclic coordinates have to be those of the equations, too, not of an L that knows the time.
+    law = balance.law
+    if not law.bounded and all(found.at_rest[i].is_zero() for i in cyclic) and has_energy(found):
+        law = EnergyLaw.CONSERVED
+    parts = (mass, symmetric(C).rows, skew(C).rows, symmetric(S).rows, skew(S).rows)
+    spin = free_spin(found.system)
+    tilts = () if spin is None else tuple(names.index(name) for name in spin.tilts)
+    rate = None if spin is None else rates[ring.index("velocity", spin.coordinate)]
+    ignorable = tuple(names[i] for i in cyclic)
+    exact = balance.exactly_linear
+    return LinearAtRest(parts, law, cyclic, varying, tilts, rate, found, known, ignorable, exact)
+
+
+def has_energy(found: Rest) -> bool:
+    """Whether q'.M q'/2 + V(q) is proved to be an integral, with V from f(q, 0), whatever L looks like.
+
+    So it is where a frame is accelerated evenly: L knows the time, the equations do not.  With f' = f(q, q') - f(q, 0)
+
+        d/dt (q'.M q'/2 + V) = q'.f' + sum q'_k q'.(dM/dq_k) q' / 2
+    """
+    ring, names = found.ring, found.system.coordinates
+    moving = [*(item.name for item in found.system.prescribed), "t"]
+    mass = found.mass_matrix()
+    if found.turning or any(ring.dependencies(x, moving) for x in (*found.forcing, *(x for row in mass for x in row))):
+        return False
+    try:
+        for i, j in combinations(range(len(names)), 2):
+            slope = ring.derivative(found.at_rest[i], names[j]) - ring.derivative(found.at_rest[j], names[i])
+            if ring.is_zero(slope) is not True:
+                return False
+        speeds = [ring.generator("velocity", name) for name in names]
+        power = ring.dot(speeds, [x - y for x, y in zip(found.forcing, found.at_rest, strict=True)])
+        for k, name in enumerate(names):
+            rate = ring.dot(speeds, [ring.dot(speeds, [ring.derivative(x, name) for x in row]) for row in mass])
+            power = power + ring.times(speeds[k], rate) * ring.number(Fraction(1, 2))
+        return ring.is_zero(ring.reduce(power)) is True
+    except Failure:
+        return False
+
+
+_CONSTANTS = fmpq_mpoly_ctx.get(["unused"])
+
+
+def _rational_verdict(
+    parts: Sequence[Sequence[Sequence[fmpq]]],
+    conservative: bool,
+    cyclic: tuple[int, ...],
+    spin: fmpq | None,
+    names: tuple[str, ...],
+    exact: bool,
+) -> Verdict:
+    """By exact counting of roots; ``spin`` is the rate of a steady spin that may be turned in space.
+
+    ``exact``: there are no terms of higher order; where positions are a line of equilibria that is not made use of,
+    as nobody knows here whether they are for all parameters.
+    """
+    turned = () if spin is None else (_CONSTANTS.constant(1), _CONSTANTS.constant(spin * spin))
+    made = [tuple(tuple(_CONSTANTS.constant(x) for x in row) for row in rows_) for rows_ in parts]
+    system = LinearSystem(made[0], made[1], made[2], made[3], made[4], conservative, cyclic, turned, names=names)
+    if exact and not null_rows(added(system.K, system.N), lambda x: x):
+        system = replace(system, exact=True)
+    return verdict_at(system, {}).verdict

@@ -1,0 +1,135 @@
+"""What ``model.py`` holds of Hamilton's and Routh's forms: states, H, rates, from the closed forms through programs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.program import Program
+from mbsym.formulas.formula import Formula
+from mbsym.formulas.names import injective
+from mbsym.mechanics.programs import momenta
+from mbsym.mechanics.variables import program_environment
+from mbsym.report.canonical import Forms, forms_of
+from mbsym.report.code.functions import Function, Functions
+from mbsym.report.code.programs import programs_of
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+    from mbsym.problems.canonical.canonical import Hamilton, Routh
+
+
+@dataclass(frozen=True)
+class HamiltonCode:
+    """``unpacked`` is what the code calls the entries of y = (q, p); ``momenta`` are those of a state (q, q')."""
+
+    names: tuple[str, ...]
+    unpacked: tuple[str, ...]
+    momenta: Function
+    hamiltonian: Function
+    rates: Function
+
+
+@dataclass(frozen=True)
+class RouthCode:
+    """``unpacked`` is what the code calls s and s', ``constants`` what it calls beta; ``kept`` are places of s in q,
+    ``rows`` those of beta among ``momenta``; the results of ``function`` are the upper half of M_R, then f_R."""
+
+    coordinates: tuple[str, ...]
+    ignored: tuple[str, ...]
+    names: tuple[str, ...]
+    unpacked: tuple[str, ...]
+    constants: tuple[str, ...]
+    kept: tuple[int, ...]
+    momenta: Function
+    upper: tuple[tuple[int, int], ...]
+    function: Function
+    potential: Function
+    ignored_rates: Function
+
+
+@dataclass(frozen=True)
+class FormsCode:
+    """The code of the forms that were asked for and have a result; ``lacking`` says in sentences what is not there."""
+
+    hamilton: HamiltonCode | None
+    routh: RouthCode | None
+    lacking: tuple[str, ...]
+
+
+def canonical_code(analysis: Analysis, problems: Sequence[int], writer: Functions) -> FormsCode:
+    """The code; none where the system has inputs, which functions of (t, q, p) would not know."""
+    found = forms_of(analysis, (*problems, 3) if 3 in analysis.problems else problems)
+    code, missing = programs_of(analysis)
+    lacking = [f"There is no code of {_TITLES[name]}: {why.reason}" for name, why in found.failures if name in _TITLES]
+    if code is None or analysis.system.inputs:
+        reason = missing if code is None else "inputs are not taken into account there"
+        there = [title for name, title in _TITLES.items() if getattr(found, name) is not None]
+        return FormsCode(None, None, (*lacking, *(f"There is no code of {title}: {reason}" for title in there)))
+    names = {name for one in (found.hamilton, found.routh) if one is not None for name in one.momenta}
+    taken = {*writer.reserved, *writer.names.values()}
+    writer.names |= injective(sorted(names), lambda name: name + "_" if name in taken else name, taken)
+    return _Code(analysis, writer).forms(found, tuple(lacking))
+
+
+_TITLES = {"routh": "Routh's form", "hamilton": "Hamilton's form"}
+
+
+class _Code:
+    def __init__(self, analysis: Analysis, writer: Functions) -> None:
+        self.system, self.writer = analysis.system, writer
+        self.analysis = analysis
+
+    def forms(self, found: Forms, lacking: tuple[str, ...]) -> FormsCode:
+        return FormsCode(
+            None if found.hamilton is None else self._hamilton(found.hamilton),
+            None if found.routh is None else self._routh(found.routh),
+            lacking,
+        )
+
+    def _hamilton(self, found: Hamilton) -> HamiltonCode:
+        return HamiltonCode(
+            names=found.momenta,
+            unpacked=self._called((*self.system.coordinates, *found.momenta)),
+            momenta=self._momenta(self.system.coordinates),
+            hamiltonian=self._function([found.hamiltonian], found.momenta),
+            rates=self._function([*found.velocities, *found.rates], found.momenta),
+        )
+
+    def _routh(self, found: Routh) -> RouthCode:
+        m, names = len(found.coordinates), self.system.coordinates
+        upper = tuple((i, j) for i in range(m) for j in range(i, m))
+        velocities = [self.system.velocities[names.index(name)] for name in found.coordinates]
+        entries = [found.mass_matrix[i, j] for i, j in upper]
+        return RouthCode(
+            coordinates=found.coordinates,
+            ignored=found.ignored,
+            names=found.momenta,
+            unpacked=self._called((*found.coordinates, *velocities)),
+            constants=self._called(found.momenta),
+            kept=tuple(names.index(name) for name in found.coordinates),
+            momenta=self._momenta(found.ignored),
+            upper=upper,
+            function=self._function([*entries, *found.forcing], found.momenta),
+            potential=self._function([found.reduced_potential], found.momenta),
+            ignored_rates=self._function(found.ignored_rates, found.momenta),
+        )
+
+    def _called(self, names: Iterable[str]) -> tuple[str, ...]:
+        return tuple(self.writer.names[name] for name in names)
+
+    def _momenta(self, coordinates: Sequence[str]) -> Function:
+        """dL/dq' of some coordinates at (q, q'): the recursion's own."""
+        code = self.analysis.programs
+        known = dict(zip(self.system.coordinates, momenta(code, self.system), strict=True))
+        return self.writer.function(code.program, [known[name] for name in coordinates])
+
+    def _function(self, formulas: Sequence[Formula], names: Sequence[str]) -> Function:
+        """Formulas in which momenta are names."""
+        program = Program()
+        environment = program_environment(self.system, program)
+        environment |= {name: program.input(name) for name in names}
+        carry = Carrier(formulas[0].ring, program, environment)
+        return self.writer.function(program, [carry(x.polynomial) for x in formulas])

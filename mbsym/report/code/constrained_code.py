@@ -1,0 +1,160 @@
+"""What generated code holds of a constrained system: its rows, multipliers, the way back to the constraints.
+
+    M q'' = f + J^T lambda,     J q'' = -gamma,     phi(q, t) = 0,     J q' + j = 0
+
+Rows are the independent ones, those on positions first.  Accelerations and multipliers are there twice: as a
+straight-line program that differentiates exactly (``mbsym.mechanics.constraints.dynamics``, by factors of M and of
+J M^-1 J^T), and as M, f, J and gamma for languages that solve with pivots.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
+
+from mbsym.algebra.failures import Failure
+from mbsym.algebra.program import Node, Program
+from mbsym.analysis.constrained import programs_of
+from mbsym.analysis.stages import Unavailable
+from mbsym.mechanics.constraints.dynamics import ConstrainedDynamics, constrained_dynamics
+from mbsym.mechanics.constraints.programs import ConstrainedPrograms
+from mbsym.mechanics.programs import Programs
+from mbsym.model.system import System
+from mbsym.report.code.functions import Function, Functions
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+
+
+@dataclass(frozen=True)
+class Tied:
+    """``rows`` are numbers of rows of ``code``, those on positions first, ``positions`` of them.
+
+    ``dynamics`` has its rows in the same order; None for the reason ``no_dynamics``.
+    """
+
+    code: ConstrainedPrograms
+    rows: tuple[int, ...]
+    positions: int
+    dynamics: ConstrainedDynamics | None
+    no_dynamics: str
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """What the rows are called."""
+        return tuple(self.code.names[i].label for i in self.rows)
+
+    @property
+    def kept(self) -> tuple[tuple[int, int], ...]:
+        """(constraint, component) of the rows."""
+        names = [self.code.names[i] for i in self.rows]
+        return tuple((name.constraint, name.component) for name in names)
+
+    @property
+    def phi(self) -> list[Node]:
+        """Of the constraints on positions."""
+        return [node for i in self.rows if (node := self.code.position[i]) is not None]
+
+    @property
+    def velocity(self) -> list[Node]:
+        """J q' + j."""
+        return [self.code.velocity[i] for i in self.rows]
+
+    @property
+    def gamma(self) -> list[Node]:
+        """J' q' + j'."""
+        return [self.code.acceleration[i] for i in self.rows]
+
+    @property
+    def jacobian(self) -> list[tuple[Node, ...]]:
+        """J."""
+        return [self.code.jacobian[i] for i in self.rows]
+
+
+#: Several files are written of one analysis, from the same programs.
+_TIED: WeakKeyDictionary[Analysis, Tied | str] = WeakKeyDictionary()
+
+
+def tied_of(analysis: Analysis) -> Tied | str:
+    """The rows and the equations with them; or the reason why there are none."""
+    if analysis not in _TIED:
+        try:
+            _TIED[analysis] = _tied(analysis)
+        except Unavailable as missing:
+            _TIED[analysis] = missing.failure.reason
+        except Failure as reason:
+            _TIED[analysis] = str(reason)
+    return _TIED[analysis]
+
+
+def _tied(analysis: Analysis) -> Tied:
+    found, code = analysis.constraints, programs_of(analysis)
+    rows = sorted(found.independent, key=lambda i: code.position[i] is None)
+    positions = sum(code.position[i] is not None for i in rows)
+    tied = Tied(code, tuple(rows), positions, None, "")
+    try:
+        solved = constrained_dynamics(analysis.system, analysis.ring, tied.kept)
+    except Failure as reason:
+        return Tied(code, tied.rows, positions, None, str(reason))
+    return Tied(code, tied.rows, positions, solved, "")
+
+
+@dataclass(frozen=True)
+class TiedCode:
+    """Functions of the independent rows: phi (of those on positions), J q' + j, J and gamma.
+
+    ``rows`` are their labels, ``positions`` how many of them, the first ones, are on positions; ``places`` the entries
+    of J that need not be zero; ``given`` see ``given_of``, ``stays`` names what it flags.
+    """
+
+    rows: tuple[str, ...]
+    positions: int
+    phi: Function
+    velocity: Function
+    jacobian: Function
+    gamma: Function
+    places: tuple[tuple[int, int], ...]
+    given: tuple[int, ...]
+    stays: tuple[str, ...]
+
+
+def given_of(system: System) -> tuple[int, ...]:
+    """For q, then q': 1 where the initial state stays as the description gives it, if the constraints can be kept so.
+
+    Coordinates stay that it does not call dependent, if it calls any so; velocities that it gives, if it does not give
+    all.
+    """
+    stated = {item.coordinate for item in system.initial if item.velocity is not None}
+    positions = [bool(system.dependent) and name not in system.dependent for name in system.coordinates]
+    velocities = [name in stated and len(stated) < len(system.coordinates) for name in system.coordinates]
+    return tuple(map(int, (*positions, *velocities)))
+
+
+def tied_code(analysis: Analysis, writer: Functions) -> tuple[TiedCode | None, Programs | None, str]:
+    """The functions and the program of the open tree; or the reason why there are none."""
+    tied = tied_of(analysis)
+    if isinstance(tied, str):
+        return None, None, tied
+    program, jacobian = tied.code.tree.program, tied.jacobian
+    places = entries(program, jacobian)
+    system = analysis.system
+    given = given_of(system)
+    code = TiedCode(
+        tied.labels,
+        tied.positions,
+        writer.function(program, tied.phi),
+        writer.function(program, tied.velocity),
+        writer.function(program, [jacobian[k][j] for k, j in places]),
+        writer.function(program, tied.gamma),
+        places,
+        given,
+        tuple(name for name, stays in zip((*system.coordinates, *system.velocities), given, strict=True) if stays),
+    )
+    return code, tied.code.tree, ""
+
+
+def entries(program: Program, matrix: Sequence[Sequence[Node]]) -> tuple[tuple[int, int], ...]:
+    """The places of a matrix that need not be zero."""
+    return tuple((k, j) for k, row in enumerate(matrix) for j, node in enumerate(row) if not program.vanishes(node))

@@ -1,0 +1,346 @@
+"""What generated code computes, as nodes of straight-line programs: made once, written by every language.
+
+M, f           mass matrix and forcing,  M(q) q'' = f(q, q', t)
+q''            by the cheaper route of ``mbsym.mechanics.forward_dynamics``; no inverse is formed; with constraints by
+               ``mbsym.mechanics.constraints.dynamics``, their rows and multipliers beside
+d q''/d(q, q') by the chain rule along the program of q'': exact, no differences
+energies, first integrals of problem 7, places of the bodies
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
+
+from mbsym.algebra.certainty import Certainty
+from mbsym.algebra.derivative import jacobian
+from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.failures import Failure
+from mbsym.algebra.program import Node, Program
+from mbsym.mechanics.forward_dynamics import ForwardDynamics, forward_dynamics
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.programs import Programs, generalized_energy, momenta, scene_without_accelerations
+from mbsym.mechanics.variables import program_environment
+from mbsym.model.system import INERTIAL, acceleration_name
+from mbsym.problems.integrals import ENERGY, WITH_FORCES, Integral, identifiers, whole_momenta
+from mbsym.report.code import programs as open_trees
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+    from mbsym.mechanics.constraints.dynamics import ConstrainedDynamics
+    from mbsym.report.code.constrained_code import Tied
+
+#: Indices into an array: (), (i,) or (i, j).
+Place = tuple[int, ...]
+
+#: A Jacobian that takes about more operations than this is left out.
+LARGEST_JACOBIAN = 100_000
+
+
+@dataclass(frozen=True)
+class Solved:
+    """Accelerations and d q''/d(q, q') (n rows of 2n nodes of the same program), or the reasons why there are none.
+
+    ``reactions`` are force and moment (6 nodes of that program) in each joint that the description names.
+    """
+
+    forward: ForwardDynamics | ConstrainedDynamics | None
+    no_forward: str
+    slopes: tuple[tuple[Node, ...], ...] | None
+    no_slopes: str
+    reactions: tuple[tuple[Node, ...], ...] = ()
+    no_reactions: str = ""
+
+
+@dataclass(frozen=True)
+class NamedIntegral:
+    """A first integral of problem 7; ``name`` in letters, digits and underscores, ``title`` in words."""
+
+    name: str
+    title: str
+    status: Certainty
+
+
+@dataclass(frozen=True)
+class Integrals:
+    """First integrals with their ``nodes`` over ``program``; without any there may be a ``reason``."""
+
+    named: tuple[NamedIntegral, ...]
+    program: Program
+    nodes: tuple[Node, ...]
+    reason: str = ""
+
+
+@dataclass(frozen=True)
+class Part:
+    """A function of generated code: ``entries`` of an array of ``shape`` that need not be zero, by place."""
+
+    name: str
+    words: str
+    shape: tuple[int, ...]
+    program: Program
+    entries: Mapping[Place, Node]
+
+
+#: Several files are written of one analysis, one after the other, from the same programs.
+_SOLVED: WeakKeyDictionary[Analysis, Solved] = WeakKeyDictionary()
+
+
+def solved(analysis: Analysis) -> Solved:
+    """Accelerations and their derivatives, computed when they are first asked for."""
+    if analysis not in _SOLVED:
+        _SOLVED[analysis] = _solved(analysis)
+    return _SOLVED[analysis]
+
+
+def programs_of(analysis: Analysis) -> tuple[Programs | None, str]:
+    """M, f and the energy as a program, of the open tree where there are constraints; or why there is none."""
+    if not analysis.system.constraints:
+        return open_trees.programs_of(analysis)
+    tied = _tied(analysis)
+    return (None, tied) if isinstance(tied, str) else (tied.code.tree, "")
+
+
+def _tied(analysis: Analysis) -> Tied | str:
+    from mbsym.report.code.constrained_code import tied_of  # few systems have constraints
+
+    return tied_of(analysis)
+
+
+def _solved(analysis: Analysis) -> Solved:
+    code, _ = programs_of(analysis)
+    if code is None:
+        return Solved(None, "", None, "")
+    forward: ForwardDynamics | ConstrainedDynamics | None
+    if analysis.system.constraints:
+        tied = _tied(analysis)
+        assert not isinstance(tied, str)
+        forward = tied.dynamics
+        if forward is None:
+            return Solved(None, tied.no_dynamics, None, "")
+    else:
+        try:
+            forward = forward_dynamics(analysis.system, analysis.ring)
+        except Failure as reason:
+            return Solved(None, str(reason), None, "")
+    needed, no_reactions = _reactions(analysis, forward)
+    names = [*analysis.system.coordinates, *analysis.system.velocities]
+    estimate = forward.program.operations(forward.accelerations) * len(names)
+    if estimate > LARGEST_JACOBIAN:
+        return Solved(forward, "", None, f"it would take some {estimate} operations", needed, no_reactions)
+    inputs = [forward.environment[name] for name in names]
+    slopes = jacobian(forward.program, forward.accelerations, inputs)
+    return Solved(forward, "", slopes, "", needed, no_reactions)
+
+
+def _reactions(
+    analysis: Analysis, forward: ForwardDynamics | ConstrainedDynamics
+) -> tuple[tuple[tuple[Node, ...], ...], str]:
+    """R_0 + sum lambda_i R_i in each joint asked for, at the accelerations of the equations; or why there is none."""
+    system = analysis.system
+    if not system.reactions:
+        return (), ""
+    from mbsym.mechanics.reactions import reactions  # few descriptions ask for them
+
+    rows: list[tuple[int, int]] = []
+    multipliers: tuple[Node, ...] = ()
+    if system.constraints:
+        tied = _tied(analysis)
+        assert not isinstance(tied, str)
+        assert tied.dynamics is not None
+        rows, multipliers = list(tied.kept), tied.dynamics.multipliers
+    moved = {acceleration_name(q): x for q, x in zip(system.coordinates, forward.accelerations, strict=True)}
+    try:
+        scene = Scene(system, forward.program, {**forward.environment, **moved}, analysis.ring)
+        found = reactions(scene, system.reactions, rows)
+    except Failure as reason:
+        return (), str(reason)
+    totals = []
+    for one in found:
+        total = [*one.force, *one.moment]
+        for weight, (force, moment) in zip(multipliers, one.per_multiplier, strict=True):
+            total = [x + weight * y for x, y in zip(total, [*force, *moment], strict=True)]
+        totals.append(tuple(total))
+    return tuple(totals), ""
+
+
+def first_integrals(analysis: Analysis, problems: Sequence[int]) -> Integrals:
+    """The integrals of problem 7, if that is among ``problems``; or none and the reason.
+
+    They are those that problem 7 found, with its word for how that is known.  Their code is the recursion's own, never
+    an expanded formula.
+    """
+    code, missing = programs_of(analysis)
+    if 7 not in problems or code is None:
+        return Integrals((), Program(), (), missing)
+    stage = analysis.stage(7)
+    if stage.failure is not None:
+        return Integrals((), code.program, (), stage.failure.reason)
+    elsewhere = ("unit vectors", "quaternion", "speed momentum", "symmetry", "polynomial")
+    found: Sequence[Integral] = [item for item in stage.value if item.kind not in elsewhere]
+    named = [NamedIntegral(name, item.name, item.status) for item, name in zip(found, identifiers(found), strict=True)]
+    system = analysis.system
+    lagrangian: dict[tuple[str, str], Node] = {(ENERGY, "time"): generalized_energy(code, system)}
+    for name, node in zip(system.coordinates, momenta(code, system), strict=True):
+        lagrangian["cyclic momentum", name] = node
+    keys = [(item.kind, item.of) for item in found]
+    if system.constraints:  # a momentum may be one along a displacement of several coordinates
+        for item, key in zip(found, keys, strict=True):
+            if item.kind == "cyclic momentum" and item.name != f"momentum of {item.of}":
+                carry = Carrier(analysis.ring, code.program, dict(code.environment))
+                lagrangian[key] = carry(item.formula.polynomial)
+    for item, key in zip(found, keys, strict=True):
+        if item.kind == WITH_FORCES:
+            carry = Carrier(analysis.ring, code.program, dict(code.environment))
+            lagrangian[key] = carry(item.formula.polynomial)
+    if all(key in lagrangian for key in keys):
+        return Integrals(tuple(named), code.program, tuple(lagrangian[key] for key in keys))
+    scene, program = _scene(analysis)
+    whole = {(kind, str(axis)): node for kind, axis, node in whole_momenta(scene)}
+    carried = code.program.evaluate(list(lagrangian.values()), scene.environment, program)
+    whole |= dict(zip(lagrangian, carried, strict=True))
+    return Integrals(tuple(named), program, tuple(whole[key] for key in keys))
+
+
+def _scene(analysis: Analysis) -> tuple[Scene, Program]:
+    """The system over a program of its own."""
+    program = Program()
+    inputs = program_environment(analysis.system, program)
+    return scene_without_accelerations(analysis.system, analysis.ring, program, inputs), program
+
+
+def places(analysis: Analysis) -> tuple[Part, Part]:
+    """Joints and mass centres of all bodies, a row each, from the inertial origin in inertial axes."""
+    scene, program = _scene(analysis)
+    joints = [scene.position(scene.zero(name), INERTIAL) for name in scene.motions]
+    centres = [scene.position(motion.mass_centre, INERTIAL) for motion in scene.motions.values()]
+    return (
+        _places("joints", "Connection points of the bodies", program, joints),
+        _places("mass_centres", "Mass centres of the bodies", program, centres),
+    )
+
+
+def _places(name: str, words: str, program: Program, rows: Sequence[Iterable[Node]]) -> Part:
+    entries: dict[Place, Node] = {(i, k): x for i, row in enumerate(rows) for k, x in enumerate(row)}
+    words += ", a row for each of BODIES, from the inertial origin in inertial axes"
+    return Part(name, words, (len(rows), 3), program, _nonzero(program, entries))
+
+
+def parts(analysis: Analysis, problems: Sequence[int]) -> tuple[tuple[Part, ...], tuple[str, ...]]:
+    """Everything that generated code computes, and what it lacks, as sentences."""
+    code, no_code = programs_of(analysis)
+    if code is None:
+        return (), (f"There is no code for the equations of motion: {no_code}",)
+    n, program, found = len(analysis.system.coordinates), code.program, solved(analysis)
+    pairs: dict[Place, Node] = {(i, j): code.mass_matrix[i][j] for i in range(n) for j in range(n)}
+    forces: dict[Place, Node] = {(i,): node for i, node in enumerate(code.forcing)}
+    energies = generalized_energy(code, analysis.system)
+    jacobi = "T2 - T0 - U, with T2 and T0 the parts of T of second and of no degree in q'"
+    made = [
+        Part("mass_matrix", "M(q), symmetric", (n, n), program, _nonzero(program, pairs)),
+        Part("forcing", "f of M(q) q'' = f(q, q', t)", (n,), program, _nonzero(program, forces)),
+        Part("energy", "T - U, the kinetic energy minus the force function", (), program, {(): code.energy}),
+        Part("generalized_energy", jacobi, (), program, {(): energies}),
+    ]
+    lacking = []
+    if analysis.system.constraints:
+        made.extend(_rows(analysis))
+    if found.forward is None:
+        lacking.append(f"There are no accelerations: {found.no_forward}")
+    else:
+        own = found.forward.program
+        columns: dict[Place, Node] = {(i,): node for i, node in enumerate(found.forward.accelerations)}
+        words = "q'' = M^-1 f, by factorisation"
+        if analysis.system.constraints:
+            words = "q'' with M q'' = f + J^T lambda and J q'' = -gamma, by factors of M and of J M^-1 J^T"
+        made.append(Part("accelerations", words, (n,), own, _nonzero(own, columns)))
+        if found.slopes is None:
+            lacking.append(f"There is no Jacobian: {found.no_slopes}")
+        else:
+            slopes: dict[Place, Node] = {
+                (n + i, j): node for i, row in enumerate(found.slopes) for j, node in enumerate(row)
+            }
+            slopes |= {(i, n + i): own.one for i in range(n)}
+            words = "d(q', q'')/d(q, q'), exact: by the chain rule"
+            made.append(Part("jacobian", words, (2 * n, 2 * n), own, _nonzero(own, slopes)))
+        if analysis.system.constraints:
+            made.extend(_corrections(analysis))
+        if found.no_reactions:
+            lacking.append(f"There are no reactions: {found.no_reactions}")
+        if found.reactions:
+            made.append(_reaction_part(analysis, found))
+    conserved = first_integrals(analysis, problems)
+    if conserved.reason:
+        lacking.append(f"There are no first integrals: {conserved.reason}")
+    if conserved.nodes:
+        values: dict[Place, Node] = {(k,): node for k, node in enumerate(conserved.nodes)}
+        words = "The first integrals in the order of INTEGRALS"
+        made.append(Part("integrals", words, (len(values),), conserved.program, values))
+    made.extend(places(analysis))
+    return tuple(made), tuple(lacking)
+
+
+def _reaction_part(analysis: Analysis, found: Solved) -> Part:
+    assert found.forward is not None
+    values: dict[Place, Node] = {(i, k): x for i, row in enumerate(found.reactions) for k, x in enumerate(row)}
+    joints = "; ".join(analysis.system.reactions)
+    words = f"Force and moment in the joints of {joints}: a row for each, about its connection point, in its axes"
+    program = found.forward.program
+    return Part("reactions", words, (len(found.reactions), 6), program, _nonzero(program, values))
+
+
+def _rows(analysis: Analysis) -> tuple[Part, ...]:
+    """phi, J q' + j, J, gamma."""
+    tied = _tied(analysis)
+    assert not isinstance(tied, str)
+    program, m = tied.code.tree.program, len(tied.rows)
+    partials: dict[Place, Node] = {(i, j): x for i, row in enumerate(tied.jacobian) for j, x in enumerate(row)}
+
+    def column(nodes: Sequence[Node]) -> dict[Place, Node]:
+        return _nonzero(program, {(i,): node for i, node in enumerate(nodes)})
+
+    rates = f"J q' + j = 0, the constraints on velocities: {'; '.join(tied.labels)}"
+    made = [Part("constraint_velocity", rates, (m,), program, column(tied.velocity))]
+    if tied.positions:
+        words = "phi(q, t) = 0, the constraints on positions: their rates come first in constraint_velocity"
+        made.insert(0, Part("constraints", words, (tied.positions,), program, column(tied.phi)))
+    return (
+        *made,
+        Part("constraint_jacobian", "J", (m, len(analysis.system.coordinates)), program, _nonzero(program, partials)),
+        Part("constraint_acceleration", "gamma = J' q' + j'", (m,), program, column(tied.gamma)),
+    )
+
+
+def _corrections(analysis: Analysis) -> tuple[Part, ...]:
+    """lambda and the shortest ways back to the constraints."""
+    tied = _tied(analysis)
+    assert not isinstance(tied, str)
+    found = tied.dynamics
+    assert found is not None
+    program, n = found.program, len(found.accelerations)
+
+    def column(nodes: Sequence[Node]) -> dict[Place, Node]:
+        return _nonzero(program, {(i,): node for i, node in enumerate(nodes)})
+
+    step = "a Newton step, the shortest as M measures it"
+    made = [
+        Part(
+            "multipliers",
+            "lambda, in the order of constraint_velocity",
+            (len(tied.rows),),
+            program,
+            column(found.multipliers),
+        ),
+        Part("velocity_correction", f"What to add to q' for J q' + j = 0: {step}", (n,), program,
+             column(found.velocity_correction)),
+    ]  # fmt: skip
+    if tied.positions:
+        words = f"What to add to q for phi = 0: {step}"
+        made.insert(1, Part("position_correction", words, (n,), program, column(found.position_correction)))
+    return tuple(made)
+
+
+def _nonzero(program: Program, entries: Mapping[Place, Node]) -> dict[Place, Node]:
+    return {place: node for place, node in entries.items() if not program.vanishes(node)}

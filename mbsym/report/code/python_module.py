@@ -1,0 +1,260 @@
+"""``model.py``: one self-contained module of the equations, its code taken from the straight-line program.
+
+It needs NumPy alone, but for ``python model.py``, which simulates with SciPy and plots with Matplotlib.
+"""
+
+from __future__ import annotations
+
+import builtins
+import keyword
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from textwrap import fill, wrap
+from typing import TYPE_CHECKING
+
+from mbsym.algebra.base import Lowering
+from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.failures import Limit, NoClosedForm
+from mbsym.algebra.program import Program
+from mbsym.expressions.table import Tabulated
+from mbsym.expressions.tree import Expression, names, text
+from mbsym.formulas.straight_line import Dialect, listing
+from mbsym.mechanics.programs import Programs, generalized_energy
+from mbsym.mechanics.variables import program_environment
+from mbsym.model.quantities import told_units, unit_of
+from mbsym.model.speeds import Quaternion
+from mbsym.model.system import System, rational
+from mbsym.problems.linearisation import Linearisation
+from mbsym.report.code.formula_code import formula_functions
+from mbsym.report.code.functions import Function, Functions, prescribed_value, words_of_inputs
+from mbsym.report.code.identifiers import prefix_of
+from mbsym.report.code.lookups import identifier, python_definition
+from mbsym.report.code.model_code import Solved, first_integrals, programs_of, solved
+from mbsym.report.code.model_values import initial_values, ordered, parameters_of, starting
+from mbsym.report.environment import rendered
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+
+#: What the module itself calls something.
+RESERVED = {
+    *keyword.kwlist, *dir(builtins), "np", "Mapping", "q", "qd", "p", "t", "x", "M", "D", "G", "K", "N", "f", "n",
+    "result", "velocities", "accelerations", "annotations", "COORDINATES", "PARAMETERS", "DEFAULTS", "mass_matrix",
+    "forcing", "rhs", "energy", "generalized_energy", "linear_matrices", "jacobian", "integrals", "values", "zero",
+    "main", "simulate", "complete", "initial_state", "given", "npt", "Any", "Sequence", "TypeAlias", "Array", "NAME",
+    "Parameters", "INTEGRALS", "UNITS", "with_unit",
+    "polynomial_integrals", "invariant_sets", "normal_forms", "small_parameters", "missing", "name",
+    "SPEEDS", "POSITIONS", "speed_state", "speed_rhs", "speed_restored",
+    "speed_simulate", "y", "right", "matrix",
+}  # fmt: skip
+#: What a module of a constrained system calls something besides.
+TIED = frozenset({
+    "constraints", "constraint_velocity", "constraint_jacobian", "constraint_acceleration", "multipliers",
+    "constraint_error", "consistent", "matrix", "jacobian", "right", "whole", "above", "error", "worst", "reactions",
+    "DEPENDENT", "GIVEN", "mass", "scale", "sizes", "unknown", "step", "basis", "free", "rows", "root", "what", "size",
+})  # fmt: skip
+
+#: What a module that has Hamilton's or Routh's form calls something besides.
+IN_MOMENTA = frozenset({
+    "MOMENTA", "canonical_state", "hamiltonian", "canonical_rhs", "constants", "LEFT", "IGNORED", "CONSTANTS",
+    "reduced_state", "reduced_rhs", "reduced_potential", "ignored_rates", "places", "s",
+})  # fmt: skip
+
+_NUMPY = {"atan": "arctan"}
+_WORD = re.compile("[a-z]+")
+
+
+def _called(function: str) -> str:
+    return identifier(function) if isinstance(function, Tabulated) else f"np.{_NUMPY.get(function, function)}"
+
+
+DIALECT = Dialect(
+    call=lambda function, argument: f"{_called(function)}({argument})",
+    local=lambda count: f"s{count}",
+    angle=lambda function, name: f"{function}_{name}",
+    tables=True,
+)
+
+
+def render(analysis: Analysis, problems: Sequence[int]) -> str:
+    """The module's text."""
+    from mbsym.analysis import PROBLEMS
+
+    system, (code, no_code) = analysis.system, programs_of(analysis)
+    writer = _Module(system, bool(analysis.forms))
+    tied = None
+    if system.constraints:
+        from mbsym.report.code.constrained_code import tied_code
+
+        tied, code, no_code = tied_code(analysis, writer)
+    speeds = None
+    if system.speeds and not system.constraints:  # in speeds there is the open tree alone
+        from mbsym.report.code.speed_code import speed_code
+
+        speeds = speed_code(analysis, writer)
+    forms = None
+    if analysis.forms:
+        from mbsym.report.code.canonical_code import canonical_code
+
+        forms = canonical_code(analysis, problems, writer)
+    n = len(system.coordinates)
+    upper = [(i, j) for i in range(n) for j in range(i, n)]
+    known = solved(analysis)
+    conserved = first_integrals(analysis, problems)
+    parameters = parameters_of(system, writer)
+    linear = analysis.stage(5) if 5 in problems else None
+    told = told_units(system)
+    matrices = gains = None
+    if linear is not None and linear.failure is None:
+        matrices, gains = writer.linear(analysis, linear.value), writer.gains(analysis, linear.value)
+    return rendered(
+        "model.py.j2",
+        {},
+        system=system,
+        title=plain(system.name),
+        description=fill(plain(system.description), 110),
+        n=n,
+        defaults=[(item.name, _default(item.value)) for item in system.parameters],
+        meanings=[(item.name, plain(item.told)) for item in parameters if item.told],
+        units=wrap(f"Units: {', '.join(told)}.", 110, break_long_words=False) if told else [],
+        axes=[
+            (name, unit) for name in ("t", *system.coordinates, *system.velocities) if (unit := unit_of(system, name))
+        ],
+        relations=[(item.name, text(item.value)) for item in system.relations],
+        prescribed=[(item.name, text(prescribed_value(item))) for item in system.prescribed],
+        no_code=plain(no_code),
+        tied=tied,
+        speeds=speeds,
+        quaternions=any(isinstance(one, Quaternion) for body in system.bodies for one in body.orientation),
+        forms=forms,
+        lacking=[plain(line) for line in forms.lacking] if forms else [],
+        upper=upper,
+        mass=code and writer.function(code.program, [code.mass_matrix[i][j] for i, j in upper]),
+        forcing=code and writer.function(code.program, code.forcing),
+        energy=code and writer.function(code.program, [code.energy]),
+        generalized=_generalized(writer, code, system),
+        prefix=prefix_of(system.name),
+        example=f"{next(iter(system.parameter_names), next(iter(system.coordinates), 'x'))}=2",
+        integrals=conserved,
+        formulas=[
+            replace(one, results=tuple((plain(key), x) for key, x in one.results), missing=plain(one.missing))
+            for one in formula_functions(analysis, problems, writer)
+        ],
+        titles={number: PROBLEMS[number].title for number in problems},
+        conserved=writer.function(conserved.program, conserved.nodes) if conserved.nodes else None,
+        slopes=_slopes(writer, known),
+        no_slopes=plain(known.no_slopes or known.no_forward),
+        no_reactions=plain(known.no_reactions),
+        reactions=_reactions(writer, known),
+        related=[item for item in ordered(parameters) if item.needs],
+        names=writer.names,
+        initial=initial_values(system, writer),
+        starting=starting(system, parameters),
+        linear=matrices,
+        gains=gains,
+        held=writer.held(),
+        input_meanings=[(one.name, plain(one.meaning)) for one in system.inputs if one.meaning],
+        lookups=[python_definition(table, "np", typed=True) for table in writer.tables],
+        unavailable="" if linear is None or linear.failure is None else plain(linear.failure.reason),
+    )
+
+
+def _generalized(writer: _Module, code: Programs | None, system: System) -> Function | None:
+    """The code of T2 - T0 - U, where that is another quantity than T - U."""
+    if code is None:
+        return None
+    node = generalized_energy(code, system)
+    return None if node is code.energy else writer.function(code.program, [node])
+
+
+def _reactions(writer: _Module, known: Solved) -> Function | None:
+    """Forces and moments in the joints that the description names, joint after joint."""
+    if known.forward is None or not known.reactions:
+        return None
+    return writer.function(known.forward.program, [x for row in known.reactions for x in row])
+
+
+def _slopes(writer: _Module, known: Solved) -> tuple[Function, list[tuple[int, int]]] | None:
+    """d q''/d(q, q') entry by entry, zeros left out."""
+    if known.slopes is None or known.forward is None:
+        return None
+    program = known.forward.program
+    places = [(i, j) for i, row in enumerate(known.slopes) for j, node in enumerate(row) if not program.vanishes(node)]
+    return writer.function(program, [known.slopes[i][j] for i, j in places]), places
+
+
+def plain(words: str) -> str:
+    """Text that may stand in a docstring or a comment."""
+    return " ".join(words.replace("\\", "/").replace('"', "'").split())
+
+
+def _default(value: Expression | None) -> str:
+    """A number as Python reads it, or None: nothing is made up."""
+    if value is None:
+        return "None"
+    number = rational(value)
+    if number is None:
+        if names(value) - {"pi"}:
+            return "None"
+        program = Program()
+        node = Lowering(program, {"pi": program.input("pi")})(value)
+        listed = listing(program, [node], {"pi": "np.pi"}, DIALECT)
+        # A part that occurs twice would want a line of its own, which a table has not.
+        return _WORD.sub(_in_numpy, text(value)) if listed.assignments else listed.results[0]
+    return str(number.numerator) if number.denominator == 1 else _decimal(number)
+
+
+def _in_numpy(word: re.Match[str]) -> str:
+    return f"np.{_NUMPY.get(word[0], word[0])}"
+
+
+def _decimal(number: Fraction) -> str:
+    try:
+        shown = repr(float(number))
+    except OverflowError:
+        raise NoClosedForm("a number in it is beyond 1.8e308, where floats end", limit=Limit.DIGITS) from None
+    return shown if Fraction(shown) == number else f"{number.numerator} / {number.denominator}"
+
+
+class _Module(Functions):
+    """Turns nodes of a program into function bodies with names that Python lets us use."""
+
+    def __init__(self, system: System, in_momenta: bool = False) -> None:
+        reserved = RESERVED | words_of_inputs(system) | (TIED if system.constraints else frozenset())
+        if system.reactions:
+            reserved |= {"reactions", "REACTIONS", "zero"}
+        if in_momenta:
+            reserved |= IN_MOMENTA
+        super().__init__(system, DIALECT, reserved, lambda name: name + "_" if name in reserved else name, "np.pi")
+
+    def linear(self, analysis: Analysis, found: Linearisation) -> tuple[Function, list[tuple[str, int, int]]]:
+        """M, D, G, K, N entry by entry, zeros left out."""
+        program = Program()
+        carry = Carrier(analysis.ring, program, program_environment(self.system, program))
+        places, nodes = [], []
+        for name, matrix in zip("MDGKN", found.matrices, strict=True):
+            for i, row in enumerate(matrix):
+                for j, entry in enumerate(row):
+                    if not entry.is_zero:
+                        places.append((name, i, j))
+                        nodes.append(carry(entry.polynomial))
+        return self.function(program, nodes), places
+
+    def gains(self, analysis: Analysis, found: Linearisation) -> tuple[Function, list[tuple[int, int]]] | None:
+        """B entry by entry, zeros left out; None without inputs."""
+        if found.B is None:
+            return None
+        program = Program()
+        carry = Carrier(analysis.ring, program, program_environment(self.system, program))
+        entries = [(i, k, x) for i, row in enumerate(found.B) for k, x in enumerate(row) if not x.is_zero]
+        return self.function(program, [carry(x.polynomial) for _, _, x in entries]), [(i, k) for i, k, _ in entries]
+
+    def held(self) -> Function | None:
+        """The values of the inputs on the unperturbed motion; None without inputs."""
+        if not self.system.inputs:
+            return None
+        program = Program()
+        lower = Lowering(program, program_environment(self.system, program))
+        return self.function(program, [lower(one.held) for one in self.system.inputs])

@@ -1,0 +1,255 @@
+"""Figures of a trajectory: time histories, phase planes, drift of the energy, as SVG, PNG or PDF.
+
+Drawn without a display, in settings of its own that are put back; equal trajectories give equal bytes (with one
+version of matplotlib).
+Many coordinates are spread over pages: ``histories.svg``, ``histories-2.svg``, ...
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import chain
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
+from matplotlib.transforms import ScaledTranslation
+
+from mbsym.formulas.latex import LatexNames
+from mbsym.mechanics.variables import angle_denominators
+from mbsym.model.quantities import energy_unit, time_unit, unit_of
+from mbsym.model.states import InStates
+from mbsym.model.system import System
+from mbsym.numerics.between import between
+from mbsym.numerics.simulate import Trajectory
+from mbsym.report.figures.drawing import BLUE, GREY, RED, saved, styled, thinned
+from mbsym.report.unit_text import labelled
+
+#: Rows of time histories, and rows and columns of phase planes, on one page.
+HISTORY_ROWS, PLANE_ROWS, PLANE_COLUMNS = 5, 3, 3
+
+#: Planes with more points become pixels.
+MOST_POINTS = 20_000
+
+#: Rounding of one double, and where the drift's axis ends: what is exactly zero is drawn there.
+ROUNDING, FLOOR = 2.0**-53, 1e-18
+
+#: A curve in a plane turns by no more than this from one drawn point to the next, unless they are so close (as parts
+#: of the picture's size); an interval is cut into so many parts at most.
+CORNER, CLOSE, MOST_PIECES = np.radians(4), 2e-3, 24
+
+
+def figures(
+    found: Trajectory, formats: Sequence[str], note: str = "", conserved: bool = True, rates: Any = None
+) -> dict[str, bytes]:
+    """Every figure in every format, by file name.
+
+    ``rates`` are the accelerations, of shape (n, m): with them phase planes are drawn as smooth curves through the
+    samples, without them as lines from one to the next.  ``note`` is written under each title (a trajectory that is
+    not whole must say so); ``conserved`` says whether the
+    energy ought to be constant, so that what it changes by is an error.  A single state gives no figures.
+    """
+    if len(found.times) < 2:
+        return {}
+    with styled():
+        images: dict[str, bytes] = {}
+        # One page after the other: a hundred coordinates have fifty of them, and a page in memory is some 20 MB.
+        pages = chain(_histories(found, note), _planes(found, note, rates))
+        for stem, figure in _variables(found, note) if isinstance(found.system, InStates) else pages:
+            images |= saved(stem, figure, formats)
+            figure.clear()  # a figure and its axes hold each other
+        return images | saved("drift", _drift(found, note, conserved), formats)
+
+
+def _page(width: float, height: float, title: str, note: str) -> Figure:
+    figure = Figure(figsize=(width, height), layout="constrained")
+    figure.suptitle(title + (f"\n{note}" if note else ""), fontsize=12, parse_math=False)
+    return figure
+
+
+def _pages(stem: str, items: Sequence[str], size: int) -> Iterator[tuple[str, list[str], str]]:
+    """(file name, items, what to add to the title) of each page; pages are filled evenly."""
+    count = -(-len(items) // size)
+    for page in range(count):
+        part = list(items[page * len(items) // count : (page + 1) * len(items) // count])
+        yield stem + (f"-{page + 1}" if page else ""), part, f", page {page + 1} of {count}" if count > 1 else ""
+
+
+def _title(system: System) -> str:
+    return system.name if len(system.name) <= 70 else system.name[:67] + "..."
+
+
+def coordinate_labels(system: System, between: str = " ") -> tuple[dict[str, str], dict[str, str]]:
+    """Coordinates and velocities as mathematical text in the user's names, ``between`` them and their units."""
+    names = LatexNames(["t", *system.coordinates])
+    # matplotlib knows no \mathtt{a\_b}; plain letters are as clear.
+    plain = {name: "$\\mathrm{" + name.replace("_", r"\_") + "}$" for name in system.coordinates}
+    positions, velocities = {}, {}
+    for name in system.coordinates:
+        symbol = names[name]
+        odd = "mathtt" in symbol.stem
+        positions[name] = plain[name] if odd else f"${symbol}$"
+        velocities[name] = f"d{plain[name]}/d$t$" if odd else f"${symbol.accented('dot')}$"
+        positions[name] += labelled("", unit_of(system, name)).replace(" ", between, 1)
+        velocities[name] += labelled("", system.units.rate_of(name)).replace(" ", between, 1)
+    return positions, velocities
+
+
+def _histories(found: Trajectory, note: str) -> Iterator[tuple[str, Figure]]:
+    """q(t) on the left, q'(t) on the right, a row a coordinate."""
+    system = found.system
+    positions, velocities = coordinate_labels(system, "\n")
+    place = {name: i for i, name in enumerate(system.coordinates)}
+    for file, names, page in _pages("histories", system.coordinates, HISTORY_ROWS):
+        figure = _page(10, 1.0 + 1.75 * len(names) + (0.3 if note else 0), _title(system) + page, note)
+        axes = figure.subplots(len(names), 2, squeeze=False, sharex=True)
+        left = ScaledTranslation(-0.6, 0, figure.dpi_scale_trans)
+        for row, name in zip(axes, names, strict=True):
+            for side, (axis, label) in enumerate(zip(row, (positions[name], velocities[name]), strict=True)):
+                axis.plot(*thinned(found.times, found.states[place[name] + side * len(place)]), color=BLUE)
+                _label(axis, label)
+                axis.yaxis.set_label_coords(0, 0.5, axis.transAxes + left)
+        for axis in axes[-1]:
+            axis.set_xlabel(labelled("$t$", time_unit(system)))
+            _span(axis, found.times)
+        yield file, figure
+
+
+def _variables(found: Trajectory, note: str) -> Iterator[tuple[str, Figure]]:
+    """Each variable of a run in declared ones over the time, positions, then speeds."""
+    system = found.system
+    states = (*system.coordinates, *system.velocities)
+    names, place = LatexNames(["t", *states]), {name: i for i, name in enumerate(states)}
+    for file, shown, page in _pages("histories", states, 2 * HISTORY_ROWS):
+        rows = -(-len(shown) // 2)
+        figure = _page(10, 1.0 + 1.75 * rows + (0.3 if note else 0), _title(system) + page, note)
+        axes = figure.subplots(rows, 2, squeeze=False, sharex=True)
+        left = ScaledTranslation(-0.6, 0, figure.dpi_scale_trans)
+        for axis, name in zip(axes.T.ravel(), shown, strict=False):
+            axis.plot(*thinned(found.times, found.states[place[name]]), color=BLUE)
+            symbol = names[name]
+            plain = "$\\mathrm{" + name.replace("_", r"\_") + "}$"
+            label = plain if "mathtt" in symbol.stem else f"${symbol}$"
+            _label(axis, label + labelled("", unit_of(system, name)).replace(" ", "\n", 1))
+            axis.yaxis.set_label_coords(0, 0.5, axis.transAxes + left)
+        for axis in axes.T.ravel()[len(shown) :]:
+            axis.set_visible(False)
+        for axis in axes[-1]:
+            axis.set_xlabel(labelled("$t$", time_unit(system)))
+            _span(axis, found.times)
+        yield file, figure
+
+
+def _label(axis: Any, label: str) -> None:
+    axis.set_ylabel(label, rotation=0, ha="right", va="center", labelpad=8, fontsize=13)
+    axis.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10], min_n_ticks=3))
+    low, high = axis.get_ylim()
+    size = max(abs(low), abs(high))
+    # A constant is drawn as one, not as its rounding.
+    if high - low < 1e-9 * size:
+        axis.set_ylim(low - 0.05 * size, high + 0.05 * size)
+
+
+def _span(axis: Any, times: Any) -> None:
+    if times[-1] > 0:
+        axis.set_xlim(0, times[-1])
+
+
+def _planes(found: Trajectory, note: str, rates: Any = None) -> Iterator[tuple[str, Figure]]:
+    """q' over q, one plane a coordinate; the initial point is marked.  An angle that winds is shown modulo 2 pi."""
+    system = found.system
+    positions, velocities = coordinate_labels(system)[0], coordinate_labels(system, "\n")[1]
+    place = {name: i for i, name in enumerate(system.coordinates)}
+    turning = angle_denominators(system)
+    for file, names, page in _pages("phase-planes", system.coordinates, PLANE_ROWS * PLANE_COLUMNS):
+        columns = min(PLANE_COLUMNS, len(names))
+        rows = -(-len(names) // columns)
+        size = 4.6 if columns == 1 else 3.6
+        figure = _page(
+            max(5.4, size * columns), 0.7 + 0.85 * size * rows + (0.3 if note else 0), _title(system) + page, note
+        )
+        axes = figure.subplots(rows, columns, squeeze=False).ravel()
+        for axis in axes[len(names) :]:
+            axis.set_visible(False)
+        for axis, name in zip(axes, names, strict=False):
+            q, v = _curve(found, place[name], rates)
+            label = positions[name]
+            if turning.get(name) == 1 and np.ptp(q) > 3 * np.pi:
+                q, v = _wrapped(q, v)
+                label += r"  modulo $2\pi$"
+                axis.set_xlim(-np.pi, np.pi)
+                axis.set_xticks(
+                    np.array([-1, -0.5, 0, 0.5, 1]) * np.pi,
+                    ["\u2212\u03c0", "\u2212\u03c0/2", "0", "\u03c0/2", "\u03c0"],
+                )
+            axis.plot(q, v, color=BLUE, linewidth=0.9, rasterized=len(q) > MOST_POINTS)
+            axis.plot(q[:1], v[:1], "o", color=RED, markersize=4)
+            axis.set_xlabel(label, fontsize=12)
+            _label(axis, velocities[name])
+            if "modulo" not in label:
+                axis.xaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10], min_n_ticks=3))
+        yield file, figure
+
+
+def _curve(found: Trajectory, i: int, rates: Any) -> tuple[Any, Any]:
+    """q and q' of one coordinate, between the samples too where the curve turns."""
+    state = np.asarray(found.states[[i, i + len(found.states) // 2]], dtype=float)
+    size = np.ptp(state, axis=1)
+    if rates is None or len(found.times) > MOST_POINTS or not np.all(size > 0):
+        return state[0], state[1]
+    with np.errstate(all="ignore"):
+        direction = np.arctan2(rates[i] / size[1], state[1] / size[0])
+        turn = np.abs((np.diff(direction) + np.pi) % (2 * np.pi) - np.pi)
+        chord = np.hypot(*(np.diff(state, axis=1) / size[:, None]))
+        wanted = np.minimum(np.ceil(turn / CORNER), np.ceil(chord / CLOSE))
+    pieces = np.clip(np.nan_to_num(wanted, nan=1.0), 1, MOST_PIECES).astype(int)
+    _, (q, v) = between(found.times, state, rates[i : i + 1], pieces)
+    return q, v
+
+
+def _wrapped(q: Any, v: Any) -> tuple[Any, Any]:
+    """The angle in [-pi, pi), with a gap where it jumps; the first point stays the first."""
+    turns = np.floor((q + np.pi) / (2 * np.pi))
+    breaks = np.flatnonzero(np.diff(turns)) + 1
+    return np.insert(q - 2 * np.pi * turns, breaks, np.nan), np.insert(v, breaks, np.nan)
+
+
+def _drift(found: Trajectory, note: str, conserved: bool) -> Figure:
+    """|h - h(0)| over the largest kinetic energy on a logarithmic scale, or h itself where it may well change.
+
+    h is the generalised energy, which is the energy where nothing is prescribed.
+    """
+    figure = _page(10, 3.4 + (0.3 if note else 0), _title(found.system), note)
+    axis = figure.subplots(1, 1)
+    axis.set_xlabel(labelled("$t$", time_unit(found.system)))
+    energy = "energy" if found.generalized_energy is found.energy else "generalised energy"
+    if not conserved:
+        axis.plot(*thinned(found.times, found.generalized_energy), color=BLUE)
+        axis.set_title(energy)
+        _label(axis, labelled("$h$", energy_unit(found.system)).replace(" ", "\n", 1))
+        _span(axis, found.times)
+        return figure
+    drift = np.maximum(np.abs(np.asarray(found.drift, dtype=float)), FLOOR)
+    axis.set_yscale("log")
+    # At the start it is zero by definition.
+    axis.plot(*thinned(found.times[1:], drift[1:]), color=BLUE, linewidth=0.9)
+    axis.set_ylim(FLOOR, max(float(np.max(drift)), ROUNDING) * 5)
+    axis.axhline(ROUNDING, color=GREY, linewidth=0.8, linestyle="--")
+    axis.annotate(
+        "rounding of one double",
+        (1, ROUNDING),
+        xycoords=("axes fraction", "data"),
+        xytext=(-4, -3),
+        textcoords="offset points",
+        ha="right",
+        va="top",
+        color="#555555",
+        fontsize=9,
+    )
+    axis.yaxis.set_major_locator(LogLocator(numticks=8))
+    axis.yaxis.set_minor_locator(NullLocator())
+    axis.set_ylabel(r"$|h-h_0|\,/\,\max T$" if np.any(found.kinetic) else "$|h-h_0|$")
+    axis.set_title(f"relative drift of the {energy}")
+    _span(axis, found.times)
+    return figure

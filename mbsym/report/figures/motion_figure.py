@@ -1,0 +1,358 @@
+"""The moving system: snapshots of its bodies as lines, darker as time passes, with the paths of the mass centres.
+
+A planar system is drawn in its plane, any other from an elevated point with the direction away from gravity upwards; a
+system whose bodies have no extent as the paths of the tips of its axes, which a body that has no line of its own shows
+besides.  ``mass-centres`` shows the places over time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import ceil, cos, floor, log10, radians, sin
+from typing import Any
+
+import numpy as np
+from matplotlib.collections import LineCollection
+from matplotlib.colors import LinearSegmentedColormap, Normalize
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from mbsym.model.quantities import length_unit, time_unit, with_unit
+from mbsym.model.system import INERTIAL
+from mbsym.numerics.positions import AXIS, JOINT, Positions
+from mbsym.report.figures.drawing import pictures, thinned
+from mbsym.report.outlines import Outline
+from mbsym.report.unit_text import labelled, pretty
+
+#: Early and late; the eye reads darker as later, in print too.
+_TIME = LinearSegmentedColormap.from_list("time", ["#c3d3e8", "#5b87bd", "#173a6b"])
+
+#: Paths, by body (or by axis).
+_PATHS = ("#b3372f", "#2e8b57", "#d9822b", "#8e5ea2", "#17a2b8", "#7a5c3e", "#c2528b", "#6b8e23")
+
+#: About so many snapshots; azimuth and elevation of the eye in degrees.
+SNAPSHOTS, AZIMUTH, ELEVATION = 12, 35.0, 22.0
+
+#: At most so many snapshots show shapes: lines of more of them hide each other.
+OUTLINED = 6
+
+#: Rows of places over time on one page.
+ROWS = 6
+
+
+def motion_figures(
+    found: Positions, formats: Sequence[str], note: str = "", shapes: Sequence[Outline] = ()
+) -> dict[str, bytes]:
+    """``motion`` and, where a mass centre moves, ``mass-centres`` in every format, by file name.
+
+    ``shapes`` are outlines of bodies at the same times, in the same frame.
+    """
+    if len(found.times) < 2:
+        return {}
+    drawings = {"motion": lambda: _motion(found.readable(), note, float(found.times[-1]), shapes)}
+    pages = _pages(found)
+    for number, page in enumerate(pages):
+        name = "mass-centres" + (f"-{number + 1}" if number else "")
+        part = f", page {number + 1} of {len(pages)}" if len(pages) > 1 else ""
+        drawings[name] = lambda page=page, part=part: _histories(found, page, part, note)  # type: ignore[misc]
+    return pictures(drawings, formats)
+
+
+# --- the picture ---
+
+
+class _View:
+    """Two directions on the paper, and one towards the eye, in the axes of the frame."""
+
+    def __init__(self, found: Positions) -> None:
+        self.plane = found.plane
+        up = _nearest_axis(found.up)
+        if self.plane is not None:
+            normal = np.eye(3)[self.plane - 1]
+            if up is None or up @ normal:
+                up = np.eye(3)[2 if self.plane != 3 else 1]
+            self.up, self.towards = up, normal
+            self.right = np.cross(self.up, self.towards)
+            # Axes that point left read badly: look from the other side.
+            if np.sum(self.right) < 0 and self.plane != 3:
+                self.right, self.towards = -self.right, -self.towards
+            return
+        up = np.eye(3)[2] if up is None else up
+        first = np.roll(np.abs(up), 1)
+        second = np.cross(up, first)
+        around, raised = radians(AZIMUTH), radians(ELEVATION)
+        level = cos(around) * first + sin(around) * second
+        self.right = -sin(around) * first + cos(around) * second
+        self.towards = cos(raised) * level + sin(raised) * up
+        self.up = -sin(raised) * level + cos(raised) * up
+
+    def __call__(self, places: Any) -> Any:
+        """(..., 3, m) -> (..., 2, m) on the paper."""
+        return np.stack([np.tensordot(places, self.right, (-2, 0)), np.tensordot(places, self.up, (-2, 0))], axis=-2)
+
+    def depth(self, places: Any) -> Any:
+        return np.tensordot(places, self.towards, (-2, 0))
+
+
+def _nearest_axis(up: tuple[float, float, float] | None) -> Any:
+    """The direction as a signed axis; None where it is none or lies between axes."""
+    if up is None or max(map(abs, up)) < 1 - 1e-9:
+        return None
+    return np.round(np.array(up))
+
+
+def _motion(found: Positions, note: str, end: float, shapes: Sequence[Outline] = ()) -> Figure:
+    view = _View(found)
+    flat = view(found.places)
+    low, high = np.min(flat, axis=(0, 2)), np.max(flat, axis=(0, 2))
+    for one in shapes:
+        whole = view(one.places[:, : len(found.times)])
+        low = np.minimum(low, np.min(whole, axis=1) - one.reach)
+        high = np.maximum(high, np.max(whole, axis=1) + one.reach)
+    if found.tips:
+        for centre, radius in _spheres(found, flat):  # the whole sphere on which the tips move
+            low, high = np.minimum(low, centre - radius), np.maximum(high, centre + radius)
+    spread = np.maximum(high - low, 0.25 * float(np.max(high - low)))
+    centre = (low + high) / 2
+    low, high = centre - 0.55 * spread, centre + 0.55 * spread
+    wide, tall = _paper(high - low)
+    figure = Figure(figsize=(wide + 1.9, tall + 1.35 + (0.25 if note else 0)), layout="constrained")
+    axis = figure.subplots()
+    axis.set_aspect("equal")
+    axis.set_xlim(low[0], high[0])
+    axis.set_ylim(low[1], high[1])
+    step = _step(found.times)
+    shown = _snapshots(found.times, step)
+    time = Normalize(float(found.times[0]), float(found.times[-1]))
+    if found.tips:
+        _tips(axis, found, view, flat, shown, time)
+    if found.bodied:
+        _paths(axis, found, view, flat)
+        _bodies(axis, found, flat, shown, time)
+        _outlines(axis, found, view, shapes, shown, time)
+    _scale(axis, found, view)
+    from matplotlib.cm import ScalarMappable
+
+    bar = figure.colorbar(ScalarMappable(time, _TIME), ax=axis, shrink=0.75, pad=0.02, aspect=28)
+    bar.set_label(labelled("$t$", time_unit(found.system)).replace(" ", "\n", 1), rotation=0, fontsize=13, labelpad=8)
+    bar.outline.set_visible(False)
+    handles, labels = axis.get_legend_handles_labels()
+    if handles:
+        columns = max(1, int(12 * figure.get_figwidth() / (max(map(len, labels)) + 8)))
+        figure.legend(
+            handles,
+            labels,
+            loc="outside lower center",
+            ncols=min(columns, len(handles)),
+            frameon=False,
+            fontsize=9,
+            title=None if found.tips else "paths of the mass centres",
+            title_fontsize=9,
+        )
+    lines = [_title(found), *_caption(found, step, end), note]
+    figure.suptitle("\n".join(filter(None, lines)), fontsize=11, parse_math=False)
+    return figure
+
+
+def _title(found: Positions) -> str:
+    name = found.system.name
+    return name if len(name) <= 70 else name[:67] + "..."
+
+
+def _caption(found: Positions, step: float, end: float) -> list[str]:
+    last = float(found.times[-1])
+    unit = pretty(time_unit(found.system))
+    said = f"t = 0 to {with_unit(_rounded(last), unit)}"
+    said += "" if last == end else f" (of {with_unit(_rounded(end), unit)})"
+    if found.bodied:
+        said += f", a snapshot every {with_unit(_rounded(step), unit)}"
+    return [said] if found.frame == INERTIAL else [said, f"seen in the frame '{found.frame}'"]
+
+
+def _rounded(value: float) -> str:
+    return f"{float(f'{value:.3g}'):g}"
+
+
+def _paper(spread: Any) -> tuple[float, float]:
+    """Inches for a picture of this shape."""
+    ratio = float(spread[1] / spread[0])
+    wide = 6.5 if ratio < 0.8 else 5.2 / max(ratio, 1.0) ** 0.5
+    return max(wide, 3.6), min(max(wide * ratio, 1.6), 6.5)
+
+
+def _step(times: Any) -> float:
+    """A round distance of about SNAPSHOTS snapshots."""
+    wanted = float(times[-1] - times[0]) / SNAPSHOTS
+    power = 10.0 ** floor(log10(wanted))
+    return min((factor * power for factor in (1, 2, 2.5, 5, 10)), key=lambda x: abs(log10(x / wanted)))
+
+
+def _snapshots(times: Any, step: float) -> list[int]:
+    """The samples nearest to multiples of ``step``."""
+    count = int(float(times[-1] - times[0]) / step * (1 + 1e-9)) + 1
+    return sorted({int(np.argmin(np.abs(times - (times[0] + k * step)))) for k in range(count)})
+
+
+def _paths(axis: Any, found: Positions, view: _View, flat: Any) -> None:
+    """The paths of the mass centres, one colour a body; where two coincide the first is drawn."""
+    moving = found.moving(found.centres.values())
+    for place, (body, i) in enumerate(found.centres.items()):
+        if i in moving:
+            colour = _PATHS[place % len(_PATHS)]
+            label = f"mass centre of {body}" if found.tips else body
+            axis.plot(*flat[i], color=colour, linewidth=0.9, alpha=0.85, label=label, zorder=2)
+
+
+def _bodies(axis: Any, found: Positions, flat: Any, shown: Sequence[int], time: Normalize) -> None:
+    thin = max(0.5, 1.0 - 0.02 * len(found.points))
+    for k in shown:
+        colour = _TIME(time(found.times[k]))
+        zorder = 3 + k / len(found.times)
+        for pairs, width, dash in ((found.links, 2.0 * thin, "solid"), (found.slides, 1.2, (0, (3, 1.5)))):
+            ends = [(flat[i, :, k], flat[j, :, k]) for i, j in pairs if j not in found.tips]
+            axis.add_collection(LineCollection(ends, colors=[colour], linewidths=width, linestyles=dash, zorder=zorder))
+        joints = [i for i, point in enumerate(found.points) if i not in found.centres.values() and point.kind != AXIS]
+        axis.plot(*flat[joints, :, k].T, "o", color=colour, markersize=3.2, markerfacecolor="white", zorder=zorder)
+        for place, i in enumerate(found.centres.values()):
+            edge = _PATHS[place % len(_PATHS)] if k in (shown[0], shown[-1]) else colour
+            size = 5 * thin
+            axis.plot(*flat[i, :, k], "o", color=colour, markeredgecolor=edge, markersize=size, zorder=zorder + 0.01)
+
+
+def _outlines(
+    axis: Any, found: Positions, view: _View, shapes: Sequence[Outline], shown: Sequence[int], time: Normalize
+) -> None:
+    """The bodies' shapes, thinner than their links, and in every second or third snapshot."""
+    every = -(-len(shown) // OUTLINED)
+    for k in shown[::-1][::every]:
+        colour, zorder = _TIME(time(found.times[k])), 3 + k / len(found.times)
+        lines = [view(line).T for one in shapes for line in one.at(k)]
+        axis.add_collection(LineCollection(lines, colors=[colour], linewidths=0.8, zorder=zorder))
+
+
+def _spheres(found: Positions, flat: Any) -> list[tuple[Any, float]]:
+    """(centre on the paper, radius) of the spheres on which tips of axes move, where these are at rest."""
+    joints = {point.body: i for i, point in enumerate(found.points) if point.kind == JOINT}
+    still = set(joints.values()) - set(found.moving(joints.values()))
+    spheres = []
+    for body, joint in joints.items():
+        own = [i for i in found.tips if found.points[i].body == body]
+        if own and joint in still:
+            radius = float(np.linalg.norm(found.places[own[0], :, 0] - found.places[joint, :, 0]))
+            spheres.append((flat[joint, :, 0], radius))
+    return spheres
+
+
+def _tips(axis: Any, found: Positions, view: _View, flat: Any, shown: Sequence[int], time: Normalize) -> None:
+    """Paths of the tips of the axes, dimmed behind the sphere; the axes themselves at the start and at the end."""
+    joints = {point.body: i for i, point in enumerate(found.points) if point.kind == JOINT}
+    around = np.linspace(0, 2 * np.pi, 361)
+    for centre, radius in _spheres(found, flat):
+        circle = centre[:, None] + radius * np.array([np.cos(around), np.sin(around)])
+        axis.plot(*circle, color="#bbbbbb", linewidth=0.8, zorder=1)
+    first = len(found.centres) if found.extended else 0  # colours that no path of a mass centre has
+    for body, joint in joints.items():
+        own = [i for i in found.tips if found.points[i].body == body]
+        for i in own:
+            number = found.points[i].axis
+            colour = _PATHS[(first + number - 1) % len(_PATHS)]
+            behind = view.depth(found.places[i] - found.places[joint]) < 0
+            front = np.where(behind, np.nan, flat[i])
+            back = np.where(behind, flat[i], np.nan)
+            whose = f" of {body}" if found.extended or len(joints) > 1 else " of the body"
+            axis.plot(*front, color=colour, linewidth=1.1, label=f"axis {number}{whose}", zorder=3)
+            axis.plot(*back, color=colour, linewidth=0.8, alpha=0.35, zorder=2)
+            for k in (shown[0], shown[-1]):
+                ends = np.array([flat[joint, :, k], flat[i, :, k]]).T
+                dash = "--" if k == shown[0] else "-"
+                axis.plot(*ends, dash, color=_TIME(time(found.times[k])), linewidth=1.3, zorder=4)
+                axis.plot(*flat[i, :, k], "o", color=colour, markersize=4, zorder=5)
+
+
+def _length(found: Positions) -> str | None:
+    """The unit of places; none where only tips of unit vectors are drawn."""
+    return length_unit(found.system) if found.bodied else None
+
+
+def _scale(axis: Any, found: Positions, view: _View) -> None:
+    """Numbers along axes that lie in the paper; else the directions of the axes, and a length."""
+    if view.plane is not None:
+        for label, direction in ((axis.set_xlabel, view.right), (axis.set_ylabel, view.up)):
+            number = int(np.argmax(np.abs(direction))) + 1
+            name = f"axis {number}" if direction[number - 1] > 0 else f"against axis {number}"
+            label(labelled(name, _length(found)))
+        axis.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 2.5, 5, 10]))
+        axis.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 2.5, 5, 10]))
+        return
+    axis.set_axis_off()
+    low, high = np.array([axis.get_xlim()[0], axis.get_ylim()[0]]), np.array([axis.get_xlim()[1], axis.get_ylim()[1]])
+    length = 0.09 * float(np.max(high - low))
+    corner = low + length * np.array([1.0, 1.3])
+    for number, direction in enumerate(np.eye(3), start=1):
+        tip = length * np.array([direction @ view.right, direction @ view.up])
+        axis.annotate(
+            "",
+            corner + tip,
+            corner,
+            arrowprops={"arrowstyle": "->", "color": "#444444", "linewidth": 0.9, "shrinkA": 0, "shrinkB": 0},
+            annotation_clip=False,
+        )
+        axis.annotate(
+            str(number),
+            corner + 1.28 * tip,
+            annotation_clip=False,
+            ha="center",
+            va="center",
+            fontsize=9,
+            color="#444444",
+        )
+    if not found.bodied:
+        return
+    bar = 10.0 ** floor(log10(0.3 * float(high[0] - low[0])))
+    bar = max(x * bar for x in (1, 2, 5) if x * bar <= 0.3 * float(high[0] - low[0]))
+    start = np.array([high[0] - bar, low[1]])
+    axis.plot([start[0], start[0] + bar], [start[1], start[1]], color="#444444", linewidth=1.6, clip_on=False)
+    axis.annotate(
+        with_unit(f"{bar:g}", pretty(_length(found))),
+        (start[0] + bar / 2, start[1]),
+        (0, 4),
+        textcoords="offset points",
+        ha="center",
+        fontsize=9,
+    )
+
+
+# --- places over time ---
+
+
+def _pages(found: Positions) -> list[list[tuple[str, int]]]:
+    moving = found.moving(found.centres.values())
+    rows = [(body, i) for body, i in found.centres.items() if i in moving]
+    count = ceil(len(rows) / ROWS)
+    return [rows[k * len(rows) // count : (k + 1) * len(rows) // count] for k in range(count)]
+
+
+def _histories(found: Positions, rows: Sequence[tuple[str, int]], part: str, note: str) -> Figure:
+    """The coordinates of each mass centre over time, in the axes of the frame, a row a body."""
+    figure = Figure(figsize=(8, 0.9 + 1.75 * len(rows) + (0.3 if note else 0)), layout="constrained")
+    grid = figure.subplots(len(rows), 1, squeeze=False, sharex=True)[:, 0]
+    drawn = [number for number in (1, 2, 3) if number != found.plane]
+    for axis, (body, i) in zip(grid, rows, strict=True):
+        for number in drawn:
+            style = ("-", (0, (5, 2)), (0, (1.5, 1.5)))[number - 1]
+            axis.plot(
+                *thinned(found.times, found.places[i, number - 1]),
+                color=_PATHS[number - 1],
+                linestyle=style,
+                label=f"axis {number}",
+            )
+        axis.set_title(body, loc="left", fontsize=10, parse_math=False)
+        axis.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10], min_n_ticks=3))
+    grid[0].legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=3, frameon=False, fontsize=9, borderaxespad=0.1)
+    grid[-1].set_xlabel(labelled("$t$", time_unit(found.system)))
+    grid[-1].set_xlim(0, float(found.times[-1]))
+    where = "" if found.frame == INERTIAL else f" in the frame '{found.frame}'"
+    what = labelled(f"places of the mass centres{where}", length_unit(found.system))
+    lines = (_title(found) + part, what, note)
+    figure.suptitle("\n".join(filter(None, lines)), fontsize=11, parse_math=False)
+    return figure

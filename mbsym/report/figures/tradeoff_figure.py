@@ -1,0 +1,117 @@
+"""The work-precision figure: seconds against error, a curve for each method and arithmetic."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from math import isfinite
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullLocator
+
+from mbsym.numerics.trade.fidelity import RESOLVED, ModelError
+from mbsym.numerics.trade.tradeoff import Measured, Tradeoff
+from mbsym.report.figures.drawing import GREY, RED, pictures
+
+#: Dark and light colours, and markers: what looks alike in the one differs in the other.
+_COLOURS = (
+    *("#1f5fa8", "#d9822b", "#2e8b57", "#8e5ea2", "#17a2b8", "#8c564b", "#c2478f"),
+    *("#444444", "#e8b98a", "#8ccba0", "#c0a0d8", "#a8a8a8", "#e89ac8", "#7fb0e8"),
+)
+_MARKS = ("o", "D", "v", "P", "X", "*", "<", ">")
+#: Arithmetic: the line, and the inside of the marker.
+_DASHES: dict[str, Any] = {"float64": "-", "float32": (0, (1, 1.6)), "extended": (0, (5, 2))}
+_INSIDE = {"float64": "full", "float32": "none", "extended": "left"}
+
+#: Errors beyond this are no solutions and are not drawn.
+WORST = 10.0
+
+OLIVE = "#777700"
+
+
+def work_precision(
+    found: Tradeoff, target: float, title: str, models: Sequence[ModelError], formats: Sequence[str]
+) -> dict[str, bytes]:
+    """``work-precision.svg`` and ``.png``: what each digit costs; errors of simpler models as vertical lines.
+
+    None where no run came to the end, in time or at all.
+    """
+    if not any(row.error < WORST for row in found.rows):
+        return {}
+    return pictures({"work-precision": lambda: _drawn(found, target, title, models)}, formats)
+
+
+def _drawn(found: Tradeoff, target: float, title: str, models: Sequence[ModelError]) -> Figure:
+    figure = Figure(figsize=(9.6, 6.0), layout="constrained")
+    axes = figure.subplots()
+    ladders: dict[tuple[str, str], list[Measured]] = {}
+    for row in found.rows:
+        if isfinite(row.error) and row.error < WORST:
+            ladders.setdefault((row.candidate.method.traits.name, row.candidate.scalar), []).append(row)
+    styles = _styles(dict.fromkeys(name for name, _ in ladders))
+    for (name, scalar), rows in ladders.items():
+        label = name if scalar == "float64" else f"{name}, {scalar}"
+        axes.plot(
+            [max(row.error, 1e-17) for row in rows],
+            [row.seconds for row in rows],
+            linestyle=_DASHES[scalar],
+            marker=styles[name][1],
+            fillstyle=_INSIDE[scalar],
+            markersize=4.5,
+            color=styles[name][0],
+            label=label,
+        )
+    front = sorted((row for row in found.rows if row.front and row.error < WORST), key=lambda row: row.error)
+    axes.plot(
+        [max(row.error, 1e-17) for row in front],
+        [row.seconds for row in front],
+        color="#000000",
+        linewidth=5,
+        alpha=0.12,
+        solid_capstyle="round",
+        label="front",
+        zorder=1,
+    )
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.invert_xaxis()
+    axes.xaxis.set_major_locator(LogLocator(numticks=12))
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.set_xlabel("error against the reference (smaller to the right)")
+    axes.set_ylabel("seconds of integration")
+    axes.set_title(title, loc="left")
+    _line(axes, target, RED, f"target {target:.0e}")
+    finest = min((row.error for row in found.rows), default=1.0)
+    if found.smallest_judged > finest / 100:
+        _line(axes, found.smallest_judged, GREY, "limit of the reference")
+    for model in _drawable(models):
+        _line(axes, model.error, OLIVE, f"model {model.variant.label}")
+    # Patterns of lines need some length to be told apart.
+    figure.legend(loc="outside right upper", frameon=False, fontsize=9, handlelength=3.4)
+    return figure
+
+
+def _styles(methods: Iterable[str]) -> dict[str, tuple[str, str]]:
+    """A colour and a marker for each method, no pair of them twice (up to 56 methods)."""
+    return {name: (_COLOURS[i % len(_COLOURS)], _MARKS[i % len(_MARKS)]) for i, name in enumerate(methods)}
+
+
+def _drawable(models: Sequence[ModelError]) -> Iterable[ModelError]:
+    return (row for row in models if RESOLVED < row.error < WORST)
+
+
+def _line(axes: Axes, error: float, colour: str, text: str) -> None:
+    axes.axvline(error, color=colour, linewidth=1, linestyle="-.", zorder=0)
+    axes.text(
+        error,
+        0.99,
+        text,
+        rotation=90,
+        color=colour,
+        fontsize=8,
+        va="top",
+        ha="center",
+        bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0},
+        transform=axes.get_xaxis_transform(),
+    )

@@ -1,0 +1,1 @@
+"""The HTML page: values for its templates, formulas as MathML."""

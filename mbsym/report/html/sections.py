@@ -1,0 +1,50 @@
+"""Parts of ``report.html`` one by one, as fragments for a page that fills while results are derived.
+
+A fragment is what the same part of the report is, word for word, and its formulas carry what other programs read
+(``html_formulas.spelled``).  Everything that comes from a description is escaped.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from mbsym.report.html.environment import fragment
+from mbsym.report.html.formulas import spelled
+from mbsym.report.html.report import context
+from mbsym.report.summary import title_of
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+
+#: What a report shows beside problems, with the titles that it gives them.
+PARTS = {
+    "summary": "What was found",
+    "system": "The system",
+    "claims": "Claims",
+    "checks": "Self-check",
+    "conventions": "Conventions",
+}
+
+
+def title(analysis: Analysis, part: str | int) -> str:
+    """As the report has it: ``Problem 6. Stability``, ``The system``."""
+    if isinstance(part, str):
+        return PARTS[part]
+    words = title_of(analysis.system, part)
+    return f"Problem {part}. {words[:1].upper()}{words[1:]}"
+
+
+def part_html(analysis: Analysis, part: str | int, problems: Sequence[int]) -> str:
+    """A part, or a problem by its number, told beside the results of ``problems``.
+
+    Raises KeyError for a part that there is not.
+    """
+    from mbsym.analysis import PROBLEMS
+
+    if isinstance(part, str) and part not in PARTS:
+        raise KeyError(part)
+    with spelled():
+        known, values = context(analysis, problems, part in ("summary", "claims", "checks"))
+        problem = None if isinstance(part, str) else PROBLEMS[part]
+        return fragment("part.html.j2", known, part=part, number=part, problem=problem, **values)

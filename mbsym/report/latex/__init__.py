@@ -1,0 +1,1 @@
+"""LaTeX reports: values for their templates, formulas broken into lines, labels and references."""

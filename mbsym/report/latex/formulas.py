@@ -1,0 +1,184 @@
+"""Formulas, vectors and matrices in LaTeX for a page of some width: as a whole where they fit, else entry by entry."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from math import gcd
+
+from flint import fmpq
+
+from mbsym.expressions.tree import ZERO
+from mbsym.formulas.formula import Column, Formula, Matrix
+from mbsym.formulas.latex import LatexNames, latex_factor, latex_matrix, latex_text
+from mbsym.model.system import Tensor
+from mbsym.problems.linearisation import Subsystem
+from mbsym.problems.stability.spectrum import Spectrum, numbers
+from mbsym.report.latex.description import expression
+from mbsym.report.lengths import not_printed
+
+#: Matrices estimated wider than this (in ems) are written entry by entry.
+WIDEST = 40
+#: The same in a column of a two-column document, 229 pt in article, with an equation number beside it.
+NARROW = 17
+#: Longer formulas are left to the machine-readable files: nobody reads them, and TeX's memory is finite.
+LONGEST = 6000
+#: Conditions with more terms than this are counted instead of written: what they say, they say in results.json.
+LONGEST_CONDITION = 150
+
+
+def formula(value: Formula, long: frozenset[int] = frozenset()) -> str:
+    """A formula that may be broken; one that is too long for paper, or is among the ``long`` ones, is only counted."""
+    if value.terms > LONGEST or id(value) in long:
+        return f"\\text{{({not_printed(value)})}}"
+    return latex_text(value.ring, value.polynomial, breaks=True)
+
+
+def condition(value: Formula, in_json: bool = True) -> str:
+    """A polynomial of problem 6; a long one is only counted, and ``in_json`` tells where it is."""
+    return counted(value, in_json) or formula(value)
+
+
+def counted(value: Formula, in_json: bool = True) -> str:
+    """How long a polynomial is that nobody would read; "" for any other."""
+    if value.terms <= LONGEST and len(re.findall(r" [+-] ", formula(value))) < LONGEST_CONDITION:
+        return ""
+    degree = max(map(sum, value.polynomial.monoms()))
+    where = "; in full in results.json" if in_json else ""
+    return f"\\text{{({value.terms} terms, of degree {degree}{where})}}"
+
+
+def width(latex: str) -> float:
+    """A rough estimate in ems."""
+    letters = re.sub(r"\\(frac|left|right|bigl|bigr|Bigl|Bigr|dot|ddot|mathrm|mathit|penalty\d+)", "", latex)
+    functions = len(re.findall(r"\\(sin|cos|exp|ln)", letters))
+    symbols = re.sub(r"\\[A-Za-z]+|[A-Za-z0-9]", "x", letters)
+    return 0.55 * symbols.count("x") + functions + 1.3 * len(re.findall(r" [+-] ", symbols))
+
+
+def measured_matrix(value: Matrix) -> tuple[str, float]:
+    """The pmatrix and its width; "" if an entry is too long for any page."""
+    if any(x.terms > 60 for row in value for x in row):
+        return "", 0.0
+    number = _common_number(value)
+    if number > 1:
+        value = Matrix.of(value[0, 0].ring, [[x * fmpq(1, number) for x in row] for row in value.polynomials])
+    rows = [[x.latex() for x in row] for row in value]
+    wide = sum(max(map(width, column)) + 1.2 for column in zip(*rows, strict=True))
+    text = latex_matrix(rows) if number == 1 else f"{number} {latex_matrix(rows)}"
+    return text, wide
+
+
+#: Gives ``measured_matrix``, perhaps from what was printed before.
+Measured = Callable[[Matrix], tuple[str, float]]
+
+
+def matrix(
+    value: Matrix,
+    long: frozenset[int] = frozenset(),
+    widest: float = WIDEST,
+    measured: Measured = measured_matrix,
+) -> str:
+    """A pmatrix, or nothing if that would be too wide or holds one of the ``long`` formulas."""
+    if any(id(x) in long for row in value for x in row):
+        return ""
+    text, wide = measured(value)
+    return text if wide <= widest else ""
+
+
+def _common_number(value: Matrix) -> int:
+    """The whole number that stands in front of a matrix of several entries: 3 (b - a, f; f, f)."""
+    entries = [x.polynomial for row in value for x in row if not x.is_zero]
+    if len(entries) < 2:
+        return 1
+    coefficients = [c for x in entries for c in x.coeffs()]
+    whole = all(c.q == 1 for c in coefficients)
+    return gcd(*(int(c.p) for c in coefficients)) if whole else 1
+
+
+def tensor(value: Tensor, names: LatexNames, widest: float) -> str:
+    """A tensor of inertia; a wide one row by row."""
+    if all(value[i][j] == ZERO for i in range(3) for j in range(3) if i != j):
+        return "\\operatorname{diag}(" + ",\\; ".join(expression(value[k][k], names) for k in range(3)) + ")"
+    rows = [[expression(x, names) for x in one] for one in value]
+    if sum(max(map(width, column)) + 1.2 for column in zip(*rows, strict=True)) <= widest:
+        return latex_matrix(rows)
+    return "(" + ";\\; \\penalty0 ".join(",\\; ".join(one) for one in rows) + ")"
+
+
+def displays(part: Subsystem, k: object, widest: float = WIDEST, measured: Measured = measured_matrix) -> list[str]:
+    """The matrices of a subsystem that are not zero and not too wide, side by side where they fit."""
+    lines: list[str] = []
+    room = 0.0
+    for name in "MDGKN":
+        value: Matrix = getattr(part, name)
+        text, wide = ("", 0.0) if value.is_zero else measured(value)
+        if not text or wide > widest:
+            continue
+        needed = wide + 6
+        shown = f"{name}{index(k)} = {text}"
+        if needed <= room:
+            lines[-1] += f",\\quad {shown}"
+        else:
+            lines.append(shown)
+            room = widest
+        room -= needed
+    return lines
+
+
+def index(k: object) -> str:
+    return f"_{{{k}}}" if k else ""
+
+
+def row(values: Column, long: frozenset[int] = frozenset(), widest: float = WIDEST) -> str:
+    """Components side by side, or nothing if that would be too wide or holds one of the ``long`` formulas."""
+    if any(id(x) in long for x in values):
+        return ""
+    written = [x.latex() if x.terms <= 30 else "" for x in values]
+    fits = all(written) and sum(map(width, written)) <= widest
+    return ",\\; ".join(written) if fits else ""
+
+
+def entries(value: Matrix, symmetric: bool = False) -> list[tuple[str, Formula]]:
+    """(index, entry) of what is not zero; of a symmetric matrix the upper half."""
+    n = len(value.rows)
+    comma = "," if n > 9 else ""
+    return [
+        (f"{i + 1}{comma}{j + 1}", entry)
+        for i, row in enumerate(value)
+        for j, entry in enumerate(row)
+        if not entry.is_zero and (j >= i or not symmetric)
+    ]
+
+
+def polynomial(coefficients: Sequence[Formula], variable: str) -> str:
+    """sum of coefficient*variable^k, highest power first."""
+    written: list[str] = []
+    for power, coefficient in reversed(list(enumerate(coefficients))):
+        if coefficient.is_zero:
+            continue
+        raised = "" if power == 0 else f" {variable}" if power == 1 else f" {variable}^{{{power}}}"
+        if length := counted(coefficient):
+            written.append(" \\penalty0 " + ("+ " if written else "") + length + raised)
+            continue
+        if raised:
+            text = latex_factor(coefficient.ring, coefficient.polynomial, breaks=True)
+        else:
+            text = formula(coefficient)
+        written.append(" \\penalty0 " + ("" if text.startswith("-") or not written else "+ ") + text + raised)
+    return "".join(written) or "0"
+
+
+def eigenvalues(spectrum: Spectrum) -> str:
+    """``-0.1 \\pm 2.3\\,\\mathrm{i}``, separated by commas; six digits."""
+    written = []
+    for root in numbers(spectrum):
+        real, imaginary = (scientific(x) for x in (root.real, root.imaginary))
+        text = real if not root.imaginary else f"{real if root.real else ''}\\pm {imaginary}\\,\\mathrm{{i}}"
+        written.append(text if root.multiplicity == 1 else f"{text}\\ ({root.multiplicity}\\times)")
+    return ",\\; \\penalty0 ".join(written)
+
+
+def scientific(value: float) -> str:
+    digits, _, exponent = f"{value:.6g}".partition("e")
+    return f"{digits}\\cdot 10^{{{int(exponent)}}}" if exponent else digits

@@ -1,0 +1,1 @@
+"""Maps, slices, branches and numbers of equilibria: words, JSON, LaTeX, figures."""

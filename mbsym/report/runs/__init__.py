@@ -1,0 +1,1 @@
+"""What is written and said of runs: tables, JSON, plans, certificates, events."""

@@ -1,0 +1,205 @@
+"""The results of ``mbsym extremes`` as CSV, JSON and rows of a table on the screen."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterator, Sequence
+from math import isfinite
+from typing import Any
+
+from msgspec import UNSET
+
+from mbsym.numerics.extremes.extremes import Extremes, Row
+from mbsym.numerics.extremes.extremes_told import sentences
+from mbsym.numerics.extremes.singular import Singularities
+from mbsym.numerics.extremes.singular_positions import SingularPositions
+from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
+from mbsym.numerics.trade.digits import FULL
+from mbsym.report.documents import extremes as doc
+from mbsym.report.documents.writer import written
+
+HEADER = (
+    "kind",
+    "subject",
+    "size",
+    "quantity",
+    "digits_float32",
+    "digits_float64",
+    "worst_entry_float32",
+    "worst_entry_float64",
+    "formula_digits_float64",
+    "condition",
+    "verdict",
+    "bits",
+)
+
+
+def extremes_csv(found: Extremes) -> str:
+    """One line for each quantity on each rung; verdicts of stability follow as quantity ``stability``."""
+    out = io.StringIO()
+    write = csv.writer(out, lineterminator="\n").writerow
+    write(HEADER)
+    for row in found.rows:
+        d = row.found
+        digits = [d.digits[FLOAT32], d.digits[FLOAT64], d.worst[FLOAT32], d.worst[FLOAT64], d.formula]
+        numbers = [f"{x:.2f}" for x in digits]
+        write(
+            [row.kind, row.subject, f"{row.size:.0e}", row.quantity, *numbers, f"{d.condition:.3e}", d.verdict, d.bits]
+        )
+    for item in found.verdicts:
+        judged = item.judged
+        said = [judged.floats[FLOAT32], judged.floats[FLOAT64]]
+        write([item.kind, item.subject, f"{item.size:.0e}", "stability", *said, "", "", "", "", judged.exact.word, ""])
+    return out.getvalue()
+
+
+def extremes_json(found: Extremes) -> str:
+    """Everything, with the sentences; numbers that are infinite are null."""
+    rows = [
+        doc.Row(
+            kind=row.kind,
+            subject=row.subject,
+            size=row.size,
+            quantity=row.quantity,
+            digits=_rounded(row.found.digits),
+            digits_of_worst_entry=_rounded(row.found.worst),
+            formula_digits=round(row.found.formula, 2),
+            condition=row.found.condition if isfinite(row.found.condition) else None,
+            verdict=row.found.verdict,
+            bits=row.found.bits,
+        )
+        for row in found.rows
+    ]
+    verdicts = [
+        doc.StabilityAt(
+            kind=item.kind,
+            subject=item.subject,
+            size=item.size,
+            exact=item.judged.exact.word,
+            theorems=list(item.judged.exact.theorems),
+            floats=dict(item.judged.floats),
+            floats_wrong={scalar: item.judged.wrong(scalar) for scalar in FULL},
+        )
+        for item in found.verdicts
+    ]
+    whole = doc.Extremes(
+        system=found.system.name,
+        sentences=list(sentences(found)),
+        left_out=list(found.left_out),
+        singular=_singular(found.singularities),
+        eigenvalues=[
+            doc.Eigenvalue(
+                real=float(x.real.mid()),
+                imaginary=float(x.imag.mid()),
+                radius=float(max(x.real.rad(), x.imag.rad())),
+            )
+            for x in found.eigenvalues
+        ],
+        compensated=[
+            doc.Compensated(
+                subject=one.subject,
+                size=one.size,
+                operations_in_pairs=one.found.sensitive,
+                digits_without=round(one.found.before, 2),
+                digits_with=round(one.found.after, 2),
+                cost=round(one.found.cost, 3),
+            )
+            for one in found.compensated
+        ],
+        rows=rows,
+        stability=verdicts,
+        singular_positions=UNSET if found.positions is None else _positions(found.positions),
+    )
+    return written(whole)
+
+
+def _singular(found: Singularities | None) -> doc.Singular | None:
+    """Where M is singular; None where that was not to be had."""
+    if found is None or not found.how:
+        return None
+    sets = [
+        doc.Set(
+            names=list(one.names),
+            values=[value.label for value in one.values],
+            equation=one.equation,
+            places=[{name: float(x) for name, x in place.items()} for place in one.places],
+            finite=one.finite,
+            fails=one.kind,
+            joint=one.joint,
+            proved=one.proved,
+        )
+        for one in found.sets
+    ]
+    return doc.Singular(
+        complete=found.complete,
+        how=found.how,
+        ranges={name: float(bound) for name, bound in found.ranges.items()},
+        undecided=list(found.undecided),
+        sets=sets,
+    )
+
+
+def _positions(found: SingularPositions) -> doc.SingularPositions:
+    """Where constraints lose their rank."""
+    listed = [
+        doc.Found(
+            place=dict(one.place),
+            labels=dict(one.labels),
+            rank=one.rank,
+            usual=one.usual,
+            proved=one.proved,
+            family=one.family,
+        )
+        for one in found.found
+    ]
+    return doc.SingularPositions(starts=found.starts, more=found.more, found=listed)
+
+
+def _rounded(digits: Any) -> dict[str, float]:
+    return {scalar: round(value, 2) for scalar, value in digits.items()}
+
+
+def tables(found: Extremes) -> Iterator[tuple[list[str], list[list[str]]]]:
+    """Column titles, and for each ladder the fewest digits of each quantity, ``float64 / float32``.
+
+    A star marks digits lost by the formula rather than by the question.  The equations of motion come first, then the
+    linear equations.
+    """
+    for linear in (False, True):
+        columns = [quantity for quantity in found.quantities if (quantity in _LINEAR) == linear]
+        rows = []
+        for kind, subject in found.ladders:
+            cells = [_cell(found.of(kind, subject, quantity)) for quantity in columns]
+            if any(cells):
+                own = [v for v in found.verdicts if (v.kind, v.subject) == (kind, subject)]
+                title = f"{subject} times 1e-12 to 1e12" if kind == "ratio" else subject
+                title = "rates 1e-8 to 1e8" if kind == "rates" else title
+                rows.append([title, *cells, *([_verdicts(own)] if linear else [])])
+        if rows:
+            yield ["extreme", *columns, *([APPROXIMATION] if linear else [])], rows
+
+
+#: The title of verdicts: they are those of the linear equations, which problem 6 may know more about.
+APPROXIMATION = "first approximation"
+
+_LINEAR = ("M", "D", "G", "K", "N", "eigenvalues")
+
+
+def _cell(rows: Sequence[Row]) -> str:
+    if not rows:
+        return ""
+    known = [row for row in rows if row.found.bits]
+    if not known:
+        return "?"
+    least = {scalar: min(row.found.digits[scalar] for row in known) for scalar in FULL}
+    star = "*" if any(row.found.verdict == "formula" for row in known) else ""
+    return f"{least[FLOAT64]:.0f}{star} / {least[FLOAT32]:.0f}"
+
+
+def _verdicts(own: Sequence[Any]) -> str:
+    if not own:
+        return ""
+    words = list(dict.fromkeys(str(v.judged.exact.word) for v in own))
+    wrong = sum(v.judged.wrong(FLOAT64) for v in own)
+    return ", ".join(words) + (f" (float64 wrong {wrong} of {len(own)})" if wrong else "")

@@ -1,0 +1,100 @@
+"""Lyapunov exponents as files and sentences.
+
+``lyapunov.csv``: t and every exponent up to t.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from math import isfinite
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from mbsym.model.system import System
+from mbsym.numerics.orbits.lyapunov import Exponents, Parting
+from mbsym.report.documents import lyapunov as doc
+from mbsym.report.documents.writer import written as document
+from mbsym.report.figures.drawing import BLUE, GREY, pictures
+from mbsym.report.runs.trajectory_csv import written
+from mbsym.source.meaning import meaning
+
+
+def lyapunov_csv(found: Exponents) -> str:
+    names = [f"exponent_{k + 1}" for k in range(len(found.values))]
+    return written(["t", *names], [found.times, *found.history.T])
+
+
+def lyapunov_json(system: System, found: Exponents) -> str:
+    """The file's text."""
+    content = doc.Lyapunov(
+        system=system.name,
+        description_sha256=meaning(system),
+        time=found.time,
+        exponents=[
+            doc.Exponent(value=_finite(value), uncertainty=_finite(doubt))
+            for value, doubt in zip(found.values, found.uncertainty, strict=True)
+        ],
+        largest=found.parting.name.lower().removesuffix("_over_this_time") if len(found.times) else None,
+        divergence=_finite(found.divergence),
+        sum_error=_finite(found.sum_error),
+        ended=None if found.ended is None else str(found.ended),
+    )
+    return document(content)
+
+
+def lyapunov_figure(system: System, found: Exponents, formats: Sequence[str]) -> dict[str, bytes]:
+    """Every exponent up to t against t."""
+
+    def drawn() -> Figure:
+        figure = Figure(figsize=(8, 4), layout="constrained")
+        axes = figure.subplots()
+        for place, row in enumerate(found.history.T):
+            axes.plot(found.times, row, color=BLUE if place == 0 else GREY, linewidth=1.4 if place == 0 else 0.9)
+        axes.axhline(0, color="#444444", linewidth=0.7)
+        axes.set_xlim(0, found.times[-1])
+        axes.set_xlabel("t")
+        axes.set_ylabel("exponents up to t")
+        figure.suptitle(f"{system.name}: Lyapunov exponents", fontsize=12, parse_math=False)
+        return figure
+
+    return pictures({"lyapunov": drawn}, formats)
+
+
+def sentences(found: Exponents) -> Iterator[tuple[str, str]]:
+    """(title, text)."""
+    if not len(found.times):
+        yield "warning", "nothing was measured"
+        return
+    for place, (value, doubt) in enumerate(zip(found.values, found.uncertainty, strict=True)):
+        told = (
+            f" +- {doubt:.2g} (95 %, statistics of this run only)" if isfinite(doubt) else ", uncertainty not estimated"
+        )
+        yield f"lambda {place + 1}", f"{value:.6g}{told}"
+    yield "time", f"{found.time:g}"
+    if isfinite(found.sum_error):
+        yield (
+            "check",
+            (
+                f"the sum is {float(np.sum(found.values)):.3e}, the mean divergence of the equations "
+                f"{found.divergence:.3e}: they differ by {found.sum_error:.1e}"
+            ),
+        )
+    yield "motion", _judged(found)
+
+
+def _judged(found: Exponents) -> str:
+    match found.parting:
+        case Parting.POSITIVE:
+            return (
+                "neighbouring motions part exponentially over this time, as chaotic ones do; this is no proof of chaos"
+            )
+        case Parting.NEGATIVE:
+            return "neighbouring motions come together over this time"
+    falling = ", and it is still falling, as that of regular motion does" if found.falling else ""
+    return f"the largest exponent is not told from zero{falling}: whether the motion is regular or chaotic is undecided"
+
+
+def _finite(value: Any) -> float | None:
+    return float(value) if np.isfinite(value) else None

@@ -1,0 +1,153 @@
+"""``simulation.json``: what a trajectory was computed from, how, with what work, and whether it is whole.
+
+Without seconds and dates, so that the same simulation writes the same file.
+"""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Sequence
+from importlib.metadata import PackageNotFoundError, version
+from math import isfinite
+from typing import Any
+
+import numpy as np
+from msgspec import UNSET, Struct, to_builtins
+
+from mbsym.model.quantities import energy_unit, units_by_name
+from mbsym.numerics.methods.interface import COUNTS
+from mbsym.numerics.planning.reduced import Reduced
+from mbsym.numerics.simulate import Trajectory
+from mbsym.report.documents import simulation as doc
+from mbsym.report.documents.writer import written
+from mbsym.report.runs.between_steps import between_steps_json
+from mbsym.report.runs.certificate import certificate_json
+from mbsym.report.runs.constrained_run_words import constraints_json
+from mbsym.report.runs.events_json import events_json
+from mbsym.report.runs.plan_words import model_json, plan_json
+from mbsym.report.runs.simulation_words import conservation_json, error_json, laws_json
+from mbsym.report.runs.state_run_words import states_json
+from mbsym.simulation import Simulation
+from mbsym.simulation.choosing import may_change
+from mbsym.source.meaning import meaning
+
+PACKAGES = ("mbsym", "numpy", "scipy", "llvmlite", "python-flint", "heyoka")
+
+
+def simulation_json(run: Simulation, files: Sequence[str], table_sha256: str | None = None) -> str:
+    """The file's text; ``files`` are those that belong to it, and the hash is that of the table of rows."""
+    system, found, chosen, scenario = run.system, run.trajectory, run.chosen, run.scenario
+    state = [float(x) for x in scenario.state]
+    traits, earlier = chosen.method.traits, run.request.earlier
+    names = [*system.coordinates, *system.velocities]
+    content = doc.Simulation(
+        system=system.name,
+        description_sha256=meaning(run.given.system if run.given is not None else system),
+        status="whole" if found.whole else "partial",
+        ended=_ended(found),
+        time=doc.TimeSpan(from_=0.0, to=float(chosen.times[-1]), samples=len(chosen.times)),
+        reached=doc.Reached(time=float(found.times[-1]), samples=found.samples, state=_last(found)),
+        continued=None if earlier is None else doc.Continued(from_=earlier.time, samples=len(earlier.times)),
+        method=doc.MethodUsed(
+            name=traits.name.lower(),
+            title=traits.title,
+            why=chosen.why,
+            may_change=may_change(run.request),
+        ),
+        arithmetic=run.arithmetic,
+        tolerance=found.setting.tolerance,
+        step=found.setting.step,
+        longest_step=found.setting.longest,
+        between_steps=between_steps_json(found.passed),
+        step_limit=found.setting.step_limit,
+        parameters={name: float(value) for name, value in scenario.parameters.items()},
+        inputs=laws_json(scenario) if scenario.inputs else UNSET,
+        initial=dict(zip(names, state, strict=True)),
+        work=doc.Work(**{name: getattr(found.work, name) for name in COUNTS}),
+        files=list(files),
+        table_sha256=table_sha256,
+        versions=versions(),
+        units=_units(run) or UNSET,
+        energy=doc.Energy(is_="T - U", **conservation_json(run.energy_conservation)),
+        generalized_energy=UNSET
+        if run.dynamics.natural
+        else doc.GeneralizedEnergy(is_="T2 - T0 - U", **conservation_json(run.conservation)),
+        invariants={
+            kept.column: doc.Invariant(name=kept.conservation.quantity, **conservation_json(kept.conservation))
+            for kept in run.invariants
+        },
+        estimated_error=error_json(run.error),
+        resting=_resting(chosen.resting),
+        **events_json(run),
+        parts=[doc.SystemPart(coordinates=list(part.names), method=part.method) for part in chosen.parts],
+        model=model_json(run.request.model),
+        plan=None if run.plan is None else plan_json(run.plan, run.request),
+        method_changes=[doc.MethodChange(**vars(one)) for one in found.work.changes] or UNSET,
+        constraints=constraints_json(run),
+        variables=states_json(run),
+        certificate=UNSET if run.certificate is None else certificate_json(run.certificate, names),
+    )
+    return written(finite(content), indent=2)
+
+
+def _units(run: Simulation) -> dict[str, str]:
+    """The units of everything that has a name; nothing for a description without."""
+    energy = energy_unit(run.system)
+    energies = [("energy", energy)] if run.dynamics.natural else [("energy", energy), ("generalized_energy", energy)]
+    return units_by_name(run.system, [*energies, *((kept.column, kept.unit) for kept in run.invariants)])
+
+
+def _resting(found: Reduced | None) -> doc.Resting | None:
+    """Which coordinates rest, how that is known, and the operations of one right-hand side with and without them."""
+    if found is None:
+        return None
+    whole, reduced = found.operations
+    return doc.Resting(
+        coordinates=list(found.names),
+        how=found.reduction.how,
+        taken_out=found.proved,
+        operations=doc.Operations(whole=whole, reduced=reduced) if found.proved else UNSET,
+    )
+
+
+def _last(found: Trajectory) -> dict[str, Any]:
+    """The last state to the last bit; numbers of more digits than JSON's readers keep are text."""
+    names, state = [*found.system.coordinates, *found.system.velocities], found.states[:, -1]
+    exact = [np.format_float_scientific(x) for x in state] if state.dtype == np.longdouble else map(float, state)
+    return dict(zip(names, exact, strict=True))
+
+
+def _ended(found: Trajectory) -> doc.Ended | None:
+    """Why and where a trajectory ended early."""
+    if found.interrupted:
+        return doc.Ended(kind="interrupted", message="stopped by the user", time=float(found.times[-1]))
+    if found.breakdown is None:
+        return None
+    names = [*found.system.coordinates, *found.system.velocities]
+    state: dict[str, float | str] = dict(zip(names, map(float, found.breakdown.state), strict=True))
+    ended = found.breakdown
+    return doc.Ended(kind=ended.kind, message=ended.message, time=float(ended.time), state=state)
+
+
+def versions() -> dict[str, str]:
+    """Of Python and of the packages that the numbers depend on."""
+    found = {"python": platform.python_version()}
+    for name in PACKAGES:
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            continue
+    return found
+
+
+def finite(value: Any) -> Any:
+    """The same as nested lists and dictionaries without infinities, which JSON does not know: they become text."""
+    if isinstance(value, Struct):
+        return finite(to_builtins(value))
+    if isinstance(value, dict):
+        return {name: finite(item) for name, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [finite(item) for item in value]
+    if isinstance(value, float) and not isfinite(value):
+        return str(value)
+    return value

@@ -1,0 +1,141 @@
+"""A sweep as files: ``sweep.csv`` or ``sweep.parquet``, a row a point, and ``sweep.json``, what they say on the whole.
+
+Numbers have 17 digits, so that a row can be tried again; words stand for themselves, and what is no number is empty.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from io import BytesIO
+from math import isfinite
+from typing import Any
+
+import numpy as np
+
+from mbsym.model.system import System
+from mbsym.numerics.ensembles.variation import Grid, Variation
+from mbsym.report.documents import sweep as doc
+from mbsym.report.documents.writer import written
+from mbsym.report.runs.trajectory_csv import header, rows
+from mbsym.source.meaning import meaning
+from mbsym.sweeps.judged import VERDICT
+from mbsym.sweeps.measure import Column
+from mbsym.sweeps.points import Points
+from mbsym.sweeps.statistics import LEVEL, Share, Totals
+
+Part = tuple[Any, Mapping[str, Any]]
+
+#: From so many numbers on the decimals come from machine code.
+_MANY = 100_000
+
+
+def sweep_csv(names: Sequence[str], columns: Sequence[Column], parts: Iterable[Part]) -> Iterator[str]:
+    """The file, a chunk after the other; ``parts`` are (points, columns)."""
+    yield header([*names, *(column.name for column in columns)])
+    for points, measured in parts:
+        numbers = [*points, *(measured[column.name] for column in columns if not column.whole)]
+        many = len(numbers) * points.shape[1] >= _MANY
+        text = rows([np.asarray(row, dtype=float) for row in numbers], many)
+        lines = text.replace("nan", "").split("\n")[:-1]
+        tails = [_told(column, measured[column.name]) for column in columns if column.whole]
+        if tails and len(tails) == len(columns):  # words and whole numbers alone: they come last anyway
+            lines = [",".join(cells) for cells in zip(lines, *tails, strict=True)]
+        elif tails:
+            raise ValueError("columns of words and of numbers are not mixed")
+        yield "\n".join(lines) + "\n"
+
+
+def _told(column: Column, values: Any) -> list[str]:
+    if column.words:
+        return np.array(column.words, dtype=object)[values].tolist()
+    return list(map(str, values.tolist()))
+
+
+def sweep_parquet(names: Sequence[str], columns: Sequence[Column], parts: Iterable[Part]) -> bytes:
+    """The same as Apache Parquet, a row group a chunk.  Raises ImportError where PyArrow is not installed."""
+    import pyarrow
+    import pyarrow.parquet
+
+    types = [(name, pyarrow.float64()) for name in names]
+    types += [(column.name, _type(pyarrow, column)) for column in columns]
+    stream = BytesIO()
+    with pyarrow.parquet.ParquetWriter(stream, pyarrow.schema(types)) as writer:
+        for points, measured in parts:
+            cells = [pyarrow.array(row) for row in points]
+            for column, (_, kind) in zip(columns, types[len(names) :], strict=True):
+                values = measured[column.name]
+                if column.words:
+                    cells.append(pyarrow.DictionaryArray.from_arrays(values, list(column.words)))
+                else:
+                    cells.append(pyarrow.array(values, type=kind))
+            writer.write_table(pyarrow.Table.from_arrays(cells, schema=pyarrow.schema(types)))
+    return stream.getvalue()
+
+
+def _type(pyarrow: Any, column: Column) -> Any:
+    if column.words:
+        return pyarrow.dictionary(pyarrow.int8(), pyarrow.string())
+    return pyarrow.int16() if column.whole else pyarrow.float64()
+
+
+def sweep_json(
+    system: System,
+    points: Points,
+    settings: Mapping[str, str],
+    measure: str,
+    columns: Sequence[Column],
+    totals: Totals,
+    table: str,
+    left_out: Sequence[str] = (),
+) -> str:
+    """The file's text; ``table`` is the name of the file of points, ``settings`` what was put in for other names.
+
+    ``left_out``: what parameters have to keep but could not be looked at.
+    """
+    random = not points.grids and points.sampling == "random"
+    judged = any(column.name == VERDICT.name for column in columns)
+    content = doc.Sweep(
+        system=system.name,
+        description_sha256=meaning(system),
+        measure=measure,
+        points=points.count,
+        table=table,
+        varied=[_variation(one) for one in points.variations],
+        sampling=None if points.grids else points.sampling,
+        seed=None if points.grids else points.seed,
+        settings=dict(settings),
+        columns=[doc.Column(name=column.name, meaning=column.meaning) for column in columns],
+        shares=[_share(one) for one in totals.shares(random)] if judged else [],
+        stable=_share(totals.stable(random)) if judged else None,
+        singly=totals.singly if judged else None,
+        ranges=[
+            doc.Range(
+                column=one.column,
+                least=_finite(one.least),
+                mean=_finite(one.mean),
+                greatest=_finite(one.greatest),
+                missing=one.missing,
+            )
+            for one in totals.ranges()
+        ],
+        dependence=[doc.Dependence(name=name, value=value) for name, value in totals.dependence()],
+        left_out=list(left_out),
+    )
+    return written(content)
+
+
+def _variation(one: Variation) -> doc.Varied:
+    if isinstance(one, Grid):
+        return doc.Varied(name=one.name, kind="grid", low=one.low, high=one.high, count=one.count)
+    return doc.Varied(name=one.name, kind=one.kind, first=one.first, second=one.second)
+
+
+def _share(one: Share) -> doc.Share:
+    found = None
+    if one.interval is not None:
+        found = doc.Interval(low=one.interval[0], high=one.interval[1], confidence=LEVEL)
+    return doc.Share(word=one.word, count=one.count, total=one.total, interval=found)
+
+
+def _finite(value: float) -> float | None:
+    return value if isfinite(value) else None

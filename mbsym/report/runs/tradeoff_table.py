@@ -1,0 +1,121 @@
+"""The measured trade as CSV and as rows of text."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable, Sequence
+from io import StringIO
+from math import inf, isfinite
+from typing import Any
+
+from mbsym.model.quantities import marked
+from mbsym.numerics.kernels.interface import FLOAT64
+from mbsym.numerics.trade.fidelity import RESOLVED, ModelError
+from mbsym.numerics.trade.tradeoff import Measured, Tradeoff, duration
+
+COLUMNS = (
+    "method", "arithmetic", "tolerance", "step", "error", "drift", "evaluations", "steps", "seconds", "front", "trouble"
+)  # fmt: skip
+#: Behind ``drift``, where there are constraints.
+STRAYED = ("constraint_drift", "constraint_velocity_drift")
+MODEL_COLUMNS = ("model", "neglected", "error", "operations", "evaluations", "seconds", "trouble")
+
+
+def tradeoff_csv(found: Tradeoff, time: str | None = None) -> str:
+    """One row a run; an empty field where there is no number.  ``time`` is the unit of the step, if it is known."""
+    tied = constrained(found.rows)
+    names = _with_strayed(COLUMNS, STRAYED if tied else ())
+    return _csv(
+        [marked(name, time if name == "step" else "") for name in names], (_row(row, tied) for row in found.rows)
+    )
+
+
+def constrained(rows: Sequence[Measured]) -> bool:
+    """Whether drifts from constraints are among what was measured."""
+    return any(row.strayed is not None for row in rows)
+
+
+def _with_strayed(cells: Sequence[object], strayed: Sequence[object]) -> list[Any]:
+    """``strayed`` behind the column ``drift``."""
+    place = COLUMNS.index("drift") + 1
+    return [*cells[:place], *strayed, *cells[place:]]
+
+
+def fidelity_csv(rows: Sequence[ModelError]) -> str:
+    """One row a model."""
+    lines = []
+    for row in rows:
+        what = (row.variant.label, row.variant.neglected)
+        lines.append((*what, _number(row.error), row.operations, row.evaluations, _number(row.seconds), row.trouble))
+    return _csv(MODEL_COLUMNS, lines)
+
+
+def _csv(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    stream = StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(header)
+    writer.writerows(rows)
+    return stream.getvalue()
+
+
+def _row(row: Measured, tied: bool) -> Sequence[object]:
+    candidate, setting = row.candidate, row.candidate.setting
+    cells = (
+        candidate.method.traits.name,
+        candidate.scalar,
+        "" if setting.tolerance is None else f"{setting.tolerance:.0e}",
+        "" if setting.step is None else repr(setting.step),
+        _number(row.error),
+        _number(row.drift),
+        row.evaluations,
+        row.steps,
+        _number(row.seconds),
+        "yes" if row.front else "no",
+        row.trouble,
+    )
+    strayed = row.strayed if row.strayed is not None else (inf, inf)
+    return _with_strayed(cells, [_number(x) for x in strayed] if tied else ())
+
+
+def _number(value: float) -> str:
+    return f"{value:.17g}" if isfinite(value) else ""
+
+
+def shown(rows: Sequence[Measured], smallest_judged: float) -> list[tuple[str, ...]]:
+    """Cells for the terminal: method (and arithmetic), setting, error, drift, evaluations, steps, time, front.
+
+    Where there are constraints, the larger of its two drifts from them stands behind the drift of the energy.
+    """
+    lines: list[tuple[str, ...]] = []
+    tied = constrained(rows)
+    for row in rows:
+        name = row.candidate.method.traits.name
+        error = "fails" if row.trouble else _error(row.error, smallest_judged)
+        lines.append(
+            (
+                name if row.candidate.scalar == FLOAT64 else f"{name} {row.candidate.scalar}",
+                row.candidate.shown,
+                error,
+                "" if row.trouble else f"{row.drift:.1e}",
+                *(["" if row.strayed is None else f"{max(row.strayed):.1e}"] if tied else []),
+                str(row.evaluations),
+                str(row.steps),
+                duration(row.seconds),
+                "*" if row.front else "",
+            )
+        )
+    return lines
+
+
+def _error(error: float, smallest_judged: float) -> str:
+    """An error that the reference cannot tell from its own is given as a bound."""
+    return f"{error:.1e}" if error > smallest_judged else f"< {smallest_judged:.0e}"
+
+
+def models_shown(rows: Sequence[ModelError]) -> list[tuple[str, ...]]:
+    """Cells for the terminal: model, what it neglects, error, operations, time."""
+    lines: list[tuple[str, ...]] = []
+    for row in rows:
+        error = row.trouble if row.trouble else f"{row.error:.1e}" if row.error > RESOLVED else f"< {RESOLVED:.0e}"
+        lines.append((row.variant.label, row.variant.neglected, error, str(row.operations), duration(row.seconds)))
+    return lines

@@ -1,0 +1,1 @@
+"""Sentences about results, with gaps for formulas and names."""

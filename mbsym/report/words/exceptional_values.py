@@ -1,0 +1,155 @@
+"""Exceptional values along a parameter (``mbsym nonlinear``) as lines of the terminal and as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from flint import arb
+
+from mbsym.model.system import System
+from mbsym.problems.normal_forms import Judged, Outcome, Theorem
+from mbsym.problems.normal_forms.along import Along, Special
+from mbsym.problems.stability.sentences import with_theorem
+from mbsym.problems.stability.verdict import Verdict
+from mbsym.report.documents import nonlinear as doc
+from mbsym.report.documents.writer import written
+from mbsym.report.sections.normal_forms import enclosure
+from mbsym.report.words.normal_form_words import REASONS, decimal
+
+#: What is zero at an exceptional value.
+VANISHING = {
+    "trace": "w1^2 + w2^2 = 0",
+    "product": "w1 w2 = 0",
+    "discriminant": "w1 = w2",
+    "determinant": "D4 = 0",
+    "1:2": "w1 = 2 w2",
+    "1:3": "w1 = 3 w2",
+    "root": "a root is zero",
+    "pair": "two roots have the sum zero",
+}
+
+#: Digits of a value in the terminal.
+DIGITS = 20
+
+
+def lines(found: Along) -> Iterator[str]:
+    """From the lower end to the upper one: what holds between values, and at each of them."""
+    if found.cyclic:
+        kept = ", their momenta unperturbed" if found.hamiltonian else ""
+        yield f"without the cyclic coordinates {', '.join(found.cyclic)}{kept}"
+    ends = [str(found.low), *(_number(one) for one in found.specials), str(found.high)]
+    for k, between in enumerate(found.between):
+        short = [one if "/" in one or len(one) < 9 else f"{float(one):.6g}" for one in ends[k : k + 2]]
+        yield f"{found.name} from {short[0]} to {short[1]}: {_said(between.judged)}"
+        if k < len(found.specials):
+            special = found.specials[k]
+            what = ", ".join(VANISHING[key] for key in special.vanishing)
+            yield f"{found.name} = {ends[k + 1]}: {_told(special)}"
+            yield f"  {what}; {found.name} is a root of {_polynomial(special.polynomial, found.name)}"
+            yield from (f"  {one}" for one in _numbers(special.judged))
+            if special.verdict is not None:
+                continue
+            if special.judged.outcome is Outcome.UNDECIDED and special.judged.why in REASONS:
+                yield f"  {REASONS[special.judged.why]}"
+    yield "Between these values each verdict holds throughout (proved); the ends of the interval are left out."
+
+
+def _number(special: Special) -> str:
+    return str(special.exactly) if special.exactly is not None else special.enclosure.str(DIGITS, radius=False)
+
+
+def _told(special: Special) -> str:
+    if special.verdict is None:
+        return _said(special.judged)
+    return with_theorem(special.verdict.word, special.verdict.theorem)
+
+
+def _said(judged: Judged) -> str:
+    return judged.outcome.value + (f" ({judged.theorem.value})" if judged.theorem is not Theorem.NONE else "")
+
+
+def _numbers(judged: Judged) -> Iterator[str]:
+    if judged.coefficient is not None and judged.amplitude_of and _is_zero(judged.coefficient):
+        yield (
+            f"a pair of imaginary roots of frequency {decimal(judged.frequencies[0])}, the growth of the amplitude of "
+            f"{judged.amplitude_of} is without a term of third order, or it is not told from zero"
+        )
+    elif judged.coefficient is not None and judged.amplitude_of:
+        borders = {Outcome.ASYMPTOTIC: "a soft border: ", Outcome.UNSTABLE: "a hard border: "}
+        yield (
+            f"{borders.get(judged.outcome, '')}a pair of imaginary roots of frequency {decimal(judged.frequencies[0])}"
+            f", the amplitude of {judged.amplitude_of} grows at the rate {decimal(judged.coefficient)} times its cube"
+        )
+    if judged.theorem is Theorem.EQUAL and judged.coefficient is not None:
+        yield f"delta A = {decimal(judged.coefficient)} in Sokolskii's normal form"
+    if judged.degree is not None:
+        yield (
+            f"the energy along the direction of the zero root begins with {decimal(judged.coefficient)} times the "
+            f"power {judged.degree} of the deviation of {judged.along}"
+        )
+    if judged.sides is not None:
+        left, right = map(decimal, judged.sides)
+        yield f"|H4| = {left} on the resonance, against {right}"
+    yield from (f"D{order} = {decimal(value)}" for order, value in judged.determinants if not _is_zero(value))
+
+
+def _is_zero(value: Any) -> bool:
+    return bool(value.contains(0)) if isinstance(value, arb) else value == 0
+
+
+def _polynomial(coefficients: Sequence[int], name: str) -> str:
+    """``675*mu**2 - 675*mu + 16``."""
+    text = ""
+    for power in reversed(range(len(coefficients))):
+        c = coefficients[power]
+        if c:
+            factor = f"{name}**{power}" if power > 1 else name if power else ""
+            number = "" if abs(c) == 1 and factor else str(abs(c))
+            term = "*".join(x for x in (number, factor) if x)
+            text += (" - " if c < 0 else " + ") + term if text else ("-" if c < 0 else "") + term
+    return text
+
+
+def as_text(system: System, found: Along) -> str:
+    """JSON: ``between`` has one entry more than ``values``."""
+    whole = doc.Nonlinear(
+        system=system.name,
+        parameter=found.name,
+        low=str(found.low),
+        high=str(found.high),
+        hamiltonian=found.hamiltonian,
+        coordinates=list(found.coordinates),
+        cyclic=list(found.cyclic),
+        values=[
+            doc.ExceptionalValue(
+                value=_number(one),
+                enclosure=enclosure(one.enclosure),
+                root_of=list(map(str, one.polynomial)),
+                vanishing=[VANISHING[key] for key in one.vanishing],
+                **_judged(one.judged) | _of_problem_6(one.verdict),
+            )
+            for one in found.specials
+        ],
+        between=[doc.Between(sample=str(one.sample), **_judged(one.judged)) for one in found.between],
+    )
+    return written(whole)
+
+
+def _of_problem_6(verdict: Verdict | None) -> dict[str, Any]:
+    """In place of what terms of higher order leave open."""
+    return {} if verdict is None else {"verdict": verdict.word, "theorem": verdict.theorem, "reason": ""}
+
+
+def _judged(judged: Judged) -> dict[str, Any]:
+    return {
+        "verdict": judged.outcome,
+        "theorem": judged.theorem,
+        "reason": judged.why,
+        "frequencies": list(map(enclosure, judged.frequencies)),
+        "determinants": [doc.Determinant(order=order, value=enclosure(value)) for order, value in judged.determinants],
+        "coefficient": None if judged.coefficient is None else enclosure(judged.coefficient),
+        "amplitude_of": judged.amplitude_of,
+        "along": judged.along,
+        "degree": judged.degree,
+    }

@@ -1,0 +1,157 @@
+"""What is said of polynomial integrals: sentences with gaps, filled by whoever writes them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+from mbsym.algebra.certainty import Certainty
+from mbsym.problems.polynomial_integrals import FUNCTION, Case, Generator, OnLevel, PolynomialIntegrals
+from mbsym.report.words.said import Said
+
+#: One integral of a list, and one that holds where another is zero.
+LISTED = "Weight [[weight]], [[name]]:"
+LEVEL = "Weight [[weight]], where that of weight [[own]] ([[name]]) is zero:"
+#: What the list is about.
+OPENING = (
+    "Polynomials up to weighted degree [[degree]] whose derivatives vanish by the equations of motion; "
+    "weights of the variables: [[weights]]."
+)
+HEADING = "Polynomial first integrals up to weighted degree [[degree]]"
+
+
+def weights(found: PolynomialIntegrals) -> str:
+    """``p, q, r: 1; gamma1, gamma2, gamma3: 2``."""
+    return weights_text(found.field.variables, found.grading.weights)
+
+
+def weights_text(variables: Sequence[str], given: Sequence[int]) -> str:
+    """The same of variables and their weights."""
+    groups: dict[int, list[str]] = {}
+    for name, weight in zip(variables, given, strict=True):
+        groups.setdefault(weight, []).append(name)
+    return "; ".join(f"{', '.join(names)}: {weight}" for weight, names in groups.items())
+
+
+def title(one: Generator) -> str:
+    """What an integral is called."""
+    return one.name or "further integral"
+
+
+def case_title(weight: int) -> str:
+    """Of an integral that holds in a special case."""
+    return f"further integral of weight {weight}"
+
+
+def level_title(weight: int, level: OnLevel) -> str:
+    """Of one that holds where another one vanishes."""
+    return f"where the integral of weight {level.level.weight} ({title(level.level)}) is zero, one of weight {weight}"
+
+
+def conditions_text(case: Case, write: Callable[[Any], str]) -> str:
+    """``A = B, x0 = 0``: differences of two names as equations between them."""
+    return equations_text(case.conditions, write)
+
+
+def equations_text(polynomials: Sequence[Any], write: Callable[[Any], str]) -> str:
+    """The same of polynomials that vanish."""
+    return ", ".join(_equation(p, write) for p in polynomials)
+
+
+def _equation(p: Any, write: Callable[[Any], str]) -> str:
+    terms = sorted(p.to_dict().items(), key=lambda item: item[0], reverse=True)
+    if len(terms) == 2 and terms[0][1] * terms[1][1] < 0:
+        sign = 1 if terms[0][1] > 0 else -1
+        left, right = (p.context().from_dict({m: c * sign * k}) for (m, c), k in zip(terms, (1, -1), strict=True))
+        return f"{write(left)} = {write(right)}"
+    return f"{write(p)} = 0"
+
+
+def sentences(found: PolynomialIntegrals) -> Iterator[Said]:
+    """What is known of the list as a whole."""
+    values: dict[str, object] = {"degree": found.degree, "count": found.independent, "names": aside_text(found)}
+    if not found.generators:
+        vectors = found.field.relations and not any(name.startswith("sin(") for name in found.field.variables)
+        none = _NONE_BUT_LENGTHS if vectors else _NONE
+        none = _NONE_WITHOUT if found.aside and not vectors else none
+        yield none[bool(found.field.parameters)] if found.complete else "None was found.", values
+        yield from _left_out(found)
+        return
+    yield "As functions at least [[count]] of them are independent (proved: rank of the gradients).", values
+    if any(one.name.startswith("product of ") for one in found.generators):
+        yield _TRIVIAL, values
+    for one in found.generators:
+        if not one.independent:
+            yield _DEPENDENT[one.certainty], {"name": title(one), "weight": one.weight}
+    if found.complete:
+        yield _EVERY[bool(found.aside)][bool(found.field.parameters)], values
+    yield from _left_out(found)
+    for count in found.counts:
+        if not count.complete:
+            yield (
+                "Of weight [[weight]] there are at most [[more]] more; they were not found within the budget.",
+                {"weight": count.weight, "more": count.most - count.products},
+            )
+    if found.complete and not found.new and all(one.name != FUNCTION for one in found.generators):
+        yield (_NO_OTHER_WITHOUT if found.aside else _NO_OTHER)[bool(found.field.parameters)], values
+
+
+def aside_text(found: PolynomialIntegrals) -> str:
+    """``x, y``: positions without a force, and others on which no equation depends, are no variables."""
+    return ", ".join(found.aside)
+
+
+def _left_out(found: PolynomialIntegrals) -> Iterator[Said]:
+    """x' - B y, of a charge in a magnetic field, is not looked for, nor the area integral of a free body."""
+    if found.aside:
+        text = "The equations do not contain [[names]]: integrals that do are not looked for here."
+        yield text, {"names": aside_text(found)}
+
+
+_EVERY = {
+    False: {
+        True: "Every polynomial integral of weighted degree up to [[degree]] is a polynomial in these, for almost all "
+        "values of the parameters (proved).",
+        False: "Every polynomial integral of weighted degree up to [[degree]] is a polynomial in these (proved).",
+    },
+    True: {
+        True: "Every polynomial integral of weighted degree up to [[degree]] that does not contain [[names]] is a "
+        "polynomial in these, for almost all values of the parameters (proved).",
+        False: "Every polynomial integral of weighted degree up to [[degree]] that does not contain [[names]] is a "
+        "polynomial in these (proved).",
+    },
+}
+_NONE_WITHOUT = {
+    True: "There is none up to weighted degree [[degree]] that does not contain [[names]] (proved for almost all "
+    "values of the parameters).",
+    False: "There is none up to weighted degree [[degree]] that does not contain [[names]] (proved).",
+}
+_NONE = {
+    True: "There is none up to weighted degree [[degree]] (proved for almost all values of the parameters).",
+    False: "There is none up to weighted degree [[degree]] (proved).",
+}
+#: The length of a unit vector is constant, too: it is 1, and problem 7 may list it.
+_NONE_BUT_LENGTHS = {
+    True: "But for lengths of unit vectors, which are 1, there is none up to weighted degree [[degree]] (proved for "
+    "almost all values of the parameters).",
+    False: "But for lengths of unit vectors, which are 1, there is none up to weighted degree [[degree]] (proved).",
+}
+#: Those of vectors of one body are integrals of the kinematic equations alone.
+_TRIVIAL = "Lengths of unit vectors and products of two of them are the same in every motion: 1 and 0."
+_NO_OTHER = {
+    True: "Up to weighted degree [[degree]] there is none beyond those of problem 7, for almost all values of the "
+    "parameters.",
+    False: "Up to weighted degree [[degree]] there is none beyond those of problem 7.",
+}
+_NO_OTHER_WITHOUT = {
+    True: "Up to weighted degree [[degree]] there is none without [[names]] beyond those of problem 7, for almost all "
+    "values of the parameters.",
+    False: "Up to weighted degree [[degree]] there is none without [[names]] beyond those of problem 7.",
+}
+_DEPENDENT = {
+    Certainty.PROVED: "That of weight [[weight]] ([[name]]) depends on those before it as a function "
+    "(proved: no more can be).",
+    Certainty.VERIFIED: "That of weight [[weight]] ([[name]]) depends on those before it as a function "
+    "(verified at a random state).",
+    Certainty.UNDECIDED: "Whether that of weight [[weight]] ([[name]]) is independent of those before it is undecided.",
+}

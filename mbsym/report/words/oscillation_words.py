@@ -1,0 +1,203 @@
+"""What is said of a periodic solution in powers of a small parameter: sentences with gaps, filled by whoever writes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from mbsym.algebra.tower import Element
+from mbsym.expressions.rates import without_velocity
+from mbsym.formulas.formula import Formula
+from mbsym.problems.small_parameter.harmonics import Harmonics
+from mbsym.problems.small_parameter.oscillation_result import Amplitude, Divisor
+from mbsym.report.words.expansion_measured import SLACK
+from mbsym.report.words.expansion_words import Coefficient, Medium, scaled
+from mbsym.report.words.said import Said
+
+if TYPE_CHECKING:
+    from mbsym.analysis.oscillating import Oscillating
+    from mbsym.simulation.oscillating import MeasuredOrders
+
+SOLUTION = "Periodic solution up to order [[order]] of [[small]], led by [[leading]]"
+RATE = "The rate of the phase"
+FIGURE = "[[system]]: series to order [[order]] at [[small]] = [[value]], and the motion"
+NO_ANGLES = "(no angles: [[why]])"
+SERIES_LINE, MOTION_LINE = "series", "motion (simulation)"
+DRIFTS = "Variables that no equation needs, but for their initial values"
+
+_SERIES = (
+    "Periodic solution up to order [[order]] of [[small]], led by [[leading]]: all variables as functions of "
+    "[[phase]], and the rate of it. The coefficient of the power k of [[small]] has the index (k)."
+)
+_FREE = (
+    "Secular terms are removed up to this order with any amplitude. Here it is [[amplitude]], the value of [[leading]] "
+    "at the phase 0, where it has no term [[sine]]."
+)
+_FORMAL = (
+    "Whether some remain in higher orders, so that there is no such periodic motion, is not looked at: it is periodic "
+    "up to this order."
+)
+_OTHER_AMPLITUDES = "Other amplitudes are left out, at which they are removed, too: those of [[condition]], where real."
+_DETERMINED = (
+    "Secular terms are removed for certain amplitudes only. That of this solution: in first approximation [[leading]] "
+    "is [[value]]."
+)
+_REAL_AMPLITUDE = "The amplitude is real and not zero where [[condition]]."
+_CONSTANTS = "[[names]]: the values of [[variables]] at the phase 0, which are constant where [[small]] = 0."
+_LEFT = (
+    "Put into the equations at random rational parameters, it leaves terms of order [[left]] of [[small]] (verified)."
+)
+_NOTHING = "Put into the equations at random rational parameters, it leaves nothing (verified)."
+_TAYLOR = (
+    "Of the equations, terms up to degree [[degree]] in the deviations were taken; the others are of higher order."
+)
+_LEFT_OF_TAYLOR = (
+    "Put into the equations cut off so, at random rational parameters, it leaves terms of order [[left]] of [[small]] "
+    "(verified)."
+)
+_NOTHING_OF_TAYLOR = (
+    "Put into the equations cut off so, at random rational parameters, it leaves nothing (verified); of those that are "
+    "not cut off it may leave terms of order [[next]] of [[small]]."
+)
+_REAL = "The frequency without [[small]] is real and not zero where [[condition]]."
+_NONZERO = "It holds where the frequency without [[small]] is not zero: [[condition]]."
+_RESONANCE = (
+    "Resonance, and in general no such solution, where [[condition]] (harmonic [[harmonic]], order [[order]], of "
+    "[[names]])."
+)
+_BOTH = (
+    "Resonance, and in general no such solution, where [[condition]] and [[other]] (harmonic [[harmonic]], order "
+    "[[order]], of [[names]])."
+)
+_OTHERS = "Free oscillations of [[names]], whose frequency has the square [[square]], are left out."
+_DAMPED = (
+    "Without [[small]], roots of [[names]] are not all imaginary: free motions that belong to the others are left out."
+)
+_ZERO = "Without [[small]], [[names]] have the root zero: free displacements and drifts that belong to it are left out."
+_NOT_KNOWN = (
+    "Without [[small]], not all roots of [[names]] were found: free motions that belong to the others are left out."
+)
+_ASIDE = "[[names]], on which no equation depends, follow by quadrature: see mbsym oscillations."
+_MEASURED = (
+    "Measured at the given numbers, over one period, against motions that begin in the same state: with [[small]] "
+    "halved from [[from]] to [[to]] the errors fall like its powers [[orders]] (not proved)."
+)
+_EXPECTED = "[[expected]] or more is expected of a right solution to this order, where [[small]] is small enough."
+_TOO_SLOW = (
+    "The errors of [[names]] fall more slowly than expected: [[small]] is too large there, or something is wrong."
+)
+_NOT_MEASURED = "The error of the periodic solution was not measured: [[why]]."
+_NONE = "No periodic solution was expanded in powers of [[small]]: [[why]]."
+_NOT_ASKED = "Periodic solutions in powers of [[small]] are looked for by mbsym oscillations."
+
+
+def opening(told: Oscillating, write: Medium) -> Iterator[Said]:
+    """What is expanded in what."""
+    found = told.found
+    yield from scaled(found.powers, found.small, write)
+    yield _SERIES, _values(told, write)
+
+
+def coefficients(told: Oscillating) -> Iterator[Coefficient]:
+    """Of all variables, then of the rate of the phase; those that are zero are left out."""
+    found = told.found
+    for name, series in zip(found.names, found.series, strict=True):
+        plain = without_velocity(name) if name in told.velocities else name
+        for order, one in enumerate(series):
+            if not one.is_zero:
+                yield Coefficient(plain, plain != name, order, told.wave(one))
+    for order, x in enumerate((found.tower.one, *found.corrections)):
+        if not x.is_zero():
+            yield Coefficient(told.phase, True, order, told.formula(found.frequency * x))
+
+
+def sentences(told: Oscillating, write: Medium, drifts: bool = False) -> Iterator[Said]:
+    """What kind of solution it is, what was checked and where it holds; ``drifts``: they are shown."""
+    found, values = told.found, _values(told, write)
+    if found.kind is Amplitude.FREE:
+        values |= {"amplitude": write.formula(told.formula(found.amplitude)), "sine": write.formula(_wave(told, False))}
+        yield _FREE, values
+        yield _FORMAL, {}
+    else:
+        yield _DETERMINED, values | {"value": write.formula(_wave(told, True))}
+        if not told.real_amplitude:
+            square = told.formula(found.amplitude * found.amplitude)
+            yield _REAL_AMPLITUDE, {"condition": write.condition(square, ">")}
+        if found.other_amplitudes is not None:
+            yield _OTHER_AMPLITUDES, {"condition": write.condition(told.formula(found.other_amplitudes), "=")}
+    if found.constants:
+        names = ", ".join(write.formula(told.formula(x)) for _, x in found.constants)
+        yield _CONSTANTS, values | {"names": names, "variables": write.names([name for name, _ in found.constants])}
+    least = [one for one in found.residuals if one is not None]
+    left = values | {"left": min(least, default=None), "next": found.order + 1}
+    if told.taylor:
+        yield _TAYLOR, {"degree": found.order + 1}
+        yield (_LEFT_OF_TAYLOR if least else _NOTHING_OF_TAYLOR), left
+    else:
+        yield (_LEFT if least else _NOTHING), left
+    if not told.real:
+        rooted = any(d > 0 for d in found.frequency.top.degrees()[: -len(found.tower.parameters)])
+        real = write.condition(told.formula(found.frequency * found.frequency), ">")
+        nonzero = write.condition(told.formula(found.frequency), "!=")
+        yield (_REAL, values | {"condition": real}) if rooted else (_NONZERO, values | {"condition": nonzero})
+    for one in told.resonances:
+        zeros = dict(zip(("condition", "other"), _zeros(told, one, write), strict=False))
+        gaps = {"harmonic": one.harmonic, "order": one.order, "names": write.names(one.variables)}
+        yield _RESONANCE if one.damping is None else _BOTH, {**zeros, **gaps}
+    for group, other in found.others:
+        yield _OTHERS, {"names": write.names(group), "square": write.formula(told.formula(other))}
+    for sentence, groups in ((_DAMPED, found.damped), (_ZERO, found.with_zero), (_NOT_KNOWN, found.not_known)):
+        for group in groups:
+            yield sentence, values | {"names": write.names(group)}
+    if found.drifts and not drifts:
+        yield _ASIDE, {"names": write.names([one.variable for one in found.drifts])}
+
+
+def _values(told: Oscillating, write: Medium) -> dict[str, object]:
+    names = {"small": told.found.small, "leading": told.found.leading, "phase": told.phase}
+    return {"order": told.found.order, **{key: write.names([name]) for key, name in names.items()}}
+
+
+def _wave(told: Oscillating, whole: bool) -> Formula:
+    """The amplitude times the cosine of the phase; or its sine."""
+    zero, one = told.found.tower.zero, told.found.tower.one
+    return told.wave(Harmonics(told.found.tower, {1: (told.found.amplitude, zero) if whole else (zero, one)}))
+
+
+def _zeros(told: Oscillating, one: Divisor, write: Medium) -> Iterator[str]:
+    """What is zero at a resonance."""
+    return (write.condition(numerator(told, x), "=") for x in one.parts)
+
+
+def numerator(told: Oscillating, value: Element) -> Formula:
+    """What has to vanish for a quotient to vanish."""
+    tower = told.found.tower
+    return told.formula(tower.made(value.top, tower.context.constant(1)))
+
+
+def measured_sentences(told: Oscillating, measured: MeasuredOrders | str, write: Medium) -> Iterator[Said]:
+    """The slopes, and whether they are what they have to be; or why there are none."""
+    if isinstance(measured, str):
+        yield _NOT_MEASURED, {"why": write.word(measured)}
+        return
+    expected = told.found.order + 1
+    values: dict[str, object] = {"small": write.names([told.found.small]), "expected": expected}
+    orders = ", ".join(
+        f"{'?' if order is None else format(order, '.2f')} ({write.names([name])})"
+        for name, order in zip(measured.names, measured.orders, strict=True)
+    )
+    ends = {
+        "from": f"{measured.small * float(measured.parts[-2]):.3g}",
+        "to": f"{measured.small * float(measured.parts[-1]):.3g}",
+    }
+    yield _MEASURED, values | ends | {"orders": orders}
+    yield _EXPECTED, values
+    late = [n for n, k in zip(measured.names, measured.orders, strict=True) if k is not None and k < expected - SLACK]
+    if late:
+        yield _TOO_SLOW, values | {"names": write.names(late)}
+
+
+def of_no_oscillation(small: str, reason: str, write: Medium) -> Iterator[Said]:
+    """Where none was found, or none was asked for."""
+    values: dict[str, object] = {"small": write.names([small])}
+    yield (_NONE, values | {"why": write.word(reason)}) if reason else (_NOT_ASKED, values)
