@@ -27,7 +27,12 @@ def standing_words(found: Conservation) -> str:
 
 
 def conservation_line(found: Conservation) -> str:
-    """With how far the run keeps it: a drift is an error, a change is none."""
+    """With how far the run keeps it: a drift is an error, a change is none.
+
+    What other motions change may rest along this one, as T - U does at the bottom of a hoop that turns.
+    """
+    if found.standing is Standing.CHANGING and found.change == 0:
+        return f"{standing_words(found)} in general; constant along this run"
     what = "drift" if found.standing in (Standing.PROVED, Standing.VERIFIED) else "change"
     far = f"; largest relative {what} {found.change:.1e}" if isfinite(found.change) else ""
     return standing_words(found) + far
@@ -108,7 +113,7 @@ def warnings(conservation: Conservation, error: ErrorEstimate | NoEstimate) -> I
     if conservation.broken:
         yield (
             f"the {conservation.quantity} is conserved, and this run does not keep it: it is too coarse; choose a "
-            "smaller --tolerance, or --method rk4 with a small --step"
+            "smaller --tolerance, or, of a method with steps of one length, a smaller --step"
         )
     if isinstance(error, ErrorEstimate) and error.parted is not None:
         yield (
