@@ -165,13 +165,13 @@ def test_words_of_each_standing() -> None:
 
 
 def test_what_other_motions_change_may_be_constant_along_this_one() -> None:
-    """"not conserved; largest relative change 0" was told of a bead that rests at the bottom of a turning hoop."""
+    """ "not conserved; largest relative change 0" was told of a bead that rests at the bottom of a turning hoop."""
     told = conservation_line(Conservation("energy", Standing.CHANGING, 0.0, 1.0))
     assert told == "not conserved in general; constant along this run"
 
 
 def test_what_is_advised_to_a_method_with_steps_of_one_length_is_of_its_own() -> None:
-    """A smaller --tolerance is refused beside --method rk4, and "--method rk4 with a small --step" was there already."""
+    """It takes no --tolerance, and "--method rk4 with a small --step" was what had been asked for already."""
     run = mbsym.simulate(CASES / "osc.yaml", 100, method="rk4", step=1.0, every=1.0)
     (advice,) = [text for text in warnings(run.conservation, run.error) if "does not keep it" in text]
     assert "a smaller --step" in advice

@@ -19,6 +19,7 @@ from mbsym.numerics.orbits import lyapunov, variational
 from mbsym.numerics.orbits.lyapunov import Parting, exponents
 from mbsym.numerics.orbits.periodic import NotFound, Orbit, guessed, periodic_orbit
 from mbsym.numerics.scenario import scenario
+from mbsym.report.runs.lyapunov_files import sentences
 from mbsym.report.schemas import schema
 from mbsym.simulation import read_values
 from mbsym.simulation.motions import find_orbit
@@ -188,6 +189,23 @@ def test_integrable_motion_is_not_called_chaotic(text: str) -> None:
     assert found.parting is Parting.NOT_TOLD_FROM_ZERO
     assert abs(found.values[0]) < 0.04
     assert found.falling
+
+
+def test_what_telling_an_exponent_from_zero_takes_stands_beside_it() -> None:
+    """-0.037 +- 0.018 is below zero by its 95 %, and was called "not told from zero" without a word of what that takes.
+
+    x'' + x'/10 + 2 x = 0 spirals in: both exponents are -1/20, beside log(200)/200 = 0.0265; three times that is 0.079.
+    """
+    text = PENDULUM.replace(
+        "  - uniform gravity: {vector: [0, -1, 0]}", "  - generalized force: {theta: -2*theta - theta_dot/10}"
+    )
+    found = exponents(dynamics(text), 200, 1.0)
+    assert found.values[0] + found.uncertainty[0] < 0
+    assert found.parting is Parting.NOT_TOLD_FROM_ZERO
+    assert dict(sentences(found))["motion"].startswith(
+        "the largest exponent is not told from zero, which takes three times its uncertainty and three times log(T)/T "
+        "= 0.026"
+    )
 
 
 def test_lost_growth_is_caught_by_the_divergence(monkeypatch: pytest.MonkeyPatch) -> None:

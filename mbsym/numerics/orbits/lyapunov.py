@@ -72,13 +72,17 @@ class Exponents:
         return bool(abs(late) < 0.5 * abs(early))
 
     @property
+    def regular(self) -> float:
+        """log(T)/T, of the size to which the largest exponent of regular motion falls in the time T."""
+        return max(float(np.log(self.time)), 1.0) / self.time
+
+    @property
     def parting(self) -> Parting:
         """The largest exponent beside its uncertainty, and beside log(T)/T to which that of regular motion falls."""
         first, doubt = float(self.values[0]), 3 * float(self.uncertainty[0])
-        regular = max(float(np.log(self.time)), 1.0) / self.time
-        if first > doubt and first > 3 * regular and not self.falling:
+        if first > doubt and first > 3 * self.regular and not self.falling:
             return Parting.POSITIVE
-        if first < -doubt and first < -3 * regular:
+        if first < -doubt and first < -3 * self.regular:
             return Parting.NEGATIVE
         return Parting.NOT_TOLD_FROM_ZERO
 
