@@ -15,6 +15,7 @@ from itertools import combinations
 from typing import Any, Generic, overload
 
 from mbsym.algebra.base import Algebra, S
+from mbsym.algebra.failures import Limit, NoClosedForm
 
 Rows = Iterable[Iterable[S]]
 Table = Sequence[Sequence[S]]
@@ -332,3 +333,48 @@ def null_vectors(algebra: Algebra[S], reduced: Mapping[int, Sequence[S]], size: 
             vector[column] = -row[free]
         basis.append(vector)
     return basis
+
+
+class PrimitiveRows(Generic[S]):
+    """Sparse rows of polynomials in reduced echelon form, without fractions: entries have no common factor.
+
+    ``pivots`` holds each row by the column of its pivot.  Raises NoClosedForm (``too_long``, ``remedy``) where an entry
+    has more than ``most`` terms.
+    """
+
+    def __init__(self, algebra: Algebra[S], most: int, too_long: str, remedy: str = "") -> None:
+        self.algebra, self._most, self._too_long, self._remedy = algebra, most, too_long, remedy
+        self.pivots: dict[int, dict[int, Any]] = {}
+
+    def reduced(self, row: dict[int, Any]) -> dict[int, Any]:
+        """What is left of a row in columns without a pivot."""
+        for k in [k for k in row if k in self.pivots]:
+            if k in row:
+                row = self._without(row, self.pivots[k], k)
+        return row
+
+    def add(self, row: dict[int, Any], k: int) -> None:
+        """A reduced row, with its pivot in column k."""
+        for place, other in list(self.pivots.items()):
+            if k in other:
+                self.pivots[place] = self._without(other, row, k)
+        self.pivots[k] = row
+
+    def _without(self, row: dict[int, Any], pivot: dict[int, Any], k: int) -> dict[int, Any]:
+        common = pivot[k].gcd(row[k])
+        a, b, zero = pivot[k] / common, row[k] / common, self.algebra.zero
+        found: dict[int, Any] = {}
+        for j in {*row, *pivot}:
+            if j == k:
+                continue
+            value: Any = (row[j] * a if j in row else zero) - (pivot[j] * b if j in pivot else zero)
+            value = self.algebra.reduce(value)
+            if value != 0:
+                if len(value) > self._most:
+                    raise NoClosedForm(self._too_long, limit=Limit.TERMS, remedy=self._remedy)
+                found[j] = value
+        if not found:
+            return found
+        shared = reduce(lambda x, y: x.gcd(y), found.values())
+        shared = shared * next(iter(found.values())).leading_coefficient()
+        return {j: value / shared for j, value in found.items()}
