@@ -176,8 +176,7 @@ def leading_minors(algebra: Algebra[S], rows: Table[S]) -> list[S]:
                 )  # the sign: how many columns are to the right
                 previous = following.get(key, algebra.zero)
                 following[key] = previous - term if beyond % 2 else previous + term
-        reduced = {key: algebra.reduce(x) for key, x in following.items()}
-        known = {key: x for key, x in reduced.items() if not algebra.vanishes(x)}
+        known = {key: minor for key, x in following.items() if not algebra.vanishes(minor := algebra.reduce(x))}
         found.append(known.get((1 << size) - 1, algebra.zero))
     return found
 
@@ -286,24 +285,32 @@ def leading_determinants(kind: Callable[[list[list[Any]]], Any], rows: Table[Any
 # --- kernels ---
 
 
-def echelon(algebra: Algebra[S], rows: Table[S], columns: int) -> tuple[list[list[S]], list[int]]:
+def _weight(x: Any) -> int | None:
+    return None if x == 0 else 0
+
+
+def echelon(
+    algebra: Algebra[S], rows: Table[S], columns: int, weight: Callable[[S], int | None] = _weight
+) -> tuple[list[list[S]], list[int]]:
     """Gauss and Jordan over a field: the rows reduced in the first ``columns``, and the columns of the pivots in order.
 
-    A pivot is the first entry that is not zero by ==; what vanishes as it stands is left out of products.
+    A pivot is the first entry of the least ``weight``, None of a zero; what vanishes as it stands is left out of
+    products.
     """
     work = [[algebra.reduce(x) for x in row] for row in rows]
     pivots: list[int] = []
     for column in range(columns):
         at = len(pivots)
-        pivot = next((r for r in range(at, len(work)) if work[r][column] != 0), None)
-        if pivot is None:
+        held = ((w, r) for r in range(at, len(work)) if (w := weight(work[r][column])) is not None)
+        least = next(held, None) if weight is _weight else min(held, default=None)
+        if least is None:
             continue
-        work[at], work[pivot] = work[pivot], work[at]
+        work[at], work[least[1]] = work[least[1]], work[at]
         inverse = algebra.reciprocal(work[at][column])
         top = work[at] = [x if algebra.vanishes(x) else algebra.times(x, inverse) for x in work[at]]
         for r, row in enumerate(work):
             factor = row[column]
-            if r != at and factor != 0:
+            if r != at and weight(factor) is not None:
                 work[r] = [
                     x if algebra.vanishes(y) else x - algebra.times(factor, y) for x, y in zip(row, top, strict=True)
                 ]
