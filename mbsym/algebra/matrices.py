@@ -15,6 +15,7 @@ from itertools import combinations
 from typing import Any, Generic, overload
 
 from mbsym.algebra.base import Algebra, S
+from mbsym.algebra.failures import Limit, NoClosedForm
 
 Rows = Iterable[Iterable[S]]
 Table = Sequence[Sequence[S]]
@@ -175,8 +176,7 @@ def leading_minors(algebra: Algebra[S], rows: Table[S]) -> list[S]:
                 )  # the sign: how many columns are to the right
                 previous = following.get(key, algebra.zero)
                 following[key] = previous - term if beyond % 2 else previous + term
-        reduced = {key: algebra.reduce(x) for key, x in following.items()}
-        known = {key: x for key, x in reduced.items() if not algebra.vanishes(x)}
+        known = {key: minor for key, x in following.items() if not algebra.vanishes(minor := algebra.reduce(x))}
         found.append(known.get((1 << size) - 1, algebra.zero))
     return found
 
@@ -285,24 +285,32 @@ def leading_determinants(kind: Callable[[list[list[Any]]], Any], rows: Table[Any
 # --- kernels ---
 
 
-def echelon(algebra: Algebra[S], rows: Table[S], columns: int) -> tuple[list[list[S]], list[int]]:
+def _weight(x: Any) -> int | None:
+    return None if x == 0 else 0
+
+
+def echelon(
+    algebra: Algebra[S], rows: Table[S], columns: int, weight: Callable[[S], int | None] = _weight
+) -> tuple[list[list[S]], list[int]]:
     """Gauss and Jordan over a field: the rows reduced in the first ``columns``, and the columns of the pivots in order.
 
-    A pivot is the first entry that is not zero by ==; what vanishes as it stands is left out of products.
+    A pivot is the first entry of the least ``weight``, None of a zero; what vanishes as it stands is left out of
+    products.
     """
     work = [[algebra.reduce(x) for x in row] for row in rows]
     pivots: list[int] = []
     for column in range(columns):
         at = len(pivots)
-        pivot = next((r for r in range(at, len(work)) if work[r][column] != 0), None)
-        if pivot is None:
+        held = ((w, r) for r in range(at, len(work)) if (w := weight(work[r][column])) is not None)
+        least = next(held, None) if weight is _weight else min(held, default=None)
+        if least is None:
             continue
-        work[at], work[pivot] = work[pivot], work[at]
+        work[at], work[least[1]] = work[least[1]], work[at]
         inverse = algebra.reciprocal(work[at][column])
         top = work[at] = [x if algebra.vanishes(x) else algebra.times(x, inverse) for x in work[at]]
         for r, row in enumerate(work):
             factor = row[column]
-            if r != at and factor != 0:
+            if r != at and weight(factor) is not None:
                 work[r] = [
                     x if algebra.vanishes(y) else x - algebra.times(factor, y) for x, y in zip(row, top, strict=True)
                 ]
@@ -332,3 +340,48 @@ def null_vectors(algebra: Algebra[S], reduced: Mapping[int, Sequence[S]], size: 
             vector[column] = -row[free]
         basis.append(vector)
     return basis
+
+
+class PrimitiveRows(Generic[S]):
+    """Sparse rows of polynomials in reduced echelon form, without fractions: entries have no common factor.
+
+    ``pivots`` holds each row by the column of its pivot.  Raises NoClosedForm (``too_long``, ``remedy``) where an entry
+    has more than ``most`` terms.
+    """
+
+    def __init__(self, algebra: Algebra[S], most: int, too_long: str, remedy: str = "") -> None:
+        self.algebra, self._most, self._too_long, self._remedy = algebra, most, too_long, remedy
+        self.pivots: dict[int, dict[int, Any]] = {}
+
+    def reduced(self, row: dict[int, Any]) -> dict[int, Any]:
+        """What is left of a row in columns without a pivot."""
+        for k in [k for k in row if k in self.pivots]:
+            if k in row:
+                row = self._without(row, self.pivots[k], k)
+        return row
+
+    def add(self, row: dict[int, Any], k: int) -> None:
+        """A reduced row, with its pivot in column k."""
+        for place, other in list(self.pivots.items()):
+            if k in other:
+                self.pivots[place] = self._without(other, row, k)
+        self.pivots[k] = row
+
+    def _without(self, row: dict[int, Any], pivot: dict[int, Any], k: int) -> dict[int, Any]:
+        common = pivot[k].gcd(row[k])
+        a, b, zero = pivot[k] / common, row[k] / common, self.algebra.zero
+        found: dict[int, Any] = {}
+        for j in {*row, *pivot}:
+            if j == k:
+                continue
+            value: Any = (row[j] * a if j in row else zero) - (pivot[j] * b if j in pivot else zero)
+            value = self.algebra.reduce(value)
+            if value != 0:
+                if len(value) > self._most:
+                    raise NoClosedForm(self._too_long, limit=Limit.TERMS, remedy=self._remedy)
+                found[j] = value
+        if not found:
+            return found
+        shared = reduce(lambda x, y: x.gcd(y), found.values())
+        shared = shared * next(iter(found.values())).leading_coefficient()
+        return {j: value / shared for j, value in found.items()}

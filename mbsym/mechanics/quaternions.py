@@ -15,6 +15,7 @@ from fractions import Fraction
 from typing import Any
 
 from mbsym.algebra.base import Algebra, Scalar
+from mbsym.algebra.matrices import dot
 
 
 def cosines(algebra: Algebra, e: Sequence[Scalar]) -> list[list[Scalar]]:
@@ -24,7 +25,7 @@ def cosines(algebra: Algebra, e: Sequence[Scalar]) -> list[list[Scalar]]:
     """
     two = algebra.number(2)
     scalar, vector = e[0], e[1:]
-    square = scalar * scalar - _dot(vector, vector)
+    square = scalar * scalar - dot(vector, vector)
     found: list[list[Any]] = [[two * (vector[i] * vector[j]) for j in range(3)] for i in range(3)]
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
@@ -41,7 +42,7 @@ def rates(algebra: Algebra, e: Sequence[Scalar], spin: Sequence[Scalar]) -> list
     """
     half = algebra.number(Fraction(1, 2))
     scalar, vector = e[0], e[1:]
-    found: list[Any] = [-(half * _dot(vector, spin))]
+    found: list[Any] = [-(half * dot(vector, spin))]
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
         found.append(half * (scalar * spin[i] + vector[j] * spin[k] - vector[k] * spin[j]))
@@ -59,13 +60,9 @@ def of_turns(algebra: Algebra, halves: Iterable[tuple[int, Scalar, Scalar]]) -> 
 
 def product(a: Sequence[Scalar], b: Sequence[Scalar]) -> list[Scalar]:
     """a o b: what b turns first is turned by a, seen from the frame."""
-    found: list[Any] = [a[0] * b[0] - _dot(a[1:], b[1:])]
+    found: list[Any] = [a[0] * b[0] - dot(a[1:], b[1:])]
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
         x, y = a[1:], b[1:]
         found.append(a[0] * y[i] + x[i] * b[0] + x[j] * y[k] - x[k] * y[j])
     return found
-
-
-def _dot(a: Sequence[Scalar], b: Sequence[Scalar]) -> Any:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

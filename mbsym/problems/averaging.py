@@ -331,9 +331,8 @@ def _other_loads(
 ) -> tuple[dict[str, Polynomial], dict[str, Polynomial], tuple[str, ...]]:
     """Forces without a force function: those of order 1/eps, and what the amplitudes add to the mean of the others.
 
-    The third are the coordinates on which forces are left where all amplitudes vanish.
-
-    Raises NoClosedForm for what averages in another way.
+    The third are the coordinates on which forces are left where all amplitudes vanish.  Raises NoClosedForm for what
+    averages in another way.
     """
     ring, system = scene.ring, scene.system
     phase = ring.generators[order.phase[2]].name

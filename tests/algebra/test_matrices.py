@@ -1,4 +1,4 @@
-"""Splits of matrices and components of coupled indices, against numpy and scipy."""
+"""Splits of matrices, determinants, adjugates, kernels: by hand, against numpy and scipy."""
 
 from __future__ import annotations
 
@@ -7,13 +7,34 @@ from typing import Any
 
 import numpy as np
 import pytest
-from flint import fmpq
+from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly_ctx
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.sparse.csgraph import connected_components
 from test_ring import new_ring
 
-from mbsym.algebra.matrices import ScalarMatrix, components, skew, symmetric
+from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.matrices import (
+    Operators,
+    PrimitiveRows,
+    ScalarMatrix,
+    adjugate,
+    adjugate_at,
+    adjugate_slope_at,
+    components,
+    cramer,
+    determinant,
+    determinant_by_traces,
+    faddeev,
+    hurwitz,
+    inverted,
+    leading_determinants,
+    leading_minors,
+    null_space,
+    reduced_rows,
+    skew,
+    symmetric,
+)
 from mbsym.algebra.point import Rationals
 from mbsym.expressions.angles import LinearForm
 
@@ -94,3 +115,66 @@ def test_components_are_those_of_the_graph(graph: tuple[int, set[tuple[int, int]
     count, labels = connected_components(matrix, directed=False)
     assert sorted(map(tuple, found)) == sorted(tuple(np.flatnonzero(labels == k)) for k in range(count))
     assert [part[0] for part in found] == sorted(part[0] for part in found)
+
+
+NUMBERS = Rationals({}, {})
+
+
+@given(sizes, seeds)
+def test_determinants_of_every_route_are_one(n: int, seed: int) -> None:
+    """Expansion, Faddeev's recursion and the library; A adj A = det A; A x = b by Cramer's rule."""
+    random = np.random.default_rng(seed)
+    rows = [[fmpq(int(x)) for x in row] for row in random.integers(-9, 9, (n, n))]
+    right = [fmpq(int(x)) for x in random.integers(-9, 9, n)]
+    whole, value = fmpq_mat(rows), fmpq_mat(rows).det()
+    assert determinant(NUMBERS, rows) == determinant_by_traces(rows, fmpq(0), fmpq(1)) == value
+    assert leading_minors(NUMBERS, rows) == list(leading_determinants(fmpq_mat, rows))
+    adjoint = adjugate(rows, lambda minor: determinant(NUMBERS, minor))
+    unit = [[fmpq(int(i == j)) for j in range(n)] for i in range(n)]
+    assert whole * fmpq_mat(adjoint) == fmpq_mat(unit) * value
+    found = cramer(NUMBERS, rows, right)
+    assert whole * fmpq_mat([[x] for x in found]) == fmpq_mat([[b] for b in right]) * value
+    if value != 0:
+        assert fmpq_mat(inverted(rows, lambda x: 1 / x, fmpq(0), fmpq(1))) == whole.inv()
+
+
+def test_adjugate_of_a_characteristic_matrix_by_hand() -> None:
+    """A = (2 1; 1 3): det(s - A) = s^2 - 5 s + 5, adj(s - A) = (s - 3, 1; 1, s - 2), its derivative the unit matrix."""
+    rows, units = [[fmpq(2), fmpq(1)], [fmpq(1), fmpq(3)]], (fmpq(0), fmpq(1))
+    adjugates, coefficients = faddeev(rows, *units)
+    assert coefficients == [5, -5, 1]
+    assert adjugates == [[[1, 0], [0, 1]], [[-3, 1], [1, -2]]]
+    assert adjugate_at(rows, fmpq(7), *units) == [[4, 1], [1, 5]]
+    assert adjugate_slope_at(rows, fmpq(7), *units) == [[1, 0], [0, 1]]
+    assert faddeev([], *units) == ([[]], [1])
+
+
+def test_hurwitz_s_matrix_by_hand() -> None:
+    """s^3 + 2 s^2 + 3 s + 4: rows of c_1 c_3 c_5, c_0 c_2 c_4, 0 c_1 c_3."""
+    assert hurwitz([1, 2, 3, 4], 0, 3) == [[2, 4, 0], [1, 3, 0], [0, 2, 4]]
+
+
+def test_kernels_by_hand() -> None:
+    """x + 2 y + 3 z = 0, 2 x + 4 y + 7 z = 0: z = 0, x = -2 y."""
+    rows = [[fmpq(1), fmpq(2), fmpq(3)], [fmpq(2), fmpq(4), fmpq(7)]]
+    assert null_space(NUMBERS, rows, 3) == [[-2, 1, 0]]
+    assert reduced_rows(fmpq_mat(rows)) == {0: [1, 2, 0], 2: [0, 0, 1]}
+    assert null_space(NUMBERS, [], 2) == [[1, 0], [0, 1]]
+
+
+def test_rows_of_polynomials_stay_primitive() -> None:
+    """b (a x + b y + z) - a (b x + a y) = (b^2 - a^2) y + b z; the first row without y, by hand, too."""
+    context = fmpq_mpoly_ctx.get(["a", "b"], Ordering.lex)
+    a, b = context.gens()
+    operators = Operators(context.constant(0), context.constant(1))
+    held = PrimitiveRows(operators, 10, "too long")
+    held.add({0: a, 1: b, 2: a * 0 + 1}, 0)
+    left = held.reduced({0: b, 1: a})
+    assert left == {1: a**2 - b**2, 2: -b}
+    held.add(left, 1)
+    # (a^2 - b^2)(a x + b y + z) - b ((a^2 - b^2) y - b z) = a ((a^2 - b^2) x + a z): the factor a is common
+    assert held.pivots[0] == {0: a**2 - b**2, 2: a}
+    short = PrimitiveRows(operators, 1, "too long")
+    short.add({0: a, 1: b}, 0)
+    with pytest.raises(NoClosedForm, match="too long"):
+        short.reduced({0: b, 1: a})

@@ -110,7 +110,7 @@ def along(
             """Where the discriminant vanishes: whether A^2 + w^2 does, exactly."""
             factor = next(factor for root, factor in roots if root is value)
             matrix = matrix_of_hamiltonian(over_tower(found, tower, rational).hamiltonian())
-            entries = two_eigenvectors(tower, matrix, even_part(matrix, tower.zero, tower.one)[1])
+            entries = two_eigenvectors(matrix, even_part(matrix, tower.zero, tower.one)[1])
             return all(x.is_zero() or _vanishes(tower, x, name, factor, value) for x in entries)
 
         rational = {key: value for key, value in values.items() if key != name}

@@ -12,7 +12,7 @@ from flint import arb, fmpq, fmpq_poly
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import Failure, NoClosedForm, NoValue
 from mbsym.algebra.generators import occurring
-from mbsym.algebra.matrices import faddeev
+from mbsym.algebra.matrices import dot, faddeev
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.tower import Element, Tower
 from mbsym.problems.normal_forms.expansion import Expansion, Numbers
@@ -131,17 +131,11 @@ def even_part(matrix: Sequence[Sequence[Any]], zero: Any, one: Any) -> list[Any]
     return faddeev(matrix, zero, one)[1][::2]
 
 
-def two_eigenvectors(tower: Tower, matrix: Sequence[Sequence[Element]], trace: Element) -> list[Element]:
+def two_eigenvectors(matrix: Sequence[Sequence[Element]], trace: Element) -> list[Element]:
     """The entries of A^2 + w^2, 2 w^2 = ``trace``: zero where each of two equal roots has two eigenvectors."""
-    m, half = len(matrix), trace / 2
-    found = []
-    for i in range(m):
-        for j in range(m):
-            total = half if i == j else tower.zero
-            for k in range(m):
-                total = total + matrix[i][k] * matrix[k][j]
-            found.append(total)
-    return found
+    half, columns = trace / 2, list(zip(*matrix, strict=True))
+    square = [[dot(row, column) for column in columns] for row in matrix]
+    return [x + half if i == j else x for i, row in enumerate(square) for j, x in enumerate(row)]
 
 
 def in_ring(tower: Tower, ring: Ring, x: Element) -> Polynomial:

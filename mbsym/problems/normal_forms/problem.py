@@ -147,7 +147,7 @@ def _two_eigenvectors(found: Expansion, values: Mapping[str, Any]) -> bool:
     tower = Tower()
     matrix = matrix_of(over_tower(found, tower, rational_values(values)).hamiltonian())
     trace = even_part(matrix, tower.zero, tower.one)[1]
-    return all(x.is_zero() for x in two_eigenvectors(tower, matrix, trace))
+    return all(x.is_zero() for x in two_eigenvectors(matrix, trace))
 
 
 def _with_zero_root(found: Expansion, values: Mapping[str, Any]) -> Judged:

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from mbsym.algebra.failures import Limit, NoClosedForm
+from mbsym.algebra.matrices import Operators, PrimitiveRows
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.problems.polynomial_integrals.modular import SMALLER, Exponents
 
@@ -115,22 +116,18 @@ def _eliminated(
     field: PolynomialField, rows: list[dict[int, Any]], unknowns: int
 ) -> tuple[list[Any], list[Any]] | None:
     """c_k = tops_k / bottoms_k  with the last unknown -1; None where they are not determined, or contradict."""
-    pivots: dict[int, dict[int, Any]] = {}
-    for row in rows:
-        row = _brought_down(row, pivots)
+    zero, one = field.context.constant(0), field.context.constant(1)
+    held = PrimitiveRows(Operators(zero, one), MOST_ENTRY, "the coefficients of an integral are too long", SMALLER)
+    for equation in rows:
+        row = held.reduced(equation)
         left = [k for k in row if k < unknowns]
-        if not left:
-            if row:
-                return None
-            continue
-        k = min(left, key=lambda j: (len(row[j]), j))
-        for place, other in list(pivots.items()):
-            if k in other:
-                pivots[place] = _combined(other, row, k)
-        pivots[k] = row
+        if left:
+            held.add(row, min(left, key=lambda j: (len(row[j]), j)))
+        elif row:
+            return None
+    pivots = held.pivots
     if len(pivots) < unknowns:
         return None
-    zero, one = field.context.constant(0), field.context.constant(1)
     tops, bottoms = [], []
     for k in range(unknowns):
         top, bottom = pivots[k].get(unknowns, zero), pivots[k][k]
@@ -138,33 +135,3 @@ def _eliminated(
         tops.append(top / common if top != 0 else zero)
         bottoms.append(bottom / common if top != 0 else one)
     return tops, bottoms
-
-
-def _brought_down(row: dict[int, Any], pivots: dict[int, dict[int, Any]]) -> dict[int, Any]:
-    for k in [k for k in row if k in pivots]:
-        if k in row:
-            row = _combined(row, pivots[k], k)
-    return row
-
-
-def _combined(row: dict[int, Any], pivot: dict[int, Any], k: int) -> dict[int, Any]:
-    """The row without its entry k, primitive."""
-    a, b = pivot[k], row[k]
-    common = a.gcd(b)
-    a, b = a / common, b / common
-    found: dict[int, Any] = {}
-    for j in {*row, *pivot}:
-        if j == k:
-            continue
-        value: Any = (row[j] * a if j in row else 0) - (pivot[j] * b if j in pivot else 0)
-        if value != 0:
-            if len(value) > MOST_ENTRY:
-                raise NoClosedForm("the coefficients of an integral are too long", limit=Limit.TERMS, remedy=SMALLER)
-            found[j] = value
-    if not found:
-        return found
-    shared: Any = None
-    for value in found.values():
-        shared = value if shared is None else shared.gcd(value)
-    shared = shared * next(iter(found.values())).leading_coefficient()
-    return {j: value / shared for j, value in found.items()}

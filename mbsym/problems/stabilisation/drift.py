@@ -9,13 +9,13 @@ Hautus' test off lambda = 0 does not see them.  They move with  D x' = 0  exactl
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from itertools import combinations
 from math import comb
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.characteristic import determinant
 from mbsym.algebra.failures import TooLargeError
+from mbsym.algebra.matrices import dot
 from mbsym.algebra.ring import Polynomial
 from mbsym.problems.stabilisation.clearing import Cleared, Rows
 from mbsym.problems.stabilisation.hautus import MOST_BLOCKS, _open_factors, annihilator
@@ -36,7 +36,7 @@ def without_drift(rank: Rank, whole: Cleared, gyro: Rows, stiff: Rows, damping: 
     needed = [both]
     if unfelt:
         held, free = annihilator(stiff, whole.known, len(stiff))
-        found = _minor([[_paired(u, gyro, v) for v in unfelt] for u in free], whole)
+        found = _minor([[dot(u, [dot(row, v) for row in gyro]) for v in unfelt] for u in free], whole)
         if found is None:
             drift = (whole.formula(both * 0), whole.formula(both * 0 + 1))
             turned = any(x != 0 for row in gyro for x in row)  # then w is needed, which a lower rank of K may deny
@@ -52,11 +52,6 @@ def without_drift(rank: Rank, whole: Cleared, gyro: Rows, stiff: Rows, damping: 
     factors = tuple(x for x in locus.factors if str(x) not in doubtful)
     provided = {str(x): x for x in locus.provided} | doubtful
     return Rank(True, rank.certainty, (), Locus(factors, locus.together, tuple(provided.values())), rank.why_not)
-
-
-def _paired(u: Sequence[Polynomial], gyro: Rows, v: Sequence[Polynomial]) -> Polynomial:
-    places = range(len(v))
-    return sum((u[i] * gyro[i][j] * v[j] for i in places for j in places), v[0] * 0)
 
 
 def _minor(rows: Rows, whole: Cleared) -> Polynomial | None:

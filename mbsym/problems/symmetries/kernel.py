@@ -7,7 +7,7 @@ from itertools import combinations
 from math import prod
 from typing import Any
 
-from mbsym.algebra.failures import Limit, NoClosedForm
+from mbsym.algebra.matrices import PrimitiveRows
 from mbsym.algebra.ring import Polynomial, Ring
 
 #: Terms of one entry while that is solved.
@@ -33,19 +33,12 @@ def kernel(ring: Ring, *lists: Sequence[Polynomial]) -> list[dict[int, Polynomia
         for k, column in enumerate(_cleared(ring, columns)):
             for key, c in coefficients(ring, column).items():
                 rows.setdefault((number, key), {})[k] = c
-    pivots: dict[int, dict[int, Polynomial]] = {}
+    held = PrimitiveRows(ring, MOST_ENTRY, "the coefficients of a symmetry are too long")
     for row in sorted(rows.values(), key=lambda row: (len(row), sum(len(x) for x in row.values()))):
-        for k in [k for k in row if k in pivots]:
-            if k in row:
-                row = _combined(ring, row, pivots[k], k)
-        if not row:
-            continue
-        k = min(row)
-        for place, other in list(pivots.items()):
-            if k in other:
-                pivots[place] = _combined(ring, other, row, k)
-        pivots[k] = row
-    return [_vector(ring, pivots, k) for k in range(len(lists[0])) if k not in pivots]
+        left = held.reduced(row)
+        if left:
+            held.add(left, min(left))
+    return [_vector(ring, held.pivots, k) for k in range(len(lists[0])) if k not in held.pivots]
 
 
 def coefficients(ring: Ring, x: Polynomial) -> dict[Key, Polynomial]:
@@ -126,23 +119,3 @@ def _vector(ring: Ring, pivots: dict[int, dict[int, Polynomial]], free: int) -> 
         shared = shared.gcd(c)
     scale = shared * (found[free] / shared).leading_coefficient()
     return {k: c / scale for k, c in found.items()}
-
-
-def _combined(ring: Ring, row: dict[int, Polynomial], pivot: dict[int, Polynomial], k: int) -> dict[int, Polynomial]:
-    """The row without its entry k, primitive."""
-    common = pivot[k].gcd(row[k])
-    a, b = pivot[k] / common, row[k] / common
-    found: dict[int, Polynomial] = {}
-    for j in {*row, *pivot}:
-        if j == k:
-            continue
-        value: Any = (row[j] * a if j in row else ring.zero) - (pivot[j] * b if j in pivot else ring.zero)
-        value = ring.reduce(value)
-        if value != 0:
-            if len(value) > MOST_ENTRY:
-                raise NoClosedForm("the coefficients of a symmetry are too long", limit=Limit.TERMS)
-            found[j] = value
-    shared: Any = None
-    for value in found.values():
-        shared = value if shared is None else shared.gcd(value)
-    return {j: value / shared for j, value in found.items()}
