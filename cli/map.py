@@ -52,11 +52,12 @@ def command(
 
     The boundaries are the polynomials on which the verdict depends (constant terms, Hurwitz minors, discriminants,
     det K, assumptions, triangle inequalities of inertias).  Their arrangement is exact: every region is judged at a
-    rational point, every arc and corner at an algebraic one, each with its theorem.  With --x alone a line is divided
-    into intervals; with --z the plane is shown at the critical values of a third parameter and between them, on pages
-    map.pdf, map-2.pdf, ....  Numbers are taken exactly, from the description (values:) or --set; axes and settings
-    are parameters, or symbols of the notation.  Where the arrangement of a plane is too large, and with --by boxes,
-    boxes are halved until one verdict is proved on each, or they are small: white, nothing is proved of them.
+    rational point, every arc and corner at an algebraic one, by the first approximation and the energy.  With --x
+    alone a line is divided into intervals; with --z the plane is shown at the critical values of a third parameter
+    and between them, on pages map.pdf, map-2.pdf, ....  Numbers are taken exactly, from the description (values:)
+    or --set; axes and settings are parameters, or symbols of the notation.  Where the arrangement of a plane is too
+    large, and with --by boxes, boxes are halved until one verdict is proved on each, or they are small: white,
+    nothing is proved of them.
 
     With --of equilibria every region of the plane says how many relative equilibria there are, and how many of them
     are stable; written are equilibria-map.svg, .pdf, .png, .json and .tex.

@@ -102,7 +102,10 @@ ONSETS = {
     Onset.SOFT: "soft: asymptotically stable at the border, small oscillations arise beyond",
     Onset.HARD: "hard: unstable at the border already",
     Onset.OPEN: "open: terms of third order do not decide, or are not at hand",
-    Onset.NEITHER: "neither soft nor hard: roots are to the right on both sides or on none, or one side is not judged",
+    Onset.NEITHER: (
+        "neither soft nor hard: roots are to the right on both sides or on none, one side is not judged, or the "
+        "equations are exactly linear"
+    ),
 }
 
 

@@ -64,7 +64,8 @@ class Missing(StrEnum):
     """Why there is no field to be expanded; other reasons are those of problem 11."""
 
     CONSTRAINTS = "constraints"
-    MATRICES = "given-by-matrices"
+    #: There are no terms of higher order.
+    LINEAR = "exactly-linear"
     CONDITIONS = "unsolved-conditions"
     EXPANSION = "no-expansion"
     #: Of what is neither soft nor hard: both cells beside have roots to the right, or none has; or one of them is not
@@ -123,8 +124,8 @@ class SoftBorders:
         system = self.analysis.system
         if system.constraints:
             return Missing.CONSTRAINTS
-        if system.linear is not None:
-            return Missing.MATRICES
+        if system.linear is not None or self.analysis.balance.exactly_linear:
+            return Missing.LINEAR
         try:
             motion = self.analysis.equilibrium
             if len(motion.conditions) > len(motion.solved):
@@ -146,7 +147,7 @@ class SoftBorders:
         """At an exact point (of a line: an exact number) at which a pair of roots is imaginary."""
         expanded = self._expanded
         if isinstance(expanded, Missing):
-            return SoftOrHard(Onset.OPEN, expanded)
+            return SoftOrHard(Onset.NEITHER if expanded is Missing.LINEAR else Onset.OPEN, expanded)
         numbers = place.enclosures(PRECISION) if isinstance(place, Point) else (enclosure(place, PRECISION),)
         with ctx.workprec(PRECISION):
             return self._at(numbers)
@@ -172,7 +173,7 @@ class SoftBorders:
         """On an arc: at its point, and on all of it where formulas are small enough."""
         there = self.at(arc.point)
         # Where the coefficient vanishes at the arc's point it need not beside it.
-        if there.onset is Onset.OPEN and there.why is not Why.COEFFICIENT_OPEN:
+        if there.onset is Onset.NEITHER or (there.onset is Onset.OPEN and there.why is not Why.COEFFICIENT_OPEN):
             return there
         if self.section.constant is not None:
             return there

@@ -32,6 +32,7 @@ class _NotRational(Exception):
 def vanishes(expression: Expression, replaced: Mapping[str, Expression] | None = None) -> bool | None:
     """Whether an expression is zero at every point, or None where it cannot be evaluated.
 
+    None, too, where it holds roots and is zero for some signs and orders of names alone, as sqrt((a - b)**2) - b + a.
     ``replaced`` gives the names that are functions of other names (relations between parameters, without circles).
     """
     replaced = _needed(expression, replaced or {})
@@ -211,8 +212,16 @@ def in_floats(expression: Expression, values: Mapping[str, Expression]) -> float
 
 
 def _vanishes_in_floats(expression: Expression, replaced: Mapping[str, Expression]) -> bool | None:
+    verdicts = _verdicts_in_floats(expression, replaced, range(4))
+    if not verdicts or all(verdicts):
+        return True if verdicts else None
+    return None if any((*verdicts, *_verdicts_in_floats(expression, replaced, range(4, 16)))) else False
+
+
+def _verdicts_in_floats(expression: Expression, replaced: Mapping[str, Expression], seeds: Iterable[int]) -> list[bool]:
+    """Whether it is zero, at the points of these seeds at which it has a value."""
     verdicts = []
-    for seed in range(4):
+    for seed in seeds:
         try:
             point = _FloatPoint(seed, replaced)
             value, size = point.value(expression), point.largest
@@ -220,11 +229,14 @@ def _vanishes_in_floats(expression: Expression, replaced: Mapping[str, Expressio
             continue
         if math.isfinite(value) and math.isfinite(size):
             verdicts.append(abs(value) <= _TOLERANCE * size)
-    return all(verdicts) if verdicts else None
+    return verdicts
 
 
 class _FloatPoint:
-    """One random point of ordinary numbers; remembers the largest number met, the measure of rounding."""
+    """One random point of ordinary numbers; remembers the largest number met, the measure of rounding.
+
+    Names are positive at the points of seeds 0 to 3, of any sign at others.
+    """
 
     def __init__(self, seed: int, replaced: Mapping[str, Expression]) -> None:
         self.seed = seed
@@ -267,5 +279,7 @@ class _FloatPoint:
 
     def name(self, name: str) -> float:
         if name not in self.known:
-            self.known[name] = random.Random(f"{self.seed} {name}").uniform(0.4, 1.4)
+            source = random.Random(f"{self.seed} {name}")
+            size = source.uniform(0.4, 1.4)
+            self.known[name] = size if self.seed < 4 or source.random() < 0.5 else -size
         return self.known[name]

@@ -37,7 +37,11 @@ NO_VERDICT = (OUTSIDE, UNDEFINED, MASSLESS)
 WORDS = (*NO_VERDICT, *(word.value for word in Word))
 
 VERDICT = Column(
-    "verdict", "what problem 6 says there, exactly, at the numbers in this row taken as they stand", WORDS, whole=True
+    "verdict",
+    "what problem 6 says there by the first approximation and the energy, exactly, at the numbers in this row taken as "
+    "they stand",
+    WORDS,
+    whole=True,
 )
 RIGHT = Column("unstable_roots", "how many roots of the characteristic polynomial have Re > 0; -1: not counted")
 EXACT = Column("singly", "1: near a border, judged by itself; 0: by the signs that it shares with other points")

@@ -136,11 +136,19 @@ def test_two_pairs_at_once_are_left_open() -> None:
     assert {(x.soft.onset, x.soft.why) for x in found if x.soft} == {(Onset.OPEN, Why.MORE_PAIRS)}
 
 
-def test_given_matrices_have_no_terms_of_third_order() -> None:
-    text = "mbsym: 1\nname: m\nparameters: {p: {}, q: {}}\n"
-    text += "linear system: {coordinates: [x], M: [[1]], D: [[q**2 - p]], K: [[1]]}\n"
+MATRICES = """mbsym: 1
+name: m
+parameters: {p: {}, q: {}}
+linear system: {coordinates: [x], M: [[1]], D: [[q**2 - p]], K: [[1]]}
+"""
+SPRINGS = TEXT.replace("(p - q**2 - s*x**2)*x_dot - (q - 1/3)*x_dot**3", "(p - q**2)*x_dot").replace(", s: {}", "")
+
+
+@pytest.mark.parametrize("text", [MATRICES, SPRINGS])
+def test_exactly_linear_equations_have_no_terms_of_third_order(text: str) -> None:
+    """There are none that could be called not at hand, whether bodies or matrices are given."""
     found = borders(mapped(text, "q", "p"))
-    assert {(x.soft.onset, x.soft.why) for x in found if x.soft} == {(Onset.OPEN, Missing.MATRICES)}
+    assert {(x.soft.onset, x.soft.why) for x in found if x.soft} == {(Onset.NEITHER, Missing.LINEAR)}
 
 
 def test_a_wrong_formula_is_not_believed(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -18,9 +18,10 @@ from mbsym.numerics.accuracy import ErrorEstimate
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning import pilot, plan_bounds, planning
+from mbsym.numerics.planning.alternatives import COARSEST, _judged
 from mbsym.numerics.planning.models import Model
 from mbsym.numerics.planning.plan import ENERGY, Accuracy, Bound, Share
-from mbsym.numerics.planning.plan_items import Settled, _closest, _why_method
+from mbsym.numerics.planning.plan_items import Settled, _closest, _why_method, _worst
 from mbsym.numerics.planning.planning import Pins, planned
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.numerics.trade.yardstick import Yardstick
@@ -447,3 +448,34 @@ def test_a_bound_is_never_below_what_the_run_s_own_estimate_finds(monkeypatch: p
     assert found.error.largest <= found.plan.bound.total
     quantity = max(found.error.quantities, key=lambda one: one.largest / one.scale)
     assert found.plan.bound.quantity == quantity.name
+
+
+@pytest.mark.parametrize(
+    ("asked", "told"),
+    [(Accuracy(named={"x": 1e-3}), 2e-4), (Accuracy(named={ENERGY: 1e-2}), 0.1), (Accuracy(1e-3), 0.05)],
+)
+def test_errors_are_told_of_what_was_asked_for(asked: Accuracy, told: float) -> None:
+    """Of a run whose errors in x, x' and the energy are 2e-4, 0.05 and 0.1: that of the quantity that was asked for.
+
+    "error 5e-2, too coarse" stood beside a run that keeps x to 1e-3.
+    """
+    unused: Any = None
+    bench: Any = SimpleNamespace(targets=asked.targets(("x", "x_dot", ENERGY)))
+    settled = Settled(*[unused] * 5, bench, unused, unused, frozenset(), True, 0.4)
+    run: Any = SimpleNamespace(errors=np.array([2e-4, 0.05, 0.1]))
+    assert _worst(settled, run) == told
+
+
+@pytest.mark.parametrize("ratio", [1e-12, 1e-3])
+def test_no_estimated_cost_falls_below_that_of_the_coarsest_tolerance(ratio: float) -> None:
+    """A run at the coarsest tolerance costs what it costs, however far its error is below the target.
+
+    A pendulum at rest, right to the last bit at 1e-2, was told to cost 0.02 times as much with one digit more.
+    """
+    run: Any = SimpleNamespace(
+        setting=Setting(tolerance=COARSEST), method=METHODS["rk45"], scalar="float64", fineness=COARSEST, cost=7.0
+    )
+    judged = _judged(run, ratio, 1.0)
+    assert judged is not None
+    assert judged[0] == pytest.approx(7.0)
+    assert judged[2] == pytest.approx(COARSEST)

@@ -12,6 +12,7 @@ import polib
 import pytest
 
 import mbsym
+from mbsym.problems.stability.requirements import Place
 from mbsym.report.language import LANGUAGES
 from mbsym.report.messages import messages
 
@@ -85,3 +86,10 @@ def test_no_message_is_left_of_what_is_said_no_longer() -> None:
     known = [english for _, english in messages(OTHERS[0]) if english.lower() not in source]
     stale = {english: lost for english in known if (lost := {x for x in fragments(english) if x not in source})}
     assert not stale
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_every_place_of_a_condition_is_said(name: str) -> None:
+    """Problem 12 says it beside each condition of an averaged motion: two of them stood in English there."""
+    known = messages(name)
+    assert not [place for place in Place if place is not Place.SUFFICIENT and ("", place.value) not in known]

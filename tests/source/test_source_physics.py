@@ -261,3 +261,11 @@ bodies:
 """
     codes = [item.code for item in read(text, "x.yaml")[1] if item.code != "unused-name"]
     assert codes == ([] if enough else ["single-moment"])
+
+
+def test_roots_of_squares_are_not_told_from_either_sign() -> None:
+    """sqrt((a - b)^2) is b - a where a < b, sqrt(n^2) is -n for n < 0: no refusal, but of what is neither of them."""
+    assert vanishes(expression("sqrt((a - b)**2) - b + a")) is None
+    assert vanishes(expression("sqrt(n**2) + n")) is None
+    assert vanishes(expression("sqrt((a - b)**2) - b + 2*a")) is False
+    assert vanishes(expression("sqrt(a**2 + b**2) - a - b")) is False

@@ -158,10 +158,16 @@ def periodic_orbit(
             break
         here = found
         if here.period < SHORTEST * guess.period:
-            raise NotFound(f"the period shrinks to nothing ({here.period:.3g}): near the guess there is rest only")
+            raise NotFound(_vanishing(here.period, turns))
         best, since = (here, 0) if here.size < 0.5 * best.size else (best, since + 1)
     left = min(best.size, here.size)
     raise NotFound(f"no convergence: what is left over after {count + 1} steps is {left:.1e} of the state's size")
+
+
+def _vanishing(period: float, turns: Any) -> str:
+    """In no time every motion closes: a search that gets there tells of itself, not of what is near the guess."""
+    told = f"the search runs to ever shorter periods ({period:.3g}), over which any motion closes: begin nearer"
+    return told if np.any(turns) else f"{told}, and say which angle comes back turned, if one does (--turns NAME=1)"
 
 
 @dataclass(frozen=True)

@@ -62,14 +62,16 @@ def _tried_in_vain(bench: Bench, found: Trial, fineness: float, wanted: float) -
 def _judged(found: Trial, worse: float, spacing: float) -> tuple[float, str, float] | None:
     """(cost, label, tolerance or step) of the same method with an error ``worse`` times smaller.
 
-    None beyond its arithmetic.  A step is no longer than the ``spacing`` of the rows.
+    None beyond its arithmetic.  A step is no longer than the ``spacing`` of the rows, and no tolerance is coarser than
+    ``COARSEST``: what errors are then smaller by costs what it costs there.
     """
     traits = found.method.traits
     if found.setting.step is not None:
         order = traits.order or USUAL_ORDER
         growth = max(worse ** (1 / order), found.fineness / spacing)
         return found.cost * growth, f"{traits.name} h={found.fineness / growth:.1g}", found.fineness / growth
-    tolerance = min(found.fineness * worse ** (-1 / USUAL_SLOPE), COARSEST)
+    worse = max(worse, min(1.0, (found.fineness / COARSEST) ** USUAL_SLOPE))
+    tolerance = found.fineness * worse ** (-1 / USUAL_SLOPE)
     if tolerance < finest(found.method, found.scalar):
         return None
     growth = worse ** (1 / ORDERS.get(traits.name, USUAL_ORDER))

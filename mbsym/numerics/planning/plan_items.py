@@ -6,6 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import inf, isfinite
 
+import numpy as np
+
 from mbsym.algebra.certainty import Certainty
 from mbsym.model.loads import GRAVITY_ORDERS
 from mbsym.model.welded import lumped
@@ -72,19 +74,19 @@ def _models(settled: Settled) -> Iterator[Item]:
     given = described(scene.scenario)
     why = "as asked for" if GRAVITY in settled.pinned else _why_model(model)
     if given.gravity is not None:
-        refused = tuple(_refused(one) for one in model.tried if _other_order(one.model, taken.model))
+        refused = tuple(_refused(settled, one) for one in model.tried if _other_order(one.model, taken.model))
         richer = taken.model.gravity is not None and GRAVITY_ORDERS.index(taken.model.gravity) > GRAVITY_ORDERS.index(
             given.gravity
         )
         why = f"{why}; richer than described (order {given.gravity})" if richer else why
         alone = not (taken.model.linear or taken.model.without)
-        error = taken.worst if alone else None
+        error = _worst(settled, taken) if alone else None
         yield Item(GRAVITY, (), str(taken.model.gravity), why, error, taken.how, taken.operations, refused=refused)
     lines = [one for one in model.tried if one.model.linear]
     if lines or taken.model.linear:
         chosen = "linear" if taken.model.linear else "nonlinear"
-        refused = tuple(_refused(one) for one in lines if one.model != taken.model)
-        error = taken.worst if taken.model.linear else None
+        refused = tuple(_refused(settled, one) for one in lines if one.model != taken.model)
+        error = _worst(settled, taken) if taken.model.linear else None
         why = "as asked for" if LINEARITY in settled.pinned else _why_model(model)
         yield Item(LINEARITY, (), chosen, why, error, taken.how, taken.operations, refused=refused)
     if taken.model.without:
@@ -92,9 +94,9 @@ def _models(settled: Settled) -> Iterator[Item]:
         bodies, others = parted(scene.scenario, taken.model)
         left = ", ".join(taken.model.without)
         if bodies:
-            yield Item(MASSES, bodies, f"without {left}", why, taken.worst, taken.how, taken.operations)
+            yield Item(MASSES, bodies, f"without {left}", why, _worst(settled, taken), taken.how, taken.operations)
         if others:
-            error = None if bodies else taken.worst  # that of all together stands with the bodies
+            error = None if bodies else _worst(settled, taken)  # that of all together stands with the bodies
             yield Item(LEFT_OUT, others, ", ".join(others), why, error, taken.how, taken.operations)
 
 
@@ -110,10 +112,9 @@ def _other_order(one: Model, taken: Model) -> bool:
     return one.gravity != taken.gravity and not one.linear and not one.without
 
 
-def _refused(one: Tried) -> Refused:
+def _refused(settled: Settled, one: Tried) -> Refused:
     word = "linear" if one.model.linear else one.model.label
-    error = one.worst if isfinite(one.worst) else None
-    return Refused(word, error, one.operations, one.why)
+    return Refused(word, _told(settled, one), one.operations, one.why)
 
 
 def _resting(settled: Settled) -> Iterator[Item]:
@@ -215,7 +216,9 @@ def _cheapest_others(settled: Settled) -> tuple[Refused, ...]:
             best[name] = trial
     own = settled.found.method.traits.name
     return tuple(
-        Refused(trial.label, _worst(trial), _priced(settled, trial)) for name, trial in best.items() if name != own
+        Refused(trial.label, _told(settled, trial), _priced(settled, trial))
+        for name, trial in best.items()
+        if name != own
     )
 
 
@@ -228,8 +231,18 @@ def _rank(trial: Trial) -> tuple[bool, float]:
     return (trial.ratio > 1, trial.cost if trial.ratio <= 1 else trial.ratio)
 
 
-def _worst(trial: Trial) -> float | None:
-    worst = float(max(trial.errors[:-1]))
+def _worst(settled: Settled, one: Trial | Tried) -> float:
+    """The error of that quantity which is farthest from what was asked of it; of others nothing was asked.
+
+    With one target for every coordinate and velocity it is the largest of their errors.
+    """
+    targets = settled.bench.targets
+    asked = np.flatnonzero(np.isfinite(targets))
+    return float(one.errors[asked[np.argmax(one.errors[asked] / targets[asked])]])
+
+
+def _told(settled: Settled, one: Trial | Tried) -> float | None:
+    worst = _worst(settled, one)
     return worst if isfinite(worst) else None
 
 
@@ -241,4 +254,4 @@ def _other_scalars(settled: Settled) -> Iterator[Refused]:
         if coarser and (known is None or _rank(trial) < _rank(known)):
             best[trial.scalar] = trial
     for scalar, trial in best.items():
-        yield Refused(scalar, _worst(trial), _priced(settled, trial))
+        yield Refused(scalar, _told(settled, trial), _priced(settled, trial))

@@ -11,7 +11,7 @@ from mbsym.algebra.signs import Signs
 from mbsym.formulas.formula import Formula, Matrix
 from mbsym.problems.stability.problem import in_parameters
 
-Rows = list[list[Polynomial]]
+Rows = Sequence[Sequence[Polynomial]]
 
 
 @dataclass(frozen=True)

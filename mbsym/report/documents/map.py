@@ -70,7 +70,9 @@ class Place(Part, frozen=True, kw_only=True):
     point: Annotated[list[Number], "the exact point at which it was judged, a coordinate for each axis"]
     standing: Annotated[Standing, "whether there is a verdict, and if not, why"]
     broken: Annotated[list[str], "what is not kept there"]
-    stability: Annotated[Verdict | None, "the verdict of problem 6; nothing where none is given"]
+    stability: Annotated[
+        Verdict | None, "the verdict of problem 6, without terms of higher order; nothing where none is given"
+    ]
     unstable_roots: Annotated[int | None, "roots with a positive real part, with multiplicity, over all subsystems"]
     real_unstable_roots: Annotated[int | None, "how many of them are real"]
     negative_eigenvalues_of_K: Annotated[int | None, "Poincare's degree of instability"]
@@ -120,7 +122,7 @@ class SoftOrHard(Part, frozen=True):
             "mixed-roots",
             "coefficient-open",
             "constraints",
-            "given-by-matrices",
+            "exactly-linear",
             "unsolved-conditions",
             "no-expansion",
             "no-loss",
@@ -214,7 +216,9 @@ class Statement(Part, frozen=True):
 
     standing: Annotated[Standing, "whether there is a verdict, and if not, why"]
     broken: Annotated[list[str], "what is not kept there"]
-    stability: Annotated[Verdict | None, "the verdict of problem 6; nothing where none is given"]
+    stability: Annotated[
+        Verdict | None, "the verdict of problem 6, without terms of higher order; nothing where none is given"
+    ]
     unstable_roots: Annotated[int | None, "roots with a positive real part, with multiplicity, over all subsystems"]
     real_unstable_roots: Annotated[int | None, "how many of them are real"]
     negative_eigenvalues_of_K: Annotated[int | None, "Poincare's degree of instability"]

@@ -92,7 +92,9 @@ class NormalForms(Part, frozen=True):
     generalized_potential: Annotated[
         bool, "whether there are applied forces that Lagrange's function takes in (Helmholtz's conditions)"
     ]
-    first_approximation: Annotated[str | None, "the verdict of problem 6 at the given values"]
+    first_approximation: Annotated[
+        str | None, "the verdict of problem 6 at the given values, without terms of higher order"
+    ]
     at_values: Annotated[NormalFormAtValues | None, "what is decided at the given values; null without numbers"]
     two_frequencies: Annotated[TwoFrequencies | None, "Hamiltonian systems of two frequencies, in parameters"]
     pair: Annotated[Pair | None, "one pair of imaginary roots for all parameters"]
