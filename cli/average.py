@@ -147,6 +147,8 @@ def _told(found: Averaged) -> Iterator[str]:
     yield f"fast: {found.phase}; {found.scaling}"
     yield f"vibrational potential: {found.vibrational}"
     yield f"effective potential:   {found.potential}"
+    if found.beside:
+        yield f"beside it act the forces on {', '.join(found.beside)} that have no force function here, as they did"
 
 
 def _verdict(averaged: System) -> Iterator[str]:

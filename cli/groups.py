@@ -111,12 +111,11 @@ def _of_linear(analysis: Analysis) -> Groups:
 
 def _linear(analysis: Analysis) -> Iterator[str]:
     from mbsym.algebra.failures import Failure
-    from mbsym.analysis.stages import Unavailable
 
     try:
         found = _of_linear(analysis)
     except Failure as error:
-        yield f"none: {error.reason if isinstance(error, Unavailable) else error}"
+        yield f"none: {error.reason}"
         return
     for line in _told(found):
         if not line.startswith("without effect"):

@@ -44,7 +44,7 @@ def run_slices(request: Request) -> int:
         asked.refused(request.file)
         return BAD_INPUT
     except Failure as failure:
-        complain(request.file, f"no map: {failure}" + (f"; {failure.remedy}" if failure.remedy else ""))
+        complain(request.file, f"no map: {failure.reason}" + (f"; {failure.remedy}" if failure.remedy else ""))
         return FAILED
     except OSError as error:
         complain(request.file, f"the map cannot be written: {reason_of(error)}")

@@ -53,18 +53,22 @@ _IN_SHORT = {"constraints": "constraints"}
 
 
 class Unavailable(Failure):
-    """Raised when a result is asked for that a stage could not produce; ``failure`` says why."""
+    """Raised when a result is asked for that a stage could not produce; ``failure`` says why.
+
+    Its words are the reason and what to do: names of stages are ours, and say nothing to who asked.
+    """
 
     code = "unavailable"
 
     def __init__(self, stage: str, failure: NoResult) -> None:
-        sentence = f"{stage}: {failure.reason}" + (f" ({failure.hint})" if failure.hint else "")
+        sentence = failure.reason + (f" ({failure.hint})" if failure.hint else "")
         super().__init__(sentence, limit=failure.limit, remedy=failure.hint)
+        self.stage = stage
         self.failure = failure
 
     @property
     def reason(self) -> str:
-        """Why, without the name of the stage."""
+        """Why, without what to do."""
         return self.failure.reason
 
 

@@ -9,6 +9,7 @@ from math import lcm
 from typing import Any
 
 from mbsym.algebra.base import Lowering, Scalar
+from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.program import Program
 from mbsym.algebra.ring import TERM_BUDGET, Ring
 from mbsym.expressions.angles import LinearForm, linear_form
@@ -217,13 +218,21 @@ def ring_of(
     return ring
 
 
+#: An assumption that takes more to be written out opens no roots.
+ASSUMPTION_WORK = 100_000
+
+
 def _assumed(system: System, ring: Ring) -> Iterator[Any]:
     """What is declared or assumed to be positive, as polynomials: sqrt((a - b)**2) is b - a under a < b."""
     yield from (-ring.generator("parameter", one.name) for one in system.parameters if one.sign == "negative")
     lower = Lowering(ring, ring_environment(system, ring))
     for one in system.assumptions:
         if one.relation in ("<", ">") and all(map(_is_polynomial, (one.left, one.right))):
-            gap = lower(one.left) - lower(one.right)
+            try:
+                with ring.budget(ASSUMPTION_WORK):
+                    gap = lower(one.left) - lower(one.right)
+            except NoClosedForm:
+                continue
             yield gap if one.relation == ">" else -gap
 
 

@@ -69,6 +69,9 @@ class Averaged(Shown):
 
     ``rate`` is of order eps^-1; ``orders``: the powers of eps of the amplitudes; all else is of order 1.
 
+    ``beside``: coordinates on which forces act that have no place in V and do what they did (damping, generalised
+    forces): V alone is not the whole motion then.
+
     ``swings`` are M^-1 a by coordinate, in q and the phase: the velocities of the oscillation about Q are -M^-1 a.
     """
 
@@ -78,6 +81,7 @@ class Averaged(Shown):
     vibrational: Formula
     potential: Formula
     swings: tuple[Formula, ...]
+    beside: tuple[str, ...] = ()
 
     @property
     def small(self) -> tuple[str, ...]:
@@ -225,7 +229,7 @@ def averaged(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str, or
     linear = [order.leading(x.polynomial, "T") for x in energy.A1]
     rest = order.leading(energy.A0.polynomial, "T")
     grown, force = order.split(energy.force_function.polynomial, "U")
-    pushes, steady = _other_loads(scene, order)
+    pushes, steady, beside = _other_loads(scene, order)
     whole_force, whole_rest = (moving(x.polynomial) for x in (energy.force_function, energy.A0))
     for what, parts in (("T", [*(x.polynomial for x in energy.A1), whole_rest]), ("U", [whole_force])):
         if any(order.holds_phase(order.unscaled(x)) for x in parts):
@@ -268,6 +272,7 @@ def averaged(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str, or
         Formula(ring, moving(ring.reduce(vibrational_alone))),
         Formula(ring, moving(ring.reduce(whole - mean_force))),
         tuple(Formula(ring, x) for x in turned),
+        beside,
     )
 
 
@@ -321,14 +326,17 @@ def without_constants(ring: Ring, names: Sequence[str]) -> Callable[[Polynomial]
     return moving
 
 
-def _other_loads(scene: Scene[Polynomial], order: Order) -> tuple[dict[str, Polynomial], dict[str, Polynomial]]:
+def _other_loads(
+    scene: Scene[Polynomial], order: Order
+) -> tuple[dict[str, Polynomial], dict[str, Polynomial], tuple[str, ...]]:
     """Forces without a force function: those of order 1/eps, and what the amplitudes add to the mean of the others.
 
-    Raises NoClosedForm for what averages in another way.
+    The third are the coordinates on which forces are left where all amplitudes vanish.  Raises NoClosedForm for what
+    averages in another way.
     """
     ring, system = scene.ring, scene.system
     phase = ring.generators[order.phase[2]].name
-    pushes, steady = {}, {}
+    pushes, steady, beside = {}, {}, []
     for name, found in generalized_forces(scene).items():
         what = f"the force on {name}"
         grown, force = order.split(found, what)
@@ -348,7 +356,9 @@ def _other_loads(scene: Scene[Polynomial], order: Order) -> tuple[dict[str, Poly
         if not ring.is_zero(order.mean(grown, what)):
             raise NoClosedForm(f"the mean of {what} over {phase} grows with the rate of the phase")
         pushes[name], steady[name] = grown, ring.reduce(order.mean(force, what) - order.unshaken(force))
-    return pushes, steady
+        if not ring.vanishes(order.unshaken(force)):
+            beside.append(name)
+    return pushes, steady, tuple(beside)
 
 
 def orders_of(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str) -> dict[str, int]:

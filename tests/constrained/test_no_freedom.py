@@ -50,7 +50,7 @@ def test_what_is_driven_whole_is_derived_and_written(tmp_path: Path) -> None:
     done = called(tmp_path, DRIVEN, "run")
     assert done.exit_code == 0, done.output
     assert "The constraints determine all velocities" in done.output
-    assert "at any one time have 0 dimensions" in done.output
+    assert "at any one time are of dimension 0" in done.output
     assert (tmp_path / "out" / "report.tex").exists()
 
 

@@ -154,7 +154,7 @@ def test_the_finest_run_has_no_estimate_where_that_takes_too_long(monkeypatch: p
     run = mbsym.simulate(CASES / "osc.yaml", 1, arithmetic="extended", tolerance=1e-19)
     assert run.error == NoEstimate(Lacking.FINEST)
     assert list(error_lines(run.error)) == [f"not estimated: {Lacking.FINEST.value}"]
-    assert error_json(run.error)["available"] is False
+    assert error_json(run.error).available is False
 
 
 @pytest.mark.parametrize("tolerance", [1e-15, 1e-16, 1e-18])

@@ -394,3 +394,42 @@ def test_the_command_takes_orders():
     refused = CliRunner().invoke(main, ["average", path, "--order", "q=1", "--order", "u", "--order", "u=x"])
     assert refused.exit_code == 2
     assert refused.output.count("--order: error[bad-value]") == 2, refused.output
+
+
+DIPOLE = """
+mbsym: 1
+name: Dipole in a field that turns
+parameters: {{J: positive, b: positive, a: positive, nu: positive}}
+prescribed: {{phi: {{rate: nu}}}}
+bodies:
+  - {{name: d, attached to: 0, rotation: {{axes: [3], angles: [th]}}, mass: 0, inertia about: mass centre,
+     inertia: [J, J, J]}}
+loads:
+{loads}
+motion: {{th: 0}}
+values: {{J: 1, b: 1, a: 1, nu: 20}}
+initial: {{th: 0.1}}
+"""
+TURNING = "  - generalized force: {th: -b*sin(th - phi)}\n"
+
+
+@pytest.mark.parametrize(
+    ("held", "potential", "beside"),
+    [("generalized force: {th: -a*sin(th)}", "0", ("th",)), ("potential: -a*cos(th)", "-a*cos(th)", ())],
+)
+def test_forces_beside_an_effective_potential_are_told(tmp_path, held, potential, beside):
+    """J th'' = -b sin(th - nu t) - a sin(th): the turning field adds b^2/(4 J nu^2), a constant, so that V = -a cos th.
+
+    Given as a generalised force the couple is no part of V, and "effective potential: 0" was the whole story, beside
+    "stable under a > 0".
+    """
+    text = DIPOLE.format(loads=TURNING + f"  - {held}\n")
+    one = mbsym.loads(text)
+    found = averaging_of(one, "phi")
+    assert str(found.potential) == potential
+    assert found.beside == beside
+    path = tmp_path / "dipole.yaml"
+    path.write_text(text)
+    told = [CliRunner().invoke(main, ["average", str(path)]).output]
+    told += [x for name, x in _texts(one.system).items() if name in ("latex en", "html en", "terminal")]
+    assert ["eside it act the forces on" in " ".join(x.split()) for x in told] == [bool(beside)] * 4

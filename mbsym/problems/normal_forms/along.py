@@ -164,8 +164,8 @@ def _of_two_frequencies(
     if count != 2:
         besides = " without its cyclic coordinates" if found.cyclic else ""
         raise NotAlong(
-            "of systems without applied forces exceptional values are listed where there are two frequencies; this one "
-            f"has {count}{besides}"
+            "of systems whose energy is conserved exceptional values are listed where there are two frequencies; this "
+            f"one has {count}{besides}"
         )
     try:
         _, tower, named = twist(found, values)

@@ -243,6 +243,11 @@ def of_averaging(told: JudgedAverage, write: Medium) -> Iterator[Said]:
     )
     yield "What the fast phase adds: [[formula]].", {"formula": write.formula(one.found.vibrational)}
     yield "Effective potential: [[formula]].", {"formula": write.formula(one.found.potential)}
+    if one.found.beside:
+        yield (
+            "Beside it act the forces on [[names]] that have no force function here, as they did.",
+            {"names": write.names(one.found.beside)},
+        )
     yield from _of_averaged_motion(one, write)
     yield from _of_measured_average(told.measured, write)
 

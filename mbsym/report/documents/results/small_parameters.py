@@ -24,7 +24,10 @@ class Averaged(Part, frozen=True):
     rate: Annotated[str | UnsetType, "its rate, taken as large"] = UNSET
     small: Annotated[list[str] | UnsetType, "parameters that are taken as small"] = UNSET
     vibrational: Annotated[Formula | UnsetType, "what the fast phase adds to the potential energy"] = UNSET
-    potential: Annotated[Formula | UnsetType, "the effective potential energy, but for constants"] = UNSET
+    potential: Annotated[
+        Formula | UnsetType,
+        "the effective potential energy, but for constants; loads without a force function act beside it",
+    ] = UNSET
     averaged_motion_at_values: Annotated[
         str | UnsetType | None,
         "verdict of problem 6 on the averaged motion at the given values; null where there is none",
