@@ -284,7 +284,7 @@ def _ranked(whole: Cleared, at: Sequence[int], columns: Sequence[int]) -> Rank:
 
     mass, damped, gyro, stiff, circulatory = (cut(rows) for rows in whole.matrices[:5])
     inputs = [[whole.matrices[5][i][j] for j in columns] for i in at]
-    rates, places = ([list(row) for row in added(*pair)] for pair in ((damped, gyro), (stiff, circulatory)))
+    rates, places = added(damped, gyro), added(stiff, circulatory)
     try:
         return rank_of(whole, mass, rates, places, inputs)
     except TooLargeError as error:
