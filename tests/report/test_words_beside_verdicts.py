@@ -18,6 +18,7 @@ from mbsym.algebra.failures import Failure
 from mbsym.report.sections import polynomial_integrals, stability
 from mbsym_cli.main import main
 
+SYSTEMS = Path(__file__).parents[2] / "systems"
 STATEMENTS = Path(__file__).parents[1] / "cases" / "statements"
 
 SLEIGH = """
@@ -149,3 +150,35 @@ def test_what_moves_is_said_to_move(tmp_path: Path, text: str, command: str, tol
     result = CliRunner().invoke(main, [command, str(tmp_path / "file.yaml")])
     assert told in result.output + result.stderr
     assert untold not in result.output + result.stderr
+
+
+@pytest.mark.parametrize(
+    ("command", "reason"),
+    [
+        (["map", "--x", "l=1:2"], "no map: the first approximation is time-dependent"),
+        (["nonlinear", "--vary", "l=1:2"], "no values listed: the first approximation is time-dependent"),
+        (["sweep", "-v", "l=1:2:3"], "for these equations: the first approximation is time-dependent"),
+    ],
+)
+def test_no_name_of_a_stage_stands_before_a_reason(tmp_path: Path, command: list[str], reason: str) -> None:
+    """ "judgeable: the first approximation ..." was told of a shaken pendulum."""
+    name, *options = command
+    out = [] if name == "nonlinear" else ["--out", str(tmp_path)]
+    done = CliRunner().invoke(main, [name, str(SYSTEMS / "shaken-pendulum.yaml"), *options, *out])
+    assert reason in " ".join(done.output.split())
+
+
+def test_a_pendulum_is_not_called_free_of_applied_forces(tmp_path: Path) -> None:
+    """Gravity is an applied force: "of systems without applied forces ... this one has 1" was told of a pendulum."""
+    path = tmp_path / "pendulum.yaml"
+    path.write_text("""
+mbsym: 1
+name: Pendulum
+parameters: {l: positive, g: positive}
+bodies: [{name: bob, attached to: 0, rotation: {axes: [3], angles: [x]}, mass centre: [0, -l, 0], mass: 1}]
+loads: [uniform gravity: {acceleration: g, direction: [0, -1, 0]}]
+motion: {x: 0}
+values: {l: 1, g: 9}
+""")
+    done = CliRunner().invoke(main, ["nonlinear", str(path), "--vary", "l=1:2"])
+    assert "no values listed: of systems whose energy is conserved" in " ".join(done.output.split())
