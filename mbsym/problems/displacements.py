@@ -129,6 +129,8 @@ def _is_linear(ring: Ring, x: Polynomial, coordinates: Sequence[str], moving: Se
 
 #: Fields that are combined, and terms of what their combinations have to leave unchanged.
 MOST_FIELDS, MOST_FIELD_TERMS = 40, 4_000
+#: All that is done to find symmetries among them may take so much work.
+FIELD_WORK = 10_000_000
 
 
 def linear_fields(ring: Ring, coordinates: Sequence[str]) -> list[Direction]:

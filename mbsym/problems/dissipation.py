@@ -57,6 +57,7 @@ from mbsym.model.loads import (
 )
 from mbsym.model.system import INERTIAL, Body, rational, velocity_name
 from mbsym.problems.displacements import (
+    FIELD_WORK,
     Direction,
     Displacements,
     among,
@@ -190,15 +191,16 @@ class Balance:
                 for name in names
             ]
             standing = [name for name in names if name not in moving]
-            return symmetries(
-                ring,
-                names,
-                self.energy.kinetic_energy.polynomial,
-                forces,
-                fields,
-                lambda x: ring.substitute(x, self._here),
-                standing,
-            )
+            with ring.budget(FIELD_WORK):
+                return symmetries(
+                    ring,
+                    names,
+                    self.energy.kinetic_energy.polynomial,
+                    forces,
+                    fields,
+                    lambda x: ring.substitute(x, self._here),
+                    standing,
+                )
         except Failure:
             return []
 

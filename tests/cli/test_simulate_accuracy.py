@@ -38,8 +38,7 @@ def test_simulation_json_holds_the_plan_and_keeps_to_its_schema(tmp_path: Path) 
     done = called(SYSTEMS / "satellite.yaml", "--time", "1", "--accuracy", "1e-2", "-f", "csv", "-o", tmp_path)
     assert done.exit_code == 0, done.output
     found = json.loads((tmp_path / "simulation.json").read_text())
-    schema = json.loads((Path(schemas.__file__).parent / "simulation.json").read_text())
-    jsonschema.validate(found, schema)
+    jsonschema.validate(found, schemas.schema("simulation"))
     plan = found["plan"]
     assert plan["reached"]
     for bound in plan["bounds"]:
