@@ -33,8 +33,10 @@ def called(words: tuple[str, ...], folder: Path, columns: str) -> str:
 
 
 def is_formula(line: str) -> bool:
-    """What is not broken: products and powers, and the place of a complaint with its line of the description."""
-    return bool(re.search(r"\*|\^|^\S+:\d+:\d+: |^ +\d* +\||  [A-Za-z(].* = ", line))
+    """What is not broken: products and powers, long paths, and the place of a complaint with its line."""
+    return max(map(len, line.split())) > WIDTH // 2 or bool(
+        re.search(r"\*|\^|^\S+:\d+:\d+: |^ +\d* +\||  [A-Za-z(].* = ", line)
+    )
 
 
 @pytest.mark.parametrize("words", COMMANDS, ids=" ".join)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -56,8 +57,13 @@ def test_a_mistake_is_found(
 
 def test_forces_of_the_constraints_matter(monkeypatch: pytest.MonkeyPatch) -> None:
     """A sign of the projected forcing: problem 4's own check is the one that finds it, where there is any force."""
-    original = perturbed._dot
-    monkeypatch.setattr(perturbed, "_dot", lambda scene, u, v: original(scene, u, v) + scene.ring.one)
+    original = perturbed.projected
+
+    def wrong(scene: Any, found: Any) -> Any:
+        right = original(scene, found)
+        return replace(right, constant=tuple(x + scene.ring.one for x in right.constant))
+
+    monkeypatch.setattr(perturbed, "projected", wrong)
     analysis = mbsym.load(SYSTEMS / "cartesian-pendulum.yaml")
     with pytest.raises(mbsym.analysis.Unavailable):
         _ = analysis.equilibrium
