@@ -8,12 +8,33 @@ from mbsym.problems.normal_forms.result import Outcome, Theorem, Why
 from mbsym.problems.stability.word import Word
 from mbsym.report.documents.base import Format, Part, told_apart_by, words
 
+NUMBER = "a number: exactly where it is rational, else an enclosure, [mid +/- radius]"
+
 
 class Determinant(Part, frozen=True):
     """a determinant"""
 
     order: Annotated[int, words(4, 6), "4 or 6"]
-    value: Annotated[str, "a number: exactly where it is rational, else an enclosure, [mid +/- radius]"]
+    value: Annotated[str, NUMBER]
+
+
+#: What is decided at a point, field by field: files have them in orders of their own.
+SaidOfHigherOrder = Annotated[Outcome, "what is said of the nonlinear system"]
+TheoremOfHigherOrder = Annotated[Theorem, "the theorem behind it; empty where none applies"]
+WhyOpen = Annotated[Why, "why nothing, or no more, is decided; empty where that is not so"]
+Frequencies = Annotated[list[Annotated[str, NUMBER]], "of Hamiltonian systems with the signs of their energies"]
+Determinants = Annotated[list[Determinant], "D_4, and D_6 where it was needed", told_apart_by("order")]
+Coefficient = Annotated[
+    str | None,
+    "a of r' = a r^3 on the centre manifold of one pair of imaginary roots; of a zero root the first coefficient that "
+    "is not zero; of equal frequencies delta A of Sokolskii's normal form; of a zero root of a Hamiltonian system a of "
+    "the energy a x^M along its direction",
+]
+AmplitudeOf = Annotated[str, "the coordinate whose amplitude r is; empty without such a pair"]
+Kernel = Annotated[
+    str, "of a zero root of a Hamiltonian system the coordinate x of the energy a x^M along its direction; else empty"
+]
+Degree = Annotated[int | None, "M of that energy"]
 
 
 class ExceptionalValue(Part, frozen=True):
@@ -31,50 +52,28 @@ class ExceptionalValue(Part, frozen=True):
         "what is said of the nonlinear system: in problem 6's words where terms of higher order leave it open",
     ]
     theorem: Annotated[str, "the theorem behind it; empty where none applies"]
-    reason: Annotated[Why, "why nothing, or no more, is decided; empty where that is not so"]
-    frequencies: Annotated[
-        list[Annotated[str, "a number: exactly where it is rational, else an enclosure, [mid +/- radius]"]],
-        "of Hamiltonian systems with the signs of their energies",
-    ]
-    determinants: Annotated[list[Determinant], "D_4, and D_6 where it was needed", told_apart_by("order")]
-    coefficient: Annotated[
-        str | None,
-        "a of r' = a r^3 on the centre manifold of a pair of imaginary roots; of a zero root the first coefficient "
-        "that is not zero; of equal frequencies delta A of Sokolskii's normal form; of a zero root of a Hamiltonian "
-        "system a of the energy a x^M along its direction",
-    ]
-    amplitude_of: Annotated[str, "the coordinate whose amplitude r is; empty without such a pair"]
-    along: Annotated[
-        str,
-        "of a zero root of a Hamiltonian system the coordinate x of the energy a x^M along its direction; else empty",
-    ]
-    degree: Annotated[int | None, "M of that energy"]
+    reason: WhyOpen
+    frequencies: Frequencies
+    determinants: Determinants
+    coefficient: Coefficient
+    amplitude_of: AmplitudeOf
+    along: Kernel
+    degree: Degree
 
 
 class Between(Part, frozen=True):
     """an open interval"""
 
     sample: Annotated[str, "a rational number in it"]
-    verdict: Annotated[Outcome, "what is said of the nonlinear system"]
-    theorem: Annotated[Theorem, "the theorem behind it; empty where none applies"]
-    reason: Annotated[Why, "why nothing, or no more, is decided; empty where that is not so"]
-    frequencies: Annotated[
-        list[Annotated[str, "a number: exactly where it is rational, else an enclosure, [mid +/- radius]"]],
-        "of Hamiltonian systems with the signs of their energies",
-    ]
-    determinants: Annotated[list[Determinant], "D_4, and D_6 where it was needed", told_apart_by("order")]
-    coefficient: Annotated[
-        str | None,
-        "a of r' = a r^3 on the centre manifold of a pair of imaginary roots; of a zero root the first coefficient "
-        "that is not zero; of equal frequencies delta A of Sokolskii's normal form; of a zero root of a Hamiltonian "
-        "system a of the energy a x^M along its direction",
-    ]
-    amplitude_of: Annotated[str, "the coordinate whose amplitude r is; empty without such a pair"]
-    along: Annotated[
-        str,
-        "of a zero root of a Hamiltonian system the coordinate x of the energy a x^M along its direction; else empty",
-    ]
-    degree: Annotated[int | None, "M of that energy"]
+    verdict: SaidOfHigherOrder
+    theorem: TheoremOfHigherOrder
+    reason: WhyOpen
+    frequencies: Frequencies
+    determinants: Determinants
+    coefficient: Coefficient
+    amplitude_of: AmplitudeOf
+    along: Kernel
+    degree: Degree
 
 
 class Nonlinear(Part, frozen=True, kw_only=True):

@@ -136,43 +136,47 @@ class Work(Part, frozen=True):
     rejected: Annotated[int, "steps rejected"]
 
 
+#: How a quantity keeps its value; its name or formula comes before that.
+Conserved = Annotated[bool | None, "true, false, or null where it is undecided"]
+Known = Annotated[Standing, "how that is known"]
+Doubted = Annotated[str | None, "why it is undecided", words(Doubt)]
+LargestDrift = Annotated[
+    float | str, "the largest difference from the initial value, over relative_to; text where it is not finite"
+]
+RelativeTo = Annotated[float | str, "what it is relative to"]
+
+
 class Energy(Part, frozen=True):
     """the energy T - U"""
 
     is_: Annotated[Literal["T - U"], "what it is"]
-    conserved: Annotated[bool | None, "true, false, or null where it is undecided"]
-    how: Annotated[Standing, "how that is known"]
-    doubt: Annotated[str | None, "why it is undecided", words(Doubt)]
-    largest_relative_drift: Annotated[
-        float | str, "the largest difference from the initial value, over relative_to; text where it is not finite"
-    ]
-    relative_to: Annotated[float | str, "what it is relative to"]
+    conserved: Conserved
+    how: Known
+    doubt: Doubted
+    largest_relative_drift: LargestDrift
+    relative_to: RelativeTo
 
 
 class GeneralizedEnergy(Part, frozen=True):
     """the generalised energy, where it is another quantity than the energy"""
 
     is_: Annotated[Literal["T2 - T0 - U"], "what it is"]
-    conserved: Annotated[bool | None, "true, false, or null where it is undecided"]
-    how: Annotated[Standing, "how that is known"]
-    doubt: Annotated[str | None, "why it is undecided", words(Doubt)]
-    largest_relative_drift: Annotated[
-        float | str, "the largest difference from the initial value, over relative_to; text where it is not finite"
-    ]
-    relative_to: Annotated[float | str, "what it is relative to"]
+    conserved: Conserved
+    how: Known
+    doubt: Doubted
+    largest_relative_drift: LargestDrift
+    relative_to: RelativeTo
 
 
 class Invariant(Part, frozen=True):
     """a first integral"""
 
     name: Annotated[str, "its name, in words"]
-    conserved: Annotated[bool | None, "true, false, or null where it is undecided"]
-    how: Annotated[Standing, "how that is known"]
-    doubt: Annotated[str | None, "why it is undecided", words(Doubt)]
-    largest_relative_drift: Annotated[
-        float | str, "the largest difference from the initial value, over relative_to; text where it is not finite"
-    ]
-    relative_to: Annotated[float | str, "what it is relative to"]
+    conserved: Conserved
+    how: Known
+    doubt: Doubted
+    largest_relative_drift: LargestDrift
+    relative_to: RelativeTo
 
 
 class NoEstimate(Part, frozen=True):

@@ -6,9 +6,19 @@ from typing import Annotated
 
 from msgspec import Meta
 
-from mbsym.problems.normal_forms.result import Outcome, Theorem, Why
 from mbsym.report.documents.base import Part, told_apart_by
-from mbsym.report.documents.nonlinear import Determinant
+from mbsym.report.documents.nonlinear import (
+    NUMBER,
+    AmplitudeOf,
+    Coefficient,
+    Degree,
+    Determinants,
+    Frequencies,
+    Kernel,
+    SaidOfHigherOrder,
+    TheoremOfHigherOrder,
+    WhyOpen,
+)
 from mbsym.report.documents.parts import Formula
 
 
@@ -17,40 +27,29 @@ class ActionTerm(Part, frozen=True):
 
     first: Annotated[int, "number of the one frequency", Meta(ge=1)]
     second: Annotated[int, "number of the other one", Meta(ge=1)]
-    coefficient: Annotated[str, "a number: exactly where it is rational, else an enclosure, [mid +/- radius]"]
+    coefficient: Annotated[str, NUMBER]
 
 
 class NormalFormAtValues(Part, frozen=True):
     """at the given values"""
 
-    verdict: Annotated[Outcome, "what is said of the nonlinear system"]
-    theorem: Annotated[Theorem, "the theorem behind it; empty where none applies"]
-    reason: Annotated[Why, "why nothing, or no more, is decided; empty where that is not so"]
-    frequencies: Annotated[
-        list[Annotated[str, "a number: exactly where it is rational, else an enclosure, [mid +/- radius]"]],
-        "of Hamiltonian systems with the signs of their energies",
-    ]
+    verdict: SaidOfHigherOrder
+    theorem: TheoremOfHigherOrder
+    reason: WhyOpen
+    frequencies: Frequencies
     actions: Annotated[
         list[ActionTerm],
         "coefficients of products of two actions in the normal form of order 4",
         told_apart_by("first", "second"),
     ]
-    determinants: Annotated[list[Determinant], "D_4, and D_6 where it was needed", told_apart_by("order")]
+    determinants: Determinants
     resonances: Annotated[
         list[Annotated[list[int], "k"]], "vectors k with k.w = 0 exactly, w the frequencies without signs"
     ]
-    coefficient: Annotated[
-        str | None,
-        "a of r' = a r^3 on the centre manifold of one pair of imaginary roots; of a zero root the first coefficient "
-        "that is not zero; of equal frequencies delta A of Sokolskii's normal form; of a zero root of a Hamiltonian "
-        "system a of the energy a x^M along its direction",
-    ]
-    amplitude_of: Annotated[str, "the coordinate whose amplitude r is; empty without such a pair"]
-    along: Annotated[
-        str,
-        "of a zero root of a Hamiltonian system the coordinate x of the energy a x^M along its direction; else empty",
-    ]
-    degree: Annotated[int | None, "M of that energy"]
+    coefficient: Coefficient
+    amplitude_of: AmplitudeOf
+    along: Kernel
+    degree: Degree
 
 
 class Resonance(Part, frozen=True):
