@@ -114,8 +114,8 @@ def first_approximation(analysis: Analysis) -> Linearisation:
         raise Unavailable("motion", NoResult(reason, "", "no such motion", "impossible-motion"))
     if analysis.equilibrium.unsteady:
         varying = ", ".join(analysis.equilibrium.unsteady)
-        reason = f"on the given motion the equations still vary with {varying}"
-        hint = steady_order(analysis) or "it is no steady motion in these coordinates"
+        reason = f"on the given motion the equations, in symbols, still vary with {varying}"
+        hint = steady_order(analysis) or "it is no steady motion in these coordinates, or only at special parameters"
         raise Unavailable("motion", NoResult(reason, hint, "not steady", "not-steady"))
     if analysis.system.constraints:
         from mbsym.problems.reduction import by_projection

@@ -59,7 +59,7 @@ def _decided(bare: System, one: RelativeEquilibrium) -> RelativeEquilibrium:
         return one
 
 
-#: How names of parameters begin that are coordinates of a place; no name of a description ends in ``_dot``.
+#: How names of parameters begin that are coordinates of a place; parameters of the description are numbers by then.
 _PLACE = "place_dot_"
 
 
