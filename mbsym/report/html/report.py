@@ -42,9 +42,12 @@ from mbsym.report.html.environment import page
 from mbsym.report.html.integrals import of_polynomials, of_symmetries
 from mbsym.report.html.motion import asked_motion
 from mbsym.report.html.told import longer, told_passages, told_terms
+from mbsym.report.html.writer import Writer
 from mbsym.report.inertias import accepted_inertias
+from mbsym.report.language import Language
 from mbsym.report.latex.description import shown_points
 from mbsym.report.lengths import COUNTED, PAPER, PAPER_PROGRAM, program_not_printed, withheld
+from mbsym.report.results import contents, results
 from mbsym.report.sections.invariant_sets import plain
 from mbsym.report.sections.small_parameters import told as of_small_parameters
 from mbsym.report.sections.stabilisation import decimal, polynomial
@@ -104,6 +107,7 @@ def context(
     taken = {str(names[name]) for name in [*system.coordinates, *system.parameter_names]}
     taken |= {str(names[item.name]) for item in system.prescribed}
     taken |= {str(names[item.name]) for item in system.notation}
+    writer = Writer(names, Language(analysis.language or system.language), long)
     known: dict[str, Callable[..., Any]] = {
         **_functions(long),
         "name": lambda name: Markup(str(names[name])),
@@ -148,6 +152,7 @@ def context(
         numbers={"0": 0} | {body.name: k for k, body in enumerate(system.bodies, start=1)},
         found=found,
         problems=[(number, PROBLEMS[number]) for number in ORDER if number in problems],
+        contents=contents(results(analysis, problems), writer.document),
         failures={number: stage.failure for number, stage in stages.items() if stage.failure is not None},
         code=_code(analysis) if 3 in stages and 3 not in found else None,
         state=analysis.optional("first_order") if system.speeds and 5 in found else None,

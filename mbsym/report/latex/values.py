@@ -64,7 +64,9 @@ from mbsym.report.latex.small import of_small_parameters
 from mbsym.report.latex.stabilisation import of_stabilisation, rational_matrix, rational_row
 from mbsym.report.latex.told import packed, paragraphs
 from mbsym.report.latex.words import RELATIONS, displayed, escaped, is_cyrillic, label, prose, refer
+from mbsym.report.latex.writer import Writer
 from mbsym.report.lengths import COUNTED, PAPER, PAPER_FORMS, PAPER_PROGRAM, program_not_printed, withheld
+from mbsym.report.results import contents, results
 from mbsym.report.unit_text import bracketed
 from mbsym.report.words.claims import claim_line, counterexample, repair, titles, together
 from mbsym.report.words.integrals_words import OPENING
@@ -118,6 +120,7 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
     taken |= {str(names[item.name]) for item in system.prescribed} | {str(names[item.name]) for item in system.notation}
     verdicts = found.get(6)
     cited = references(verdicts, escaped(system.source)) if form is not Form.FRAGMENT else ()
+    writer = Writer(names, tongue, labels, form, long, lambda value: once(measured_matrix, value))
     values = {
         "tr": tongue.sentence,
         # No filter: Jinja computes filters of constants when it compiles a template, and keeps what it compiled.
@@ -138,7 +141,8 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "moving": moving,
         "found": found,
         "told": compact(analysis, {number: found.get(number) for number in problems}),
-        "parts": [f"latex/{PROBLEMS[number].attribute}.j2" for number in problems],
+        "parts": {number: f"latex/{PROBLEMS[number].attribute}.j2" for number in problems},
+        "contents": contents(results(analysis, problems), writer.document),
         "problems": problems,
         "failures": {number: stage.failure for number, stage in stages.items() if stage.failure is not None},
         "code": _code(analysis, names) if 3 in stages and 3 not in found else None,
