@@ -301,7 +301,7 @@ def test_latex_lists_the_loads_and_the_given_motion(tmp_path):
         r"Generalised forces: $Q_{x} = -c \dot{x}$, $Q_{\theta} = M$",
         r"Force $(k,\; \allowbreak 0,\; \allowbreak 0)$ in the axes of \textit{bob}, at the point",
         r"at the point $(0,\; \allowbreak -L,\; \allowbreak 0)$ of \textit{bob}.",
-        r"Torque $(0,\; \allowbreak 0,\; \allowbreak M)$ in the axes of \textit{cart}, on \textit{bob}; the opposite one on",
+        r"Torque $(0,\; \allowbreak 0,\; \allowbreak M)$ in the axes of \textit{cart}, on \textit{bob};",
         r"the opposite one on \textit{cart}.",
         r"\theta = L + n t",
         r"$x(0) = \frac{1}{2}$",
