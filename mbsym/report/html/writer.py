@@ -314,7 +314,7 @@ def notation(tex: str) -> str:
     """Fixed notation as elements of MathML."""
     from latex2mathml.converter import convert  # few formulas need it
 
-    return re.sub(r"</?math[^>]*>", "", convert(tex))
+    return re.sub(r"</?math[^>]*>", "", convert(re.sub(r"\\penalty\d+ ?", "", tex)))
 
 
 def _untexed(text: str) -> Markup:
