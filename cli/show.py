@@ -1,85 +1,92 @@
-"""``mbsym show``: one formula to the screen, or into another program."""
+"""The summary of a run on the terminal."""
 
 from __future__ import annotations
 
-import sys
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-import click
+from mbsym.expressions.counting import counted
+from mbsym_cli.console import printable, tell
 
-from mbsym_cli.console import BAD_INPUT, FAILED, OK, complain, printable, read_description, status
-from mbsym_cli.options import Options
+if TYPE_CHECKING:
+    from mbsym.problems.checks import Check
+    from mbsym.report.brief import Brief
+    from mbsym.report.summary import Line, Summary
+    from mbsym.report.words.claims import ClaimLine
 
-
-@click.command("show")
-@click.argument("file", type=click.Path(path_type=Path))
-@click.argument("names", nargs=-1, metavar="[NAME]...")
-@click.option("--latex", "language", flag_value="latex", help="Write LaTeX.")
-@click.option("--wolfram", "language", flag_value="wolfram", help="Write Wolfram Language.")
-@click.option("--python", "language", flag_value="python", help="Write Python, with the names of the description.")
-@click.option("--terms", metavar="N", default="1000000", show_default=True, help="Longest formula that is derived.")
-def command(file: Path, names: tuple[str, ...], language: str | None, terms: str) -> None:
-    """Print formulas of FILE by their NAMEs: its equations of motion, or what is asked for.
-
-    \b
-    equations       M q'' - f = 0              T U L         energies
-    accelerations   solved for q''             M f           of M q'' = f
-    motion          does it satisfy them       constraints   in velocities
-    M0 D G K N B    first approximation
-    characteristic  polynomials                conditions    of stability
-    eigenvalues     at the given values        integrals     first integrals
-
-    The name of a body prints its kinematics.  Without --latex, --wolfram or --python formulas are written as people
-    write them: theta'' is the second derivative, a space multiplies.  Exit codes: 0 printed, 1 there is no such result,
-    2 something is wrong.
-
-    \b
-    Examples:
-      mbsym show systems/simple-pendulum.yaml
-      mbsym show systems/double-pendulum.yaml T U equations
-      mbsym show systems/satellite.yaml conditions --latex
-    """
-    system = read_description(file)
-    asked = Options()
-    budget = asked.whole("--terms", terms, 1, 10**12)
-    if asked.refused(file) or system is None or budget is None:
-        sys.exit(BAD_INPUT)
-    from mbsym.algebra.failures import Failure
-    from mbsym.analysis import Analysis
-    from mbsym.report.formulas_by_name import known_names, lines, written
-
-    analysis = Analysis(system, terms=budget)
-    known = known_names(analysis)
-    wanted = names or (("equations",) if system.linear is None else ("M0", "D", "G", "K", "N"))
-    unknown = [name for name in wanted if name not in known]
-    for name in unknown:
-        asked.complain("NAME", "unknown-name", f"nothing is called '{name}' here", _nearest(name, known))
-    if asked.refused(file):
-        sys.exit(BAD_INPUT)
-    worst = OK
-    for name in wanted:
-        try:
-            with status(False, f"deriving {name}"):
-                found = list(lines(analysis, name))
-        except Failure as error:
-            complain(file, f"{name}: {error}")
-            worst = FAILED
-            continue
-        for line in found:
-            if line.remark:
-                click.echo(_comment(printable(line.remark), language))
-            click.echo(written(line, language or "text"))
-    sys.exit(worst)
+_COLOURS = {"exact": "green", "verified numerically": "green", "FAILED": "bold red"}
+_COLOURS |= {"undecided": "yellow", "singular": "yellow"}
+_CLAIM_COLOURS = {"held": "green", "refuted": "bold red", "undecided": "yellow"}
 
 
-def _nearest(name: str, known: list[str]) -> str:
-    from difflib import get_close_matches
+def show(found: Summary, path: Path, seconds: float) -> None:
+    """Problems with what they gave and the seconds they took, the self-check, and where the files are."""
+    tell((found.system, "bold"), (f"  {printable(path)}, {seconds:.2f} s", "dim"))
+    for line in found.problems:
+        _problem(line)
+    _claims(found.claims)
+    _checks(found.checks)
+    if found.files:
+        folder = found.files[0].parent
+        tell("  files in ", (printable(folder), "bold"), f": {', '.join(_listed(found.files, folder))}")
 
-    near = get_close_matches(name, known, 1)
-    return f"did you mean '{near[0]}'?" if near else f"there are {', '.join(known)}"
+
+def _listed(files: Sequence[Path], folder: Path) -> list[str]:
+    """The files of a folder by name; those in folders in it are counted, each such folder where its first file is."""
+    inner = [path.relative_to(folder).parts[:-1] for path in files]
+    told = {
+        parts: f"{'/'.join(parts)} ({counted(inner.count(parts), 'file')})" if parts else "" for parts in set(inner)
+    }
+    return list(dict.fromkeys(told[parts] or path.name for parts, path in zip(inner, files, strict=True)))
 
 
-def _comment(remark: str, language: str | None) -> str:
-    return {"latex": f"% {remark}", "wolfram": f"(* {remark} *)", "python": f"# {remark}"}.get(
-        language or "", f"# {remark}"
+def show_brief(found: Brief, name: str, width: int) -> None:
+    """A run in one line; columns are as wide as they mostly are."""
+    colour = _COLOURS.get(found.worst, "")
+    tell(
+        (f"{printable(name):<{width}}", "bold"),
+        f"  {found.problems:<8}",
+        (f"  {found.self_check:<32}", colour),
+        f"  {found.claims:<30}",
+        (f"{found.seconds:7.2f} s", "dim"),
+        (f"  {found.missing}" if found.missing else "", "yellow"),
     )
+
+
+def _problem(line: Line) -> None:
+    tell("  ", (f"{line.number} {line.title}", "bold cyan"), (f"  {line.seconds:.3f} s", "dim"))
+    for text in line.lines:
+        indent = 4 + len(text) - len(text.lstrip())
+        tell((text.strip(), "" if line.available else "yellow"), indent=indent)
+
+
+def _claims(claims: tuple[ClaimLine, ...]) -> None:
+    """How many hold; then each with its place, and by what it differs."""
+    if not claims:
+        return
+    from mbsym.report.words.claims import together
+
+    words = [claim.word for claim in claims]
+    counts = [f"{words.count(word)} {word}" for word in ("held", "refuted", "undecided") if word in words]
+    tell((f"  claims: {', '.join(counts)}", "bold cyan"))
+    width = min(28, max(len(claim.place) for claim in claims))
+    for group in together(claims):
+        claim = group[0]
+        place = f"{claim.place:<{width}}  " if width else ""
+        told = (f"{claim.title}: ", claim.outcome)
+        if len(group) > 1:
+            told = (f"{len(group)} claims ", claim.outcome.replace("holds", "hold", 1))
+        tell(place + told[0], (told[1], _CLAIM_COLOURS[claim.word]), indent=4)
+        for text in claim.lines:
+            tell(text.strip(), indent=6 + len(text) - len(text.lstrip()))
+
+
+def _checks(checks: tuple[Check, ...]) -> None:
+    if not checks:
+        return
+    tell(("  self-check: two independent routes each", "bold cyan"))
+    width = max(len(check.name) for check in checks)
+    for check in checks:
+        outcome = f"{check.outcome} ({check.detail})" if check.detail else check.outcome
+        tell(f"{check.name:<{width}}  ", (outcome, _COLOURS[check.outcome]), indent=4)
