@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from mbsym.report.canonical import Forms, forms_of
+from mbsym.model.system import INERTIAL
+from mbsym.report.canonical import forms_of
+from mbsym.report.canonical_denominators import Denominators, with_names
 from mbsym.report.compact import Compact, compact
 from mbsym.report.content import Block, Intermediates, Paragraph, Said, Words, paragraph, say
 from mbsym.report.sections import section_of
@@ -57,9 +59,14 @@ class Results:
         return compact(self.analysis, {number: self.found.get(number) for number in self.problems})
 
     @cached_property
-    def forms(self) -> Forms:
-        """Routh's and Hamilton's forms, where they were asked for."""
-        return forms_of(self.analysis, self.problems)
+    def forms(self) -> Denominators:
+        """Routh's and Hamilton's forms, where they were asked for; their long denominators have names."""
+        return with_names(forms_of(self.analysis, self.problems), self.system)
+
+    @property
+    def numbers(self) -> dict[str, int]:
+        """Of the bodies by name, in the order of the description; the inertial frame has 0."""
+        return {INERTIAL: 0} | {body.name: k for k, body in enumerate(self.system.bodies, start=1)}
 
     def intermediates(self, number: int) -> Iterator[Block]:
         """The named quantities through which the formulas of a problem are told."""
@@ -72,8 +79,13 @@ class Results:
         """Why a problem has no result, if it has none."""
         failure = self.failures.get(number)
         if failure is not None:
-            hint = (" (", Words(failure.hint), ")") if failure.hint else ()
-            yield Paragraph((Said("No result"), ": ", Words(failure.reason), *hint, "."), missing=True)
+            yield no_result(failure)
+
+
+def no_result(failure: NoResult) -> Paragraph:
+    """Why there is none."""
+    hint = (" (", Words(failure.hint), ")") if failure.hint else ()
+    return Paragraph((Said("No result"), ": ", Words(failure.reason), *hint, "."), missing=True)
 
 
 def contents(known: Results, write: Callable[[Iterator[Block]], T]) -> dict[int, Callable[[], T]]:
