@@ -22,14 +22,9 @@ from mbsym.problems.stability.word import Word
 from mbsym.report.code.functions import moving
 from mbsym.report.compact import compact
 from mbsym.report.conditions import Shown, cases, factors, label_meanings, provided, statements
-from mbsym.report.inertias import accepted_inertias
 from mbsym.report.language import Language
 from mbsym.report.latex.description import (
-    constraint_in_words,
     expression,
-    load_in_words,
-    points,
-    speed_form,
 )
 from mbsym.report.latex.diagram import diagram
 from mbsym.report.latex.form import Form, heading, subheading
@@ -40,7 +35,6 @@ from mbsym.report.latex.formulas import (
     formula,
     measured_matrix,
     polynomial,
-    tensor,
 )
 from mbsym.report.latex.integrals import of_integrals, of_list, of_symmetries, weights_of
 from mbsym.report.latex.invariant import of_invariant_sets
@@ -49,7 +43,7 @@ from mbsym.report.latex.normal_forms import of_normal_forms
 from mbsym.report.latex.references import keys_of, references, theorems_named
 from mbsym.report.latex.small import of_small_parameters
 from mbsym.report.latex.stabilisation import of_stabilisation, rational_matrix, rational_row
-from mbsym.report.latex.words import RELATIONS, displayed, escaped, is_cyrillic, label, prose, refer
+from mbsym.report.latex.words import RELATIONS, escaped, is_cyrillic, label, prose, refer
 from mbsym.report.latex.writer import Writer
 from mbsym.report.lengths import COUNTED, PAPER, PAPER_FORMS, withheld
 from mbsym.report.results import contents, results
@@ -117,7 +111,6 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "references": cited,
         "literature": _literature(verdicts, tongue) if form is Form.REPORT else [],
         "system": system,
-        "accepted": accepted_inertias(system),
         "numbers": {"0": 0} | {body.name: k for k, body in enumerate(system.bodies, start=1)},
         "moving": moving,
         "found": found,
@@ -171,19 +164,14 @@ def _filters(analysis: Analysis, tongue: Language, long: frozenset[int], widest:
         "theorem": lambda name: escaped(tongue.say(name)),
         "name": lambda name: str(names[name]),
         "dotted": lambda name: names[name].accented("dot"),
-        "speed_form": lambda one: speed_form(one, names, _number_of(system, one.body)),
         "math": lambda value: formula(value, long),
         "expression": lambda value: expression(value, names),
-        "points": lambda value: points(value, names),
         "unit": lambda name, space="": bracketed(unit_of(system, name), space),
-        "tensor": lambda value: tensor(value, names, widest),
         "sum": polynomial,
         "condition": condition,
         "eigenvalues": eigenvalues,
         "label": lambda words: label(words, tongue.say),
         "refer": lambda reference: refer(reference, tongue.say),
-        "load": lambda value: displayed(load_in_words(value, names, escaped, tongue)),
-        "constraint": lambda value: constraint_in_words(value, names, escaped, tongue),
         "prose": prose,
         "claim_line": claim_line,
         "counterexample": lambda found: counterexample(found).replace("for", "For", 1),

@@ -165,9 +165,9 @@ _WITH_MULTIPLIERS = (
 
 def content(results: Results) -> Iterator[Block]:
     """What reports say."""
+    yield Heading("equations", Said("Problem 3. Equations of motion"))
     system, found, told = results.system, results.found.get(3), results.told.get(3)
     equations = Said(_WITH_MULTIPLIERS if system.constraints else _LAGRANGE)
-    yield Heading("equations", Said("Problem 3. Equations of motion"))
     yield from results.missing(3)
     if found is not None and found.in_speeds:
         yield from _of_kane(found)

@@ -47,9 +47,9 @@ def data(found: Kinematics, system: System, write: Write) -> doc.Kinematics:
 
 def content(results: Results) -> Iterator[Block]:
     """What reports say."""
+    yield Heading("kinematics", Said("Problem 1. Kinematics"))
     found, told = results.found.get(1), results.told.get(1)
     closed = {} if found is None else {body.name: body for body in found.bodies}
-    yield Heading("kinematics", Said("Problem 1. Kinematics"))
     yield from results.missing(1)
     if told is None:
         for k, body in enumerate(closed.values(), start=1):

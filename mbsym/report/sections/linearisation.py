@@ -81,8 +81,8 @@ _FIVE = (("M", 2, True), ("D", 1, True), ("G", 1, False), ("K", 0, True), ("N", 
 
 def content(results: Results) -> Iterator[Block]:
     """What reports say."""
-    system, found = results.system, results.found.get(5)
     yield Heading("linearisation", Said("Problem 5. First approximation"))
+    system, found = results.system, results.found.get(5)
     yield from results.missing(5)
     if found is None:
         return
