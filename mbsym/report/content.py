@@ -8,10 +8,11 @@ content and nothing of results.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
+from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
 from mbsym.expressions.rates import without_velocity
 from mbsym.expressions.tree import Expression
@@ -26,13 +27,15 @@ from mbsym.report.words.passages import Passage
 class Symbol:
     """A letter of ours with indices: ``Symbol("omega", "1")``, ``Symbol("V", "O1")``, ``Symbol("R", upper="01")``.
 
-    The letter is one of the alphabet or the English name of a Greek one; ``dots`` are those above it.
+    The letter is one of the alphabet or the English name of a Greek one; ``dots`` are those above it, ``look`` is "",
+    "bar" (above it) or "script".
     """
 
     letter: str
     lower: str = ""
     upper: str = ""
     dots: int = 0
+    look: str = ""
 
 
 @dataclass(frozen=True)
@@ -170,6 +173,13 @@ class Strong:
 
 
 @dataclass(frozen=True)
+class Phrase:
+    """Parts one after the other."""
+
+    parts: tuple[Inline, ...]
+
+
+@dataclass(frozen=True)
 class Emphasis:
     """A name in italics: that of a body."""
 
@@ -199,7 +209,7 @@ class Citation:
 
 
 #: What stands in a line; a ``str`` is as it is in every language: a name of a body, a number, punctuation.
-Inline = Said | Words | Strong | Emphasis | Verbatim | Unit | Citation | Math | str
+Inline = Said | Words | Strong | Phrase | Emphasis | Verbatim | Unit | Citation | Math | str
 
 
 # --- blocks -----------------------------------------------------------------------------------------------------------
@@ -228,19 +238,35 @@ class Paragraph:
 
 @dataclass(frozen=True)
 class Display:
-    """A formula in lines of its own, broken where it is long; ``key``: that of its label."""
+    """A formula in lines of its own, broken where it is long; ``key``: that of its label.
+
+    ``notes`` are said beside it, in brackets.
+    """
 
     value: Math | tuple[Inline, ...]
     key: str = ""
+    notes: tuple[Inline, ...] = ()
 
 
 @dataclass(frozen=True)
 class Matrices:
-    """A matrix as a whole where it fits, else its entries; of a ``symmetric`` one the upper half."""
+    """A matrix as a whole where it fits, else its entries; of a ``symmetric`` one the upper half.
+
+    ``packed``: its entries in any case, side by side on paper.
+    """
 
     symbol: Symbol
     value: Matrix
     symmetric: bool
+    key: str
+    packed: bool = False
+
+
+@dataclass(frozen=True)
+class SideBySide:
+    """Several matrices, on paper beside each other where they fit; ``key``: that of their labels then."""
+
+    matrices: tuple[Matrices, ...]
     key: str
 
 
@@ -294,12 +320,55 @@ class Intermediates:
     passages: tuple[Passage, ...]
 
 
-Block = Heading | Subheading | Paragraph | Display | Matrices | Components | Itemised | Table | Folded | Intermediates
+@dataclass(frozen=True)
+class Steps:
+    """A straight-line program: what occurs more than once has a number, then ``results`` by what they are called.
+
+    ``names`` are those of its inputs; a screen unfolds it under the ``title``.
+    """
+
+    program: Program
+    results: tuple[tuple[Symbol, Node], ...]
+    names: Mapping[str, Math]
+    title: Said
+
+
+Block = (
+    Heading
+    | Subheading
+    | Paragraph
+    | Display
+    | Matrices
+    | SideBySide
+    | Components
+    | Itemised
+    | Table
+    | Folded
+    | Intermediates
+    | Steps
+)
 
 
 def paragraph(*parts: Inline) -> Paragraph:
     """A paragraph of these parts."""
     return Paragraph(parts)
+
+
+def joined(items: Iterable[Inline], *between: Inline) -> Phrase:
+    """The items with ``between`` from one to the next."""
+    parts = [part for item in items for part in (*between, item)]
+    return Phrase(tuple(parts[len(between) :]))
+
+
+def equalities(pairs: Iterable[tuple[Math, Math]], key: str) -> Iterator[Display]:
+    """Each is equal to its other one, in lines of their own; ``key`` and its number is that of its label."""
+    for k, (left, right) in enumerate(pairs, start=1):
+        yield Display(Relation(left, "=", right), f"{key}:{k}")
+
+
+def numbered(symbol: Symbol, values: Iterable[Formula]) -> Iterator[tuple[Symbol, Formula]]:
+    """Components, by the symbol with their number as its index."""
+    return ((replace(symbol, lower=str(k)), value) for k, value in enumerate(values, start=1))
 
 
 def named(names: Iterable[str]) -> Listed:
@@ -311,6 +380,11 @@ def speed(name: str) -> Name:
     """A variable of velocity: a declared speed by its name, the velocity of a coordinate as the dotted coordinate."""
     plain = without_velocity(name)
     return Name(plain, int(plain != name))
+
+
+def speeds(names: Iterable[str]) -> Listed:
+    """Variables of velocity side by side."""
+    return Listed(tuple(map(speed, names)))
 
 
 def pieces(text: str) -> Iterator[tuple[bool, str]]:

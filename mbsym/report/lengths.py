@@ -12,6 +12,7 @@ from dataclasses import dataclass, fields, is_dataclass
 from typing import Any
 
 from mbsym.formulas.formula import Formula
+from mbsym.report.content import Said, say
 
 
 @dataclass(frozen=True)
@@ -59,9 +60,9 @@ def formulas(result: Any) -> Iterator[Formula]:
             yield from formulas(getattr(result, field.name))
 
 
-def program_not_printed(steps: int) -> str:
+def program_not_printed(steps: int) -> Said:
     """The same for straight-line code."""
-    return f"{steps} steps, not printed; model.py and model.c have them"
+    return say("[[count]] steps, not printed; model.py and model.c have them", count=str(steps))
 
 
 def not_printed(formula: Formula) -> str:

@@ -59,6 +59,10 @@ class Writer:
         return self.language.say(value.text)
 
     @inline.register
+    def _(self, value: content.Phrase) -> str:
+        return "".join(map(self.inline, value.parts))
+
+    @inline.register
     def _(self, value: content.Strong) -> str:
         return self.inline(value.text)
 

@@ -6,15 +6,13 @@ What was found stands first.  Formulas are MathML; long ones are folded away beh
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from markupsafe import Markup, escape
 
 from mbsym import __version__
-from mbsym.formulas.mathml import MathNames, mathml_names, mi, mo, mtext, power
+from mbsym.formulas.mathml import MathNames, mathml_names, mi, mo, mtext
 from mbsym.formulas.names import free_name
-from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.model.quantities import rate_unit, unit_of
 from mbsym.problems import NUMBERS
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
@@ -22,13 +20,10 @@ from mbsym.problems.stability import Stability
 from mbsym.problems.stability.spectrum import Spectrum, numbers
 from mbsym.problems.stability.word import Word
 from mbsym.report.brief import brief
-from mbsym.report.canonical import forms_of, upper_brackets
 from mbsym.report.code.functions import moving
-from mbsym.report.code.programs import programs_of
 from mbsym.report.compact import compact
 from mbsym.report.conditions import Shown, cases, factors, label_meanings, provided, statements
 from mbsym.report.content import Said
-from mbsym.report.first_order import first_order
 from mbsym.report.html import formulas as shown
 from mbsym.report.html.description import (
     expression,
@@ -38,10 +33,9 @@ from mbsym.report.html.diagram import diagram
 from mbsym.report.html.environment import page
 from mbsym.report.html.integrals import of_polynomials, of_symmetries
 from mbsym.report.html.motion import asked_motion
-from mbsym.report.html.told import longer, told_passages, told_terms
 from mbsym.report.html.writer import Writer
 from mbsym.report.language import Language
-from mbsym.report.lengths import COUNTED, PAPER, PAPER_PROGRAM, program_not_printed, withheld
+from mbsym.report.lengths import COUNTED, PAPER, withheld
 from mbsym.report.results import Section, contents, results
 from mbsym.report.sections.invariant_sets import plain
 from mbsym.report.sections.small_parameters import told as of_small_parameters
@@ -63,12 +57,9 @@ from mbsym.source.meaning import meaning
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
     from mbsym.analysis.small import SmallParameters
-    from mbsym.formulas.formula import Formula
     from mbsym.model.system import System
-    from mbsym.problems.constraints import Constraints
     from mbsym.problems.invariant_sets import InvariantSets
     from mbsym.problems.normal_forms import NormalForms
-    from mbsym.problems.reduction import Reduction
     from mbsym.problems.stabilisation import Stabilisation
 
 #: The order of the sections: as a reader wants them, as in report.tex.
@@ -97,23 +88,19 @@ def context(
     printed = _claimed_names(analysis)
     stages = {number: analysis.stage(number) for number in problems}
     found = {number: stage.value for number, stage in stages.items() if stage.failure is None}
-    forms = forms_of(analysis, problems)
-    long = withheld([*(found[number] for number in COUNTED if number in found), *forms.results], PAPER)
+    about = results(analysis, problems)
+    long = withheld([*(found[number] for number in COUNTED if number in found), *about.forms.forms.results], PAPER)
     taken = {str(names[name]) for name in [*system.coordinates, *system.parameter_names]}
     taken |= {str(names[item.name]) for item in system.prescribed}
     taken |= {str(names[item.name]) for item in system.notation}
     writer = Writer(names, Language(analysis.language or system.language), long)
-    sections = contents(results(analysis, problems), writer.document)
+    sections = contents(about, writer.document)
     known: dict[str, Callable[..., Any]] = {
         **_functions(long),
         "name": lambda name: Markup(str(names[name])),
         "named": lambda items: shown.math(*_separated([str(names[name]) for name in items])),
         "dotted": lambda name: Markup(str(names[name].dotted("˙"))),
         "speed": lambda name: speed(name, names),
-        "constant_momentum": lambda name: Markup(str(mathml_names(forms.routh_ring)[name])),
-        "momentum": lambda name: Markup(str(mathml_names(forms.hamilton_ring)[name])),
-        "momentum_rate": lambda name: Markup(str(mathml_names(forms.hamilton_ring)[name].dotted("˙"))),
-        "upper_brackets": upper_brackets,
         "expression": lambda value: expression(value, names),
         "tr": lambda text, **gaps: writer.said(Said(text, gaps)),
         "title": lambda number: _title(number, sections, system, writer),
@@ -121,8 +108,6 @@ def context(
         "printed_name": lambda name: Markup(str(printed[name])),
         "unperturbed": lambda: _motion(analysis, names),
         "unit": lambda name: labelled("", unit_of(system, name)),
-        "constraint_sentences": lambda tied: list(_of_constraints(tied, names)),
-        "reduction_sentences": lambda about: list(_of_reduction(about, names)),
         "stabilisation_sentences": lambda one: list(_of_stabilisation(one, names)),
         "polynomial_integrals": of_polynomials,
         "polynomial_symmetries": of_symmetries,
@@ -133,7 +118,7 @@ def context(
         "decimal": decimal,
         "claim_groups": lambda: list(together(map(claim_line, analysis.claims))),
     }
-    values = dict(
+    values = dict[str, Any](
         system=system,
         title_of=title_of,
         rate=labelled("", rate_unit(system)),
@@ -143,8 +128,6 @@ def context(
         contents=sections,
         language=writer.language.name,
         failures={number: stage.failure for number, stage in stages.items() if stage.failure is not None},
-        code=_code(analysis) if 3 in stages and 3 not in found else None,
-        state=analysis.optional("first_order") if system.speeds and 5 in found else None,
         told=compact(analysis, {number: found.get(number) for number in problems}),
         variable=_free_letter("λμσs", taken),
         characteristic="Lambda" if "<mi>Λ</mi>" not in taken else _free_letter("ΔΦPQ", taken),
@@ -152,12 +135,9 @@ def context(
         math_text=lambda words: Markup(mtext(words)),
         provided=provided(found[6].presumed, bool(analysis.system.inputs)) if 6 in found else "",
         decided=_decided,
-        **first_order(analysis, found.get(5)),
         DEPENDS=Word.DEPENDS,
         FEEDBACK=FEEDBACK,
         LYAPUNOV=LYAPUNOV,
-        forms=forms,
-        reactions=analysis.optional("reactions") if system.reactions and 3 in problems else (),
         claims=analysis.claims if whole else (),
         checks=analysis.checks if whole else (),
         brief=brief(analysis, 0.0) if whole else None,
@@ -182,34 +162,6 @@ def _title(part: int | str, sections: Mapping[int | str, Section[Markup]], syste
         return writer.said(sections[part].title)
     words = title_of(system, int(part))
     return escape(f"Problem {part}. {words[:1].upper()}{words[1:]}")
-
-
-def _of_constraints(tied: Constraints, names: MathNames) -> Iterator[Markup]:
-    """The sentences about constraints, names in MathML."""
-    from mbsym.report.words.constraint_words import Writer, sentences
-
-    write = Writer(
-        lambda listed: shown.math(*_separated([str(names[name]) for name in listed])),
-        speeds=lambda listed: shown.math(*_separated([str(speed(name, names)) for name in listed])),
-    )
-    yield from _filled(sentences(tied, write))
-
-
-def _of_reduction(about: Reduction, names: MathNames) -> Iterator[Markup]:
-    """The sentences about what is left of the coordinates, names and formulas in MathML."""
-    from mbsym.report.words.constraint_words import Writer, reduction_sentences
-
-    def rates(given: tuple[tuple[str, Formula], ...]) -> Markup:
-        return Markup(", ").join(
-            shown.math(f"<mover>{names[name]}<mo>˙</mo></mover>", mo("="), shown.inline(x)) for name, x in given
-        )
-
-    write = Writer(
-        lambda listed: shown.math(*_separated([str(names[name]) for name in listed])),
-        rates=rates,
-        nonzero=lambda value: shown.math(shown.inline(value), mo("≠"), "<mn>0</mn>"),
-    )
-    yield from _filled(reduction_sentences(about, write))
 
 
 def _of_normal_forms(found: NormalForms, names: MathNames) -> Iterator[Markup]:
@@ -310,18 +262,11 @@ def _functions(long: frozenset[int]) -> dict[str, Callable[..., Any]]:
     return {
         "math": shown.math,
         "symbol": shown.symbol,
-        "part_of": shown.part_of,
         "indexed": shown.indexed,
         "mi": lambda name: Markup(mi(name)),
         "mo": lambda sign: Markup(mo(sign)),
-        "squared": lambda value: Markup(power(value, "<mn>2</mn>")),
         "line": lambda left, value, right="": shown.line(left, value, long, right),
-        "balance": lambda left, right: shown.line(shown.inline(left), right, long),
         "text_line": shown.text_line,
-        "components": lambda values: shown.components(values, long),
-        "matrix": lambda value: shown.matrix(value, long),
-        "entries": shown.entries,
-        "zero": shown.zero,
         "polynomial": shown.polynomial,
         "condition": shown.condition,
         "relation": shown.relation,
@@ -338,9 +283,6 @@ def _functions(long: frozenset[int]) -> dict[str, Callable[..., Any]]:
         "counterexample": lambda value: counterexample(value).replace("for", "For", 1),
         "titles": titles,
         "repair": repair,
-        "told_passages": told_passages,
-        "told_terms": told_terms,
-        "longer": longer,
         "eigenvalues": _eigenvalues,
         "grade": _grade,
     }
@@ -389,27 +331,3 @@ def _claimed_names(analysis: Analysis) -> MathNames:
     own = ["t", *(g.name for g in analysis.ring.generators if g.kind in kinds)]
     variables = [claim.variable for claim in analysis.system.claims if claim.variable]
     return MathNames([*own, *(item.name for item in analysis.system.abbreviations), *variables])
-
-
-DIALECT = Dialect(
-    call=lambda function, argument: f"{function}({argument})",
-    local=lambda count: f"s{count}",
-    number=lambda value: str(Fraction(value)),
-)
-
-
-def _code(analysis: Analysis) -> list[str] | None:
-    """Mass matrix and forcing as a straight-line program; None if there is none."""
-    system, (programs, _) = analysis.system, programs_of(analysis)
-    if programs is None:
-        return None
-    n = len(system.coordinates)
-    upper = [(i, j) for i in range(n) for j in range(i, n)]
-    nodes = [programs.mass_matrix[i][j] for i, j in upper]
-    same = {name: name for name in programs.environment}
-    body = listing(programs.program, [*nodes, *programs.forcing], same, DIALECT)
-    if len(body.assignments) > PAPER_PROGRAM:
-        return [f"({program_not_printed(len(body.assignments))})"]
-    lines = [f"{name} = {text}" for name, text in body.assignments]
-    lines += [f"M[{i + 1}, {j + 1}] = {text}" for (i, j), text in zip(upper, body.results, strict=False)]
-    return lines + [f"f[{i + 1}] = {text}" for i, text in enumerate(body.results[len(upper) :])]

@@ -14,6 +14,7 @@ from mbsym.formulas.formula import Formula
 from mbsym.formulas.mathml import MathNames, bracketed, letter, mathml_names, mi, mn, mo, mtext, power, table
 from mbsym.formulas.mathml import row as bracketed_row
 from mbsym.formulas.names import greek
+from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.report import content
 from mbsym.report.content import Inline, Math, Said
 from mbsym.report.html import formulas
@@ -22,9 +23,14 @@ from mbsym.report.html.formulas import RELATIONS
 from mbsym.report.html.told import told_passages
 from mbsym.report.language import Language
 from mbsym.report.latex.description import shown_points
+from mbsym.report.lengths import PAPER_PROGRAM, not_printed, program_not_printed
+from mbsym.report.plain_writer import Writer as PlainWriter
 from mbsym.report.unit_text import labelled
 
 _DOTS = ("", "\u02d9", "\u00a8")
+_PLAIN = PlainWriter()
+_DIALECT = Dialect(call=lambda function, argument: f"{function}({argument})", local=lambda count: f"s{count}")
+_SCRIPT = {"A": "\U0001d49c", "B": "\u212c", "C": "\U0001d49e", "D": "\U0001d49f"}
 _COMMA = '<mo separator="true">,</mo><mspace width="0.3em"/>'
 
 
@@ -92,6 +98,10 @@ class Writer:
         return formulas.prose(said, value.variable) if value.variable else escape(said)
 
     @inline.register
+    def _(self, value: content.Phrase) -> Markup:
+        return self._joined(value.parts)
+
+    @inline.register
     def _(self, value: content.Strong) -> Markup:
         grade = Markup(' class="{}"').format(value.grade) if value.grade else ""
         return Markup("<strong{}>{}</strong>").format(grade, self.inline(value.text))
@@ -129,7 +139,7 @@ class Writer:
 
     @math.register
     def _(self, value: Formula) -> str:
-        return str(formulas.inline(value))
+        return mtext(f"({not_printed(value)})") if id(value) in self.long else str(formulas.inline(value))
 
     @math.register
     def _(self, value: content.Name) -> str:
@@ -139,14 +149,18 @@ class Writer:
 
     @math.register
     def _(self, value: content.Symbol) -> str:
-        return str(formulas.symbol(value.letter, value.lower, value.upper, _DOTS[value.dots]))
+        letter = _SCRIPT[value.letter] if value.look == "script" else value.letter
+        above = "\u00af" if value.look == "bar" else _DOTS[value.dots]
+        return str(formulas.symbol(letter, value.lower, value.upper, above))
 
     @math.register
     def _(self, value: content.Entry) -> str:
         whole = value.whole
         if isinstance(value.index, content.Name):
             return f"<msub>{self.math(whole)}{self.math(value.index)}</msub>"
-        return str(formulas.entry(whole.letter, whole.lower, value.index, whole.upper))
+        if whole.lower:
+            return str(formulas.indexed(bracketed(self.math(whole)), value.index))
+        return self.math(replace(whole, lower=value.index))
 
     @math.register
     def _(self, value: content.Notation) -> str:
@@ -205,7 +219,10 @@ class Writer:
 
     @block.register
     def _(self, value: content.Display) -> Markup:
-        shown = value.value
+        notes = (Markup('\n<p class="note soft">({})</p>').format(self.inline(note)) for note in value.notes)
+        return Markup("").join((self._displayed(value.value), *notes))
+
+    def _displayed(self, shown: Math | tuple[Inline, ...]) -> Markup:
         match shown:
             case Formula():
                 return formulas.line("", shown, self.long)
@@ -213,6 +230,9 @@ class Writer:
                 return formulas.whole(_pieces(shown))
             case content.Relation(parts):
                 return self._relation(parts)
+            case content.Listed(items, False) if items:
+                *first, last = map(self.math, items)
+                return formulas.whole([*(item + _COMMA for item in first), last])
             case tuple():
                 return formulas.text_line(*map(self._beside, shown))
         return formulas.text_line(self.math(shown))
@@ -246,13 +266,17 @@ class Writer:
         left = self.math(value.symbol)
         if value.value.is_zero:
             return formulas.text_line(left, mo("="), mn(0))
-        whole = formulas.matrix(value.value, self.long)
+        whole = "" if value.packed else formulas.matrix(value.value, self.long)
         if whole:
             return formulas.text_line(left, mo("="), whole)
         return Markup("\n").join(
             formulas.line(self.math(content.Entry(value.symbol, index)), entry, self.long)
             for index, entry in formulas.entries(value.value, value.symmetric)
         )
+
+    @block.register
+    def _(self, value: content.SideBySide) -> Markup:
+        return self.document(value.matrices)
 
     @block.register
     def _(self, value: content.Components) -> Markup:
@@ -295,6 +319,16 @@ class Writer:
     @block.register
     def _(self, value: content.Intermediates) -> Markup:
         return told_passages(value.told, value.passages, lambda words: self.inline(content.Words(words)))
+
+    @block.register
+    def _(self, value: content.Steps) -> Markup:
+        same = {name: name for name in value.names} | {"pi": "pi"}
+        body = listing(value.program, [node for _, node in value.results], same, _DIALECT)
+        if len(body.assignments) > PAPER_PROGRAM:
+            return Markup("<p>{}</p>").format(self.said(program_not_printed(len(body.assignments))))
+        called = [(_PLAIN.inline(symbol), text) for (symbol, _), text in zip(value.results, body.results, strict=True)]
+        lines = "\n".join(f"{left} = {right}" for left, right in [*body.assignments, *called])
+        return Markup("<details><summary>{}</summary>\n<pre>{}</pre></details>").format(self.said(value.title), lines)
 
     def _joined(self, parts: Iterable[Inline]) -> Markup:
         return Markup("").join(map(self.inline, parts))

@@ -5,24 +5,35 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import singledispatchmethod
 from typing import Any
 
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.latex import LatexNames, latex_names, latex_symbol
+from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.report import content
 from mbsym.report.content import Inline, Said
 from mbsym.report.language import Language
 from mbsym.report.latex import formulas
-from mbsym.report.latex.description import breakable, expression, points, speed_form
+from mbsym.report.latex.description import breakable, call, expression, points, speed_form
 from mbsym.report.latex.form import Form, heading, subheading
 from mbsym.report.latex.formulas import Measured, measured_matrix
 from mbsym.report.latex.labels import Labels
-from mbsym.report.latex.told import paragraphs
+from mbsym.report.latex.told import packed, paragraphs
 from mbsym.report.latex.words import RELATIONS, escaped, prose
+from mbsym.report.lengths import PAPER_PROGRAM, program_not_printed
 from mbsym.report.unit_text import bracketed
 
 _DOTS = ("", "dot", "ddot")
+_LOOKS = {"bar": "bar", "script": "mathcal"}
+
+
+def _exact(value: Fraction) -> str:
+    return str(value) if value.denominator == 1 else f"\\tfrac{{{value.numerator}}}{{{value.denominator}}}"
+
+
+_DIALECT = Dialect(call=call, local=lambda count: f"s_{{{count}}}", number=_exact, times=r"\,")
 
 
 @dataclass(frozen=True)
@@ -74,6 +85,10 @@ class Writer:
         return prose(said, latex_symbol(value.variable).stem) if value.variable else escaped(said)
 
     @inline.register
+    def _(self, value: content.Phrase) -> str:
+        return self._joined(value.parts)
+
+    @inline.register
     def _(self, value: content.Strong) -> str:
         return f"\\textbf{{{self.inline(value.text)}}}"
 
@@ -106,7 +121,7 @@ class Writer:
 
     @math.register
     def _(self, value: str) -> str:
-        return RELATIONS.get(value, value)
+        return "\\penalty0 +" if value == "+" else RELATIONS.get(value, value)
 
     @math.register
     def _(self, value: Formula) -> str:
@@ -121,7 +136,8 @@ class Writer:
     @math.register
     def _(self, value: content.Symbol) -> str:
         stem = latex_symbol(value.letter)
-        written = stem.accented(_DOTS[value.dots]) if value.dots else str(stem)
+        accent = _DOTS[value.dots] or _LOOKS.get(value.look, "")
+        written = stem.accented(accent) if accent else str(stem)
         upper = f"^{{{_index(value.upper)}}}" if value.upper else ""
         return written + upper + (f"_{{{_index(value.lower)}}}" if value.lower else "")
 
@@ -180,11 +196,11 @@ class Writer:
 
     @block.register
     def _(self, value: content.Subheading) -> str:
-        return subheading(self.form, "".join(map(self.inline, value.parts)))
+        return subheading(self.form, self._joined(value.parts))
 
     @block.register
     def _(self, value: content.Paragraph) -> str:
-        return "".join(map(self.inline, value.parts)) + "\n"
+        return self._joined(value.parts) + "\n"
 
     @block.register
     def _(self, value: content.Display) -> str:
@@ -192,12 +208,16 @@ class Writer:
             written = "".join(self._beside(x) for x in value.value)
         else:
             written = self.math(value.value)
-        return self._display(written, value.key)
+        notes = "".join(f" \\quad\\penalty0 \\text{{({self.inline(note)})}}" for note in value.notes)
+        return self._display(written + notes, value.key)
 
     @block.register
     def _(self, value: content.Matrices) -> str:
         if value.value.is_zero:
             return self._display(f"{self.math(value.symbol)} = 0", value.key)
+        if value.packed:
+            entries = formulas.entries(value.value, value.symmetric)
+            return packed(entries, self.math(value.symbol), self.labels.equation(value.key))
         whole = formulas.matrix(value.value, self.long, self.form.widest, self.measured)
         if whole:
             label = self.labels.equation(value.key)
@@ -208,6 +228,31 @@ class Writer:
             )
             for index, entry in formulas.entries(value.value, value.symmetric)
         )
+
+    @block.register
+    def _(self, value: content.SideBySide) -> str:
+        lines: list[str] = []
+        others: list[str] = []
+        room = 0.0
+        for one in value.matrices:
+            whole = "" if one.value.is_zero else formulas.matrix(one.value, self.long, self.form.widest, self.measured)
+            if not whole:
+                others.append(self.block(one))
+                continue
+            needed = self.measured(one.value)[1] + 6  # the width of the name and what is around it
+            shown = f"{self.math(one.symbol)} = {whole}"
+            if needed <= room:
+                lines[-1] += f",\\quad {shown}"
+            else:
+                lines.append(shown)
+                room = self.form.widest
+            room -= needed
+        labels = [self.labels.equation(f"{value.key}:matrices:{k}") for k in range(1, len(lines) + 1)]
+        together = [
+            f"\\begin{{equation}}\\label{{{label}}}\n{line}\n\\end{{equation}}"
+            for label, line in zip(labels, lines, strict=True)
+        ]
+        return "\n".join([*together, *others])
 
     @block.register
     def _(self, value: content.Components) -> str:
@@ -251,6 +296,18 @@ class Writer:
     @block.register
     def _(self, value: content.Intermediates) -> str:
         return paragraphs(value.told, value.passages, lambda words: self.inline(content.Words(words))) + "\n"
+
+    @block.register
+    def _(self, value: content.Steps) -> str:
+        names = {name: self.math(item) for name, item in value.names.items()} | {"pi": r"\pi"}
+        body = listing(value.program, [node for _, node in value.results], names, _DIALECT)
+        if len(body.assignments) > PAPER_PROGRAM:
+            return self._display(f"\\text{{({self.said(program_not_printed(len(body.assignments)))})}}")
+        called = [(self.math(symbol), text) for (symbol, _), text in zip(value.results, body.results, strict=True)]
+        return "\n".join(self._display(f"{left} = {right}") for left, right in [*body.assignments, *called])
+
+    def _joined(self, parts: Iterable[Inline]) -> str:
+        return "".join(map(self.inline, parts))
 
     def _beside(self, value: Inline) -> str:
         """A part of a displayed line: words stand in it as text."""
