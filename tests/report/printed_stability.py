@@ -492,10 +492,14 @@ def equations(surface: str, text: str) -> list[Value | None]:
     (section_4,) = [x for x in tree(text).iter("section") if x.get("id") == "problem-4"]
     lines_4: list[list[Token]] = []
     for node in section_4.iter():
+        if node.tag == "p" and "if and only if" in "".join(node.itertext()):
+            lines_4.clear()  # before stands the motion itself
         if node.tag == "p" and "use in the form" in "".join(node.itertext()):
             break
         if node.tag == "div" and node.get("class") == "formula":
             lines_4.append([x for part in node.iter("math") for x in tokens_of(part)])
+    if "if and only if" not in "".join(section_4.itertext()):
+        return []
     assert all(x[-2:] == [("mo", "="), ("mn", "0")] for x in lines_4)
     return [mathml(x[:-2]) for x in lines_4]
 
