@@ -56,7 +56,7 @@ def suggestions(text: str, line: int, column: int, system: System | None = None)
     if found.is_value:
         return list(_values(found, text, system))
     known = keys_in(found.path)
-    keys = [Suggestion(key, "key", meaning, f"{key}: ") for key, meaning in known.items() if key not in found.beside]
+    keys = [Suggestion(key, "key", one.meaning, f"{key}: ") for key, one in known.items() if key not in found.beside]
     if keys or found.path[:1] not in {("motion",), ("initial",), ("limits",), ("units",)}:
         return keys
     return [Suggestion(name, "name", "a coordinate", f"{name}: ") for name in _coordinates(system)]
