@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from mbsym.source.grammar import Either, Ends, Key, Kinds, Listed, Named, Record, Type
+from mbsym.source.grammar import Key, Kinds, Named, Record, Type, plain
 from mbsym.source.keys import ALIASES, DESCRIPTION
 
 
@@ -15,7 +15,7 @@ def keys_in(path: tuple[str, ...]) -> Mapping[str, Key]:
 
 def types_at(path: tuple[str, ...]) -> list[Type]:
     """What may stand at a place, item of a list or value of a key."""
-    return [plain for one in _types(path) for plain in _flat(one)]
+    return [inner for one in _types(path) for inner in plain(one)]
 
 
 def _types(path: tuple[str, ...]) -> list[Type]:
@@ -25,20 +25,8 @@ def _types(path: tuple[str, ...]) -> list[Type]:
     return found
 
 
-def _flat(one: Type) -> list[Type]:
-    """What a value, or an item of it, is: without lists and choices."""
-    match one:
-        case Listed(item):
-            return _flat(item)
-        case Either(types):
-            return [inner for each in types for inner in _flat(each)]
-        case Ends(record):
-            return [record]
-    return [one]
-
-
 def _keys(one: Type) -> Mapping[str, Key]:
-    for inner in _flat(one):
+    for inner in plain(one):
         match inner:
             case Record(keys):
                 return keys
@@ -50,7 +38,7 @@ def _keys(one: Type) -> Mapping[str, Key]:
 def _inside(one: Type, key: str) -> list[Type]:
     """What the value of a key may be."""
     found: list[Type] = []
-    for inner in _flat(one):
+    for inner in plain(one):
         match inner:
             case Named(value):
                 found.append(value)

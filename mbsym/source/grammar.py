@@ -2,6 +2,9 @@
 
 A type says what a value looks like and which names it holds.  The JSON Schema, completion, hover, renaming, the
 editor's text go by it; so do the reader and the writers of loads and constraints.
+
+They are compared by identity, and not printed: dataclasses that are take ten times as long to make, and every command
+makes these.
 """
 
 from __future__ import annotations
@@ -17,17 +20,15 @@ from mbsym.source.scope import Allowed
 class Type:
     """What a value may be."""
 
-    __slots__ = ()
 
-
-@dataclass(frozen=True, slots=True)
+@dataclass(eq=False, repr=False)
 class Formula(Type):
     """An expression in the names that are ``allowed``."""
 
     allowed: Allowed = Allowed("a formula")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(eq=False, repr=False)
 class Vector(Type):
     """Three expressions, which with ``direction`` are not all zero."""
 
@@ -35,7 +36,7 @@ class Vector(Type):
     direction: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(eq=False, repr=False)
 class Equation(Type):
     """An equation or inequality between expressions; ``example`` is one."""
 
@@ -43,7 +44,7 @@ class Equation(Type):
     example: str = ""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(eq=False, repr=False)
 class BodyName(Type):
     """The name of a body, or 0; in the editor's text its number.
 
@@ -55,7 +56,7 @@ class BodyName(Type):
     ground: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(eq=False, repr=False)
 class Name(Type):
     """A name that formulas may hold; ``of`` is its kind.  One with ``own`` means something here only."""
 
@@ -63,24 +64,24 @@ class Name(Type):
     own: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(eq=False, repr=False)
 class Index(Type):
     """A coordinate or a number from 1 on."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(eq=False, repr=False)
 class About(Type):
     """What a claim is about: an expression, a coordinate, or a body, by the kind of the claim."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(eq=False, repr=False)
 class Word(Type):
     """One of a few words or numbers."""
 
     choices: tuple[str | int, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(eq=False, repr=False)
 class Integer(Type):
     """A whole number."""
 
@@ -88,41 +89,41 @@ class Integer(Type):
     most: int | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(eq=False, repr=False)
 class Figure(Type):
     """A number, perhaps as an expression without names."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(eq=False, repr=False)
 class Text(Type):
     """Text for people: a name may be 2024 or yes, and nobody needs quotes for it."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(eq=False, repr=False)
 class Unit(Type):
     """A unit, such as kg*m^2 or 1; of a file its column."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(eq=False, repr=False)
 class String(Type):
     """What is taken letter by letter."""
 
     longest: int | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(eq=False, repr=False)
 class Flag(Type):
     """true, or false where that may be said."""
 
     false: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(eq=False, repr=False)
 class Nothing(Type):
     """No value."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(eq=False, repr=False)
 class Listed(Type):
     """A list of values of one type."""
 
@@ -132,7 +133,7 @@ class Listed(Type):
     unique: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(eq=False, repr=False)
 class Named(Type):
     """A mapping whose keys are names that the author chooses (``of`` coordinates, say); ``one``: of one entry."""
 
@@ -141,7 +142,7 @@ class Named(Type):
     one: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(eq=False, repr=False)
 class Either(Type):
     """Any of several types; ``called`` so in the schema."""
 
@@ -149,7 +150,7 @@ class Either(Type):
     called: str = ""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(eq=False, repr=False)
 class Way:
     """One way in which a kind is given, and what is made of it.
 
@@ -184,7 +185,7 @@ class Way:
         return tuple(getattr(made, one.name) for one in fields(made) if one.name not in apart)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(eq=False, repr=False)
 class Record(Type):
     """A mapping with a fixed set of keys.
 
@@ -199,7 +200,7 @@ class Record(Type):
     made: type[Any] | None = None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(eq=False, repr=False)
 class Kinds(Type):
     """A mapping with one key, which says the kind of the value; ``called`` so in the schema."""
 
@@ -207,21 +208,21 @@ class Kinds(Type):
     called: str
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(eq=False, repr=False)
 class Ends(Type):
     """Two records that name a body each, and a ``point`` or an ``axis`` of it."""
 
     record: Record
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(eq=False, repr=False)
 class Same:
     """The default of a key that is the value of another one."""
 
     key: str
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(eq=False, repr=False)
 class Key:
     """What a key means and what its value may be.
 
@@ -236,7 +237,7 @@ class Key:
     label: str = ""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(eq=False, repr=False)
 class Kind(Key):
     """A kind of load or constraint: a key whose value is given in one of several ways."""
 
@@ -249,3 +250,15 @@ class Kind(Key):
     @property
     def keys(self) -> Mapping[str, Key]:
         return self.type.keys if isinstance(self.type, Record) else {}
+
+
+def plain(one: Type) -> list[Type]:
+    """What a value, or an item of it, is: without lists and choices."""
+    match one:
+        case Listed(item):
+            return plain(item)
+        case Either(types):
+            return [inner for each in types for inner in plain(each)]
+        case Ends(record):
+            return [record]
+    return [one]

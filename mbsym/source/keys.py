@@ -134,7 +134,7 @@ MATRIX_FILE = {
     "sha256": _DIGEST,
 }
 
-_MATRIX = Either((_ROWS, Record(MATRIX_FILE)))
+_MATRIX = Either((_ROWS, Record(MATRIX_FILE, alone="file")))
 
 LINEAR_SYSTEM = {
     "coordinates": Key(
@@ -607,7 +607,7 @@ SYSTEM = {
     ),
     "linear system": Key(
         "in place of bodies and loads: the matrices of M x'' + (D + G) x' + (K + N) x = B u",
-        Record(LINEAR_SYSTEM, alone="file"),
+        Record(LINEAR_SYSTEM),
     ),
     "loads": Key("gravity, springs, dampers, forces: a list of {kind of load: {...}}", Listed(Kinds(LOADS, "load"))),
     "constraints": Key(

@@ -116,23 +116,28 @@ class Item:
     def read(self, hint: str | None) -> Any | None:
         """What is made of it; None where there is nothing to make it of."""
         if not isinstance(self.kind.type, Record):
-            way, keys, types = self.kind.ways[0], ("",), {"": self.kind.type}
             errors = self.reading.errors
             self._keep("", self._value(self.kind.type, self.value, f"'{self.name}'"), errors)
-        else:
-            self.fields = self.reading.fields(self.value, f"'{self.name}'", self.kind.keys, hint)
-            chosen = self._way(self.fields)
-            every = set.intersection(*(set(one.keys) for one in self.kind.ways))
-            keys = chosen.keys if chosen is not None else tuple(key for key in self.kind.keys if key in every)
-            types = {key: self.kind.keys[key].type for key in keys}
-            for key in keys:
+            return self._made(self.kind.ways[0], {"": self.kind.type})
+        self.fields = self.reading.fields(self.value, f"'{self.name}'", self.kind.keys, hint)
+        way = self._way(self.fields)
+        for key in self.kind.keys:
+            if key in way.keys if way is not None else all(key in one.keys for one in self.kind.ways):
                 self._read_key(self.fields, key, self.kind.keys[key])
-            if chosen is None:
-                return None
-            way = chosen
-        if any(isinstance(types[key], Ends | Equation) and self.values[key] is None for key in keys):
-            return None
-        return way.of((x for key in keys for x in _spread(types[key], self.values[key])), self.span)
+        return None if way is None else self._made(way, {key: self.kind.keys[key].type for key in way.keys})
+
+    def _made(self, way: Way, types: Mapping[str, Type]) -> Any | None:
+        """What is made of the values: of two ends or sides, two of its fields are."""
+        values: list[Any] = []
+        for key, of in types.items():
+            value = self.values[key]
+            if isinstance(of, Ends | Equation):
+                if value is None:
+                    return None
+                values += value
+            else:
+                values.append(value)
+        return way.of(values, self.span)
 
     def key_error(self, code: str, message: str, key: str, hint: str | None = None) -> None:
         """A complaint about a key that is there."""
@@ -297,8 +302,3 @@ def _nothing(wanted: Type) -> Any:
         case Name():
             return ""
     return None
-
-
-def _spread(of: Type, value: Any) -> tuple[Any, ...]:
-    """The fields that a value is: two for two ends, or sides."""
-    return tuple(value) if isinstance(of, Ends | Equation) else (value,)

@@ -89,7 +89,8 @@ def test_every_verdict_and_theorem_is_told(site: Path) -> None:
 
 def test_every_key_of_a_description_is_on_its_page(site: Path) -> None:
     text = Page(site / "reference" / "description.html").text
-    tables = [keys.SYSTEM, keys.PARAMETER, keys.BODY, keys.SHAPE, keys.CLAIM, *(kind.keys for kind in keys.LOADS.values())]
+    tables = [keys.SYSTEM, keys.PARAMETER, keys.BODY, keys.SHAPE, keys.CLAIM]
+    tables += [kind.keys for kind in keys.LOADS.values()]
     for name, key in [pair for table in tables for pair in table.items()]:
         assert name in text
         assert key.meaning.split(",")[0].split(":")[0] in text
