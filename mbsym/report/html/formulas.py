@@ -83,9 +83,10 @@ def math(*parts: str) -> Markup:
     return Markup(f"<math>{''.join(parts)}</math>")
 
 
-def symbol(name: str, lower: str = "", upper: str = "") -> Markup:
-    """A letter of our own (omega, M) with indices below and above."""
-    letter = mathml_symbol(name).stem
+def symbol(name: str, lower: str = "", upper: str = "", dots: str = "") -> Markup:
+    """A letter of our own (omega, M) with indices below and above, ``dots`` over it."""
+    plain = mathml_symbol(name)
+    letter = plain.dotted(dots).stem if dots else plain.stem
     below, above = (f"<mrow>{_indices(text)}</mrow>" for text in (lower, upper))
     if lower and upper:
         return Markup(f"<msubsup>{letter}{below}{above}</msubsup>")
@@ -106,6 +107,11 @@ def part_of(name: str, part: object, lower: str) -> Markup:
     """An entry of a matrix of a subsystem: (M with index 1) with index 12."""
     whole = f"<mrow><mo>(</mo>{symbol(name, str(part))}<mo>)</mo></mrow>" if part else symbol(name)
     return Markup(f"<msub>{whole}<mrow>{_indices(lower)}</mrow></msub>")
+
+
+def entry(name: str, part: str, lower: str, upper: str) -> Markup:
+    """An entry of a matrix."""
+    return part_of(name, part, lower) if part else symbol(name, lower, upper)
 
 
 def indexed(base: str, lower: object) -> Markup:
@@ -208,6 +214,12 @@ def entries(value: Matrix, symmetric: bool = False) -> list[tuple[str, Formula]]
 
 def polynomial(left: str, coefficients: Sequence[Formula], variable: str) -> Markup:
     """left = sum of coefficient*variable^k, highest power first."""
+    first, *rest = polynomial_pieces(coefficients, variable)
+    return whole([_joined(left, mo("="), first), *rest])
+
+
+def polynomial_pieces(coefficients: Sequence[Formula], variable: str) -> list[str]:
+    """The sum in pieces, between which a line may break."""
     found: list[str] = []
     for degree, coefficient in reversed(list(enumerate(coefficients))):
         if coefficient.is_zero:
@@ -231,8 +243,7 @@ def polynomial(left: str, coefficients: Sequence[Formula], variable: str) -> Mar
         elif negative:
             pieces[0] = sign("\u2212") + pieces[0]
         found += pieces
-    found = found or [mn(0)]
-    return whole([_joined(left, mo("="), found[0]), *found[1:]])
+    return found or [mn(0)]
 
 
 def counted(value: Formula, in_json: bool = True) -> str:
