@@ -39,7 +39,7 @@ interface Schema {
   /** Of a key with another spelling: it, where the other is not there. */
   allOf?: { then?: Schema }[];
   title?: string;
-  /** The ways in which a kind is given, by their first keys; keys of other ways are false. */
+  /** The ways in which a kind is given, by their first keys; keys of other ways are forbidden. */
   dependentSchemas?: Record<string, Schema>;
   $defs?: Record<string, Schema>;
 }

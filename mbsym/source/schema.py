@@ -109,6 +109,8 @@ def _schema(value: Type, definitions: Schema) -> Schema:
     return _PLAIN[type(value)]
 
 
+#: Validators tell the place of a value that ``false`` forbids as that of what holds it.
+_NEVER: Schema = {"not": {}}
 _ONE: Schema = {"minProperties": 1, "maxProperties": 1}
 
 
@@ -183,7 +185,7 @@ def _kind(kind: Kind, definitions: Schema) -> Schema:
         way.keys[0]: {
             "title": way.words,
             "required": [key for key in way.keys if key in needed],
-            "properties": {key: False for key in kind.keys if key not in way.keys},
+            "properties": {key: _NEVER for key in kind.keys if key not in way.keys},
         }
         for way, needed in zip(kind.ways, required, strict=True)
     }
