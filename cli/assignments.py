@@ -83,16 +83,18 @@ def given_numbers(
     options: Options,
     laws: Mapping[str, Expression] | None = None,
     declared: bool = False,
+    state: bool = True,
 ) -> tuple[Scenario | None, Mapping[str, Expression]]:
     """The scenario of a system with the values of ``--set``, and these; every complaint joins those of ``options``.
 
-    ``laws`` are those of its inputs; ``declared``: the run is one in declared variables.
+    ``laws`` are those of its inputs; ``declared``: the run is one in declared variables; ``state``:
+    whether it needs an initial state.
     """
     from mbsym.numerics.scenario import Incomplete, scenario
 
     assigned = assignments(settings, system, options)
     try:
-        return scenario(system, assigned.values, laws=laws, declared=declared), assigned.values
+        return scenario(system, assigned.values, state, laws=laws, declared=declared), assigned.values
     except Incomplete as error:
         contradictions(file, error.lack, assigned, options)
         unread = _unread(system, assigned)

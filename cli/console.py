@@ -148,8 +148,11 @@ _FORCED = ("FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE")
 _CONTROLS = dict.fromkeys((7, 8, 11, 12, 13))
 
 
-def tell(*parts: str | tuple[str, str], indent: int = 0) -> None:
-    """A line of words, some with a style, as rich prints it; into a file or pipe without waiting for rich."""
+def tell(*parts: str | tuple[str, str], indent: int = 0, whole: bool = False) -> None:
+    """A line of words, some with a style, as rich prints it; into a file or pipe without waiting for rich.
+
+    One that is ``whole`` is not wrapped.
+    """
     if sys.stdout.isatty() or any(name in os.environ for name in _FORCED):
         from rich.text import Text
 
@@ -157,10 +160,10 @@ def tell(*parts: str | tuple[str, str], indent: int = 0) -> None:
         if indent:
             indented(text, indent)
         else:
-            console().print(text)
+            console().print(text, soft_wrap=whole or None)
         return
     words = " " * indent + "".join([part if isinstance(part, str) else part[0] for part in parts])
-    width = asked_width()
+    width = None if whole else asked_width()
     print("\n".join([wrapped(line.expandtabs(), width) for line in words.translate(_CONTROLS).split("\n")]))
 
 

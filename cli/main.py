@@ -1,4 +1,4 @@
-"""The ``mbsym`` command: one file a sub-command; this one only lists them.
+"""The ``mbsym`` command: a file here, or a study, a sub-command; this one only lists them.
 
 Sub-commands are imported when they are called, so that ``mbsym --help`` does not wait for the algebra.
 """
@@ -16,7 +16,7 @@ import mbsym
 
 
 class Listed(NamedTuple):
-    """A command: the module of this package that defines ``command``, and what it does in a line."""
+    """A command: the module here that defines ``command``, or that of a study; what it does in a line."""
 
     module: str
     does: str
@@ -32,10 +32,10 @@ COMMANDS = {
     "diff": Listed("diff", "Say exactly what changed between results, or descriptions."),
     "simulate": Listed("simulate", "Integrate the equations of motion and draw figures."),
     "view": Listed("view", "Show a system in three dimensions, as one page."),
-    "inverse": Listed("inverse", "Find the inputs that a given motion needs."),
-    "orbit": Listed("orbit", "Find a periodic motion near a guess, with its multipliers."),
-    "lyapunov": Listed("lyapunov", "Measure how fast neighbouring motions part."),
-    "floquet": Listed("floquet", "Judge stability where coefficients are periodic in time."),
+    "inverse": Listed("mbsym.studies.inverse", "Find the inputs that a given motion needs."),
+    "orbit": Listed("mbsym.studies.orbit", "Find a periodic motion near a guess, with its multipliers."),
+    "lyapunov": Listed("mbsym.studies.lyapunov", "Measure how fast neighbouring motions part."),
+    "floquet": Listed("mbsym.studies.floquet", "Judge stability where coefficients are periodic in time."),
     "tradeoff": Listed("tradeoff", "Measure what accuracy of a simulation costs."),
     "extremes": Listed("extremes", "Measure how many digits are kept at extreme values."),
     "map": Listed("map", "Divide a plane of parameters into regions of one verdict."),
@@ -67,7 +67,7 @@ class LazyGroup(click.Group):
             return None
         # Formulas are many small objects and hardly ever cycles: looking for those less often saves time.
         gc.set_threshold(200_000, 20, 20)
-        command: click.Command = importlib.import_module(f"mbsym_cli.{COMMANDS[name].module}").command
+        command = _command(COMMANDS[name].module)
         command.short_help = COMMANDS[name].does
         if not any(option.name == "debug" for option in command.params):
             if name == "new" or any(option.name == "out" for option in command.params):
@@ -142,6 +142,15 @@ class LazyGroup(click.Group):
             print("interrupted; what has been written is whole", file=sys.stderr)
             sys.exit(INTERRUPTED)
         sys.exit(FAILED)
+
+
+def _command(module: str) -> click.Command:
+    if not module.startswith("mbsym."):
+        written: click.Command = importlib.import_module(f"mbsym_cli.{module}").command
+        return written
+    from mbsym_cli.study import command_of
+
+    return command_of(importlib.import_module(module).STUDY)
 
 
 def _force() -> click.Option:

@@ -1,0 +1,134 @@
+"""A study as a value: a request, what derives, and what of the result is said and written."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import IntEnum
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
+
+if TYPE_CHECKING:
+    from mbsym.model.system import System
+    from mbsym.numerics.scenario import Scenario
+
+
+class Exit(IntEnum):
+    """Exit codes of commands: everything held; a result is missing or failed its check; the input is wrong; what was
+    done ended early; the user stopped it (as shells count the signal)."""
+
+    OK = 0
+    FAILED = 1
+    BAD_INPUT = 2
+    BROKEN_DOWN = 3
+    INTERRUPTED = 130
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line of the terminal: parts, some with a style; one that is ``whole`` is never broken into several."""
+
+    parts: tuple[str | tuple[str, str], ...]
+    whole: bool = False
+
+
+def line(*parts: str | tuple[str, str], whole: bool = False) -> Line:
+    return Line(parts, whole)
+
+
+def titled(pairs: Iterable[tuple[str, str]]) -> Iterator[Line]:
+    """Lines with titles; one whose title is ``warning`` stands out."""
+    for title, text in pairs:
+        yield line("  ", (f"{title:<9} ", "yellow" if title == "warning" else "bold cyan"), text)
+
+
+class Watch(Protocol):
+    """Is told what is being done and, where that is counted, how much of the ``whole``."""
+
+    def __call__(self, text: str, done: float = 0.0, whole: float = 0.0) -> None: ...
+
+
+def unwatched(text: str, done: float = 0.0, whole: float = 0.0) -> None:
+    """Nobody looks on."""
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What a study is about: the description, with the values of the request where it is of one motion."""
+
+    system: System
+    scenario: Scenario | None = None
+
+    @property
+    def motion(self) -> Scenario:
+        assert self.scenario is not None, "a study with Settings is of one motion"
+        return self.scenario
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What is said of a result: ``lines`` beneath the system's name, ``files``, and ``complaints`` after them."""
+
+    lines: Iterable[Line] = ()
+    files: Mapping[str, str | bytes] = field(default_factory=dict)
+    complaints: Sequence[str] = ()
+    code: Exit = Exit.OK
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """What is said of an exception that ends a study."""
+
+    text: str
+    code: Exit = Exit.FAILED
+
+
+@dataclass(frozen=True)
+class Unfit:
+    """An option that does not go with the others, or with the system."""
+
+    option: str
+    code: str
+    message: str
+    hint: str | None = None
+
+
+R = TypeVar("R")
+F = TypeVar("F")
+
+
+def _nothing(*_: Any) -> Iterator[Unfit]:
+    return iter(())
+
+
+@dataclass(frozen=True)
+class Study(Generic[R, F]):
+    """One command.
+
+    ``derive(asked, request, watch)`` finds the result; ``answer(asked, request, result)`` tells it, ``json`` as the
+    text that ``--json`` prints.  ``refusal`` knows the exceptions that are answers, None for others.  ``unfit`` says
+    what of a request does not go together; fields that could not be read are None there.
+
+    ``constraints``, ``matrices``: whether descriptions with these are understood; ``held``: whether inputs are held at
+    their constant values; ``doing``: what the user is told meanwhile.
+    """
+
+    name: str
+    request: type[R]
+    derive: Callable[[Asked, R, Watch], F]
+    answer: Callable[[Asked, R, F], Answer]
+    refusal: Callable[[Exception], Refusal | None]
+    unfit: Callable[[R, System], Iterator[Unfit]] = _nothing
+    json: Callable[[Asked, R, F], str] | None = None
+    constraints: bool = False
+    matrices: bool = False
+    held: bool = True
+    doing: str = ""
+
+
+def no_program(error: Exception, what: str = "these equations") -> Refusal | None:
+    """Of studies that compile equations: where these have no program."""
+    from mbsym.algebra.failures import Failure
+
+    if isinstance(error, Failure):
+        return Refusal(f"error[no-program]: there is no program for {what}: {error}")
+    return None
