@@ -15,10 +15,13 @@ from mbsym.studies.request import (
     Flag,
     Formulas,
     Named,
+    Names,
     Number,
+    Range,
     Settings,
     Whole,
     Word,
+    Words,
     fields_of,
 )
 from mbsym_cli.options import Options
@@ -37,15 +40,17 @@ def option_of(field: Field) -> click.Option:
     told = kind.help + beside or None
     if isinstance(kind, Flag):
         return click.Option([*names, field.name], is_flag=True, help=told)
-    repeated = isinstance(kind, (Settings, ExactSettings, Named, Formulas))
-    usual = None if repeated or field.default is None else _text(field.default)
+    repeated = isinstance(kind, (Settings, ExactSettings, Named, Names, Formulas))
+    usual = None if repeated or field.default in (None, ()) else _text(field.default)
     return click.Option(
         [*names, field.name], metavar=kind.metavar, multiple=repeated, default=usual,
-        show_default=usual is not None and not kind.usual, help=told,
+        show_default=usual is not None and not kind.usual and getattr(kind, "shown", True), help=told,
     )  # fmt: skip
 
 
 def _text(default: Any) -> str:
+    if isinstance(default, tuple):
+        return ",".join(default)
     return f"{default:g}" if isinstance(default, float) else str(default)
 
 
@@ -82,11 +87,18 @@ def _read(field: Field, given: Any, system: System | None, options: Options) -> 
         case Whole() as kind:
             return options.whole(field.option, given, kind.least, kind.most)
         case Word() as kind:
-            return options.word(field.option, given, kind.choices, kind.what)
+            return None if given is None else options.word(field.option, given, kind.choices, kind.what)
+        case Words() as kind:
+            return options.words(field.option, given, kind.choices, kind.what, kind.every) if given is not None else ()
+        case Range():
+            from mbsym_cli.section_options import read_axis
+
+            wanted = system is not None and (field.required or given is not None)
+            return read_axis(given, field.option, system, options) if wanted else None
         case ExactSettings() if system is not None:
             from mbsym_cli.section_options import read_settings
 
-            return read_settings(given, system, options)
+            return read_settings(given, system, options, field.kind.more(system))
         case ExactSettings():
             return {}
         case Named() as kind:

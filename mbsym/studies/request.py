@@ -8,11 +8,16 @@ Python passes values (``wrong``); both have the same bounds.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import MISSING, dataclass, fields
 from fractions import Fraction
 from math import isfinite
-from typing import Annotated, Any, TypeAlias, get_args, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, get_args, get_type_hints
+
+from mbsym.report.language import LANGUAGES
+
+if TYPE_CHECKING:
+    from mbsym.model.system import System
 
 #: What Python takes for a parameter, an initial position or an initial velocity: ``Fraction(1, 3)``, ``0.5``,
 #: ``"pi/6"``.
@@ -52,10 +57,11 @@ class Number(Kind):
 
 @dataclass(frozen=True)
 class Whole(Kind):
-    """A whole number between bounds."""
+    """A whole number between bounds; ``shown``: whether the help tells the default."""
 
     least: int = 1
     most: int = 10**6
+    shown: bool = True
 
     def wrong(self, value: int) -> str:
         return "" if self.least <= value <= self.most else f"must be from {self.least} to {self.most}, not {value}"
@@ -70,6 +76,29 @@ class Word(Kind):
 
     def wrong(self, value: str) -> str:
         return "" if value in self.choices else f"must be one of {', '.join(self.choices)}, not {value!r}"
+
+
+@dataclass(frozen=True)
+class Words(Kind):
+    """Some of a few words, separated by commas; ``every`` stands for all of them."""
+
+    choices: tuple[str, ...] = ()
+    what: str = "choice"
+    every: str = ""
+
+    def wrong(self, value: Sequence[str]) -> str:
+        others = [one for one in value if one not in self.choices]
+        return f"must be some of {', '.join(self.choices)}, not {', '.join(others)}" if others else ""
+
+
+@dataclass(frozen=True)
+class Text(Kind):
+    """Whatever it says; the study looks at it."""
+
+
+@dataclass(frozen=True)
+class Names(Kind):
+    """Names, one each time the option is given; the study looks at them."""
 
 
 @dataclass(frozen=True)
@@ -107,7 +136,14 @@ class Formulas(Kind):
 
 @dataclass(frozen=True)
 class ExactSettings(Kind):
-    """Rational numbers that are put in for parameters and symbols of the notation."""
+    """Rational numbers that are put in for parameters and symbols of the notation, and for ``more`` of a system."""
+
+    more: Callable[[System], Sequence[str]] = lambda system: ()
+
+
+@dataclass(frozen=True)
+class Range(Kind):
+    """``NAME=LOW:HIGH``, an interval of a parameter or symbol (``mbsym.maps.axis.Axis``)."""
 
 
 #: ``--set`` of studies of one motion, and of exact ones.
@@ -122,6 +158,16 @@ def duration(help: str, usual: str = "") -> Number:
     """``--time``, without which nothing can be simulated."""
     absent = ("how long to simulate is not said", "for example --time 60")
     return Number("T", help, "-t", usual=usual, absent=absent)
+
+
+def formats(help: str, choices: tuple[str, ...], usual: str = "") -> Words:
+    """``--format``: which files."""
+    return Words("LIST", help, usual=usual, choices=choices, what="format")
+
+
+def language(help: str) -> Word:
+    """``--language``, of figures and texts."""
+    return Word("NAME", help, choices=tuple(LANGUAGES), what="language")
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from enum import IntEnum
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 if TYPE_CHECKING:
+    from mbsym.algebra.failures import Failure
     from mbsym.model.system import System
     from mbsym.numerics.scenario import Scenario
 
@@ -41,6 +42,10 @@ def titled(pairs: Iterable[tuple[str, str]]) -> Iterator[Line]:
         yield line("  ", (f"{title:<9} ", "yellow" if title == "warning" else "bold cyan"), text)
 
 
+def heading(text: str) -> Line:
+    return line("  ", (text, "bold cyan"))
+
+
 class Watch(Protocol):
     """Is told what is being done and, where that is counted, how much of the ``whole``."""
 
@@ -53,10 +58,14 @@ def unwatched(text: str, done: float = 0.0, whole: float = 0.0) -> None:
 
 @dataclass(frozen=True)
 class Asked:
-    """What a study is about: the description, with the values of the request where it is of one motion."""
+    """What a study is about: the description, with the values of the request where it is of one motion.
+
+    ``file``: its name, for commands to be pasted.
+    """
 
     system: System
     scenario: Scenario | None = None
+    file: str = ""
 
     @property
     def motion(self) -> Scenario:
@@ -75,11 +84,23 @@ class Answer:
 
 
 @dataclass(frozen=True)
+class Document:
+    """The text of a single file, None where there is none, and complaints about it."""
+
+    text: str | None
+    complaints: Sequence[str] = ()
+
+
+@dataclass(frozen=True)
 class Refusal:
     """What is said of an exception that ends a study."""
 
     text: str
     code: Exit = Exit.FAILED
+
+
+#: In place of an option where the description is at fault, or what was given for it.
+FILE, DESCRIPTION = "FILE", ""
 
 
 @dataclass(frozen=True)
@@ -90,6 +111,33 @@ class Unfit:
     code: str
     message: str
     hint: str | None = None
+
+
+class NotFit(Exception):
+    """A request that does not go with what was derived first."""
+
+    def __init__(self, reasons: Sequence[Unfit]) -> None:
+        super().__init__("; ".join(one.message for one in reasons))
+        self.reasons = tuple(reasons)
+
+
+@dataclass(frozen=True)
+class Folder:
+    """Files go into a folder; ``quiet``: whether there is an option to print nothing else, and what of.
+
+    ``unwritten``: what is said of these options where nothing is written; ``help`` of ``--out``.
+    """
+
+    quiet: str | None = "Print only what went wrong."
+    unwritten: tuple[str, str, str] = ("", "", "")
+    help: str = "Folder.  [default: reports/NAME]"
+
+
+@dataclass(frozen=True)
+class Single:
+    """One file, a description, is written where ``--out`` says so; ``help`` of that option."""
+
+    help: str
 
 
 R = TypeVar("R")
@@ -109,7 +157,8 @@ class Study(Generic[R, F]):
     what of a request does not go together; fields that could not be read are None there.
 
     ``constraints``, ``matrices``: whether descriptions with these are understood; ``held``: whether inputs are held at
-    their constant values; ``doing``: what the user is told meanwhile.
+    their constant values.  ``out``: where files go; ``writes``: whether there are any; ``document`` makes the single
+    one.  ``timed``: whether the seconds are told.
     """
 
     name: str
@@ -119,16 +168,43 @@ class Study(Generic[R, F]):
     refusal: Callable[[Exception], Refusal | None]
     unfit: Callable[[R, System], Iterator[Unfit]] = _nothing
     json: Callable[[Asked, R, F], str] | None = None
+    json_help: str = "Print JSON instead of a table."
     constraints: bool = False
     matrices: bool = False
     held: bool = True
-    doing: str = ""
+    out: Folder | Single | None = Folder()
+    writes: Callable[[R], bool] = lambda request: True
+    document: Callable[[Asked, R, F], Document] | None = None
+    timed: bool = False
+
+
+def failed(error: Exception, before: str, said: Callable[[Failure], str] = str) -> Refusal | None:
+    """Of exact studies: what could not be derived, and why."""
+    from mbsym.algebra.failures import Failure
+
+    return Refusal(f"{before}: {said(error)}") if isinstance(error, Failure) else None
+
+
+def remedied(error: Failure) -> str:
+    """With what to try next."""
+    return f"{error}; {error.remedy}" if error.remedy else str(error)
 
 
 def no_program(error: Exception, what: str = "these equations") -> Refusal | None:
     """Of studies that compile equations: where these have no program."""
-    from mbsym.algebra.failures import Failure
+    return failed(error, f"error[no-program]: there is no program for {what}")
 
-    if isinstance(error, Failure):
-        return Refusal(f"error[no-program]: there is no program for {what}: {error}")
-    return None
+
+def missing(shown: Sequence[str], what: str = "value") -> Unfit:
+    """One complaint about all names without a value; a coordinate is shown as ``x (its initial position)``."""
+    names = [name.split(" ")[0] for name in shown]
+    positions = [name for name, one in zip(names, shown, strict=True) if " " in one]
+    example = " ".join(f"--set {name}=1" for name in names[:3]) + (" ..." if len(names) > 3 else "")
+    places = []
+    if len(positions) < len(names):
+        first = next(name for name in names if name not in positions)
+        places.append(f"values: {{{first}: 1, ...}}")
+    if positions:
+        places.append(f"initial: {{{positions[0]}: 1, ...}}")
+    hint = f"{example}, or in the file  {'  and  '.join(places)}"
+    return Unfit(DESCRIPTION, "missing-value", f"no {what} for {', '.join(shown)}", hint)

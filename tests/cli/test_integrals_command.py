@@ -14,7 +14,7 @@ import mbsym
 from mbsym.analysis.invariant_relations import special_relations
 from mbsym.analysis.polynomial import integrals_of, setting
 from mbsym.report.schemas import schema
-from mbsym_cli.integrals_relations import darboux_values
+from mbsym.studies.integrals.relations import darboux_values
 from mbsym_cli.main import main
 
 CLEBSCH, TOP = "systems/clebsch-poisson.yaml", "systems/euler-poisson.yaml"
