@@ -30,9 +30,7 @@ class Assigned:
 
     def complain(self, name: str, code: str, message: str, options: Options, hint: str | None = None) -> None:
         """A complaint about one of them as a whole."""
-        text = self.texts[name]
-        span = Span(1, 1, max(1, len(text)))
-        options.complaints.append(render_option(Complaint(code, message, span, hint), text, "--set"))
+        options.complain_whole("--set", self.texts[name], code, message, hint)
 
 
 def assignments(texts: Sequence[str], system: System, options: Options) -> Assigned:

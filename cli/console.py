@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from rich.text import Text
 
     from mbsym.model.system import System
+    from mbsym.studies.study import Rows
 
 #: Exit codes: everything held; a result failed its self-check, or is missing; the input is wrong.
 OK, FAILED, BAD_INPUT = 0, 1, 2
@@ -165,6 +166,22 @@ def tell(*parts: str | tuple[str, str], indent: int = 0, whole: bool = False) ->
     words = " " * indent + "".join([part if isinstance(part, str) else part[0] for part in parts])
     width = None if whole else asked_width()
     print("\n".join([wrapped(line.expandtabs(), width) for line in words.translate(_CONTROLS).split("\n")]))
+
+
+def show_rows(table: Rows) -> None:
+    """A table; numbers never fold."""
+    from rich.table import Table
+    from rich.text import Text
+
+    shown = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold cyan")
+    for one in table.columns:
+        shown.add_column(
+            Text(one.name), justify="right" if one.right else "left", style=one.style,
+            overflow="fold" if one.fold else "ellipsis",
+        )  # fmt: skip
+    for row in table.rows:
+        shown.add_row(*(Text(cell) if isinstance(cell, str) else Text(*cell) for cell in row))
+    console().print(shown)
 
 
 def indented(text: Text, indent: int) -> None:

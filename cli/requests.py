@@ -10,6 +10,7 @@ import click
 
 from mbsym.expressions.parser import ascii_safe
 from mbsym.studies.request import (
+    Assignments,
     ExactSettings,
     Field,
     Flag,
@@ -17,6 +18,7 @@ from mbsym.studies.request import (
     Named,
     Names,
     Number,
+    Place,
     Range,
     Settings,
     Whole,
@@ -40,7 +42,9 @@ def option_of(field: Field) -> click.Option:
     told = kind.help + beside or None
     if isinstance(kind, Flag):
         return click.Option([*names, field.name], is_flag=True, help=told)
-    repeated = isinstance(kind, (Settings, ExactSettings, Named, Names, Formulas))
+    if isinstance(kind, Place):
+        return click.Option([*names, field.name], metavar=kind.metavar, type=click.Path(path_type=Path), help=told)
+    repeated = isinstance(kind, (Settings, ExactSettings, Assignments, Named, Names, Formulas))
     usual = None if repeated or field.default in (None, ()) else _text(field.default)
     return click.Option(
         [*names, field.name], metavar=kind.metavar, multiple=repeated, default=usual,
@@ -103,6 +107,13 @@ def _read(field: Field, given: Any, system: System | None, options: Options) -> 
             return {}
         case Named() as kind:
             return _whole_numbers(field.option, kind, given, options)
+        case Assignments() if system is not None:
+            from mbsym_cli.assignments import assignments
+
+            assigned = assignments(given, system, options)
+            return dict.fromkeys(assigned.texts) | dict(assigned.values)
+        case Assignments():
+            return {}
         case Formulas():
             from mbsym_cli.formulas import MOTIONS, read_formula
 

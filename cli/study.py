@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 import click
 
 from mbsym.studies.request import fields_of
-from mbsym.studies.study import Answer, Asked, Document, Folder, NotFit, Single, Study, Unfit
+from mbsym.studies.study import Answer, Asked, Document, Folder, NotFit, Rows, Single, Study, Unfit
 from mbsym_cli.console import (
     BAD_INPUT,
     FAILED,
@@ -26,6 +26,7 @@ from mbsym_cli.console import (
     printable,
     read_description,
     reason_of,
+    show_rows,
     tell,
 )
 from mbsym_cli.files import deliver, folder_for, obstacle, write_whole
@@ -111,13 +112,24 @@ class _Run:
             self._unfit(one)
         if isinstance(self.study.out, Single):
             self.options.unwritten("--out", self.out)
-        elif isinstance(self.study.out, Folder) and not self.writes:
-            for option, given in (("--out", self.out is not None), ("--quiet", self.quiet)):
-                if given:
-                    self.options.complain(option, *self.study.out.unwritten)
+        elif isinstance(self.study.out, Folder):
+            options = {"--out": self.out is not None, "--quiet": self.quiet}
+            for option in (name for name, given in options.items() if given and not self.writes):
+                self.options.complain(option, *self.study.out.unwritten)
+            if self.writes and self.as_json and self.study.out.alone is not None:
+                self.options.complain("--json", *self.study.out.alone)
 
     def _unfit(self, one: Unfit) -> None:
-        self.options.complain(one.option or str(self.file), one.code, one.message, one.hint)
+        if one.name:
+            self.options.complain_whole(one.option, self._text(one), one.code, one.message, one.hint)
+        else:
+            self.options.complain(one.option or str(self.file), one.code, one.message, one.hint)
+
+    def _text(self, one: Unfit) -> str:
+        """What was typed for that name."""
+        field = next(field for field in fields_of(self.study.request) if field.option == one.option)
+        typed = [" ".join(text.splitlines()) for text in self.texts[field.name]]
+        return next(text for text in typed if text.partition("=")[0].strip() == one.name)
 
     def _answered(self, asked: Asked, request: Any) -> int:
         """Derives, writes the files of a folder, then tells."""
@@ -137,7 +149,7 @@ class _Run:
             self.options.refused(file)
             return BAD_INPUT
         except Exception as error:
-            refusal = study.refusal(error)
+            refusal = study.refusal(error, request)
             if refusal is None:
                 raise
             complain(file, refusal.text)
@@ -156,7 +168,10 @@ class _Run:
         seconds = f", {time.perf_counter() - self.started:.2f} s" if self.study.timed else ""
         tell((asked.system.name, "bold"), (f"  {printable(self.file)}{seconds}", "dim"))
         for line in answer.lines:
-            tell(*line.parts, whole=line.whole)
+            if isinstance(line, Rows):
+                show_rows(line)
+            else:
+                tell(*line.parts, whole=line.whole)
         if answer.files:
             folder = folder_for(self.file, self.out)
             tell("  files in ", (printable(folder), "bold"), f": {', '.join(answer.files)}")

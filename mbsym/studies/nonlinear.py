@@ -170,12 +170,12 @@ def as_json(asked: Asked, request: Request, found: AtValues | Along) -> str:
     return as_text(asked.system, found)
 
 
-def refusal(error: Exception) -> Refusal | None:
+def refusal(error: Exception, request: Request) -> Refusal | None:
     from mbsym.analysis.stages import Unavailable
 
-    if isinstance(error, Unavailable):
+    if isinstance(error, Unavailable) and request.vary is None:
         return Refusal(f"nothing decided: {error.reason}" + (f"; {error.remedy}" if error.remedy else ""))
-    return failed(error, "nothing decided", remedied)
+    return failed(error, "nothing decided", remedied) if request.vary is None else failed(error, "no values listed")
 
 
 STUDY = Study(

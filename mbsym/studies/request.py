@@ -135,6 +135,16 @@ class Formulas(Kind):
 
 
 @dataclass(frozen=True)
+class Assignments(Kind):
+    """Expressions in parameters by name, each as it is written; one that cannot be read is None."""
+
+
+@dataclass(frozen=True)
+class Place(Kind):
+    """A file to be read."""
+
+
+@dataclass(frozen=True)
 class ExactSettings(Kind):
     """Rational numbers that are put in for parameters and symbols of the notation, and for ``more`` of a system."""
 

@@ -32,6 +32,24 @@ class Line:
     whole: bool = False
 
 
+@dataclass(frozen=True)
+class Column:
+    """Of a table: numbers stand to the ``right``, what is ``folded`` may take several lines where it is narrow."""
+
+    name: str
+    right: bool = False
+    style: str = ""
+    fold: bool = False
+
+
+@dataclass(frozen=True)
+class Rows:
+    """A table: a cell is a text, or one with a style."""
+
+    columns: Sequence[Column]
+    rows: Sequence[Sequence[str | tuple[str, str]]]
+
+
 def line(*parts: str | tuple[str, str], whole: bool = False) -> Line:
     return Line(parts, whole)
 
@@ -77,7 +95,7 @@ class Asked:
 class Answer:
     """What is said of a result: ``lines`` beneath the system's name, ``files``, and ``complaints`` after them."""
 
-    lines: Iterable[Line] = ()
+    lines: Iterable[Line | Rows] = ()
     files: Mapping[str, str | bytes] = field(default_factory=dict)
     complaints: Sequence[str] = ()
     code: Exit = Exit.OK
@@ -105,12 +123,13 @@ FILE, DESCRIPTION = "FILE", ""
 
 @dataclass(frozen=True)
 class Unfit:
-    """An option that does not go with the others, or with the system."""
+    """An option that does not go with the others, or with the system; of several values, that of a ``name``."""
 
     option: str
     code: str
     message: str
     hint: str | None = None
+    name: str = ""
 
 
 class NotFit(Exception):
@@ -125,12 +144,14 @@ class NotFit(Exception):
 class Folder:
     """Files go into a folder; ``quiet``: whether there is an option to print nothing else, and what of.
 
-    ``unwritten``: what is said of these options where nothing is written; ``help`` of ``--out``.
+    ``unwritten``: what is said of these options where nothing is written, ``alone``: of ``--json`` where something is;
+    ``help`` of ``--out``.
     """
 
     quiet: str | None = "Print only what went wrong."
     unwritten: tuple[str, str, str] = ("", "", "")
     help: str = "Folder.  [default: reports/NAME]"
+    alone: tuple[str, str, str] | None = None
 
 
 @dataclass(frozen=True)
@@ -153,7 +174,7 @@ class Study(Generic[R, F]):
     """One command.
 
     ``derive(asked, request, watch)`` finds the result; ``answer(asked, request, result)`` tells it, ``json`` as the
-    text that ``--json`` prints.  ``refusal`` knows the exceptions that are answers, None for others.  ``unfit`` says
+    text that ``--json`` prints.  ``refusal`` tells of the exceptions that are answers.  ``unfit`` says
     what of a request does not go together; fields that could not be read are None there.
 
     ``constraints``, ``matrices``: whether descriptions with these are understood; ``held``: whether inputs are held at
@@ -165,7 +186,7 @@ class Study(Generic[R, F]):
     request: type[R]
     derive: Callable[[Asked, R, Watch], F]
     answer: Callable[[Asked, R, F], Answer]
-    refusal: Callable[[Exception], Refusal | None]
+    refusal: Callable[[Exception, R], Refusal | None]
     unfit: Callable[[R, System], Iterator[Unfit]] = _nothing
     json: Callable[[Asked, R, F], str] | None = None
     json_help: str = "Print JSON instead of a table."
@@ -190,9 +211,9 @@ def remedied(error: Failure) -> str:
     return f"{error}; {error.remedy}" if error.remedy else str(error)
 
 
-def no_program(error: Exception, what: str = "these equations") -> Refusal | None:
+def no_program(error: Exception, request: object) -> Refusal | None:
     """Of studies that compile equations: where these have no program."""
-    return failed(error, f"error[no-program]: there is no program for {what}")
+    return failed(error, "error[no-program]: there is no program for these equations")
 
 
 def missing(shown: Sequence[str], what: str = "value") -> Unfit:
