@@ -37,7 +37,7 @@ COMMANDS = {
     "lyapunov": Listed("mbsym.studies.lyapunov", "Measure how fast neighbouring motions part."),
     "floquet": Listed("mbsym.studies.floquet", "Judge stability where coefficients are periodic in time."),
     "tradeoff": Listed("tradeoff", "Measure what accuracy of a simulation costs."),
-    "extremes": Listed("extremes", "Measure how many digits are kept at extreme values."),
+    "extremes": Listed("mbsym.studies.extremes", "Measure how many digits are kept at extreme values."),
     "map": Listed("mbsym.studies.map", "Divide a plane of parameters into regions of one verdict."),
     "groups": Listed("mbsym.studies.groups", "Find the dimensionless groups of a system."),
     "average": Listed("mbsym.studies.average", "Average a system over a fast phase."),

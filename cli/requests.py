@@ -131,7 +131,7 @@ def _whole_numbers(option: str, kind: Named, texts: tuple[str, ...], options: Op
     for text in texts:
         name, equals, right = (part.strip() for part in text.partition("="))
         if not equals or not name:
-            told = f"{ascii_safe(text[:80])} is no NAME=N"
+            told = f"{ascii_safe(text[:80])} is no {kind.metavar}"
             options.complain(option, "bad-assignment", told, f"for example {option} {kind.example}")
             continue
         if name in found:

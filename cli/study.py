@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 import click
 
 from mbsym.studies.request import fields_of
-from mbsym.studies.study import Answer, Asked, Document, Folder, NotFit, Rows, Single, Study, Unfit
+from mbsym.studies.study import Answer, Asked, Document, Folder, Line, NotFit, Rows, Single, Study, Unfit
 from mbsym_cli.console import (
     BAD_INPUT,
     FAILED,
@@ -115,7 +115,8 @@ class _Run:
         elif isinstance(self.study.out, Folder):
             options = {"--out": self.out is not None, "--quiet": self.quiet}
             for option in (name for name, given in options.items() if given and not self.writes):
-                self.options.complain(option, *self.study.out.unwritten)
+                if self.study.out.unwritten is not None:
+                    self.options.complain(option, *self.study.out.unwritten)
             if self.writes and self.as_json and self.study.out.alone is not None:
                 self.options.complain("--json", *self.study.out.alone)
 
@@ -149,14 +150,15 @@ class _Run:
             self.options.refused(file)
             return BAD_INPUT
         except Exception as error:
-            refusal = study.refusal(error, request)
+            refusal = study.refusal(error, asked, request)
             if refusal is None:
                 raise
-            complain(file, refusal.text)
+            for text in (refusal.text, *refusal.more):
+                complain(file, text)
             return refusal.code
         if self.as_json and study.json is not None:
             click.echo(study.json(asked, request, found), nl=False)
-        elif not self.quiet:
+        else:
             self._tell(asked, answer)
         for text in answer.complaints:
             complain(file, text)
@@ -165,14 +167,16 @@ class _Run:
         return self._written(self.out, study.document(asked, request, found))
 
     def _tell(self, asked: Asked, answer: Answer) -> None:
-        seconds = f", {time.perf_counter() - self.started:.2f} s" if self.study.timed else ""
-        tell((asked.system.name, "bold"), (f"  {printable(self.file)}{seconds}", "dim"))
-        for line in answer.lines:
-            if isinstance(line, Rows):
-                show_rows(line)
-            else:
-                tell(*line.parts, whole=line.whole)
-        if answer.files:
+        loud = not self.quiet
+        if loud:
+            seconds = f", {time.perf_counter() - self.started:.2f} s" if self.study.timed else ""
+            tell((asked.system.name, "bold"), (f"  {printable(self.file)}{seconds}", "dim"))
+        for one in answer.lines:
+            if isinstance(one, Line) and (loud or one.always):
+                tell(*one.parts, whole=one.whole)
+            elif isinstance(one, Rows) and loud:
+                show_rows(one)
+        if answer.files and loud:
             folder = folder_for(self.file, self.out)
             tell("  files in ", (printable(folder), "bold"), f": {', '.join(answer.files)}")
 

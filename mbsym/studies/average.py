@@ -175,7 +175,7 @@ def document(asked: Asked, request: Request, found: Found) -> Document:
     return Document(to_yaml(found.system))
 
 
-def refusal(error: Exception, request: Request) -> Refusal | None:
+def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     def said(failure: Failure) -> str:
         return f"{failure}{f' ({failure.remedy})' if failure.remedy else ''}"
 

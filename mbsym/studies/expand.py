@@ -131,7 +131,7 @@ def as_json(asked: Asked, request: Request, found: Found) -> str:
     return expansion_json(asked.system, request.values, found.expansion, found.measured)
 
 
-def refusal(error: Exception, request: Request) -> Refusal | None:
+def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     if isinstance(error, ZeroDivisionError):
         return Refusal(f"no expansion: {error}", Exit.BAD_INPUT)
     return failed(error, "no expansion", remedied)

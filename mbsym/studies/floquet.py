@@ -57,12 +57,12 @@ def answer(asked: Asked, request: Request, found: Judged) -> Answer:
     return Answer(titled(sentences(found)), {"floquet.json": floquet_json(asked.system, found)})
 
 
-def refusal(error: Exception, request: Request) -> Refusal | None:
+def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     from mbsym.numerics.orbits.floquet import NotPeriodic
 
     if isinstance(error, NotPeriodic):
         return Refusal(f"there is no periodic first approximation to judge: {error}")
-    return no_program(error, request)
+    return no_program(error, asked, request)
 
 
 STUDY = Study("floquet", Request, floquet.derive, answer, refusal)

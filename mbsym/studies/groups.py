@@ -143,7 +143,7 @@ def document(asked: Asked, request: Request, found: Found) -> Document:
     return Document(text, (f"values are left out of what is written, where they belong to no bodies: {told}",))
 
 
-def refusal(error: Exception, request: Request) -> Refusal | None:
+def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     return failed(error, "the groups cannot be found")
 
 

@@ -75,12 +75,12 @@ def answer(asked: Asked, request: Request, found: InverseDynamics) -> Answer:
     return Answer(titled(sentences(found)), files, code=Exit.OK if found.exact else Exit.BROKEN_DOWN)
 
 
-def refusal(error: Exception, request: Request) -> Refusal | None:
+def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     from mbsym.numerics.inverse import NotLinear
 
     if isinstance(error, (NotLinear, ValueError)):
         return Refusal(f"there are no inputs to be found: {error}")
-    return no_program(error, request)
+    return no_program(error, asked, request)
 
 
 STUDY = Study("inverse", Request, derive, answer, refusal, unfit, constraints=True, held=False)

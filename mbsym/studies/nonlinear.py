@@ -170,7 +170,7 @@ def as_json(asked: Asked, request: Request, found: AtValues | Along) -> str:
     return as_text(asked.system, found)
 
 
-def refusal(error: Exception, request: Request) -> Refusal | None:
+def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     from mbsym.analysis.stages import Unavailable
 
     if isinstance(error, Unavailable) and request.vary is None:

@@ -82,12 +82,12 @@ def answer(asked: Asked, request: Request, found: PeriodicMotion) -> Answer:
     return Answer(titled(sentences(found)), {"orbit.csv": orbit_csv(found), "orbit.json": orbit_json(found)})
 
 
-def refusal(error: Exception, request: Request) -> Refusal | None:
+def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     from mbsym.numerics.orbits.periodic import NotFound
 
     if isinstance(error, NotFound):
         return Refusal(f"no periodic motion was found: {error}")
-    return no_program(error, request)
+    return no_program(error, asked, request)
 
 
 STUDY = Study("orbit", Request, orbit.derive, answer, refusal, unfit)

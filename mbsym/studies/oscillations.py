@@ -158,7 +158,7 @@ def as_json(asked: Asked, request: Request, found: Found) -> str:
     return oscillations_json(asked.system, request.values, found.solution, found.measured)
 
 
-def refusal(error: Exception, request: Request) -> Refusal | None:
+def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     if isinstance(error, ZeroDivisionError):
         return Refusal(f"no periodic solution: {error}", Exit.BAD_INPUT)
     return failed(error, "no expansion", remedied)

@@ -26,10 +26,14 @@ class Exit(IntEnum):
 
 @dataclass(frozen=True)
 class Line:
-    """A line of the terminal: parts, some with a style; one that is ``whole`` is never broken into several."""
+    """A line of the terminal: parts, some with a style.
+
+    One that is ``whole`` is never broken into several; ``always``: it is what ``--quiet`` leaves.
+    """
 
     parts: tuple[str | tuple[str, str], ...]
     whole: bool = False
+    always: bool = False
 
 
 @dataclass(frozen=True)
@@ -44,14 +48,15 @@ class Column:
 
 @dataclass(frozen=True)
 class Rows:
-    """A table: a cell is a text, or one with a style."""
+    """A table: a cell is a text, or one with a style; one that is ``wide`` is broken nowhere but by a terminal."""
 
     columns: Sequence[Column]
     rows: Sequence[Sequence[str | tuple[str, str]]]
+    wide: bool = False
 
 
-def line(*parts: str | tuple[str, str], whole: bool = False) -> Line:
-    return Line(parts, whole)
+def line(*parts: str | tuple[str, str], whole: bool = False, always: bool = False) -> Line:
+    return Line(parts, whole, always)
 
 
 def titled(pairs: Iterable[tuple[str, str]]) -> Iterator[Line]:
@@ -111,10 +116,11 @@ class Document:
 
 @dataclass(frozen=True)
 class Refusal:
-    """What is said of an exception that ends a study."""
+    """What is said of an exception that ends a study, in a line and ``more`` of them."""
 
     text: str
     code: Exit = Exit.FAILED
+    more: Sequence[str] = ()
 
 
 #: In place of an option where the description is at fault, or what was given for it.
@@ -149,7 +155,7 @@ class Folder:
     """
 
     quiet: str | None = "Print only what went wrong."
-    unwritten: tuple[str, str, str] = ("", "", "")
+    unwritten: tuple[str, str, str] | None = None
     help: str = "Folder.  [default: reports/NAME]"
     alone: tuple[str, str, str] | None = None
 
@@ -186,7 +192,7 @@ class Study(Generic[R, F]):
     request: type[R]
     derive: Callable[[Asked, R, Watch], F]
     answer: Callable[[Asked, R, F], Answer]
-    refusal: Callable[[Exception, R], Refusal | None]
+    refusal: Callable[[Exception, Asked, R], Refusal | None]
     unfit: Callable[[R, System], Iterator[Unfit]] = _nothing
     json: Callable[[Asked, R, F], str] | None = None
     json_help: str = "Print JSON instead of a table."
@@ -211,7 +217,7 @@ def remedied(error: Failure) -> str:
     return f"{error}; {error.remedy}" if error.remedy else str(error)
 
 
-def no_program(error: Exception, request: object) -> Refusal | None:
+def no_program(error: Exception, asked: Asked, request: object) -> Refusal | None:
     """Of studies that compile equations: where these have no program."""
     return failed(error, "error[no-program]: there is no program for these equations")
 

@@ -70,7 +70,7 @@ def as_json(asked: Asked, request: Request, found: Symmetries) -> str:
     return symmetries_json(asked.system, request.values, found)
 
 
-def refusal(error: Exception, request: Request) -> Refusal | None:
+def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     from mbsym.algebra.failures import SingularPoint
 
     if isinstance(error, SingularPoint):

@@ -99,7 +99,7 @@ def test_cases_are_conditions():
         ((TOP, *NUMBERS, "--vary", "B=1:5"), "has an interval and a number"),
         ((TOP, *NUMBERS, "--vary", "A=1:5", "--cases"), "choose one of them"),
         ((CLEBSCH, "--weight", "s=1"), "the field has no variable s"),
-        ((CLEBSCH, "--weight", "gamma1"), "a variable and its weight"),
+        ((CLEBSCH, "--weight", "gamma1"), "is no NAME=N"),
     ],
 )
 def test_bad_input_is_complained_about(words, told):

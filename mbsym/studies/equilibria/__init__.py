@@ -184,7 +184,7 @@ def as_json(asked: Asked, request: Request, found: Listed | Branches) -> str:
     return equilibria_json(asked.system, _numbers(asked.system, request), found.equilibria, found.permanent)
 
 
-def refusal(error: Exception, request: Request) -> Refusal | None:
+def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     from mbsym.studies.equilibria.branches import Withdrawn
 
     if isinstance(error, Withdrawn):

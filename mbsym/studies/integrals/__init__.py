@@ -189,7 +189,7 @@ def as_json(asked: Asked, request: Request, found: Found) -> str:
     return integrals_json(asked.system, request.values, found.there, found.integrals, *further)
 
 
-def refusal(error: Exception, request: Request) -> Refusal | None:
+def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     from mbsym.algebra.failures import Failure, Limit
 
     if isinstance(error, ZeroDivisionError):

@@ -199,7 +199,7 @@ def answer(asked: Asked, request: Request, found: Found) -> Answer:
             return plane.answer(asked.system, request, found)
 
 
-def refusal(error: Exception, request: Request) -> Refusal | None:
+def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     if isinstance(error, NoMap):
         return Refusal(str(error))
     return failed(error, "no map")
