@@ -1,108 +1,64 @@
-"""The work of ``mbsym map`` over three axes: slices are made, drawn, written and told."""
+"""Slices of three parameters: what is seen between and at critical values of the third, and their files."""
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from flint import fmpq
-from rich.markup import escape
-from rich.table import Table
-from rich.text import Text
 
 from mbsym.expressions.counting import counted
-from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OK, complain, console, printable, reason_of
-from mbsym_cli.files import deliver
-from mbsym_cli.map_run import MOST_TOLD, Request, watched
-from mbsym_cli.options import Options
-from mbsym_cli.section_options import complain_unfit
+from mbsym.model.system import System
+from mbsym.report.language import Language
+from mbsym.studies.map.plane import borders_of_slices
+from mbsym.studies.study import Answer, Column, Exit, Line, Rows, line
 
 if TYPE_CHECKING:
     from mbsym.maps.result import PlaneMap
     from mbsym.maps.slices import Picture, Stack
+    from mbsym.studies.map import Request
 
 
-def run_slices(request: Request) -> int:
-    """The exit code."""
-    from mbsym.algebra.failures import Failure
-    from mbsym.analysis import Analysis
-    from mbsym.maps.given import Unfit
-    from mbsym.maps.result import Of
-    from mbsym.maps.slices import stack
+def answer(system: System, request: Request, found: Stack) -> Answer:
+    from mbsym.studies.map import MOST_TOLD
 
-    started = time.perf_counter()
-    try:
-        with watched(request.quiet, request.file.name) as watch:
-            found = stack(Analysis(request.system), request.axes, request.settings, Of(request.of), watch)
-            watch("drawing", 0, 1)
-            files = _files(request, found)
-        deliver(request.folder, files, "map")
-    except Unfit as unfit:
-        asked = Options()
-        complain_unfit(unfit.complaints, "--x/--y/--z", asked)
-        asked.refused(request.file)
-        return BAD_INPUT
-    except Failure as failure:
-        complain(request.file, f"no map: {failure.reason}" + (f"; {failure.remedy}" if failure.remedy else ""))
-        return FAILED
-    except OSError as error:
-        complain(request.file, f"the map cannot be written: {reason_of(error)}")
-        return FAILED
-    if not request.quiet:
-        _show(request, found, list(files), time.perf_counter() - started)
+    lines, files = _lines(found), _files(system, request, found)
     if not found.sound:
-        for told in list(_doubts(found))[:MOST_TOLD]:
-            complain(request.file, told)
-        return FAILED
+        return Answer(lines, files, list(_doubts(found))[:MOST_TOLD], Exit.FAILED)
     if found.interrupted:
-        missing = counted(sum(one.missing == "not reached" for one in found.layers), "slice")
-        complain(request.file, f"interrupted; {missing} not reached, what was proved before that is written")
-        return INTERRUPTED
-    return OK
+        left = counted(sum(one.missing == "not reached" for one in found.layers), "slice")
+        told = f"interrupted; {left} not reached, what was proved before that is written"
+        return Answer(lines, files, (told,), Exit.INTERRUPTED)
+    return Answer(lines, files)
 
 
-def _files(request: Request, found: Stack) -> dict[str, str | bytes]:
-    from mbsym.report.language import Language
-
-    language = Language(request.language)
+def _files(system: System, request: Request, found: Stack) -> dict[str, str | bytes]:
+    spoken = Language(request.language)
     files: dict[str, str | bytes] = {}
-    pictures = [kind for kind in request.formats if kind in ("svg", "pdf", "png")]
-    if pictures:
+    if request.pictures:
         from mbsym.report.maps.slice_figure import slice_figure
 
-        files |= slice_figure(request.system, found, language, pictures)
-    if "json" in request.formats:
+        files |= slice_figure(system, found, spoken, request.pictures)
+    if "json" in request.format:
         from mbsym.report.maps.slice_json import slices_json
 
-        files["map.json"] = slices_json(request.system, found)
-    if "tex" in request.formats:
+        files["map.json"] = slices_json(system, found)
+    if "tex" in request.format:
         from mbsym.report.maps.slice_tex import slices_tex
 
-        files["map.tex"] = slices_tex(request.system, found, language)
-    if request.points is not None:
+        files["map.tex"] = slices_tex(system, found, spoken)
+    if (points := request.located[0]) is not None:
         from mbsym.report.maps.slice_located import located_slices
 
-        files["located.csv"] = located_slices(request.points, found)
+        files["located.csv"] = located_slices(points, found)
     return files
 
 
-# --- the terminal -----------------------------------------------------------------------------------------------------
-
-
-def _show(request: Request, found: Stack, names: list[str], seconds: float) -> None:
-    out = console()
-    out.print(Text.assemble((request.system.name, "bold"), (f"  {printable(request.file)}, {seconds:.2f} s", "dim")))
-    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold cyan")
-    table.add_column(found.axis.name, overflow="fold")
-    table.add_column("shown at", overflow="fold")
-    table.add_column("what is seen, by area", overflow="fold")
-    for picture in found.pictures:
-        table.add_row(*map(escape, _row(found, picture)))
-    out.print(table)
-    for line in remarks(found):
-        out.print(Text(f"  {line}"))
-    out.print(Text.assemble("  files in ", (printable(request.folder), "bold"), ": ", ", ".join(names)))
+def _lines(found: Stack) -> Iterator[Line | Rows]:
+    columns = [Column(name, fold=True) for name in (found.axis.name, "shown at", "what is seen, by area")]
+    yield Rows(columns, [_row(found, picture) for picture in found.pictures])
+    for text in remarks(found):
+        yield line(f"  {text}")
 
 
 def _row(found: Stack, picture: Picture) -> tuple[str, str, str]:
@@ -138,8 +94,6 @@ def _largest(item: tuple[str, float]) -> float:
 
 def remarks(found: Stack) -> list[str]:
     """Sentences on what the table does not show."""
-    from mbsym_cli.map_table import borders_of_slices
-
     name = found.axis.name
     critical = [one for one in found.layers if one.critical]
     unseen = [one for one in critical if one.missing is not None and not one.broken]

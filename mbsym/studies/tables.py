@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from html import escape
 from math import inf
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,6 +20,10 @@ from mbsym.numerics.extremes.extremes import Extremes
 from mbsym.numerics.extremes.singular import SingularSet
 from mbsym.numerics.trade.trade_study import Study
 from mbsym.problems.relative_equilibria.equilibria import WITHIN, Equilibria
+from mbsym.studies.described import moving_system
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
 
 #: Rows of a table that a notebook shows.
 SHOWN = 30
@@ -138,7 +143,7 @@ class EquilibriaStudy:
         return self.table._repr_html_()
 
 
-def tradeoff(
+def _tradeoff(
     system: System,
     time: float,
     values: Mapping[str, Fraction | float | str],
@@ -199,7 +204,7 @@ def tradeoff(
     return TradeoffStudy(runs, compared, advice(found.trade, target), found.trade.reference.error, found)
 
 
-def extremes(system: System, values: Mapping[str, Fraction | float | str], budget: float) -> ExtremesStudy:
+def _extremes(system: System, values: Mapping[str, Fraction | float | str], budget: float) -> ExtremesStudy:
     """See ``mbsym.extremes``."""
     from mbsym.mechanics.variables import ring_of
     from mbsym.numerics.extremes.extremes import extremes as measured
@@ -251,7 +256,7 @@ def _label(one: SingularSet, number: int, name: str) -> str:
     return one.values[number].label if one.values else f"{float(one.places[number][name]):.12g}"
 
 
-def equilibria(system: System, values: Mapping[str, Fraction | int | str], within: float) -> EquilibriaStudy:
+def _equilibria(system: System, values: Mapping[str, Fraction | int | str], within: float) -> EquilibriaStudy:
     """See ``mbsym.equilibria``."""
     from mbsym.analysis.resting import relative_equilibria
 
@@ -280,6 +285,60 @@ def equilibria(system: System, values: Mapping[str, Fraction | int | str], withi
 
 def _or_nan(value: float | None) -> float:
     return float("nan") if value is None else float(value)
+
+
+def tradeoff(
+    source: str | Path | Analysis,
+    time: float,
+    *,
+    target: float = 1e-9,
+    values: Mapping[str, Fraction | float | str] | None = None,
+    budget: float = 60.0,
+    methods: Iterable[str] | None = None,
+    models: bool = True,
+) -> TradeoffStudy:
+    """What accuracy costs from 0 to ``time`` on this machine: ``mbsym tradeoff``.
+
+    ``study.runs`` is a table (``study.runs["error"]``, the largest over the whole interval), ``study.advice`` the
+    sentence about ``target``; ``study.reference_error`` is that of the reference, ``study.reference`` says what it is.
+    ``budget`` is counted work, worth so many seconds on a usual machine: the same runs are measured everywhere, and
+    only their seconds are those of this machine.
+
+    Raises DescriptionError, ValueError, ``mbsym.numerics.scenario.Incomplete``; Breakdown where there is no reference
+    solution up to ``time``.
+    """
+    names = None if methods is None else tuple(methods)
+    return _tradeoff(moving_system(source), time, values or {}, target, budget, names, models)
+
+
+def extremes(
+    source: str | Path | Analysis,
+    *,
+    values: Mapping[str, Fraction | float | str] | None = None,
+    budget: float = 60.0,
+) -> ExtremesStudy:
+    """How many digits each quantity keeps at the extremes, as far as ``budget`` goes: ``mbsym extremes``.
+
+    ``budget`` is counted work, worth about so many seconds on a usual machine: the same rows come out everywhere.
+
+    Raises DescriptionError, ValueError, ``mbsym.numerics.scenario.Incomplete``.
+    """
+    return _extremes(moving_system(source), values or {}, budget)
+
+
+def equilibria(
+    source: str | Path | Analysis, *, values: Mapping[str, Fraction | int | str] | None = None, within: float = 10.0
+) -> EquilibriaStudy:
+    """All relative equilibria at exact values of the parameters, each with its verdict: ``mbsym equilibria``.
+
+        >>> import mbsym
+        >>> found = mbsym.equilibria("systems/double-pendulum.yaml")
+        >>> found.complete, list(found.table["verdict"])
+        (True, ['stable', 'unstable', 'unstable', 'unstable'])
+
+    Raises DescriptionError, ValueError for a parameter without a number, Failure where they cannot be listed.
+    """
+    return _equilibria(moving_system(source), values or {}, within)
 
 
 __all__ = ["WITHIN", "EquilibriaStudy", "ExtremesStudy", "Table", "TradeoffStudy", "equilibria", "extremes", "tradeoff"]

@@ -1,54 +1,99 @@
-"""A map in the terminal: its verdicts with their theorems, and what part of the plane each has."""
+"""A map of a plane or a line: its verdicts with their theorems, what part of the whole each has, and its files."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from pathlib import Path
-from typing import Any
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Any
 
 from flint import fmpq
-from rich.markup import escape
-from rich.table import Table
-from rich.text import Text
 
 from mbsym.expressions.counting import counted
 from mbsym.maps.boundaries import Origin
 from mbsym.maps.result import LineMap, Of, PlaneMap, Standing, Stratum
 from mbsym.maps.soft_borders import Onset
 from mbsym.model.system import System
+from mbsym.report.language import Language
 from mbsym.report.maps.words import STANDINGS, condition_words, row_words, signature_words, telling
-from mbsym_cli.console import console, printable
+from mbsym.studies.study import Answer, Column, Exit, Line, Rows, line
+
+if TYPE_CHECKING:
+    from mbsym.studies.map import Request
 
 
-def show_map(
-    file: Path, system: System, found: PlaneMap | LineMap, folder: Path, names: Sequence[str], seconds: float
-) -> None:
-    """Prints a row for each verdict, then what there is to know besides."""
-    out = console()
-    out.print(Text.assemble((system.name, "bold"), (f"  {printable(file)}, {seconds:.2f} s", "dim")))
-    out.print(_table(found))
-    for line in remarks(found):
-        out.print(Text(f"  {line}"))
-    out.print(Text.assemble("  files in ", (printable(folder), "bold"), ": ", ", ".join(names)))
+def answer(system: System, request: Request, found: PlaneMap | LineMap) -> Answer:
+    lines, files = _lines(found), _files(system, request, found)
+    if found.check is not None and not found.check.holds:
+        return Answer(lines, files, _doubts(found), Exit.FAILED)
+    if found.interrupted:
+        told = "interrupted; what was proved before that is written"
+        return Answer(lines, files, (told,), Exit.INTERRUPTED)
+    return Answer(lines, files)
 
 
-def _table(found: PlaneMap | LineMap) -> Table:
+def _doubts(found: PlaneMap | LineMap) -> list[str]:
+    """What the map's own check does not confirm."""
+    from mbsym.studies.map import MOST_TOLD
+
+    told = []
+    for one in found.check.findings[:MOST_TOLD] if found.check is not None else ():
+        named = (("region", one.region), ("arc", one.arc), ("corner", one.corner))
+        what = next((f"{name} {number}" for name, number in named if number is not None), "the whole")
+        told.append(f"withdrawn, as the map's own check fails in {what}: {one.mistake}")
+    return told
+
+
+def _files(system: System, request: Request, found: PlaneMap | LineMap) -> dict[str, str | bytes]:
+    from mbsym.report.maps.json import map_json
+    from mbsym.report.maps.tex import map_tex
+
+    spoken = Language(request.language)
+    files: dict[str, str | bytes] = {}
+    if request.pictures and isinstance(found, LineMap):
+        from mbsym.report.maps.line_figure import line_figure
+
+        files |= line_figure(system, found, spoken, request.pictures)
+    elif request.pictures and isinstance(found, PlaneMap):
+        from mbsym.report.maps.figure import map_figure
+
+        files |= map_figure(system, found, spoken, request.pictures)
+    if "json" in request.format:
+        files["map.json"] = map_json(system, found)
+    if "tex" in request.format:
+        files["map.tex"] = map_tex(system, found, spoken)
+    if (points := request.located[0]) is not None:
+        from mbsym.report.maps.located import located_csv
+
+        files["located.csv"] = located_csv(points, found)
+    return files
+
+
+def _lines(found: PlaneMap | LineMap) -> Iterator[Line | Rows]:
+    """A row for each verdict, then what there is to know besides."""
+    yield _table(found)
+    for text in remarks(found):
+        yield line(f"  {text}")
+
+
+def _table(found: PlaneMap | LineMap) -> Rows:
     rows: dict[tuple[str, str], tuple[set[int], float]] = {}
     for stratum, place, (area, _) in zip(found.regions, found.together, found.areas, strict=True):
         parts, total = rows.setdefault(_row(found, stratum), (set(), 0.0))
         rows[_row(found, stratum)] = parts | {place}, total + area
-    whole = found.whole
-    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold cyan")
-    table.add_column("verdict" if found.of is Of.STABILITY else "signature of K", overflow="fold")
-    table.add_column("theorem", style="dim", overflow="fold")
-    line = isinstance(found, LineMap)
-    table.add_column("intervals" if line else "regions", justify="right")
-    table.add_column("length" if line else "area", justify="right")
-    table.add_column("of the whole", justify="right")
-    for (verdict, theorem), (parts, area) in sorted(rows.items(), key=lambda item: -item[1][1]):
-        share = 100 * area / whole
-        table.add_row(escape(verdict), escape(theorem), str(len(parts)), f"{area:.4g}", f"{share:.2f} %")
-    return table
+    one_axis = isinstance(found, LineMap)
+    columns = (
+        Column("verdict" if found.of is Of.STABILITY else "signature of K", fold=True),
+        Column("theorem", style="dim", fold=True),
+        Column("intervals" if one_axis else "regions", right=True),
+        Column("length" if one_axis else "area", right=True),
+        Column("of the whole", right=True),
+    )
+    return Rows(
+        columns,
+        [
+            (verdict, theorem, str(len(parts)), f"{area:.4g}", f"{100 * area / found.whole:.2f} %")
+            for (verdict, theorem), (parts, area) in sorted(rows.items(), key=lambda item: -item[1][1])
+        ],
+    )
 
 
 def _row(found: PlaneMap | LineMap, stratum: Stratum) -> tuple[str, str]:

@@ -2,26 +2,31 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
-from pathlib import Path
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import click
-
-from mbsym_cli.console import BAD_INPUT, FAILED, OK, OutPath, complain, read_description, status
-from mbsym_cli.options import Options
+from mbsym.studies.study import (
+    Answer,
+    Asked,
+    Document,
+    Line,
+    Refusal,
+    Single,
+    Study,
+    Watch,
+    failed,
+    heading,
+    line,
+)
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
     from mbsym.problems.scaling import Groups
 
 
-@click.command("groups")
-@click.argument("file", type=click.Path(path_type=Path))
-@click.option("--out", "-o", type=OutPath(path_type=Path, dir_okay=False), help="Write the description in groups here.")
-@click.option("--quiet", "-q", is_flag=True, help="Print nothing but complaints.")
-def command(file: Path, out: Path | None, quiet: bool) -> None:
+@dataclass(frozen=True)
+class Request:
     """Find the dimensionless groups of FILE: what of its parameters matters, whatever the units.
 
     Scalings of parameters, coordinates and time that leave the equations what they are form a linear space, which is
@@ -38,41 +43,39 @@ def command(file: Path, out: Path | None, quiet: bool) -> None:
       mbsym groups systems/double-pendulum.yaml
       mbsym groups systems/spring-pendulum.yaml --out spring-in-groups.yaml
     """
-    system = read_description(file, unconstrained="groups")
-    asked = Options()
-    asked.unwritten("--out", out)
-    if asked.refused(file) or system is None:
-        sys.exit(BAD_INPUT)
-    from mbsym.algebra.failures import Failure
+
+
+@dataclass(frozen=True)
+class Found:
+    """The groups of the equations of motion, or of the matrices where those are given."""
+
+    analysis: Analysis
+    groups: Groups
+
+
+def derive(asked: Asked, request: Request, watch: Watch) -> Found:
     from mbsym.analysis import Analysis
     from mbsym.problems.scaling import groups
 
-    analysis = Analysis(system)
-    try:
-        with status(quiet, "deriving"):
-            found = groups(analysis.scene, analysis.equations) if system.linear is None else _of_linear(analysis)
-    except Failure as error:
-        complain(file, f"the groups cannot be found: {error}")
-        sys.exit(FAILED)
-    if not quiet:
-        _print(file, analysis, found)
-    sys.exit(OK if out is None else _written(file, out, analysis, found))
+    watch("deriving")
+    analysis = Analysis(asked.system)
+    if asked.system.linear is not None:
+        return Found(analysis, _of_linear(analysis))
+    return Found(analysis, groups(analysis.scene, analysis.equations))
 
 
-def _print(file: Path, analysis: Analysis, found: Groups) -> None:
-    from rich.text import Text
+def answer(asked: Asked, request: Request, found: Found) -> Answer:
+    return Answer(_lines(found))
 
-    from mbsym_cli.console import console, printable
 
-    out = console()
-    out.print(Text.assemble((analysis.system.name, "bold"), (f"  {printable(file)}", "dim")))
-    sections = [("first approximation", _linear(analysis))]
-    if analysis.system.linear is None:
-        sections.insert(0, ("equations of motion", _told(found)))
+def _lines(found: Found) -> Iterator[Line]:
+    sections = [("first approximation", _linear(found.analysis))]
+    if found.analysis.system.linear is None:
+        sections.insert(0, ("equations of motion", _told(found.groups)))
     for title, lines in sections:
-        out.print(Text.assemble("  ", (title, "bold cyan")))
-        for line in lines:
-            out.print(Text(f"    {line}"))
+        yield heading(title)
+        for text in lines:
+            yield line(f"    {text}")
 
 
 def _told(found: Groups) -> Iterator[str]:
@@ -117,30 +120,34 @@ def _linear(analysis: Analysis) -> Iterator[str]:
     except Failure as error:
         yield f"none: {error.reason}"
         return
-    for line in _told(found):
-        if not line.startswith("without effect"):
-            yield line
+    for text in _told(found):
+        if not text.startswith("without effect"):
+            yield text
 
 
-def _written(file: Path, out: Path, analysis: Analysis, found: Groups) -> int:
+def document(asked: Asked, request: Request, found: Found) -> Document:
+    """The description in its groups."""
     from mbsym.analysis.in_groups import in_groups
     from mbsym.source import read, to_yaml
-    from mbsym_cli.files import write_whole
 
-    text = to_yaml(in_groups(analysis.system, found))
+    text = to_yaml(in_groups(asked.system, found.groups))
     system, complaints = read(text)
-    if system is None:  # what the equations do not ask of a body may be asked of its numbers
-        told = complaints.sorted()[0].message
-        text = to_yaml(in_groups(analysis.system, found, values=False))
-        system, complaints = read(text)
-        if system is not None:
-            complain(file, f"values are left out of {out.name}, where they belong to no bodies: {told}")
+    if system is not None:
+        return Document(text)
+    # What the equations do not ask of a body may be asked of its numbers.
+    told = complaints.sorted()[0].message
+    text = to_yaml(in_groups(asked.system, found.groups, values=False))
+    system, complaints = read(text)
     if system is None:
-        complain(file, f"it cannot be written in groups: {complaints.sorted()[0].message}")
-        return FAILED
-    try:
-        write_whole(out, text)
-    except OSError as error:
-        complain(out, f"cannot be written: {error.strerror or error}")
-        return FAILED
-    return OK
+        return Document(None, (f"it cannot be written in groups: {complaints.sorted()[0].message}",))
+    return Document(text, (f"values are left out of what is written, where they belong to no bodies: {told}",))
+
+
+def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+    return failed(error, "the groups cannot be found")
+
+
+STUDY = Study(
+    "groups", Request, derive, answer, refusal,
+    matrices=True, held=False, out=Single("Write the description in groups here."), document=document,
+)  # fmt: skip
