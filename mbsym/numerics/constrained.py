@@ -25,7 +25,7 @@ import numpy as np
 
 from mbsym.algebra.program import Program
 from mbsym.algebra.ring import Ring
-from mbsym.mechanics.constraints.dependence import Dependent, dependent_sets
+from mbsym.mechanics.constraints.dependence import Dependent, counted_anew, dependent_sets
 from mbsym.mechanics.constraints.dynamics import (
     Chosen,
     ConstrainedDynamics,
@@ -51,9 +51,6 @@ CERTAIN = 1e-6
 
 #: Positions beside the initial one at which the rank is looked at, and how far away, in radians or as parts.
 BESIDE, AWAY = 3, 0.05
-
-#: Of more rows that hang together those are used that are independent at the start: the code would be long.
-MOST_DEPENDENT = 24
 
 #: The least eigenvalue of M with ones on its diagonal that is not zero to roundings.
 MASSLESS = 1e-13
@@ -174,19 +171,9 @@ class Constraints:
     @cached_property
     def chosen(self) -> Chosen:
         """All rows, and which follow from others; of too many that hang together the independent ones alone."""
-        found = self.dependent(len(self.names))
-        fixed = {i for one in found if len(one.rows) > MOST_DEPENDENT for i in one.rows} - set(self.kept)
-        rows = [k for k in range(len(self.names)) if k not in fixed]
-
-        def counted_anew(sets: Sequence[Dependent]) -> tuple[Dependent, ...]:
-            whole = (one for one in sets if not fixed & set(one.rows))
-            return tuple(Dependent(tuple(rows.index(k) for k in one.rows), one.rank) for one in whole)
-
-        return Chosen(
-            tuple((self.names[k].constraint, self.names[k].component) for k in rows),
-            counted_anew(found),
-            counted_anew(self.dependent(self.holonomic)),
-        )
+        sets = self.dependent(len(self.names)), self.dependent(self.holonomic)
+        rows, counted = counted_anew(range(len(self.names)), self.kept, *sets)
+        return Chosen(tuple((self.names[k].constraint, self.names[k].component) for k in rows), *counted)
 
     @property
     def redundant(self) -> tuple[RowName, ...]:

@@ -27,6 +27,9 @@ from mbsym.algebra.program import Node, Program
 from mbsym.mechanics.constraints.rows import RowName
 from mbsym.mechanics.factorisation import Elimination
 
+#: Of more rows that hang together only independent ones are used: the code would be long.
+MOST_DEPENDENT = 24
+
 #: Of two pivots that are as good as each other the first one stays, whatever the roundings.
 FIRST = Fraction(1) + Fraction(1, 2**30)
 
@@ -50,6 +53,25 @@ def dependent_sets(relations: Iterable[Collection[int]], independent: Collection
         sets.append(joined)
     found = (Dependent(tuple(sorted(one)), len(one & set(independent))) for one in sets)
     return tuple(sorted(found, key=lambda one: one.rows))
+
+
+def counted_anew(
+    order: Iterable[int], independent: Collection[int], *kinds: Sequence[Dependent]
+) -> tuple[list[int], list[tuple[Dependent, ...]]]:
+    """The rows of ``order`` that equations are made of, and the sets counted by their places among these.
+
+    Sets of more than MOST_DEPENDENT rows are left with the ``independent`` ones, of which nothing follows any more.
+    """
+    long = {i for sets in kinds for one in sets if len(one.rows) > MOST_DEPENDENT for i in one.rows}
+    rows = [i for i in order if i not in long or i in independent]
+    return rows, [
+        tuple(
+            Dependent(tuple(sorted(rows.index(i) for i in one.rows)), one.rank)
+            for one in sets
+            if not long & {*one.rows}
+        )
+        for sets in kinds
+    ]
 
 
 def measured(name: RowName) -> Hashable:
@@ -199,7 +221,7 @@ class _Chosen:
         return found
 
     def _shorten(self, x: list[Node], pivots: Sequence[int], without: Sequence[int]) -> None:
-        """x less its part along the null space: x - N (N^T w N)^-1 N^T w x, a column of N for each row without pivot."""
+        """x - N (N^T w N)^-1 N^T w x, where N spans the null space: a column for each row without pivot."""
         program = self.program
         if not without:
             return

@@ -181,8 +181,13 @@ def _of_constraints(tied: Constraints, names: MathNames) -> Iterator[Markup]:
     write = Writer(
         lambda listed: shown.math(*_separated([str(names[name]) for name in listed])),
         speeds=lambda listed: shown.math(*_separated([str(speed(name, names)) for name in listed])),
+        condition=_condition,
     )
     yield from _filled(sentences(tied, write))
+
+
+def _condition(value: Formula, sign: str) -> Markup:
+    return shown.math(shown.inline(value), mo("≠" if sign == "!=" else sign), "<mn>0</mn>")
 
 
 def _of_reduction(about: Reduction, names: MathNames) -> Iterator[Markup]:
@@ -197,7 +202,7 @@ def _of_reduction(about: Reduction, names: MathNames) -> Iterator[Markup]:
     write = Writer(
         lambda listed: shown.math(*_separated([str(names[name]) for name in listed])),
         rates=rates,
-        nonzero=lambda value: shown.math(shown.inline(value), mo("≠"), "<mn>0</mn>"),
+        condition=_condition,
     )
     yield from _filled(reduction_sentences(about, write))
 

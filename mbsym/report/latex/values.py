@@ -278,7 +278,7 @@ def _writer(names: LatexNames, tongue: Language) -> Any:
         lambda listed: "$" + ",\\, ".join(str(names[name]) for name in listed) + "$",
         lambda word: escaped(tongue.say(word)),
         lambda rates: ", ".join(f"${names[name].accented('dot')} = {formula(x)}$" for name, x in rates),
-        lambda value: f"${formula(value)} \\neq 0$",
+        lambda value, sign: f"${formula(value)} {chr(92) + 'neq' if sign == '!=' else sign} 0$",
         lambda listed: "$" + ",\\, ".join(speed(name, names) for name in listed) + "$",
     )
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from mbsym.algebra.certainty import Certainty
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.constraints.rows import RowName
-from mbsym.problems.constraints import Constraints, Integrability
+from mbsym.problems.constraints import Constraints, Demanded, Integrability
 from mbsym.problems.reduction import Reduction
 from mbsym.report.words.said import Said as Said
 from mbsym.report.words.said import filled as filled
@@ -19,12 +19,12 @@ from mbsym.report.words.said import filled as filled
 
 @dataclass(frozen=True)
 class Writer:
-    """How a medium writes lists of coordinates and of speeds, a word in its language, known rates, a formula != 0."""
+    """How a medium writes lists of coordinates and of speeds, a word in its language, known rates, formula = or != 0."""
 
     names: Callable[[tuple[str, ...]], str]
     word: Callable[[str], str] = str
     rates: Callable[[tuple[tuple[str, Formula], ...]], str] = lambda rates: ", ".join(f"{n}' = {x}" for n, x in rates)
-    nonzero: Callable[[Formula], str] = lambda value: f"{value} != 0"
+    condition: Callable[[Formula, str], str] = lambda value, sign: f"{value} {sign} 0"
     speeds: Callable[[tuple[str, ...]], str] = ", ".join
 
 
@@ -47,10 +47,13 @@ def sentences(found: Constraints, write: Writer) -> Iterator[Said]:
                 "sure": write.word(redundant.certainty.value),
             },
         )
-    if found.parameter_conditions:
+    if found.demanded.count:
+        yield from _demanded(found.demanded, write)
+    if found.rank_beside is not None:
         yield (
-            "The constraints can be kept only where the parameters satisfy further relations; their number: [[k]].",
-            {"k": found.parameter_conditions},
+            "These ranks are those at the given values of the parameters; at other values near them the rank of the "
+            "constraints on positions is [[other]].",
+            {"other": found.rank_beside},
         )
     if found.integrability is not None:
         yield from _integrable(found.integrability, n - found.position_rank, write)
@@ -73,6 +76,36 @@ def sentences(found: Constraints, write: Writer) -> Iterator[Said]:
             "Dependent velocities: those of [[dependent]]; independent ones: those of [[free]].",
             {"dependent": write.names(found.dependent), "free": write.names(found.free)},
         )
+
+
+def _demanded(found: Demanded, write: Writer) -> Iterator[Said]:
+    """Which relations between parameters, and what the given values make of them."""
+    yield (
+        "The constraints can be kept, and leave this freedom, only where the parameters satisfy further relations; "
+        "their number: [[k]].",
+        {"k": found.count},
+    )
+    if found.relations:
+        yield (
+            "The parameters have to satisfy [[relations]] ([[sure]]).",
+            {
+                "relations": ", ".join(write.condition(x, "=") for x in found.relations),
+                "sure": write.word(Certainty.VERIFIED.value),
+            },
+        )
+    if found.satisfied:
+        yield "The given values do so.", {}
+    elif found.satisfied is not None:
+        yield "The given values do not: what is said of the motion here is not about them.", {}
+        if found.freedom is None:
+            yield "At the given values no configuration that keeps all constraints was found.", {}
+        elif not found.freedom:
+            yield "At the given values nothing can move in any configuration that was found.", {}
+        else:
+            yield (
+                "At the given values the configurations that were found have [[f]] degrees of freedom at most.",
+                {"f": found.freedom},
+            )
 
 
 def reduction_sentences(found: Reduction, write: Writer) -> Iterator[Said]:
@@ -104,7 +137,7 @@ def reduction_sentences(found: Reduction, write: Writer) -> Iterator[Said]:
             {"names": write.names(found.following)},
         )
     for value in found.assumed:
-        yield "This holds where [[value]].", {"value": write.nonzero(value)}
+        yield "This holds where [[value]].", {"value": write.condition(value, "!=")}
     if not found.holonomic:
         yield (
             "Velocities are constrained besides coordinates, so D, G, K and N are taken as no more than the symmetric "
