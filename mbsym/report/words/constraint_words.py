@@ -19,7 +19,7 @@ from mbsym.report.words.said import filled as filled
 
 @dataclass(frozen=True)
 class Writer:
-    """How a medium writes lists of coordinates and of speeds, a word in its language, known rates, formula = or != 0."""
+    """How a medium writes lists of coordinates and of speeds, words in its language, known rates, formulas beside 0."""
 
     names: Callable[[tuple[str, ...]], str]
     word: Callable[[str], str] = str
