@@ -116,7 +116,10 @@ class NothingMoves(Constrained):
 def moving(found: Closed) -> Closed:
     """What was closed.  Raises NothingMoves where its constraints hold it."""
     constraints = Dynamics(found.scenario).constraints
-    if constraints is not None and not constraints.freedom and constraints.steady:
+    if constraints is None or constraints.freedom or not constraints.steady:
+        return found
+    state = np.array([float(x) for x in found.scenario.state])
+    if len(constraints.independent(0.0, state)) == constraints.size:  # else it may move from a singular position
         raise NothingMoves(found.scenario)
     return found
 

@@ -217,13 +217,16 @@ class Constraints:
         return found, least
 
     def _places(self, state: Any) -> list[Any]:
-        """The initial position and some beside it to which the constraints let it move."""
+        """The initial position and some beside it to which the constraints let it move: on its way, if it has one."""
         source, n, found = np.random.default_rng(5), self.size, [state]
         weights = self.weights(0.0, state)
-        rows = self.at(0.0, state).partials[: self.holonomic]
+        rows = self.at(0.0, state).partials
         for _ in range(BESIDE):
-            way = AWAY * source.uniform(0.5, 1.0, n) * (1 + np.abs(state[:n])) * source.choice((-1, 1), n)
-            if self.holonomic:
+            sizes = AWAY * source.uniform(0.5, 1.0, n) * (1 + np.abs(state[:n]))
+            way = sizes * source.choice((-1, 1), n)
+            if self.holonomic and np.any(state[n:]):  # where branches meet the velocity tells which it is
+                way = state[n:] * np.min(sizes) / np.max(np.abs(state[n:])) * source.choice((-1, 1))
+            elif self.holonomic:  # else any way that all rows allow
                 way -= weights @ np.linalg.lstsq(rows @ weights, rows @ way, rcond=CERTAIN)[0]
             moved = state.copy()
             moved[:n] += way

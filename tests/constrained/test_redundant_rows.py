@@ -350,6 +350,32 @@ def test_a_mechanism_that_moves_at_its_values_only() -> None:
     assert (found.velocity_rank, found.rank_beside, found.demanded.count) == (3, 4, 0)
 
 
+@pytest.mark.parametrize("angle", [0.0, 0.3])
+@pytest.mark.parametrize("speed", [0.0, 2.0])
+def test_wheels_with_a_coupling_rod(angle: float, speed: float) -> None:
+    """A rod between two wheels that roll moves alike with both: one velocity is free, also where crank and rod are in
+    line, where the rod alone could turn the wheels against each other.
+
+    With x' = r p' the frame and two discs have (3 m r^2 + 2 m r^2/2) p'^2/2, the rod, at (x + e cos p, -e sin p) but
+    for a constant, the rest.
+    """
+    text = case("coupling-rod").replace("velocity: 1", f"velocity: {speed / 2}")
+    text = text.replace("p: 0.3, s: 0.3, b: -0.3", f"p: {angle}, s: {angle}, b: {-angle}")
+    assert mbsym.loads(text).constraints.velocity_rank == 3
+    given = begun(text)
+    constraints = Dynamics(given).constraints
+    assert constraints is not None
+    assert constraints.freedom == 1
+    run = simulate(given, Request(time=2.0, samples=21, estimate=False))
+    assert run.trajectory.whole
+    m, r, e, p, rate = 1.0, 0.5, 0.2, run["p"], run["p_dot"]
+    assert run["s"] == pytest.approx(p, abs=1e-9)
+    forward, up = r * rate - e * np.sin(p) * rate, -e * np.cos(p) * rate
+    energy = 4 * m * r**2 * rate**2 / 2 + m / 20 * (forward**2 + up**2) - m / 10 * GRAVITY * e * np.sin(p)
+    assert energy == pytest.approx(np.full(21, energy[0]), abs=1e-8)
+    assert np.ptp(p) > 0.1
+
+
 @pytest.mark.parametrize(("b", "satisfied"), [(5, False), (4, True)])
 def test_bennett_s_condition_is_told_and_tried(b: int, satisfied: bool) -> None:
     """Bennett (1903): sin(alpha)/a = sin(beta)/b, here 3/5 and 4/5, so that 4 a = 3 b; given are a = 3 and b."""

@@ -126,7 +126,7 @@ class Manifold:
 
     @cached_property
     def _own_rank(self) -> int | None:
-        """The rank of d phi / dq at the given parameters, on the branch on which the description begins."""
+        """The rank of J at the given parameters, on the branch on which the description begins."""
         if self._begin is None:
             return None
         try:
@@ -136,7 +136,7 @@ class Manifold:
 
     @cached_property
     def rank_beside(self) -> int | None:
-        """The rank of d phi / dq where parameters are a little others, if it is not the one at the given values."""
+        """The rank of J where parameters are a little others, if it is not the one at the given values."""
         begin, source = self._begin, random.Random(SEED)
         if begin is None or not self.system.parameter_names:
             return None
@@ -151,30 +151,54 @@ class Manifold:
         return self._pivots(values, Balls(dict(values))).rank
 
     def _pivots(self, values: Mapping[str, Any], numbers: Algebra) -> Eliminated:
-        slopes, n = self._slopes(self.system.coordinates), len(self.system.coordinates)
-        flat = self.program.evaluate([x for row in slopes for x in row], values, numbers)
+        """J at a place, eliminated."""
+        n = len(self.system.coordinates)
+        flat = self.program.evaluate([x for row in self.found.jacobian for x in row], values, numbers)
         return eliminated([flat[i : i + n] for i in range(0, len(flat), n)], range(n))
 
     @cached_property
     def _begin(self) -> dict[str, Any] | None:
-        """The description's position on the constraints, or near them; None where it gives none."""
+        """The description's position on the constraints, or near them; None where it gives none.
+
+        A little further on its way, if it moves: it may begin where branches meet.
+        """
         system = self.system
-        given = {one.coordinate: one.position for one in system.initial if one.position is not None}
-        given = {one.coordinate: one.value for one in system.motion} | given
-        if not self._positions or any(name not in given for name in system.coordinates):
+        initial = {one.coordinate: one for one in system.initial if one.position is not None}
+        motion = {one.coordinate: one for one in system.motion}
+        places = {name: one.position for name, one in initial.items()}
+        rates = {name: one.velocity for name, one in initial.items()}
+        if places.keys() < {*system.coordinates}:
+            places = {name: one.value for name, one in motion.items()} | places
+            rates = {name: one.rate for name, one in motion.items()} | rates
+        if not self._positions or places.keys() < {*system.coordinates}:
             return None
         _, rational = self._random(random.Random(SEED))
         known = {name: fmpq(x.numerator, x.denominator) for name, x in known_values(system).items()}
         values = {name: arb(x) for name, x in (rational | known | {"t": 0}).items()} | {"pi": arb.pi()}
         lower = Lowering(Balls(dict(values)), dict(values))
         try:
-            values |= {name: arb(lower(given[name]).mid()) for name in system.coordinates}
-            begun = self._root(values, system.coordinates)
+            values |= {name: arb(lower(one).mid()) for name, one in places.items() if one is not None}
+            begun = self._near(values)
+            way = {name: lower(one) for name, one in rates.items() if one is not None}
         except NOT_THERE:
             return None
-        away = max(abs(float(begun[x].mid()) - float(values[x].mid())) / (1 + abs(float(values[x].mid())))
-                   for x in system.coordinates)  # fmt: skip
-        return begun if away <= NEAR else None
+        largest = max((float(abs(x).upper()) for x in way.values()), default=0.0)
+        if begun is None or not largest:
+            return begun
+        further = {name: arb((begun[name] + x * arb(APART / largest)).mid()) for name, x in way.items()}
+        timed = {"t": arb(APART / largest)}
+        with suppress(*NOT_THERE):
+            return self._near(begun | further | timed) or begun
+        return begun
+
+    def _near(self, values: Mapping[str, Any]) -> dict[str, Any] | None:
+        """A root not far from a place.  Raises as ``_root`` does."""
+        found = self._root(dict(values), self.system.coordinates)
+        for name in self.system.coordinates:
+            size = 1 + abs(float(values[name].mid()))
+            if not abs(float(found[name].mid()) - float(values[name].mid())) <= NEAR * size:
+                return None
+        return found
 
     def _beside(self, source: random.Random) -> OnManifold:
         """A state on the branch of the description's position."""
@@ -284,7 +308,7 @@ class Manifold:
         return sides[0] - sides[1]
 
     def ranks_at_values(self) -> tuple[int, ...]:
-        """The ranks of d phi/dq at positions that were found at the given values of the parameters."""
+        """The ranks of J at positions that were found at the given values of the parameters."""
         known = {name: arb(fmpq(x.numerator, x.denominator)) for name, x in known_values(self.system).items()}
         source = random.Random(SEED)
         found = [] if self._own_rank is None else [self._own_rank]

@@ -362,12 +362,12 @@ class _Analysis:
         if known.keys() < {*self.system.parameter_names}:
             return Demanded(count, relations)
         ranks = manifold.ranks_at_values()
-        satisfied = position_rank in ranks
+        satisfied = rank in ranks
         if relation is not None:
             numbers = Rationals({}, {})
             values = {name: fmpq(x.numerator, x.denominator) for name, x in known.items()}
             satisfied = Carrier(self.ring, numbers, values)(relation) == 0
-        freedom = self.n - rank + position_rank - min(ranks) if ranks else None
+        freedom = self.n - min(ranks) if ranks else None
         return Demanded(count, relations, satisfied, freedom)
 
 

@@ -87,7 +87,7 @@ class Constraints(Shown):
     ``independent`` are row numbers; ``velocity_rank`` their number r, ``position_rank`` h.  ``dependent_sets`` are the
     rows that follow from others, in sets that hang together, ``dependent_positions`` those of the rows on positions
     alone.  ``demanded`` are the relations between parameters that the position constraints demand.  ``rank_beside``:
-    the rank of the rows on positions at values of the parameters near those given, where it is another, else None.
+    the rank at values of the parameters near those given, where it is another, else None.
     ``alone`` says of every independent
     velocity constraint whether it is integrable by itself, on all configurations (None: undecided).  ``solved`` is None
     where the formulas outgrow the budget; ``pivots`` say how a program does it.  With ``in_speeds`` the

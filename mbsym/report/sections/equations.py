@@ -75,7 +75,7 @@ def _constraints(found: Constraints, write: Write) -> doc.Constraints:
         parameter_conditions=found.demanded.count,
         parameter_relations=[write(x) for x in found.demanded.relations],
         parameters_satisfy_them=found.demanded.satisfied,
-        position_rank_beside=found.rank_beside,
+        velocity_rank_beside=found.rank_beside,
         integrability=None
         if integrable is None
         else doc.Integrability(

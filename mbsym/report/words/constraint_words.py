@@ -51,8 +51,8 @@ def sentences(found: Constraints, write: Writer) -> Iterator[Said]:
         yield from _demanded(found.demanded, write)
     if found.rank_beside is not None:
         yield (
-            "These ranks are those at the given values of the parameters; at other values near them the rank of the "
-            "constraints on positions is [[other]].",
+            "These ranks are those at the given values of the parameters; at other values near them [[other]] "
+            "constraints on velocities are independent.",
             {"other": found.rank_beside},
         )
     if found.integrability is not None:

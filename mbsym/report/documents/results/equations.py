@@ -59,8 +59,8 @@ class Constraints(Part, frozen=True):
     parameters_satisfy_them: Annotated[
         bool | None, "whether the given values satisfy them; null where there are none, or not all values are given"
     ]
-    position_rank_beside: Annotated[
-        int | None, "position_rank at values of the parameters near the given ones, where it is another; else null"
+    velocity_rank_beside: Annotated[
+        int | None, "velocity_rank at values of the parameters near the given ones, where it is another; else null"
     ]
     integrability: Integrability | None
     integrable_alone: Annotated[
