@@ -100,7 +100,10 @@ def _constraints(found: Constraints, write: Write) -> doc.Constraints:
             )
             for one in found.redundant
         ],
-        parameter_conditions=found.parameter_conditions,
+        parameter_conditions=found.demanded.count,
+        parameter_relations=[write(x) for x in found.demanded.relations],
+        parameters_satisfy_them=found.demanded.satisfied,
+        velocity_rank_beside=found.rank_beside,
         integrability=None
         if integrable is None
         else doc.Integrability(
