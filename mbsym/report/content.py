@@ -59,6 +59,32 @@ class Notation:
 
 
 @dataclass(frozen=True)
+class Power:
+    """A value with an exponent."""
+
+    base: Math
+    exponent: int
+
+
+@dataclass(frozen=True)
+class Text:
+    """Words in a formula: ``Text(Said("at"), " ")``."""
+
+    parts: tuple[Inline, ...]
+
+    def __init__(self, *parts: Inline) -> None:
+        object.__setattr__(self, "parts", parts)
+
+
+@dataclass(frozen=True)
+class Readable:
+    """A formula, or its length where nobody would read it.  ``kept``: it stands in full in results.json."""
+
+    value: Formula
+    kept: bool = True
+
+
+@dataclass(frozen=True)
 class Listed:
     """Values side by side: a, b, c.  ``brackets``: (a, b, c)."""
 
@@ -85,7 +111,21 @@ class Polynomial:
     power: int = 1
 
 
-Math = Symbol | Entry | Name | Notation | Listed | Relation | Polynomial | Formula | Expression | int
+Math = (
+    Symbol
+    | Entry
+    | Name
+    | Notation
+    | Power
+    | Text
+    | Readable
+    | Listed
+    | Relation
+    | Polynomial
+    | Formula
+    | Expression
+    | int
+)
 
 
 # --- text -------------------------------------------------------------------------------------------------------------
@@ -121,14 +161,38 @@ class Words:
 
 @dataclass(frozen=True)
 class Strong:
-    """What stands out: a verdict, an outcome.  ``grade``: good, bad or open."""
+    """What stands out: a verdict, an outcome.  ``grade``: good, bad or open; ``key``: a page knows it by that."""
 
     text: Inline
     grade: str = ""
+    key: str = ""
+
+
+@dataclass(frozen=True)
+class Phrase:
+    """Parts one after the other."""
+
+    parts: tuple[Inline, ...]
+
+
+@dataclass(frozen=True)
+class Graded:
+    """Words among others that are good, bad or open: coloured on a screen; on paper the bad ones stand out."""
+
+    text: Inline
+    grade: str
+
+
+@dataclass(frozen=True)
+class Link:
+    """Words that lead on a screen to the section ``to``."""
+
+    text: Inline
+    to: str
 
 
 #: What stands in a line; a ``str`` is as it is in every language: a name of a body, a number, punctuation.
-Inline = Said | Words | Strong | Math | str
+Inline = Said | Words | Strong | Phrase | Graded | Link | Math | str
 
 
 # --- blocks -----------------------------------------------------------------------------------------------------------
@@ -157,10 +221,22 @@ class Paragraph:
 
 @dataclass(frozen=True)
 class Display:
-    """A formula in lines of its own, broken where it is long; ``key``: that of its label."""
+    """A formula in lines of its own, broken where it is long; ``key``: that of its label.
+
+    ``notes`` are said beside it, in brackets.
+    """
 
     value: Math | tuple[Inline, ...]
     key: str = ""
+    notes: tuple[Inline, ...] = ()
+
+
+@dataclass(frozen=True)
+class Definitions:
+    """What letters stand for, one after the other, led in by words."""
+
+    words: Said
+    items: tuple[Relation, ...]
 
 
 @dataclass(frozen=True)
@@ -198,12 +274,65 @@ class Intermediates:
     passages: tuple[Passage, ...]
 
 
-Block = Heading | Subheading | Paragraph | Display | Matrices | Components | Folded | Intermediates
+@dataclass(frozen=True)
+class Table:
+    """Rows under the ``head``, in columns of these ``widths`` (cm); ``instead``: paragraphs where it is too wide."""
+
+    head: tuple[Inline, ...]
+    rows: tuple[tuple[tuple[Inline, ...], ...], ...]
+    widths: tuple[float, ...]
+    instead: tuple[Paragraph, ...]
+
+
+@dataclass(frozen=True)
+class Facts:
+    """A list of what was found: of each the name, and what is said of it."""
+
+    items: tuple[tuple[tuple[Inline, ...], tuple[Inline, ...]], ...]
+
+
+@dataclass(frozen=True)
+class Cited:
+    """Words, each with the keys of its literature; told where there is a list of literature."""
+
+    words: Said
+    items: tuple[tuple[Inline, tuple[str, ...]], ...]
+
+
+@dataclass(frozen=True)
+class Beside:
+    """Blocks in which these names occur besides those of the system."""
+
+    names: tuple[str, ...]
+    blocks: tuple[Block, ...]
+
+
+Block = (
+    Heading
+    | Subheading
+    | Paragraph
+    | Display
+    | Definitions
+    | Matrices
+    | Components
+    | Table
+    | Facts
+    | Cited
+    | Beside
+    | Folded
+    | Intermediates
+)
 
 
 def paragraph(*parts: Inline) -> Paragraph:
     """A paragraph of these parts."""
     return Paragraph(parts)
+
+
+def joined(items: Iterable[Inline], *between: Inline) -> Phrase:
+    """The items with ``between`` from one to the next."""
+    parts = [part for item in items for part in (*between, item)]
+    return Phrase(tuple(parts[len(between) :]))
 
 
 def named(names: Iterable[str]) -> Listed:

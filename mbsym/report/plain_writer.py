@@ -63,6 +63,10 @@ class Writer:
         return self.inline(value.text)
 
     @inline.register
+    def _(self, value: content.Phrase) -> str:
+        return "".join(map(self.inline, value.parts))
+
+    @inline.register
     def _(self, value: content.Name) -> str:
         return value.name + _DOTS[value.dots]
 

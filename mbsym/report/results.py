@@ -7,9 +7,11 @@ from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from mbsym.formulas.latex import latex_names, latex_symbol
 from mbsym.report.canonical import Forms, forms_of
 from mbsym.report.compact import Compact, compact
-from mbsym.report.content import Block, Intermediates, Paragraph, Said, Words, paragraph, say
+from mbsym.report.conditions import provided
+from mbsym.report.content import Block, Inline, Intermediates, Paragraph, Said, Words, paragraph, say
 from mbsym.report.sections import section_of
 
 if TYPE_CHECKING:
@@ -61,6 +63,31 @@ class Results:
         """Routh's and Hamilton's forms, where they were asked for."""
         return forms_of(self.analysis, self.problems)
 
+    @cached_property
+    def variable(self) -> str:
+        """The letter of characteristic polynomials."""
+        return self._free("lambda", "mu", "sigma", "s", "p", "z", "zeta")
+
+    @cached_property
+    def characteristic(self) -> str:
+        """The letter that stands for such a polynomial."""
+        return self._free("Lambda", "Delta", "Phi", "P", "Q")
+
+    def _free(self, *letters: str) -> str:
+        """The first that is the symbol of nothing declared."""
+        system, names = self.system, latex_names(self.analysis.ring)
+        declared = [*system.coordinates, *system.parameter_names]
+        declared += [item.name for item in (*system.prescribed, *system.notation)]
+        taken = {str(names[name]) for name in declared}
+        return next((x for x in letters if str(latex_symbol(x)) not in taken), letters[0])
+
+    @cached_property
+    def presumed(self) -> tuple[Inline, ...]:
+        """What the verdicts of problem 6 presume, after a comma."""
+        found = self.found.get(6)
+        text = "" if found is None else provided(found.presumed, bool(self.system.inputs))
+        return (", ", Words(text)) if text else ()
+
     def intermediates(self, number: int) -> Iterator[Block]:
         """The named quantities through which the formulas of a problem are told."""
         told = self.told[number]
@@ -76,11 +103,15 @@ class Results:
             yield Paragraph((Said("No result"), ": ", Words(failure.reason), *hint, "."), missing=True)
 
 
-def contents(known: Results, write: Callable[[Iterator[Block]], T]) -> dict[int, Callable[[], T]]:
-    """By number, what writes the section of a problem."""
+#: What is told besides problems.
+PARTS = ("summary", "conventions", "claims", "checks")
+
+
+def contents(known: Results, write: Callable[[Iterator[Block]], T]) -> dict[int | str, Callable[[], T]]:
+    """What writes a section, by the number of its problem, or by its name."""
     from mbsym.analysis import PROBLEMS
 
-    sections = {number: section_of(PROBLEMS[number]) for number in known.problems}
+    sections = {n: section_of(n if isinstance(n, str) else PROBLEMS[n]) for n in (*known.problems, *PARTS)}
     return {n: partial(lambda x: write(x.content(known)), x) for n, x in sections.items() if hasattr(x, "content")}
 
 

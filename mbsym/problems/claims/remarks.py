@@ -105,10 +105,11 @@ _SENTENCES: dict[Said, str | Callable[..., str]] = {
 }
 
 
+def sentence(remark: Remark) -> str:
+    found = _SENTENCES[remark.code]
+    return found if isinstance(found, str) else found(*remark.data)
+
+
 def words(remarks: Iterable[Remark]) -> str:
     """Their sentences, one after another."""
-    found = []
-    for one in remarks:
-        sentence = _SENTENCES[one.code]
-        found.append(sentence if isinstance(sentence, str) else sentence(*one.data))
-    return "; ".join(found)
+    return "; ".join(map(sentence, remarks))

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from functools import singledispatchmethod
 from typing import Any
 
+from mbsym.expressions.tree import Expression
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.latex import LatexNames, latex_names, latex_symbol
 from mbsym.report import content
@@ -15,11 +16,13 @@ from mbsym.report.content import Inline, Said
 from mbsym.report.language import Language
 from mbsym.report.latex import formulas
 from mbsym.report.latex.description import expression
+from mbsym.report.latex.displays import loosened
 from mbsym.report.latex.form import Form, heading, subheading
 from mbsym.report.latex.formulas import Measured, measured_matrix
 from mbsym.report.latex.labels import Labels
-from mbsym.report.latex.told import paragraphs
+from mbsym.report.latex.told import CLOSING, OPENING, PARAGRAPH, paragraphs
 from mbsym.report.latex.words import RELATIONS, escaped, prose
+from mbsym.report.lengths import length
 
 _DOTS = ("", "dot", "ddot")
 
@@ -76,6 +79,18 @@ class Writer:
     def _(self, value: content.Strong) -> str:
         return f"\\textbf{{{self.inline(value.text)}}}"
 
+    @inline.register
+    def _(self, value: content.Phrase) -> str:
+        return self._joined(value.parts)
+
+    @inline.register
+    def _(self, value: content.Graded) -> str:
+        return self.inline(content.Strong(value.text) if value.grade == "bad" else value.text)
+
+    @inline.register
+    def _(self, value: content.Link) -> str:
+        return self.inline(value.text)
+
     # --- mathematics ---
 
     @singledispatchmethod
@@ -117,6 +132,18 @@ class Writer:
         return value.tex
 
     @math.register
+    def _(self, value: content.Power) -> str:
+        return f"{self.math(value.base)}^{{{value.exponent}}}"
+
+    @math.register
+    def _(self, value: content.Text) -> str:
+        return f"\\text{{{self._joined(value.parts)}}}"
+
+    @math.register
+    def _(self, value: content.Readable) -> str:
+        return self.math(value.value) if formulas.is_readable(value.value) else self._length(value.value, value.kept)
+
+    @math.register
     def _(self, value: content.Listed) -> str:
         # Of equations each may stand in a line of its own.
         comma = ",\\quad \\penalty0 " if any(isinstance(x, content.Relation) for x in value.items) else ",\\, "
@@ -129,7 +156,7 @@ class Writer:
 
     @math.register
     def _(self, value: content.Polynomial) -> str:
-        written = formulas.polynomial(value.coefficients, latex_symbol(value.variable).stem)
+        written = formulas.polynomial(value.coefficients, latex_symbol(value.variable).stem, self._length)
         return written if value.power == 1 else f"\\bigl[{written}\\bigr]^{{{value.power}}}"
 
     # --- blocks ---
@@ -145,11 +172,11 @@ class Writer:
 
     @block.register
     def _(self, value: content.Subheading) -> str:
-        return subheading(self.form, "".join(map(self.inline, value.parts)))
+        return subheading(self.form, self._joined(value.parts))
 
     @block.register
     def _(self, value: content.Paragraph) -> str:
-        return "".join(map(self.inline, value.parts)) + "\n"
+        return self._joined(value.parts) + "\n"
 
     @block.register
     def _(self, value: content.Display) -> str:
@@ -157,7 +184,15 @@ class Writer:
             written = "".join(self._beside(x) for x in value.value)
         else:
             written = self.math(value.value)
-        return self._display(written, value.key)
+        if isinstance(value.value, Expression):  # as it was printed, without places where it may be broken
+            written = loosened(written)
+        notes = "".join(f" \\quad\\penalty0 \\text{{({self.inline(note)})}}" for note in value.notes)
+        return self._display(written + notes, value.key)
+
+    @block.register
+    def _(self, value: content.Definitions) -> str:
+        written = "; ".join(f"$\\displaystyle {loosened(self.math(item))}$" for item in value.items)
+        return f"{OPENING}{PARAGRAPH}{self.said(value.words)}: {written}.{CLOSING}}}\n"
 
     @block.register
     def _(self, value: content.Matrices) -> str:
@@ -188,12 +223,43 @@ class Writer:
         )
 
     @block.register
+    def _(self, value: content.Table) -> str:
+        if self.form is not Form.REPORT:
+            return self.document(value.instead)
+        columns = "".join(f">{{\\raggedright\\arraybackslash}}p{{{width}cm}}" for width in value.widths)
+        head, *rows = (" & ".join(map(self._joined, row)) for row in (tuple((x,) for x in value.head), *value.rows))
+        lines = "".join(f"{row}\\\\\n" for row in rows)
+        return f"\\begin{{longtable}}{{@{{}}{columns}@{{}}}}\n{head}\\\\\\hline\\endhead\n{lines}\\end{{longtable}}\n"
+
+    @block.register
+    def _(self, value: content.Facts) -> str:
+        items = "".join(f"\\item {self._joined(name)}: {self._joined(said)}.\n" for name, said in value.items)
+        return f"\\begin{{itemize}}\\setlength{{\\itemsep}}{{1pt}}\n{items}\\end{{itemize}}\n"
+
+    @block.register
+    def _(self, value: content.Cited) -> str:
+        if self.form is not Form.REPORT:
+            return ""
+        written = "; ".join(f"{self.inline(words)}~\\cite{{{','.join(keys)}}}" for words, keys in value.items)
+        return f"{self.said(value.words)}: {written}.\n"
+
+    @block.register
+    def _(self, value: content.Beside) -> str:
+        return replace(self, names=self.names.beside(value.names)).document(value.blocks)
+
+    @block.register
     def _(self, value: content.Folded) -> str:
         return ""
 
     @block.register
     def _(self, value: content.Intermediates) -> str:
         return paragraphs(value.told, value.passages, lambda words: self.inline(content.Words(words))) + "\n"
+
+    def _joined(self, parts: Iterable[Inline]) -> str:
+        return "".join(map(self.inline, parts))
+
+    def _length(self, value: Formula, kept: bool = True) -> str:
+        return f"\\text{{({self.said(length(value, kept))})}}"
 
     def _beside(self, value: Inline) -> str:
         """A part of a displayed line: words stand in it as text."""

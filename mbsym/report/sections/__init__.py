@@ -1,4 +1,4 @@
-"""What each numbered problem shows, one problem a file.
+"""What each numbered problem shows, one problem a file, and what reports say besides.
 
 A problem's module is found by its attribute: ``content(results)`` is what reports say of it, ``lines(found, analysis)``
 its lines in the terminal, ``data(found, system, write)`` its section of results.json.  Its part of report.wl is a
@@ -14,6 +14,6 @@ if TYPE_CHECKING:
     from mbsym.analysis import Problem
 
 
-def section_of(problem: Problem[Any]) -> Any:
-    """The module that shows a problem."""
-    return import_module(f"{__name__}.{problem.attribute}")
+def section_of(what: Problem[Any] | str) -> Any:
+    """The module that shows a problem, or what is told besides by its name."""
+    return import_module(f"{__name__}.{what if isinstance(what, str) else what.attribute}")
