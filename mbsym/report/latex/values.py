@@ -50,13 +50,13 @@ from mbsym.report.latex.integrals import of_integrals, of_list, of_symmetries, w
 from mbsym.report.latex.invariant import of_invariant_sets
 from mbsym.report.latex.labels import Labels, prefix_of
 from mbsym.report.latex.normal_forms import of_normal_forms
-from mbsym.report.references import references
 from mbsym.report.latex.small import of_small_parameters
 from mbsym.report.latex.stabilisation import of_stabilisation, rational_matrix, rational_row
 from mbsym.report.latex.told import packed, paragraphs
 from mbsym.report.latex.words import RELATIONS, displayed, escaped, is_cyrillic
 from mbsym.report.latex.writer import Writer
 from mbsym.report.lengths import COUNTED, PAPER, PAPER_FORMS, PAPER_PROGRAM, program_not_printed, withheld
+from mbsym.report.references import references
 from mbsym.report.results import contents, results
 from mbsym.report.unit_text import bracketed
 from mbsym.report.words.integrals_words import OPENING

@@ -101,7 +101,7 @@ def _difference(result: ClaimResult, number: int) -> Iterator[Block]:
         if not result.parts and result.difference is not None:
             yield Display(Relation(*left, result.difference))
     if result.counterexample is not None:
-        yield paragraph(Said("A counterexample"), ": ", counterexample(result.counterexample), ".")
+        yield paragraph(counterexample(result.counterexample))
 
 
 def _part(part: Part, variable: str) -> Iterator[Block]:

@@ -10,8 +10,10 @@ from mbsym.expressions.tree import text
 from mbsym.formulas.formula import Formula
 from mbsym.problems.claims import DIFFERS, FACTOR, SCALED, UNDECIDED, ClaimResult, Part
 from mbsym.problems.claims.counterexample import THE_MOTION, Counterexample
-from mbsym.problems.claims.remarks import sentence
-from mbsym.report.content import Inline, Said, Words, say
+from mbsym.problems.claims.remarks import Remark
+from mbsym.problems.claims.remarks import text as text_of
+from mbsym.problems.stability.word import Word
+from mbsym.report.content import Inline, Phrase, Said, Words, joined, say
 from mbsym.report.plain_writer import Writer
 
 #: Differences longer than this are counted, not printed.
@@ -64,15 +66,33 @@ def _outcome(result: ClaimResult) -> Iterator[Inline]:
         yield from (", ", say("[[right]] of [[printed]] digits right", right=right, printed=printed))
     if result.remark and (result.outcome in (UNDECIDED, DIFFERS) or not result.parts):
         yield ", " if result.outcome == FACTOR else ": "
-        yield from remarks(result)
+        yield remarks(result)
 
 
-def remarks(result: ClaimResult) -> Iterator[Inline]:
+def remarks(result: ClaimResult) -> Inline:
     """What else there is to say, sentence by sentence."""
-    sentences = [*map(sentence, result.remarks)] or [result.remark]
-    for k, one in enumerate(sentences):
-        yield from ("; ",) if k else ()
-        yield Words(one)
+    return joined(map(_remark, result.remarks), "; ") if result.remarks else Words(result.remark)
+
+
+def _remark(remark: Remark) -> Said:
+    return say(text_of(remark), **{str(k): _datum(x) for k, x in enumerate(remark.data, start=1)})
+
+
+def _datum(value: object) -> Inline:
+    if isinstance(value, Remark):
+        return _remark(value)
+    if isinstance(value, tuple):
+        several = any(isinstance(x, Remark) for x in value)
+        return joined(map(_datum, value), *((" ", Said("and"), " ") if several else (", ",)))
+    return _verdict(str(value))
+
+
+def _verdict(words: str) -> Inline:
+    """``stable (Routh)``, or other words."""
+    word, bracket, theorems = words.removesuffix(")").partition(" (")
+    if not bracket or word not in [*Word]:
+        return Words(words)
+    return Phrase((Words(word), " (", joined(map(Words, theorems.split(", ")), ", "), ")"))
 
 
 def together(lines: Iterable[ClaimLine]) -> Iterator[list[ClaimLine]]:
@@ -103,17 +123,17 @@ def _differences(result: ClaimResult) -> Iterator[str]:
     if not result.parts and result.difference is not None:
         yield f"{left_side(result)} = {_long(result.difference)}"
     if result.counterexample is not None:
-        yield Writer().said(counterexample(result.counterexample))
+        yield Writer().said(counterexample(result.counterexample, "for example at [[at]]: [[shows]]"))
 
 
-def counterexample(found: Counterexample) -> Said:
-    """``for example at A = 1, C = 3: C - (7*A) = -4, the motion is stable (Routh)``."""
+def counterexample(found: Counterexample, text: str = "For example at [[at]]: [[shows]].") -> Said:
+    """``For example at A = 1, C = 3: C - (7*A) = -4, the motion is stable (Routh).``"""
     at = ", ".join(f"{name} = {value}" for name, value in found.at)
     shows = [
-        say("the motion is [[verdict]]", verdict=Words(value)) if what == THE_MOTION else f"{what} = {value}"
+        say("the motion is [[verdict]]", verdict=_verdict(value)) if what == THE_MOTION else f"{what} = {value}"
         for what, value in found.shows
     ]
-    return say("for example at [[at]]: [[shows]]", at=at, shows=shows)
+    return say(text, at=at, shows=shows)
 
 
 def left_side(result: ClaimResult) -> str:
