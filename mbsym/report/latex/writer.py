@@ -119,8 +119,8 @@ class Writer:
     def _(self, value: content.Symbol) -> str:
         stem = latex_symbol(value.letter)
         written = stem.accented(_DOTS[value.dots]) if value.dots else str(stem)
-        upper = f"^{{{_index(value.upper)}}}" if value.upper else ""
-        return written + upper + (f"_{{{_index(value.lower)}}}" if value.lower else "")
+        lower = f"_{{{_index(value.lower)}}}" if value.lower else ""
+        return written + lower + (f"^{{{_index(value.upper)}}}" if value.upper else "")
 
     @math.register
     def _(self, value: content.Entry) -> str:
@@ -152,7 +152,8 @@ class Writer:
 
     @math.register
     def _(self, value: content.Relation) -> str:
-        return " ".join(map(self.math, value.parts))
+        written = " ".join(map(self.math, value.parts))
+        return f"-{written[2:]}" if written.startswith("- ") else written
 
     @math.register
     def _(self, value: content.Polynomial) -> str:
