@@ -30,6 +30,7 @@ COMMANDS = {
     "batch": Listed("batch", "Derive folders of descriptions: in parallel, only what changed."),
     "watch": Listed("watch", "Derive a description again whenever it is saved."),
     "diff": Listed("diff", "Say exactly what changed between results, or descriptions."),
+    "show": Listed("formulas", "Print one formula, or the equations of motion."),
     "simulate": Listed("simulate", "Integrate the equations of motion and draw figures."),
     "view": Listed("view", "Show a system in three dimensions, as one page."),
     "inverse": Listed("inverse", "Find the inputs that a given motion needs."),

@@ -8,9 +8,11 @@ content and nothing of results.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from typing import Any
 
+from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
 from mbsym.expressions.rates import without_velocity
 from mbsym.expressions.tree import Expression
@@ -25,30 +27,36 @@ from mbsym.report.words.passages import Passage
 class Symbol:
     """A letter of ours with indices: ``Symbol("omega", "1")``, ``Symbol("V", "O1")``, ``Symbol("R", upper="01")``.
 
-    The letter is one of the alphabet or the English name of a Greek one; ``dots`` are those above it.
+    The letter is one of the alphabet or the English name of a Greek one; ``dots`` are those above it, ``look`` is "",
+    "bar" (above it) or "script".
     """
 
     letter: str
     lower: str = ""
     upper: str = ""
     dots: int = 0
+    look: str = ""
 
 
 @dataclass(frozen=True)
 class Entry:
-    """An entry of a matrix that has an index itself: (M_1)_12."""
+    """An entry of a matrix, which may have an index itself: (M_1)_12; a component by a name: Q_theta."""
 
     whole: Symbol
-    index: str
+    index: str | Name
 
 
 @dataclass(frozen=True)
 class Name:
-    """A name that the description declares, ``dots`` above it; ``ring``: that of the formulas that hold it besides."""
+    """A name that the description declares, ``dots`` above it; ``at``: its value at a time, theta(0).
+
+    ``ring``: that of the formulas that hold it, where it is not the system's.
+    """
 
     name: str
     dots: int = 0
     ring: Ring | None = None
+    at: str = ""
 
 
 @dataclass(frozen=True)
@@ -86,10 +94,11 @@ class Readable:
 
 @dataclass(frozen=True)
 class Listed:
-    """Values side by side: a, b, c.  ``brackets``: (a, b, c)."""
+    """Values side by side: a, b, c.  ``brackets``: (a, b, c); ``braces``: {a, b, c}."""
 
     items: tuple[Math, ...]
     brackets: bool = False
+    braces: bool = False
 
 
 @dataclass(frozen=True)
@@ -111,6 +120,28 @@ class Polynomial:
     power: int = 1
 
 
+@dataclass(frozen=True)
+class SpeedForm:
+    """What a speed is made of, in which components of the angular velocity of body number ``body`` may stand."""
+
+    form: Expression
+    body: int
+
+
+@dataclass(frozen=True)
+class Tensor:
+    """A tensor of the description, row by row."""
+
+    rows: tuple[tuple[Expression, Expression, Expression], ...]
+
+
+@dataclass(frozen=True)
+class Points:
+    """The points (x, y) of a table; of many the first and the last."""
+
+    points: tuple[tuple[Fraction, Fraction], ...]
+
+
 Math = (
     Symbol
     | Entry
@@ -122,6 +153,9 @@ Math = (
     | Listed
     | Relation
     | Polynomial
+    | SpeedForm
+    | Tensor
+    | Points
     | Formula
     | Expression
     | int
@@ -169,13 +203,6 @@ class Strong:
 
 
 @dataclass(frozen=True)
-class Phrase:
-    """Parts one after the other."""
-
-    parts: tuple[Inline, ...]
-
-
-@dataclass(frozen=True)
 class Graded:
     """Words among others that are good, bad or open: coloured on a screen; on paper the bad ones stand out."""
 
@@ -191,8 +218,44 @@ class Link:
     to: str
 
 
+@dataclass(frozen=True)
+class Phrase:
+    """Parts one after the other."""
+
+    parts: tuple[Inline, ...]
+
+
+@dataclass(frozen=True)
+class Emphasis:
+    """A name in italics: that of a body."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Verbatim:
+    """What somebody typed: a name of the description, a file."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A unit in brackets, as the description has it."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Citation:
+    """A publication: its number where there is a list of literature, else its ``text``."""
+
+    key: str
+    text: str
+
+
 #: What stands in a line; a ``str`` is as it is in every language: a name of a body, a number, punctuation.
-Inline = Said | Words | Strong | Phrase | Graded | Link | Math | str
+Inline = Said | Words | Strong | Graded | Link | Phrase | Emphasis | Verbatim | Unit | Citation | Math | str
 
 
 # --- blocks -----------------------------------------------------------------------------------------------------------
@@ -241,11 +304,23 @@ class Definitions:
 
 @dataclass(frozen=True)
 class Matrices:
-    """A matrix as a whole where it fits, else its entries; of a ``symmetric`` one the upper half."""
+    """A matrix as a whole where it fits, else its entries; of a ``symmetric`` one the upper half.
+
+    ``packed``: its entries in any case, side by side on paper.
+    """
 
     symbol: Symbol
     value: Matrix
     symmetric: bool
+    key: str
+    packed: bool = False
+
+
+@dataclass(frozen=True)
+class SideBySide:
+    """Several matrices, on paper beside each other where they fit; ``key``: that of their labels then."""
+
+    matrices: tuple[Matrices, ...]
     key: str
 
 
@@ -259,29 +334,31 @@ class Components:
 
 
 @dataclass(frozen=True)
-class Folded:
-    """What a screen unfolds on request; paper is without it."""
+class Itemised:
+    """A list; each item is one block or several."""
 
-    title: Said
-    blocks: tuple[Block, ...]
+    items: tuple[tuple[Block, ...], ...]
+    numbered: bool = False
 
 
 @dataclass(frozen=True)
-class Intermediates:
-    """Definitions of named quantities, each in front of what needs it: phrases and what they introduce."""
+class TableColumn:
+    """A column of a table; ``width``: that on a wide page in cm, 0 for what screens alone show."""
 
-    told: Told[Any]
-    passages: tuple[Passage, ...]
+    title: Said
+    width: float
 
 
 @dataclass(frozen=True)
 class Table:
-    """Rows under the ``head``, in columns of these ``widths`` (cm); ``instead``: paragraphs where it is too wide."""
+    """Rows of cells, each of them parts of a line; in narrow columns of paper its rows follow one another.
 
-    head: tuple[Inline, ...]
+    One without a title has headings of its columns on paper, too, and its rows are paragraphs where they follow.
+    """
+
+    title: Said | None
+    columns: tuple[TableColumn, ...]
     rows: tuple[tuple[tuple[Inline, ...], ...], ...]
-    widths: tuple[float, ...]
-    instead: tuple[Paragraph, ...]
 
 
 @dataclass(frozen=True)
@@ -307,6 +384,35 @@ class Beside:
     blocks: tuple[Block, ...]
 
 
+@dataclass(frozen=True)
+class Folded:
+    """What a screen unfolds on request; paper is without it."""
+
+    title: Said
+    blocks: tuple[Block, ...]
+
+
+@dataclass(frozen=True)
+class Intermediates:
+    """Definitions of named quantities, each in front of what needs it: phrases and what they introduce."""
+
+    told: Told[Any]
+    passages: tuple[Passage, ...]
+
+
+@dataclass(frozen=True)
+class Steps:
+    """A straight-line program: what occurs more than once has a number, then ``results`` by what they are called.
+
+    ``names`` are those of its inputs; a screen unfolds it under the ``title``.
+    """
+
+    program: Program
+    results: tuple[tuple[Symbol, Node], ...]
+    names: Mapping[str, Math]
+    title: Said
+
+
 Block = (
     Heading
     | Subheading
@@ -314,13 +420,16 @@ Block = (
     | Display
     | Definitions
     | Matrices
+    | SideBySide
     | Components
+    | Itemised
     | Table
     | Facts
     | Cited
     | Beside
     | Folded
     | Intermediates
+    | Steps
 )
 
 
@@ -335,6 +444,17 @@ def joined(items: Iterable[Inline], *between: Inline) -> Phrase:
     return Phrase(tuple(parts[len(between) :]))
 
 
+def equalities(pairs: Iterable[tuple[Math, Math]], key: str) -> Iterator[Display]:
+    """Each is equal to its other one, in lines of their own; ``key`` and its number is that of its label."""
+    for k, (left, right) in enumerate(pairs, start=1):
+        yield Display(Relation(left, "=", right), f"{key}:{k}")
+
+
+def numbered(symbol: Symbol, values: Iterable[Formula]) -> Iterator[tuple[Symbol, Formula]]:
+    """Components, by the symbol with their number as its index."""
+    return ((replace(symbol, lower=str(k)), value) for k, value in enumerate(values, start=1))
+
+
 def named(names: Iterable[str]) -> Listed:
     """Declared names side by side."""
     return Listed(tuple(map(Name, names)))
@@ -344,6 +464,11 @@ def speed(name: str) -> Name:
     """A variable of velocity: a declared speed by its name, the velocity of a coordinate as the dotted coordinate."""
     plain = without_velocity(name)
     return Name(plain, int(plain != name))
+
+
+def speeds(names: Iterable[str]) -> Listed:
+    """Variables of velocity side by side."""
+    return Listed(tuple(map(speed, names)))
 
 
 def pieces(text: str) -> Iterator[tuple[bool, str]]:

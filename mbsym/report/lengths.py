@@ -60,9 +60,9 @@ def formulas(result: Any) -> Iterator[Formula]:
             yield from formulas(getattr(result, field.name))
 
 
-def program_not_printed(steps: int) -> str:
+def program_not_printed(steps: int) -> Said:
     """The same for straight-line code."""
-    return f"{steps} steps, not printed; model.py and model.c have them"
+    return say("[[count]] steps, not printed; model.py and model.c have them", count=str(steps))
 
 
 def not_printed(formula: Formula) -> str:

@@ -59,8 +59,22 @@ class Writer:
         return self.language.say(value.text)
 
     @inline.register
+    def _(self, value: content.Phrase) -> str:
+        return "".join(map(self.inline, value.parts))
+
+    @inline.register
     def _(self, value: content.Strong) -> str:
         return self.inline(value.text)
+
+    @inline.register(content.Emphasis)
+    @inline.register(content.Verbatim)
+    @inline.register(content.Citation)
+    def _(self, value: content.Emphasis | content.Verbatim | content.Citation) -> str:
+        return value.text
+
+    @inline.register
+    def _(self, value: content.Unit) -> str:
+        return f"[{value.text}]"
 
     @inline.register
     def _(self, value: content.Phrase) -> str:
@@ -68,7 +82,7 @@ class Writer:
 
     @inline.register
     def _(self, value: content.Name) -> str:
-        return value.name + _DOTS[value.dots]
+        return value.name + _DOTS[value.dots] + (f"({value.at})" if value.at else "")
 
     @inline.register
     def _(self, value: content.Symbol) -> str:
@@ -76,7 +90,8 @@ class Writer:
 
     @inline.register
     def _(self, value: content.Entry) -> str:
-        return f"{self.inline(value.whole)}[{value.index}]"
+        index = value.index if isinstance(value.index, str) else self.inline(value.index)
+        return f"{self.inline(value.whole)}[{index}]"
 
     @inline.register
     def _(self, value: content.Notation) -> str:
@@ -85,7 +100,7 @@ class Writer:
     @inline.register
     def _(self, value: content.Listed) -> str:
         written = ", ".join(map(self.inline, value.items))
-        return f"({written})" if value.brackets else written
+        return f"({written})" if value.brackets else f"{{{written}}}" if value.braces else written
 
     @inline.register
     def _(self, value: content.Relation) -> str:

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, TypeVar
+from functools import cached_property
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from mbsym.formulas.latex import latex_names, latex_symbol
-from mbsym.report.canonical import Forms, forms_of
+from mbsym.model.system import INERTIAL
+from mbsym.report.canonical import forms_of
+from mbsym.report.canonical_denominators import Denominators, with_names
 from mbsym.report.compact import Compact, compact
 from mbsym.report.conditions import provided
-from mbsym.report.content import Block, Inline, Intermediates, Paragraph, Said, Words, paragraph, say
+from mbsym.report.content import Block, Heading, Inline, Intermediates, Paragraph, Said, Words, paragraph, say
 from mbsym.report.sections import section_of
 
 if TYPE_CHECKING:
@@ -59,9 +62,14 @@ class Results:
         return compact(self.analysis, {number: self.found.get(number) for number in self.problems})
 
     @cached_property
-    def forms(self) -> Forms:
-        """Routh's and Hamilton's forms, where they were asked for."""
-        return forms_of(self.analysis, self.problems)
+    def forms(self) -> Denominators:
+        """Routh's and Hamilton's forms, where they were asked for; their long denominators have names."""
+        return with_names(forms_of(self.analysis, self.problems), self.system)
+
+    @property
+    def numbers(self) -> dict[str, int]:
+        """Of the bodies by name, in the order of the description; the inertial frame has 0."""
+        return {INERTIAL: 0} | {body.name: k for k, body in enumerate(self.system.bodies, start=1)}
 
     @cached_property
     def variable(self) -> str:
@@ -99,20 +107,45 @@ class Results:
         """Why a problem has no result, if it has none."""
         failure = self.failures.get(number)
         if failure is not None:
-            hint = (" (", Words(failure.hint), ")") if failure.hint else ()
-            yield Paragraph((Said("No result"), ": ", Words(failure.reason), *hint, "."), missing=True)
+            yield no_result(failure)
 
 
-#: What is told besides problems.
-PARTS = ("summary", "conventions", "claims", "checks")
+def no_result(failure: NoResult) -> Paragraph:
+    """Why there is none."""
+    hint = (" (", Words(failure.hint), ")") if failure.hint else ()
+    return Paragraph((Said("No result"), ": ", Words(failure.reason), *hint, "."), missing=True)
 
 
-def contents(known: Results, write: Callable[[Iterator[Block]], T]) -> dict[int | str, Callable[[], T]]:
-    """What writes a section, by the number of its problem, or by its name."""
+#: What stands beside the problems, by the names of its modules in ``sections``.
+BESIDE = ("summary", "system", "conventions", "claims", "checks")
+
+
+@dataclass(frozen=True)
+class Section(Generic[T]):
+    """A section of a report: what is called writes it, ``title`` what its heading says."""
+
+    build: Callable[[Results], Iterator[Block]]
+    known: Results
+    write: Callable[[Iterator[Block]], T]
+
+    def __call__(self) -> T:
+        return self.write(self.build(self.known))
+
+    @property
+    def title(self) -> Said:
+        """Of its heading, which every section begins with."""
+        heading = next(self.build(self.known))
+        assert isinstance(heading, Heading)
+        return heading.title
+
+
+def contents(known: Results, write: Callable[[Iterator[Block]], T]) -> dict[int | str, Section[T]]:
+    """The sections: those of the problems by their numbers, others by their names."""
     from mbsym.analysis import PROBLEMS
 
-    sections = {n: section_of(n if isinstance(n, str) else PROBLEMS[n]) for n in (*known.problems, *PARTS)}
-    return {n: partial(lambda x: write(x.content(known)), x) for n, x in sections.items() if hasattr(x, "content")}
+    modules: dict[int | str, Any] = {number: section_of(PROBLEMS[number]) for number in known.problems}
+    modules |= {name: import_module(f"mbsym.report.sections.{name}") for name in BESIDE}
+    return {key: Section(x.content, known, write) for key, x in modules.items() if hasattr(x, "content")}
 
 
 def results(analysis: Analysis, problems: Sequence[int]) -> Results:

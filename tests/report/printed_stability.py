@@ -254,7 +254,7 @@ def of_latex(text: str) -> list[Part]:
             for word in re.finditer(
                 r"\\subsection\*?\{|The characteristic polynomial|Number of its factors|Conditions \(|"
                 r"(?:Otherwise )?\\textbf\{([^{}]*)\}([^\n]*?):$|and(?: at least one of these holds)?:$|Verdict|"
-                r"with: (\$.*\$)\.",
+                r"with: ((?:\$\\displaystyle\s[^$]*\$(?:;\s)?)+)",
                 content,
                 re.MULTILINE,
             ):
@@ -272,9 +272,9 @@ def of_latex(text: str) -> list[Part]:
                 elif said == "Verdict":
                     state = ""
                 elif said.startswith("with"):
-                    for one in re.findall(r"\$\\displaystyle (.*?)\$", word[3]):
-                        letter, _, value = one.partition(" = ")
-                        parts[-1].lines[-1].letters[letter.strip()] = latex(value)
+                    for one in re.findall(r"\$\\displaystyle\s([^$]*)\$", word[3]):
+                        letter, _, value = " ".join(one.split()).partition(" = ")
+                        _latex_lines(parts[-1], state)[-1].letters[letter.strip()] = latex(value)
                 elif parts and state:
                     parts[-1].cases.append(Case(word[1]))
                     state = "any" if "at least one" in word[2] else "all"
@@ -288,11 +288,12 @@ def of_latex(text: str) -> list[Part]:
             whole, times = (raised[1], int(raised[2])) if raised else (right, 1)
             parts[-1].factors.append((latex(whole), times))
         elif state not in ("", "told"):
-            into = {"lines": lambda: parts[-1].lines, "all": lambda: parts[-1].cases[-1].all_of}.get(
-                state, lambda: parts[-1].cases[-1].any_of
-            )()
-            into.append(_latex_line(content))
+            _latex_lines(parts[-1], state).append(_latex_line(content))
     return parts
+
+
+def _latex_lines(part: Part, state: str) -> list[Line]:
+    return part.lines if state == "lines" else part.cases[-1].all_of if state == "all" else part.cases[-1].any_of
 
 
 def _latex_pieces(section: str) -> Iterator[tuple[str, str]]:
@@ -328,7 +329,7 @@ def _latex_line(content: str) -> Line:
 
 
 def _latex_label(label: str) -> str:
-    words = re.sub(r"\\text\{([^{}]*)\}", r"\1", label.strip())
+    words = re.sub(r" ?\\text\{([^{}]*)\}", r"\1", label.strip())
     words = re.sub(r"([av])_\{(\d+)\}\^\{\((\d+)\)\}", r"\1\2 of factor \3", words)
     return re.sub(r"([av])_\{(\d+)\}", r"\1\2", words)
 
@@ -493,10 +494,13 @@ def equations(surface: str, text: str) -> list[Value | None]:
             return [latex(x.removesuffix(" = 0")) for x in formulas]
     (section_4,) = [x for x in tree(text).iter("section") if x.get("id") == "problem-4"]
     lines_4: list[list[Token]] = []
+    told = False
     for node in section_4.iter():
-        if node.tag == "p" and "use in the form" in "".join(node.itertext()):
+        words = "".join(node.itertext()) if node.tag == "p" else ""
+        if "use in the form" in words:
             break
-        if node.tag == "div" and node.get("class") == "formula":
+        told = told or "if and only if" in words
+        if told and node.tag == "div" and node.get("class") == "formula":
             lines_4.append([x for part in node.iter("math") for x in tokens_of(part)])
     assert all(x[-2:] == [("mo", "="), ("mn", "0")] for x in lines_4)
     return [mathml(x[:-2]) for x in lines_4]

@@ -94,29 +94,17 @@ def symbol(name: str, lower: str = "", upper: str = "", dots: str = "") -> Marku
 
 
 def _indices(text: str) -> str:
-    """12, O1, ``1,12``, (2): letters, digits, commas, brackets."""
+    """12, O1, ``1,12``, (1): letters, digits, commas, brackets."""
     return "".join(
-        mn(piece) if piece.isdigit() else _MARKS.get(piece) or mi(piece)
+        mn(piece)
+        if piece.isdigit()
+        else '<mo separator="true">,</mo>'
+        if piece == ","
+        else mi(piece)
+        if piece.isalpha()
+        else mo(piece)
         for piece in re.findall(r"\d+|[,()]|[A-Za-z]", text)
     )
-
-
-_MARKS = {
-    ",": '<mo separator="true">,</mo>',
-    "(": '<mo form="prefix" stretchy="false">(</mo>',
-    ")": '<mo form="postfix" stretchy="false">)</mo>',
-}
-
-
-def part_of(name: str, part: object, lower: str) -> Markup:
-    """An entry of a matrix of a subsystem: (M with index 1) with index 12."""
-    whole = f"<mrow><mo>(</mo>{symbol(name, str(part))}<mo>)</mo></mrow>" if part else symbol(name)
-    return Markup(f"<msub>{whole}<mrow>{_indices(lower)}</mrow></msub>")
-
-
-def entry(name: str, part: str, lower: str, upper: str) -> Markup:
-    """An entry of a matrix."""
-    return part_of(name, part, lower) if part else symbol(name, lower, upper)
 
 
 def indexed(base: str, lower: object) -> Markup:

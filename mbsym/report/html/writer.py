@@ -11,19 +11,26 @@ from typing import Any
 from markupsafe import Markup, escape
 
 from mbsym.formulas.formula import Formula
-from mbsym.formulas.mathml import MathNames, bracketed, letter, mathml_names, mi, mn, mo, mtext, power
+from mbsym.formulas.mathml import MathNames, bracketed, letter, mathml_names, mi, mn, mo, mtext, power, table
 from mbsym.formulas.mathml import row as bracketed_row
 from mbsym.formulas.names import greek
+from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.report import content
 from mbsym.report.content import Inline, Math, Said
 from mbsym.report.html import formulas
-from mbsym.report.html.description import expression
+from mbsym.report.html.description import expression, point_of_table, speed_form
 from mbsym.report.html.formulas import RELATIONS
 from mbsym.report.html.told import told_passages
 from mbsym.report.language import Language
-from mbsym.report.lengths import length
+from mbsym.report.latex.description import shown_points
+from mbsym.report.lengths import PAPER_PROGRAM, length, not_printed, program_not_printed
+from mbsym.report.plain_writer import Writer as PlainWriter
+from mbsym.report.unit_text import labelled
 
 _DOTS = ("", "\u02d9", "\u00a8")
+_PLAIN = PlainWriter()
+_DIALECT = Dialect(call=lambda function, argument: f"{function}({argument})", local=lambda count: f"s{count}")
+_SCRIPT = {"A": "\U0001d49c", "B": "\u212c", "C": "\U0001d49e", "D": "\U0001d49f"}
 _COMMA = '<mo separator="true">,</mo><mspace width="0.3em"/>'
 
 
@@ -92,14 +99,14 @@ class Writer:
         return formulas.prose(said, variable) if variable else escape(said)
 
     @inline.register
+    def _(self, value: content.Phrase) -> Markup:
+        return self._joined(value.parts)
+
+    @inline.register
     def _(self, value: content.Strong) -> Markup:
         key = Markup(' id="{}"').format(value.key) if value.key else ""
         grade = Markup(' class="{}"').format(value.grade) if value.grade else ""
         return Markup("<strong{}{}>{}</strong>").format(key, grade, self.inline(value.text))
-
-    @inline.register
-    def _(self, value: content.Phrase) -> Markup:
-        return self._joined(value.parts)
 
     @inline.register
     def _(self, value: content.Graded) -> Markup:
@@ -108,6 +115,22 @@ class Writer:
     @inline.register
     def _(self, value: content.Link) -> Markup:
         return Markup('<a href="#{}">{}</a>').format(value.to, self.inline(value.text))
+
+    @inline.register
+    def _(self, value: content.Emphasis) -> Markup:
+        return Markup("<i>{}</i>").format(value.text)
+
+    @inline.register
+    def _(self, value: content.Verbatim) -> Markup:
+        return Markup("<code>{}</code>").format(value.text)
+
+    @inline.register
+    def _(self, value: content.Unit) -> Markup:
+        return escape(labelled("", value.text).strip())
+
+    @inline.register
+    def _(self, value: content.Citation) -> Markup:
+        return escape(value.text)
 
     # --- mathematics ---
 
@@ -126,20 +149,28 @@ class Writer:
 
     @math.register
     def _(self, value: Formula) -> str:
-        return str(formulas.inline(value))
+        return mtext(f"({not_printed(value)})") if id(value) in self.long else str(formulas.inline(value))
 
     @math.register
     def _(self, value: content.Name) -> str:
         symbol = (self.names if value.ring is None else mathml_names(value.ring))[value.name]
-        return str(symbol.dotted(_DOTS[value.dots]) if value.dots else symbol)
+        written = str(symbol.dotted(_DOTS[value.dots]) if value.dots else symbol)
+        return written + bracketed(mn(value.at)) if value.at else written
 
     @math.register
     def _(self, value: content.Symbol) -> str:
-        return str(formulas.symbol(value.letter, value.lower, value.upper, _DOTS[value.dots]))
+        letter = _SCRIPT[value.letter] if value.look == "script" else value.letter
+        above = "\u00af" if value.look == "bar" else _DOTS[value.dots]
+        return str(formulas.symbol(letter, value.lower, value.upper, above))
 
     @math.register
     def _(self, value: content.Entry) -> str:
-        return str(formulas.entry(value.whole.letter, value.whole.lower, value.index, value.whole.upper))
+        whole = value.whole
+        if isinstance(value.index, content.Name):
+            return f"<msub>{self.math(whole)}{self.math(value.index)}</msub>"
+        if whole.lower:
+            return str(formulas.indexed(bracketed(self.math(whole)), value.index))
+        return self.math(replace(whole, lower=value.index))
 
     @math.register
     def _(self, value: content.Notation) -> str:
@@ -160,6 +191,8 @@ class Writer:
     @math.register
     def _(self, value: content.Listed) -> str:
         items = [self.math(x) for x in value.items]
+        if value.braces:
+            return bracketed(_COMMA.join(items), "{}")
         return bracketed_row(items) if value.brackets else _COMMA.join(items)
 
     @math.register
@@ -170,6 +203,22 @@ class Writer:
     def _(self, value: content.Polynomial) -> str:
         written = "".join(self._pieces(value))
         return written if value.power == 1 else power(bracketed(written, "[]"), mn(value.power))
+
+    @math.register
+    def _(self, value: content.SpeedForm) -> str:
+        return str(speed_form(value.form, self.names, value.body))
+
+    @math.register
+    def _(self, value: content.Tensor) -> str:
+        return table([[self.math(x) for x in line] for line in value.rows])
+
+    @math.register
+    def _(self, value: content.Points) -> str:
+        written = [point_of_table(x, y, self.names) for x, y in shown_points(value.points)]
+        half = len(written) // 2
+        return _COMMA.join(
+            written if len(written) == len(value.points) else [*written[:half], mo("\u2026"), *written[half:]]
+        )
 
     # --- blocks ---
 
@@ -203,6 +252,9 @@ class Writer:
                 return formulas.whole(self._pieces(shown))
             case content.Relation(parts):
                 return self._relation(parts)
+            case content.Listed(items, False) if items:
+                *first, last = map(self.math, items)
+                return formulas.whole([*(item + _COMMA for item in first), last])
             case tuple():
                 return formulas.text_line(*map(self._beside, shown))
         return formulas.text_line(self.math(shown))
@@ -238,17 +290,54 @@ class Writer:
         return Markup("\n").join((Markup("<p>{}:</p>").format(self.said(value.words)), *lines))
 
     @block.register
+    def _(self, value: content.Matrices) -> Markup:
+        left = self.math(value.symbol)
+        if value.value.is_zero:
+            return formulas.text_line(left, mo("="), mn(0))
+        whole = "" if value.packed else formulas.matrix(value.value, self.long)
+        if whole:
+            return formulas.text_line(left, mo("="), whole)
+        return Markup("\n").join(
+            formulas.line(self.math(content.Entry(value.symbol, index)), entry, self.long)
+            for index, entry in formulas.entries(value.value, value.symmetric)
+        )
+
+    @block.register
+    def _(self, value: content.SideBySide) -> Markup:
+        return self.document(value.matrices)
+
+    @block.register
+    def _(self, value: content.Components) -> Markup:
+        left = self.math(value.symbol)
+        if formulas.zero(value.value):
+            return formulas.text_line(left, mo("="), mn(0))
+        whole = formulas.components(value.value, self.long)
+        if whole:
+            return formulas.text_line(left, mo("="), whole)
+        return Markup("\n").join(
+            formulas.line(self.math(replace(value.symbol, lower=f"{value.symbol.lower},{k}")), entry, self.long)
+            for k, entry in enumerate(value.value, start=1)
+        )
+
+    @block.register
+    def _(self, value: content.Itemised) -> Markup:
+        kind = "ol" if value.numbered else "ul"
+        items = Markup("\n").join(Markup("<li>{}</li>").format(self.document(item)) for item in value.items)
+        return Markup(f"<{kind}>\n{items}\n</{kind}>")
+
+    @block.register
     def _(self, value: content.Table) -> Markup:
-        head = Markup("").join(Markup('<th scope="col">{}</th>').format(self.inline(x)) for x in value.head)
-        rows = (
-            Markup("<tr>{}</tr>\n").format(
+        head = Markup("").join(Markup('<th scope="col">{}</th>').format(self.said(x.title)) for x in value.columns)
+        rows = Markup("\n").join(
+            Markup("<tr>{}</tr>").format(
                 Markup("").join(Markup("<td>{}</td>").format(self._joined(cell)) for cell in row)
             )
             for row in value.rows
         )
+        title = "" if value.title is None else Markup("<h3>{}</h3>\n").format(self.said(value.title))
         return Markup(
-            '<div class="scroll"><table>\n<thead><tr>{}</tr></thead>\n<tbody>\n{}</tbody></table></div>'
-        ).format(head, Markup("").join(rows))
+            '{}<div class="scroll"><table>\n<thead><tr>{}</tr></thead>\n<tbody>\n{}\n</tbody></table></div>'
+        ).format(title, head, rows)
 
     @block.register
     def _(self, value: content.Facts) -> Markup:
@@ -267,32 +356,6 @@ class Writer:
         return replace(self, names=self.names.beside(value.names)).document(value.blocks)
 
     @block.register
-    def _(self, value: content.Matrices) -> Markup:
-        left = self.math(value.symbol)
-        if value.value.is_zero:
-            return formulas.text_line(left, mo("="), mn(0))
-        whole = formulas.matrix(value.value, self.long)
-        if whole:
-            return formulas.text_line(left, mo("="), whole)
-        return Markup("\n").join(
-            formulas.line(self.math(content.Entry(value.symbol, index)), entry, self.long)
-            for index, entry in formulas.entries(value.value, value.symmetric)
-        )
-
-    @block.register
-    def _(self, value: content.Components) -> Markup:
-        left = self.math(value.symbol)
-        if formulas.zero(value.value):
-            return formulas.text_line(left, mo("="), mn(0))
-        whole = formulas.components(value.value, self.long)
-        if whole:
-            return formulas.text_line(left, mo("="), whole)
-        return Markup("\n").join(
-            formulas.line(self.math(replace(value.symbol, lower=f"{value.symbol.lower},{k}")), entry, self.long)
-            for k, entry in enumerate(value.value, start=1)
-        )
-
-    @block.register
     def _(self, value: content.Folded) -> Markup:
         return Markup("<details><summary>{}</summary>\n{}\n</details>").format(
             self.said(value.title), self.document(value.blocks)
@@ -301,6 +364,16 @@ class Writer:
     @block.register
     def _(self, value: content.Intermediates) -> Markup:
         return told_passages(value.told, value.passages, lambda words: self.inline(content.Words(words)))
+
+    @block.register
+    def _(self, value: content.Steps) -> Markup:
+        same = {name: name for name in value.names} | {"pi": "pi"}
+        body = listing(value.program, [node for _, node in value.results], same, _DIALECT)
+        if len(body.assignments) > PAPER_PROGRAM:
+            return Markup("<p>{}</p>").format(self.said(program_not_printed(len(body.assignments))))
+        called = [(_PLAIN.inline(symbol), text) for (symbol, _), text in zip(value.results, body.results, strict=True)]
+        lines = "\n".join(f"{left} = {right}" for left, right in [*body.assignments, *called])
+        return Markup("<details><summary>{}</summary>\n<pre>{}</pre></details>").format(self.said(value.title), lines)
 
     def _joined(self, parts: Iterable[Inline]) -> Markup:
         return Markup("").join(map(self.inline, parts))
@@ -322,7 +395,7 @@ def notation(tex: str) -> str:
     """Fixed notation as elements of MathML."""
     from latex2mathml.converter import convert  # few formulas need it
 
-    return re.sub(r"</?math[^>]*>", "", convert(tex))
+    return re.sub(r"</?math[^>]*>", "", convert(re.sub(r"\\penalty\d+ ?", "", tex)))
 
 
 def _untexed(text: str) -> Markup:

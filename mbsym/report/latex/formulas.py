@@ -8,11 +8,9 @@ from math import gcd
 
 from flint import fmpq
 
-from mbsym.expressions.tree import ZERO
+from mbsym.expressions.tree import ZERO, Expression
 from mbsym.formulas.formula import Column, Formula, Matrix
 from mbsym.formulas.latex import LatexNames, latex_factor, latex_matrix, latex_text
-from mbsym.model.system import Tensor
-from mbsym.problems.linearisation import Subsystem
 from mbsym.report.latex.description import expression
 from mbsym.report.lengths import not_printed
 
@@ -86,7 +84,7 @@ def _common_number(value: Matrix) -> int:
     return gcd(*(int(c.p) for c in coefficients)) if whole else 1
 
 
-def tensor(value: Tensor, names: LatexNames, widest: float) -> str:
+def tensor(value: Sequence[Sequence[Expression]], names: LatexNames, widest: float) -> str:
     """A tensor of inertia; a wide one row by row."""
     if all(value[i][j] == ZERO for i in range(3) for j in range(3) if i != j):
         return "\\operatorname{diag}(" + ",\\; ".join(expression(value[k][k], names) for k in range(3)) + ")"
@@ -94,30 +92,6 @@ def tensor(value: Tensor, names: LatexNames, widest: float) -> str:
     if sum(max(map(width, column)) + 1.2 for column in zip(*rows, strict=True)) <= widest:
         return latex_matrix(rows)
     return "(" + ";\\; \\penalty0 ".join(",\\; ".join(one) for one in rows) + ")"
-
-
-def displays(part: Subsystem, k: object, widest: float = WIDEST, measured: Measured = measured_matrix) -> list[str]:
-    """The matrices of a subsystem that are not zero and not too wide, side by side where they fit."""
-    lines: list[str] = []
-    room = 0.0
-    for name in "MDGKN":
-        value: Matrix = getattr(part, name)
-        text, wide = ("", 0.0) if value.is_zero else measured(value)
-        if not text or wide > widest:
-            continue
-        needed = wide + 6
-        shown = f"{name}{index(k)} = {text}"
-        if needed <= room:
-            lines[-1] += f",\\quad {shown}"
-        else:
-            lines.append(shown)
-            room = widest
-        room -= needed
-    return lines
-
-
-def index(k: object) -> str:
-    return f"_{{{k}}}" if k else ""
 
 
 def row(values: Column, long: frozenset[int] = frozenset(), widest: float = WIDEST) -> str:

@@ -5,46 +5,26 @@ What is printed of a formula, a matrix or a passage is printed once for all file
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Sequence
-from fractions import Fraction
+from collections.abc import Callable, Hashable, Sequence
 from typing import TYPE_CHECKING, Any, TypeVar
 from weakref import WeakKeyDictionary
 
 from mbsym import __version__
-from mbsym.expressions.rates import acceleration_name, velocity_name
-from mbsym.formulas.latex import LatexNames, latex_names
-from mbsym.formulas.straight_line import Dialect, listing
+from mbsym.formulas.latex import latex_names
 from mbsym.formulas.tree import angles_or
 from mbsym.model.quantities import unit_of
-from mbsym.model.system import System
-from mbsym.report.canonical import Forms, forms_of, upper_brackets
 from mbsym.report.code.functions import moving
-from mbsym.report.code.programs import programs_of
 from mbsym.report.compact import compact
-from mbsym.report.first_order import first_order
-from mbsym.report.inertias import accepted_inertias
 from mbsym.report.language import Language
 from mbsym.report.latex.description import (
-    call,
-    constraint_in_words,
     expression,
-    load_in_words,
-    points,
-    speed,
-    speed_form,
 )
 from mbsym.report.latex.diagram import diagram
 from mbsym.report.latex.form import Form, heading, subheading
 from mbsym.report.latex.formulas import (
     Measured,
-    displays,
-    entries,
     formula,
-    index,
-    matrix,
     measured_matrix,
-    row,
-    tensor,
 )
 from mbsym.report.latex.integrals import of_integrals, of_list, of_symmetries, weights_of
 from mbsym.report.latex.invariant import of_invariant_sets
@@ -52,10 +32,9 @@ from mbsym.report.latex.labels import Labels, prefix_of
 from mbsym.report.latex.normal_forms import of_normal_forms
 from mbsym.report.latex.small import of_small_parameters
 from mbsym.report.latex.stabilisation import of_stabilisation, rational_matrix, rational_row
-from mbsym.report.latex.told import packed, paragraphs
-from mbsym.report.latex.words import RELATIONS, displayed, escaped, is_cyrillic
+from mbsym.report.latex.words import escaped, is_cyrillic
 from mbsym.report.latex.writer import Writer
-from mbsym.report.lengths import COUNTED, PAPER, PAPER_FORMS, PAPER_PROGRAM, program_not_printed, withheld
+from mbsym.report.lengths import COUNTED, PAPER, PAPER_FORMS, withheld
 from mbsym.report.references import references
 from mbsym.report.results import contents, results
 from mbsym.report.unit_text import bracketed
@@ -64,12 +43,7 @@ from mbsym.report.words.stabilisation_words import FEEDBACK, LYAPUNOV
 from mbsym.source.meaning import meaning
 
 if TYPE_CHECKING:
-    from types import ModuleType
-
     from mbsym.analysis import Analysis
-    from mbsym.problems.constraints import Constraints
-    from mbsym.problems.reduction import Reduction
-    from mbsym.report.canonical_denominators import Denominators
 
 T = TypeVar("T")
 Filters = dict[str, Callable[..., Any]]
@@ -103,9 +77,9 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
     labels = Labels(prefix_of(system.name))
     stages = {number: analysis.stage(number) for number in problems}
     found = {number: stage.value for number, stage in stages.items() if stage.failure is None}
-    forms, denominators = _forms(analysis, problems)
+    known = results(analysis, problems)
     long = withheld([found[number] for number in COUNTED if number in found], PAPER)
-    long |= withheld(forms.results, PAPER_FORMS)
+    long |= withheld(known.forms.forms.results, PAPER_FORMS)
     verdicts = found.get(6)
     cited = references(verdicts, escaped(system.source)) if form is not Form.FRAGMENT else ()
     writer = Writer(names, tongue, labels, form, long, lambda value: once(measured_matrix, value))
@@ -123,18 +97,14 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "babel": tongue.babel,
         "references": cited,
         "system": system,
-        "accepted": accepted_inertias(system),
         "numbers": {"0": 0} | {body.name: k for k, body in enumerate(system.bodies, start=1)},
         "moving": moving,
         "found": found,
         "told": compact(analysis, {number: found.get(number) for number in problems}),
         "parts": {number: f"latex/{PROBLEMS[number].attribute}.j2" for number in problems},
-        "contents": contents(results(analysis, problems), writer.document),
+        "contents": contents(known, writer.document),
         "problems": problems,
         "failures": {number: stage.failure for number, stage in stages.items() if stage.failure is not None},
-        "code": _code(analysis, names) if 3 in stages and 3 not in found else None,
-        "constraint_sentences": lambda tied: _of_constraints(tied, names, tongue),
-        "reduction_sentences": lambda about: _of_reduction(about, names, tongue),
         "stabilisation_sentences": lambda one: of_stabilisation(one, names, tongue),
         "polynomial_integrals": lambda one: of_integrals(one, tongue),
         "polynomial_weights": lambda one: weights_of(one),
@@ -146,39 +116,10 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "small_parameter_lines": lambda one: of_small_parameters(one, system, names, tongue),
         "FEEDBACK": FEEDBACK,
         "LYAPUNOV": LYAPUNOV,
-        "constraint_label": lambda name: constraint_words().label(name, _writer(names, tongue)),
-        "reactions": analysis.optional("reactions") if system.reactions and 3 in problems else (),
-        "forms": forms,
-        "denominators": denominators,
-        "relations": RELATIONS,
-        **first_order(analysis, found.get(5)),
-        "state": analysis.optional("first_order") if system.speeds and 5 in found else None,
         "diagram": lambda: diagram(system, names, escaped, tongue.sentence("inertial frame"), form.picture),
         "cyrillic": tongue.name == "ru" or is_cyrillic(system),
     }
-    filters = _filters(analysis, tongue, long, form.widest, lambda value: once(measured_matrix, value))
-    return filters | _momenta(forms), values
-
-
-def _forms(analysis: Analysis, problems: Sequence[int]) -> tuple[Forms, Denominators | None]:
-    """Routh's and Hamilton's forms as they are printed: long denominators have names."""
-    forms = forms_of(analysis, problems)
-    if not forms.results:
-        return forms, None
-    from mbsym.report.canonical_denominators import with_names
-
-    denominators = with_names(forms, analysis.system)
-    return denominators.forms, denominators
-
-
-def _momenta(forms: Forms) -> Filters:
-    """What templates write momenta with, which the rings of the forms have besides."""
-    return {
-        "constant_momentum": lambda name: str(latex_names(forms.routh_ring)[name]),
-        "momentum": lambda name: str(latex_names(forms.hamilton_ring)[name]),
-        "momentum_rate": lambda name: latex_names(forms.hamilton_ring)[name].accented("dot"),
-        "upper_brackets": upper_brackets,
-    }
+    return _filters(analysis, tongue, long, form.widest, lambda value: once(measured_matrix, value)), values
 
 
 def _filters(analysis: Analysis, tongue: Language, long: frozenset[int], widest: float, measured: Measured) -> Filters:
@@ -191,87 +132,7 @@ def _filters(analysis: Analysis, tongue: Language, long: frozenset[int], widest:
         "say": tongue.say,
         "name": lambda name: str(names[name]),
         "dotted": lambda name: names[name].accented("dot"),
-        "speed": lambda name: speed(name, names),
-        "speed_form": lambda one: speed_form(one, names, _number_of(system, one.body)),
         "math": lambda value: formula(value, long),
         "expression": lambda value: expression(value, names),
-        "points": lambda value: points(value, names),
         "unit": lambda name, space="": bracketed(unit_of(system, name), space),
-        "matrix": lambda value: matrix(value, long, widest, measured),
-        "tensor": lambda value: tensor(value, names, widest),
-        "row": lambda values: row(values, long, widest),
-        "entries": entries,
-        "load": lambda value: displayed(load_in_words(value, names, escaped, tongue)),
-        "constraint": lambda value: constraint_in_words(value, names, escaped, tongue),
-        "index": index,
-        "displays": lambda part, k: displays(part, k, widest, measured),
-        "paragraphs": lambda item: paragraphs(
-            item.system.told, item.passages, lambda words: escaped(tongue.say(words))
-        ),
-        "packed": lambda value, symbol, key: packed(entries(value, True), symbol, key),
-        "zero": lambda values: all(x.is_zero for x in values),
     }
-
-
-def _number_of(system: System, body: str) -> int:
-    return next(k for k, one in enumerate(system.bodies, start=1) if one.name == body)
-
-
-def constraint_words() -> ModuleType:
-    """The module that says what is known of constraints; few systems have any."""
-    from mbsym.report.words import constraint_words as words
-
-    return words
-
-
-def _of_constraints(tied: Constraints, names: LatexNames, tongue: Language) -> list[str]:
-    said = constraint_words().sentences(tied, _writer(names, tongue))
-    return [tongue.sentence(text, **values) for text, values in said]
-
-
-def _of_reduction(about: Reduction, names: LatexNames, tongue: Language) -> list[str]:
-    said = constraint_words().reduction_sentences(about, _writer(names, tongue))
-    return [tongue.sentence(text, **values) for text, values in said]
-
-
-def _writer(names: LatexNames, tongue: Language) -> Any:
-    return constraint_words().Writer(
-        lambda listed: "$" + ",\\, ".join(str(names[name]) for name in listed) + "$",
-        lambda word: escaped(tongue.say(word)),
-        lambda rates: ", ".join(f"${names[name].accented('dot')} = {formula(x)}$" for name, x in rates),
-        lambda value: f"${formula(value)} \\neq 0$",
-        lambda listed: "$" + ",\\, ".join(speed(name, names) for name in listed) + "$",
-    )
-
-
-def _exact(value: Fraction) -> str:
-    return str(value) if value.denominator == 1 else f"\\tfrac{{{value.numerator}}}{{{value.denominator}}}"
-
-
-DIALECT = Dialect(call=call, local=lambda count: f"s_{{{count}}}", number=_exact, times=r"\,")
-
-
-def _code(analysis: Analysis, names: LatexNames) -> Any:
-    """Mass matrix and forcing as a straight-line program; None if there is none."""
-    system, (programs, _) = analysis.system, programs_of(analysis)
-    if programs is None:
-        return None
-    symbols = {name: str(names[name]) for name in programs.environment if name != "pi"} | {"pi": r"\pi"}
-    for name in system.coordinates:
-        symbols[velocity_name(name)] = names[name].accented("dot")
-        symbols[acceleration_name(name)] = names[name].accented("ddot")
-    n = len(system.coordinates)
-    upper = [(i, j) for i in range(n) for j in range(i, n)]
-    nodes = [programs.mass_matrix[i][j] for i, j in upper]
-    body = listing(programs.program, [*nodes, *programs.forcing], symbols, DIALECT)
-    if len(body.assignments) > PAPER_PROGRAM:
-        return [f"\\text{{({program_not_printed(len(body.assignments))})}}"]
-    comma = "," if n > 9 else ""
-    lines = [f"{name} = {text}" for name, text in body.assignments]
-    lines += [f"M_{{{i + 1}{comma}{j + 1}}} = {text}" for (i, j), text in zip(upper, body.results, strict=False)]
-    lines += [f"f_{{{i + 1}}} = {text}" for i, text in enumerate(_tail(body.results, len(upper)))]
-    return lines
-
-
-def _tail(items: Iterable[str], start: int) -> list[str]:
-    return list(items)[start:]

@@ -5,26 +5,37 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import singledispatchmethod
 from typing import Any
 
 from mbsym.expressions.tree import Expression
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.latex import LatexNames, latex_names, latex_symbol
+from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.report import content
 from mbsym.report.content import Inline, Said
 from mbsym.report.language import Language
 from mbsym.report.latex import formulas
-from mbsym.report.latex.description import expression
+from mbsym.report.latex.description import breakable, call, expression, points, speed_form
 from mbsym.report.latex.displays import loosened
 from mbsym.report.latex.form import Form, heading, subheading
 from mbsym.report.latex.formulas import Measured, measured_matrix
 from mbsym.report.latex.labels import Labels
-from mbsym.report.latex.told import CLOSING, OPENING, PARAGRAPH, paragraphs
+from mbsym.report.latex.told import CLOSING, OPENING, PARAGRAPH, packed, paragraphs
 from mbsym.report.latex.words import RELATIONS, escaped, prose
-from mbsym.report.lengths import length
+from mbsym.report.lengths import PAPER_PROGRAM, length, program_not_printed
+from mbsym.report.unit_text import bracketed
 
 _DOTS = ("", "dot", "ddot")
+_LOOKS = {"bar": "bar", "script": "mathcal"}
+
+
+def _exact(value: Fraction) -> str:
+    return str(value) if value.denominator == 1 else f"\\tfrac{{{value.numerator}}}{{{value.denominator}}}"
+
+
+_DIALECT = Dialect(call=call, local=lambda count: f"s_{{{count}}}", number=_exact, times=r"\,")
 
 
 @dataclass(frozen=True)
@@ -60,7 +71,7 @@ class Writer:
     @singledispatchmethod
     def inline(self, value: Any) -> str:
         """What stands in a line; mathematics between dollars."""
-        return f"${self.math(value)}$"
+        return breakable(self.math(value))
 
     @inline.register
     def _(self, value: str) -> str:
@@ -76,12 +87,12 @@ class Writer:
         return prose(said, latex_symbol(value.variable).stem) if value.variable else escaped(said)
 
     @inline.register
-    def _(self, value: content.Strong) -> str:
-        return f"\\textbf{{{self.inline(value.text)}}}"
-
-    @inline.register
     def _(self, value: content.Phrase) -> str:
         return self._joined(value.parts)
+
+    @inline.register
+    def _(self, value: content.Strong) -> str:
+        return f"\\textbf{{{self.inline(value.text)}}}"
 
     @inline.register
     def _(self, value: content.Graded) -> str:
@@ -90,6 +101,22 @@ class Writer:
     @inline.register
     def _(self, value: content.Link) -> str:
         return self.inline(value.text)
+
+    @inline.register
+    def _(self, value: content.Emphasis) -> str:
+        return f"\\textit{{{escaped(value.text)}}}"
+
+    @inline.register
+    def _(self, value: content.Verbatim) -> str:
+        return f"\\texttt{{{escaped(value.text)}}}"
+
+    @inline.register
+    def _(self, value: content.Unit) -> str:
+        return f"${bracketed(value.text)}$"
+
+    @inline.register
+    def _(self, value: content.Citation) -> str:
+        return f"\\cite{{{value.key}}}" if self.form is Form.REPORT else escaped(value.text)
 
     # --- mathematics ---
 
@@ -104,7 +131,7 @@ class Writer:
 
     @math.register
     def _(self, value: str) -> str:
-        return RELATIONS.get(value, value)
+        return "\\penalty0 +" if value == "+" else RELATIONS.get(value, value)
 
     @math.register
     def _(self, value: Formula) -> str:
@@ -113,19 +140,22 @@ class Writer:
     @math.register
     def _(self, value: content.Name) -> str:
         symbol = (self.names if value.ring is None else latex_names(value.ring))[value.name]
-        return symbol.accented(_DOTS[value.dots]) if value.dots else str(symbol)
+        written = symbol.accented(_DOTS[value.dots]) if value.dots else str(symbol)
+        return f"{written}({value.at})" if value.at else written
 
     @math.register
     def _(self, value: content.Symbol) -> str:
         stem = latex_symbol(value.letter)
-        written = stem.accented(_DOTS[value.dots]) if value.dots else str(stem)
+        accent = _DOTS[value.dots] or _LOOKS.get(value.look, "")
+        written = stem.accented(accent) if accent else str(stem)
         lower = f"_{{{_index(value.lower)}}}" if value.lower else ""
         return written + lower + (f"^{{{_index(value.upper)}}}" if value.upper else "")
 
     @math.register
     def _(self, value: content.Entry) -> str:
         whole = self.math(value.whole)
-        return f"({whole})_{{{value.index}}}" if value.whole.lower else f"{whole}_{{{value.index}}}"
+        index = value.index if isinstance(value.index, str) else self.math(value.index)
+        return f"({whole})_{{{index}}}" if value.whole.lower else f"{whole}_{{{index}}}"
 
     @math.register
     def _(self, value: content.Notation) -> str:
@@ -146,9 +176,13 @@ class Writer:
     @math.register
     def _(self, value: content.Listed) -> str:
         # Of equations each may stand in a line of its own.
-        comma = ",\\quad \\penalty0 " if any(isinstance(x, content.Relation) for x in value.items) else ",\\, "
+        comma = ",\\, "
+        if any(isinstance(x, content.Relation) for x in value.items):
+            comma = ",\\quad \\penalty0 "
+        elif value.brackets:
+            comma = ",\\; \\allowbreak "
         written = comma.join(map(self.math, value.items))
-        return f"({written})" if value.brackets else written
+        return f"({written})" if value.brackets else f"\\{{{written}\\}}" if value.braces else written
 
     @math.register
     def _(self, value: content.Relation) -> str:
@@ -159,6 +193,18 @@ class Writer:
     def _(self, value: content.Polynomial) -> str:
         written = formulas.polynomial(value.coefficients, latex_symbol(value.variable).stem, self._length)
         return written if value.power == 1 else f"\\bigl[{written}\\bigr]^{{{value.power}}}"
+
+    @math.register
+    def _(self, value: content.SpeedForm) -> str:
+        return speed_form(value.form, self.names, value.body)
+
+    @math.register
+    def _(self, value: content.Tensor) -> str:
+        return formulas.tensor(value.rows, self.names, self.form.widest)
+
+    @math.register
+    def _(self, value: content.Points) -> str:
+        return points(value.points, self.names)
 
     # --- blocks ---
 
@@ -199,6 +245,9 @@ class Writer:
     def _(self, value: content.Matrices) -> str:
         if value.value.is_zero:
             return self._display(f"{self.math(value.symbol)} = 0", value.key)
+        if value.packed:
+            entries = formulas.entries(value.value, value.symmetric)
+            return packed(entries, self.math(value.symbol), self.labels.equation(value.key))
         whole = formulas.matrix(value.value, self.long, self.form.widest, self.measured)
         if whole:
             label = self.labels.equation(value.key)
@@ -209,6 +258,31 @@ class Writer:
             )
             for index, entry in formulas.entries(value.value, value.symmetric)
         )
+
+    @block.register
+    def _(self, value: content.SideBySide) -> str:
+        lines: list[str] = []
+        others: list[str] = []
+        room = 0.0
+        for one in value.matrices:
+            whole = "" if one.value.is_zero else formulas.matrix(one.value, self.long, self.form.widest, self.measured)
+            if not whole:
+                others.append(self.block(one))
+                continue
+            needed = self.measured(one.value)[1] + 6  # the width of the name and what is around it
+            shown = f"{self.math(one.symbol)} = {whole}"
+            if needed <= room:
+                lines[-1] += f",\\quad {shown}"
+            else:
+                lines.append(shown)
+                room = self.form.widest
+            room -= needed
+        labels = [self.labels.equation(f"{value.key}:matrices:{k}") for k in range(1, len(lines) + 1)]
+        together = [
+            f"\\begin{{equation}}\\label{{{label}}}\n{line}\n\\end{{equation}}"
+            for label, line in zip(labels, lines, strict=True)
+        ]
+        return "\n".join([*together, *others])
 
     @block.register
     def _(self, value: content.Components) -> str:
@@ -224,13 +298,31 @@ class Writer:
         )
 
     @block.register
+    def _(self, value: content.Itemised) -> str:
+        items = [self.document(item).strip() for item in value.items]
+        if value.numbered:
+            return "\n\n".join(f"{{\\raggedright {k}. {text}\\par}}" for k, text in enumerate(items, start=1)) + "\n"
+        listed = "\n".join(f"\\item {text}" for text in items)
+        return f"\\begin{{itemize}}\\setlength{{\\itemsep}}{{1pt}}\n{listed}\n\\end{{itemize}}"
+
+    @block.register
     def _(self, value: content.Table) -> str:
+        shown = [k for k, column in enumerate(value.columns) if column.width]
+        rows = [["".join(map(self.inline, row[k])) for k in shown] for row in value.rows]
+        title = "" if value.title is None else self.said(value.title)
+        if self.form is not Form.REPORT and not title:
+            return "\n".join(", ".join(filter(None, row[:-1])) + f": {row[-1]}.\n" for row in rows)
         if self.form is not Form.REPORT:
-            return self.document(value.instead)
-        columns = "".join(f">{{\\raggedright\\arraybackslash}}p{{{width}cm}}" for width in value.widths)
-        head, *rows = (" & ".join(map(self._joined, row)) for row in (tuple((x,) for x in value.head), *value.rows))
-        lines = "".join(f"{row}\\\\\n" for row in rows)
-        return f"\\begin{{longtable}}{{@{{}}{columns}@{{}}}}\n{head}\\\\\\hline\\endhead\n{lines}\\end{{longtable}}\n"
+            return f"{title}: " + ";\n".join(", ".join(filter(None, row)) for row in rows) + ".\n"
+        widths = [value.columns[k].width for k in shown]
+        columns = "".join(f">{{\\raggedright\\arraybackslash}}p{{{x:g}cm}}" for x in widths)
+        lines = [f"\\begin{{longtable}}{{@{{}}{columns}@{{}}}}"]
+        if title:
+            lines += [f"\\multicolumn{{{len(shown)}}}{{@{{}}l}}{{\\textbf{{{title}}}}}\\\\"]
+        else:
+            lines += [" & ".join(self.said(value.columns[k].title) for k in shown) + r"\\\hline\endhead"]
+        lines += [" & ".join(row) + "\\\\" for row in rows]
+        return "\n".join([*lines, "\\end{longtable}"])
 
     @block.register
     def _(self, value: content.Facts) -> str:
@@ -255,6 +347,15 @@ class Writer:
     @block.register
     def _(self, value: content.Intermediates) -> str:
         return paragraphs(value.told, value.passages, lambda words: self.inline(content.Words(words))) + "\n"
+
+    @block.register
+    def _(self, value: content.Steps) -> str:
+        names = {name: self.math(item) for name, item in value.names.items()} | {"pi": r"\pi"}
+        body = listing(value.program, [node for _, node in value.results], names, _DIALECT)
+        if len(body.assignments) > PAPER_PROGRAM:
+            return self._display(f"\\text{{({self.said(program_not_printed(len(body.assignments)))})}}")
+        called = [(self.math(symbol), text) for (symbol, _), text in zip(value.results, body.results, strict=True)]
+        return "\n".join(self._display(f"{left} = {right}") for left, right in [*body.assignments, *called])
 
     def _joined(self, parts: Iterable[Inline]) -> str:
         return "".join(map(self.inline, parts))

@@ -14,6 +14,6 @@ if TYPE_CHECKING:
     from mbsym.analysis import Problem
 
 
-def section_of(what: Problem[Any] | str) -> Any:
-    """The module that shows a problem, or what is told besides by its name."""
-    return import_module(f"{__name__}.{what if isinstance(what, str) else what.attribute}")
+def section_of(problem: Problem[Any]) -> Any:
+    """The module that shows a problem."""
+    return import_module(f"{__name__}.{problem.attribute}")

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from mbsym.problems.checks import Check
-from mbsym.report.content import Block, Graded, Heading, Inline, Said, Table, Words, paragraph
+from mbsym.report.content import Block, Graded, Heading, Inline, Said, Table, TableColumn, Words, paragraph
 from mbsym.report.words.verdicts import grade
 
 if TYPE_CHECKING:
@@ -21,13 +21,14 @@ def content(results: Results) -> Iterator[Block]:
     yield Heading("checks", Said("Self-check"))
     yield paragraph(Said("These results were derived a second time by an independent route and compared."))
     yield Table(
-        head=(Said("result"), Said("first route"), Said("second route"), Said("agreement")),
-        rows=tuple(((Words(one.name),), (Words(one.first),), (Words(one.second),), _outcome(one)) for one in checks),
-        widths=(2.6, 4.4, 4.4, 3.4),
-        instead=tuple(
-            paragraph(Words(one.name), " (", Words(one.first), "; ", Words(one.second), "): ", *_outcome(one), ".")
-            for one in checks
+        title=None,
+        columns=(
+            TableColumn(Said("result"), 2.6),
+            TableColumn(Said("first route"), 4.4),
+            TableColumn(Said("second route"), 4.4),
+            TableColumn(Said("agreement"), 3.4),
         ),
+        rows=tuple(((Words(one.name),), (Words(one.first),), (Words(one.second),), _outcome(one)) for one in checks),
     )
 
 

@@ -23,6 +23,7 @@ from mbsym.report.content import (
     Said,
     Strong,
     Table,
+    TableColumn,
     Text,
     paragraph,
 )
@@ -56,20 +57,19 @@ def _told(results: Results, claims: tuple[ClaimResult, ...]) -> Iterator[Block]:
         yield Definitions(Said("Abbreviations"), tuple(Relation(Name(x.name), "=", x.value) for x in abbreviations))
     groups = list(together(map(claim_line, claims)))
     yield Table(
-        head=(Said("place"), Said("claim"), Said("outcome")),
+        title=None,
+        columns=(
+            TableColumn(Said("place"), 2.6),
+            TableColumn(Said("claim"), 6.2),
+            TableColumn(Said("outcome"), 6.2),
+        ),
         rows=tuple(((lines[0].place,), (titles(lines),), _outcome(lines[0])) for lines in groups),
-        widths=(2.6, 6.2, 6.2),
-        instead=tuple(paragraph(*_place(lines[0]), titles(lines), ": ", *_outcome(lines[0]), ".") for lines in groups),
     )
     number = 0
     for result in claims:
         if result.parts or result.difference is not None or result.counterexample is not None:
             number += 1
             yield from _difference(result, number)
-
-
-def _place(line: ClaimLine) -> tuple[str, ...]:
-    return (line.place, ", ") if line.place else ()
 
 
 def _outcome(line: ClaimLine) -> tuple[Inline, ...]:
