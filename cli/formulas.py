@@ -1,85 +1,68 @@
-"""``mbsym show``: one formula to the screen, or into another program."""
+"""Formulas given on the command line: ``--input u=sin(3*t)``, ``--motion theta=t**2``, complained about with places."""
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-import click
+from mbsym.expressions.parser import ascii_safe
+from mbsym.expressions.place import Complaints, Span
+from mbsym.source import render_option
+from mbsym_cli.options import MAX_LENGTH, Options
 
-from mbsym_cli.console import BAD_INPUT, FAILED, OK, complain, printable, read_description, status
-from mbsym_cli.options import Options
-
-
-@click.command("show")
-@click.argument("file", type=click.Path(path_type=Path))
-@click.argument("names", nargs=-1, metavar="[NAME]...")
-@click.option("--latex", "language", flag_value="latex", help="Write LaTeX.")
-@click.option("--wolfram", "language", flag_value="wolfram", help="Write Wolfram Language.")
-@click.option("--python", "language", flag_value="python", help="Write Python, with the names of the description.")
-@click.option("--terms", metavar="N", default="1000000", show_default=True, help="Longest formula that is derived.")
-def command(file: Path, names: tuple[str, ...], language: str | None, terms: str) -> None:
-    """Print formulas of FILE by their NAMEs: its equations of motion, or what is asked for.
-
-    \b
-    equations       M q'' - f = 0              T U L         energies
-    accelerations   solved for q''             M f           of M q'' = f
-    motion          does it satisfy them       constraints   in velocities
-    M0 D G K N B    first approximation
-    characteristic  polynomials                conditions    of stability
-    eigenvalues     at the given values        integrals     first integrals
-
-    The name of a body prints its kinematics.  Without --latex, --wolfram or --python formulas are written as people
-    write them: theta'' is the second derivative, a space multiplies.  Exit codes: 0 printed, 1 there is no such result,
-    2 something is wrong.
-
-    \b
-    Examples:
-      mbsym show systems/simple-pendulum.yaml
-      mbsym show systems/double-pendulum.yaml T U equations
-      mbsym show systems/satellite.yaml conditions --latex
-    """
-    system = read_description(file)
-    asked = Options()
-    budget = asked.whole("--terms", terms, 1, 10**12)
-    if asked.refused(file) or system is None or budget is None:
-        sys.exit(BAD_INPUT)
-    from mbsym.algebra.failures import Failure
-    from mbsym.analysis import Analysis
-    from mbsym.report.formulas_by_name import known_names, lines, written
-
-    analysis = Analysis(system, terms=budget)
-    known = known_names(analysis)
-    wanted = names or (("equations",) if system.linear is None else ("M0", "D", "G", "K", "N"))
-    unknown = [name for name in wanted if name not in known]
-    for name in unknown:
-        asked.complain("NAME", "unknown-name", f"nothing is called '{name}' here", _nearest(name, known))
-    if asked.refused(file):
-        sys.exit(BAD_INPUT)
-    worst = OK
-    for name in wanted:
-        try:
-            with status(False, f"deriving {name}"):
-                found = list(lines(analysis, name))
-        except Failure as error:
-            complain(file, f"{name}: {error}")
-            worst = FAILED
-            continue
-        for line in found:
-            if line.remark:
-                click.echo(_comment(printable(line.remark), language))
-            click.echo(written(line, language or "text"))
-    sys.exit(worst)
+if TYPE_CHECKING:
+    from mbsym.expressions.tree import Expression
+    from mbsym.model.system import System
 
 
-def _nearest(name: str, known: list[str]) -> str:
-    from difflib import get_close_matches
+@dataclass(frozen=True)
+class Kind:
+    """What a formula is of: ``of`` the system's ``kind`` of names, ``word`` what it is called."""
 
-    near = get_close_matches(name, known, 1)
-    return f"did you mean '{near[0]}'?" if near else f"there are {', '.join(known)}"
+    option: str
+    kind: str
+    word: str
+    example: str
+    none: str
+
+    def names(self, system: System) -> tuple[str, ...]:
+        return system.input_names if self.kind == "input" else system.coordinates
 
 
-def _comment(remark: str, language: str | None) -> str:
-    return {"latex": f"% {remark}", "wolfram": f"(* {remark} *)", "python": f"# {remark}"}.get(
-        language or "", f"# {remark}"
-    )
+LAWS = Kind("--input", "input", "law", "u=sin(3*t)", "this description has no inputs; they are declared under 'inputs'")
+MOTIONS = Kind("--motion", "coordinate", "motion", "theta=sin(t)", "")
+
+
+def read_formula(text: str, system: System, what: Kind, found: dict[str, Expression], asked: Options) -> None:
+    """Puts a sound formula into ``found``; whatever is wrong with it joins the complaints of ``asked``."""
+    text, complaints = " ".join(text.splitlines()), Complaints()
+    _read(text, system, what, complaints, found)
+    asked.complaints += [render_option(complaint, text, what.option) for complaint in complaints.sorted()]
+
+
+def _read(text: str, system: System, what: Kind, complaints: Complaints, found: dict[str, Expression]) -> None:
+    from mbsym.source.laws import LAW, MOTION, read_law
+    from mbsym.source.scope import did_you_mean, listed
+
+    left, equals, right = text.partition("=")
+    name, blanks, known = left.strip(), len(left) - len(left.lstrip()), what.names(system)
+    if not equals or not name or len(text) > MAX_LENGTH:
+        reason = (
+            f"{ascii_safe(text)} gives no {what.word}" if len(text) <= MAX_LENGTH else f"this {what.word} is too long"
+        )
+        complaints.error("bad-assignment", reason, None, f"write name={what.word}, for example {what.example}")
+        return
+    span = Span(1, blanks + 1, max(1, len(name)))
+    if name not in known:
+        hint = did_you_mean(name, known) or listed(f"the {what.kind}s are", known) or what.none
+        complaints.error("unknown-name", f"there is no {what.kind} called {ascii_safe(name)}", span, hint)
+    elif name in found:
+        complaints.error("repeated-name", f"'{name}' is given twice", span)
+    offset, allowed = len(left) + 1, LAW if what is LAWS else MOTION
+
+    def place(start: int, end: int) -> Span:
+        return Span(1, offset + start + 1, max(1, end - start))
+
+    law = read_law(right, system, complaints, place, allowed)
+    if law is not None and not complaints.errors:
+        found[name] = law

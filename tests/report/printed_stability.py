@@ -494,14 +494,15 @@ def equations(surface: str, text: str) -> list[Value | None]:
             return [latex(x.removesuffix(" = 0")) for x in formulas]
     (section_4,) = [x for x in tree(text).iter("section") if x.get("id") == "problem-4"]
     lines_4: list[list[Token]] = []
-    told = False
     for node in section_4.iter():
-        words = "".join(node.itertext()) if node.tag == "p" else ""
-        if "use in the form" in words:
+        if node.tag == "p" and "if and only if" in "".join(node.itertext()):
+            lines_4.clear()  # before stands the motion itself
+        if node.tag == "p" and "use in the form" in "".join(node.itertext()):
             break
-        told = told or "if and only if" in words
-        if told and node.tag == "div" and node.get("class") == "formula":
+        if node.tag == "div" and node.get("class") == "formula":
             lines_4.append([x for part in node.iter("math") for x in tokens_of(part)])
+    if "if and only if" not in "".join(section_4.itertext()):
+        return []
     assert all(x[-2:] == [("mo", "="), ("mn", "0")] for x in lines_4)
     return [mathml(x[:-2]) for x in lines_4]
 
