@@ -67,6 +67,32 @@ class Notation:
 
 
 @dataclass(frozen=True)
+class Power:
+    """A value with an exponent."""
+
+    base: Math
+    exponent: int
+
+
+@dataclass(frozen=True)
+class Text:
+    """Words in a formula: ``Text(Said("at"), " ")``."""
+
+    parts: tuple[Inline, ...]
+
+    def __init__(self, *parts: Inline) -> None:
+        object.__setattr__(self, "parts", parts)
+
+
+@dataclass(frozen=True)
+class Readable:
+    """A formula, or its length where nobody would read it.  ``kept``: it stands in full in results.json."""
+
+    value: Formula
+    kept: bool = True
+
+
+@dataclass(frozen=True)
 class Listed:
     """Values side by side: a, b, c.  ``brackets``: (a, b, c); ``braces``: {a, b, c}."""
 
@@ -121,6 +147,9 @@ Math = (
     | Entry
     | Name
     | Notation
+    | Power
+    | Text
+    | Readable
     | Listed
     | Relation
     | Polynomial
@@ -166,10 +195,27 @@ class Words:
 
 @dataclass(frozen=True)
 class Strong:
-    """What stands out: a verdict, an outcome.  ``grade``: good, bad or open."""
+    """What stands out: a verdict, an outcome.  ``grade``: good, bad or open; ``key``: a page knows it by that."""
 
     text: Inline
     grade: str = ""
+    key: str = ""
+
+
+@dataclass(frozen=True)
+class Graded:
+    """Words among others that are good, bad or open: coloured on a screen; on paper the bad ones stand out."""
+
+    text: Inline
+    grade: str
+
+
+@dataclass(frozen=True)
+class Link:
+    """Words that lead on a screen to the section ``to``."""
+
+    text: Inline
+    to: str
 
 
 @dataclass(frozen=True)
@@ -209,7 +255,7 @@ class Citation:
 
 
 #: What stands in a line; a ``str`` is as it is in every language: a name of a body, a number, punctuation.
-Inline = Said | Words | Strong | Phrase | Emphasis | Verbatim | Unit | Citation | Math | str
+Inline = Said | Words | Strong | Graded | Link | Phrase | Emphasis | Verbatim | Unit | Citation | Math | str
 
 
 # --- blocks -----------------------------------------------------------------------------------------------------------
@@ -246,6 +292,14 @@ class Display:
     value: Math | tuple[Inline, ...]
     key: str = ""
     notes: tuple[Inline, ...] = ()
+
+
+@dataclass(frozen=True)
+class Definitions:
+    """What letters stand for, one after the other, led in by words."""
+
+    words: Said
+    items: tuple[Relation, ...]
 
 
 @dataclass(frozen=True)
@@ -297,11 +351,37 @@ class TableColumn:
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of cells, each of them parts of a line; in narrow columns of paper its rows follow one another."""
+    """Rows of cells, each of them parts of a line; in narrow columns of paper its rows follow one another.
 
-    title: Said
+    One without a title has headings of its columns on paper, too, and its rows are paragraphs where they follow.
+    """
+
+    title: Said | None
     columns: tuple[TableColumn, ...]
     rows: tuple[tuple[tuple[Inline, ...], ...], ...]
+
+
+@dataclass(frozen=True)
+class Facts:
+    """A list of what was found: of each the name, and what is said of it."""
+
+    items: tuple[tuple[tuple[Inline, ...], tuple[Inline, ...]], ...]
+
+
+@dataclass(frozen=True)
+class Cited:
+    """Words, each with the keys of its literature; told where there is a list of literature."""
+
+    words: Said
+    items: tuple[tuple[Inline, tuple[str, ...]], ...]
+
+
+@dataclass(frozen=True)
+class Beside:
+    """Blocks in which these names occur besides those of the system."""
+
+    names: tuple[str, ...]
+    blocks: tuple[Block, ...]
 
 
 @dataclass(frozen=True)
@@ -338,11 +418,15 @@ Block = (
     | Subheading
     | Paragraph
     | Display
+    | Definitions
     | Matrices
     | SideBySide
     | Components
     | Itemised
     | Table
+    | Facts
+    | Cited
+    | Beside
     | Folded
     | Intermediates
     | Steps

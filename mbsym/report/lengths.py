@@ -68,3 +68,14 @@ def program_not_printed(steps: int) -> Said:
 def not_printed(formula: Formula) -> str:
     """What stands in a formula's place."""
     return f"{formula.terms} terms, not printed"
+
+
+def length(formula: Formula, kept: bool = True) -> Said:
+    """What stands in the place of a polynomial that nobody would read; ``kept``: results.json has it in full."""
+    degree = max(map(sum, formula.polynomial.monoms()))
+    text = (
+        "[[terms]] terms, of degree [[degree]]; in full in results.json"
+        if kept
+        else "[[terms]] terms, of degree [[degree]]"
+    )
+    return say(text, terms=str(formula.terms), degree=str(degree))

@@ -77,6 +77,10 @@ class Writer:
         return f"[{value.text}]"
 
     @inline.register
+    def _(self, value: content.Phrase) -> str:
+        return "".join(map(self.inline, value.parts))
+
+    @inline.register
     def _(self, value: content.Name) -> str:
         return value.name + _DOTS[value.dots] + (f"({value.at})" if value.at else "")
 

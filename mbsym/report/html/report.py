@@ -5,24 +5,17 @@ What was found stands first.  Formulas are MathML; long ones are folded away beh
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from markupsafe import Markup, escape
 
 from mbsym import __version__
-from mbsym.formulas.mathml import MathNames, mathml_names, mi, mo, mtext
-from mbsym.formulas.names import free_name
-from mbsym.model.quantities import rate_unit, unit_of
+from mbsym.formulas.mathml import MathNames, mathml_names, mi, mo
+from mbsym.model.quantities import unit_of
 from mbsym.problems import NUMBERS
-from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
-from mbsym.problems.stability import Stability
-from mbsym.problems.stability.spectrum import Spectrum, numbers
-from mbsym.problems.stability.word import Word
-from mbsym.report.brief import brief
 from mbsym.report.code.functions import moving
 from mbsym.report.compact import compact
-from mbsym.report.conditions import Shown, cases, factors, label_meanings, provided, statements
 from mbsym.report.content import Said
 from mbsym.report.html import formulas as shown
 from mbsym.report.html.description import (
@@ -40,10 +33,8 @@ from mbsym.report.results import Section, contents, results
 from mbsym.report.sections.invariant_sets import plain
 from mbsym.report.sections.small_parameters import told as of_small_parameters
 from mbsym.report.sections.stabilisation import decimal, polynomial
-from mbsym.report.sections.stability import root_text
 from mbsym.report.summary import title_of
 from mbsym.report.unit_text import labelled
-from mbsym.report.words.claims import HELD, REFUTED, claim_line, counterexample, repair, titles, together
 from mbsym.report.words.expansion_words import Coefficient
 from mbsym.report.words.expansion_words import Medium as SmallMedium
 from mbsym.report.words.integrals_words import sentences as polynomial_sentences
@@ -85,14 +76,10 @@ def context(
 
     system = analysis.system
     names = mathml_names(analysis.ring)
-    printed = _claimed_names(analysis)
     stages = {number: analysis.stage(number) for number in problems}
     found = {number: stage.value for number, stage in stages.items() if stage.failure is None}
     about = results(analysis, problems)
     long = withheld([*(found[number] for number in COUNTED if number in found), *about.forms.forms.results], PAPER)
-    taken = {str(names[name]) for name in [*system.coordinates, *system.parameter_names]}
-    taken |= {str(names[item.name]) for item in system.prescribed}
-    taken |= {str(names[item.name]) for item in system.notation}
     writer = Writer(names, Language(analysis.language or system.language), long)
     sections = contents(about, writer.document)
     known: dict[str, Callable[..., Any]] = {
@@ -104,8 +91,6 @@ def context(
         "expression": lambda value: expression(value, names),
         "tr": lambda text, **gaps: writer.said(Said(text, gaps)),
         "title": lambda number: _title(number, sections, system, writer),
-        "printed": lambda value: expression(value, printed),
-        "printed_name": lambda name: Markup(str(printed[name])),
         "unperturbed": lambda: _motion(analysis, names),
         "unit": lambda name: labelled("", unit_of(system, name)),
         "stabilisation_sentences": lambda one: list(_of_stabilisation(one, names)),
@@ -116,12 +101,10 @@ def context(
         "invariant_paragraphs": lambda one: list(_of_invariant_sets(one, names)),
         "small_parameter_lines": lambda one: list(_of_small_parameters(one, system, names)),
         "decimal": decimal,
-        "claim_groups": lambda: list(together(map(claim_line, analysis.claims))),
     }
     values = dict[str, Any](
         system=system,
         title_of=title_of,
-        rate=labelled("", rate_unit(system)),
         numbers={"0": 0} | {body.name: k for k, body in enumerate(system.bodies, start=1)},
         found=found,
         problems=[(number, PROBLEMS[number]) for number in ORDER if number in problems],
@@ -129,18 +112,10 @@ def context(
         language=writer.language.name,
         failures={number: stage.failure for number, stage in stages.items() if stage.failure is not None},
         told=compact(analysis, {number: found.get(number) for number in problems}),
-        variable=_free_letter("λμσs", taken),
-        characteristic="Lambda" if "<mi>Λ</mi>" not in taken else _free_letter("ΔΦPQ", taken),
-        factors=factors,
-        math_text=lambda words: Markup(mtext(words)),
-        provided=provided(found[6].presumed, bool(analysis.system.inputs)) if 6 in found else "",
-        decided=_decided,
-        DEPENDS=Word.DEPENDS,
         FEEDBACK=FEEDBACK,
         LYAPUNOV=LYAPUNOV,
         claims=analysis.claims if whole else (),
         checks=analysis.checks if whole else (),
-        brief=brief(analysis, 0.0) if whole else None,
         diagram=diagram(system) if system.bodies else "",
         version=__version__,
         digest=meaning(system),
@@ -252,11 +227,6 @@ def _filled(said_ones: Iterable[tuple[str, dict[str, object]]]) -> Iterator[Mark
         yield said
 
 
-def _free_letter(letters: str, taken: Collection[str]) -> str:
-    """The first that is the symbol of nothing declared."""
-    return next((x for x in letters if mi(x) not in taken), free_name(letters[0] * 2, taken))
-
-
 def _functions(long: frozenset[int]) -> dict[str, Callable[..., Any]]:
     """What templates write formulas with."""
     return {
@@ -267,24 +237,8 @@ def _functions(long: frozenset[int]) -> dict[str, Callable[..., Any]]:
         "mo": lambda sign: Markup(mo(sign)),
         "line": lambda left, value, right="": shown.line(left, value, long, right),
         "text_line": shown.text_line,
-        "polynomial": shown.polynomial,
-        "condition": shown.condition,
-        "relation": shown.relation,
-        "refer": shown.refer,
-        "label": shown.label,
         "inline": shown.inline,
-        "prose": shown.prose,
-        "short": lambda value: value.terms < 60,
         "moving": moving,
-        "label_meanings": label_meanings,
-        "statements": statements,
-        "cases": cases,
-        "Shown": Shown,
-        "counterexample": lambda value: counterexample(value).replace("for", "For", 1),
-        "titles": titles,
-        "repair": repair,
-        "eigenvalues": _eigenvalues,
-        "grade": _grade,
     }
 
 
@@ -293,41 +247,8 @@ def _separated(items: Sequence[str]) -> list[str]:
     return [piece for k, item in enumerate(items) for piece in ([comma] if k else []) + [item]]
 
 
-def _grade(word: str) -> str:
-    """good, bad or open: how a verdict or an outcome is coloured; the word itself says it."""
-    good = {word.value for word in Word if word.stable} | {EXACT, NUMERICAL, HELD}
-    return (
-        "good"
-        if word in good
-        else "bad"
-        if word in (Word.UNSTABLE, Word.UNSTABLE_BUT_BORDERS, FAILED, REFUTED)
-        else "open"
-    )
-
-
 def _motion(analysis: Analysis, names: MathNames) -> Markup:
     """The unperturbed motion, in formulas that may stand on several lines."""
     items = [(item.coordinate, moving(item.value, item.rate)) for item in analysis.system.motion]
     items += [(one.name, one.held) for one in analysis.system.inputs]
     return Markup(", ").join(shown.math(str(names[name]), mo("="), expression(value, names)) for name, value in items)
-
-
-def _decided(found: Stability) -> str:
-    """How the verdict at given values was found, if it is one: irrational values have enclosures."""
-    if found.numerical is None or found.numerical.word == Word.UNDECIDED:
-        return ""
-    enclosed = any(part.theory.at_point is None for part in found.subsystems)
-    return ", decided by rigorous enclosures" if enclosed else ", decided exactly"
-
-
-def _eigenvalues(spectrum: Spectrum) -> str:
-    """``-0.1 ± 2.3i (twice)``, separated by semicolons."""
-    return "; ".join(root_text(root).replace("+-", "±").replace("-", "\u2212") for root in numbers(spectrum))
-
-
-def _claimed_names(analysis: Analysis) -> MathNames:
-    """The names of the system, and those of a publication's abbreviations besides."""
-    kinds = ("coordinate", "prescribed", "parameter")
-    own = ["t", *(g.name for g in analysis.ring.generators if g.kind in kinds)]
-    variables = [claim.variable for claim in analysis.system.claims if claim.variable]
-    return MathNames([*own, *(item.name for item in analysis.system.abbreviations), *variables])

@@ -23,7 +23,7 @@ from mbsym.report.html.formulas import RELATIONS
 from mbsym.report.html.told import told_passages
 from mbsym.report.language import Language
 from mbsym.report.latex.description import shown_points
-from mbsym.report.lengths import PAPER_PROGRAM, not_printed, program_not_printed
+from mbsym.report.lengths import PAPER_PROGRAM, length, not_printed, program_not_printed
 from mbsym.report.plain_writer import Writer as PlainWriter
 from mbsym.report.unit_text import labelled
 
@@ -95,7 +95,8 @@ class Writer:
     @inline.register
     def _(self, value: content.Words) -> Markup:
         said = self.language.say(value.text)
-        return formulas.prose(said, value.variable) if value.variable else escape(said)
+        variable = letter(value.variable) if greek(value.variable) else value.variable
+        return formulas.prose(said, variable) if variable else escape(said)
 
     @inline.register
     def _(self, value: content.Phrase) -> Markup:
@@ -103,8 +104,17 @@ class Writer:
 
     @inline.register
     def _(self, value: content.Strong) -> Markup:
+        key = Markup(' id="{}"').format(value.key) if value.key else ""
         grade = Markup(' class="{}"').format(value.grade) if value.grade else ""
-        return Markup("<strong{}>{}</strong>").format(grade, self.inline(value.text))
+        return Markup("<strong{}{}>{}</strong>").format(key, grade, self.inline(value.text))
+
+    @inline.register
+    def _(self, value: content.Graded) -> Markup:
+        return Markup('<span class="{}">{}</span>').format(value.grade, self.inline(value.text))
+
+    @inline.register
+    def _(self, value: content.Link) -> Markup:
+        return Markup('<a href="#{}">{}</a>').format(value.to, self.inline(value.text))
 
     @inline.register
     def _(self, value: content.Emphasis) -> Markup:
@@ -167,6 +177,18 @@ class Writer:
         return notation(value.tex)
 
     @math.register
+    def _(self, value: content.Power) -> str:
+        return power(self.math(value.base), mn(value.exponent))
+
+    @math.register
+    def _(self, value: content.Text) -> str:
+        return mtext(self._joined(value.parts).unescape())
+
+    @math.register
+    def _(self, value: content.Readable) -> str:
+        return self.math(value.value) if formulas.is_readable(value.value) else self._length(value.value, value.kept)
+
+    @math.register
     def _(self, value: content.Listed) -> str:
         items = [self.math(x) for x in value.items]
         if value.braces:
@@ -179,7 +201,7 @@ class Writer:
 
     @math.register
     def _(self, value: content.Polynomial) -> str:
-        written = "".join(_pieces(value))
+        written = "".join(self._pieces(value))
         return written if value.power == 1 else power(bracketed(written, "[]"), mn(value.power))
 
     @math.register
@@ -227,7 +249,7 @@ class Writer:
             case Formula():
                 return formulas.line("", shown, self.long)
             case content.Polynomial():
-                return formulas.whole(_pieces(shown))
+                return formulas.whole(self._pieces(shown))
             case content.Relation(parts):
                 return self._relation(parts)
             case content.Listed(items, False) if items:
@@ -239,12 +261,13 @@ class Writer:
 
     def _relation(self, parts: Sequence[Math | str]) -> Markup:
         """A line that breaks in the last long formula that it holds."""
+        parts = [x.value if isinstance(x, content.Readable) and formulas.is_readable(x.value) else x for x in parts]
         place = max((k for k, x in enumerate(parts) if isinstance(x, Formula)), default=-1)
         if place < 0:
             *before, last = parts
             if isinstance(last, content.Polynomial) and last.power == 1:
                 left = "".join(map(self.math, before))
-                first, *rest = _pieces(last)
+                first, *rest = self._pieces(last)
                 return formulas.whole([left + first, *rest])
             return formulas.text_line(*map(self.math, parts))
         value = parts[place]
@@ -258,8 +281,13 @@ class Writer:
     def _beside(self, value: Inline) -> str:
         """A part of a displayed line: words stand in it as text."""
         if isinstance(value, (str, Said, content.Words)):
-            return mtext(str(self.inline(value)))
+            return mtext(self.inline(value).unescape())
         return self.math(value)
+
+    @block.register
+    def _(self, value: content.Definitions) -> Markup:
+        lines = (self._relation(item.parts) for item in value.items)
+        return Markup("\n").join((Markup("<p>{}:</p>").format(self.said(value.words)), *lines))
 
     @block.register
     def _(self, value: content.Matrices) -> Markup:
@@ -306,9 +334,26 @@ class Writer:
             )
             for row in value.rows
         )
+        title = "" if value.title is None else Markup("<h3>{}</h3>\n").format(self.said(value.title))
         return Markup(
-            '<h3>{}</h3>\n<div class="scroll"><table>\n<thead><tr>{}</tr></thead>\n<tbody>\n{}\n</tbody></table></div>'
-        ).format(self.said(value.title), head, rows)
+            '{}<div class="scroll"><table>\n<thead><tr>{}</tr></thead>\n<tbody>\n{}\n</tbody></table></div>'
+        ).format(title, head, rows)
+
+    @block.register
+    def _(self, value: content.Facts) -> Markup:
+        items = (
+            Markup("<dt>{}</dt>\n<dd>{}</dd>\n").format(self._joined(name), self._joined(said))
+            for name, said in value.items
+        )
+        return Markup("<dl>\n{}</dl>").format(Markup("").join(items))
+
+    @block.register
+    def _(self, value: content.Cited) -> Markup:
+        return Markup("")
+
+    @block.register
+    def _(self, value: content.Beside) -> Markup:
+        return replace(self, names=self.names.beside(value.names)).document(value.blocks)
 
     @block.register
     def _(self, value: content.Folded) -> Markup:
@@ -333,10 +378,12 @@ class Writer:
     def _joined(self, parts: Iterable[Inline]) -> Markup:
         return Markup("").join(map(self.inline, parts))
 
+    def _length(self, value: Formula, kept: bool = True) -> str:
+        return mtext(f"({self.said(length(value, kept)).unescape()})")
 
-def _pieces(value: content.Polynomial) -> list[str]:
-    variable = letter(value.variable) if greek(value.variable) else value.variable
-    return formulas.polynomial_pieces(value.coefficients, variable)
+    def _pieces(self, value: content.Polynomial) -> list[str]:
+        variable = letter(value.variable) if greek(value.variable) else value.variable
+        return formulas.polynomial_pieces(value.coefficients, variable, self._length)
 
 
 #: Letters for private use, which stand for values in notation.

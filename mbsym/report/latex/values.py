@@ -5,23 +5,16 @@ What is printed of a formula, a matrix or a passage is printed once for all file
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Hashable, Sequence
 from typing import TYPE_CHECKING, Any, TypeVar
 from weakref import WeakKeyDictionary
 
 from mbsym import __version__
-from mbsym.formulas.latex import LatexNames, latex_names
-from mbsym.formulas.names import free_name
+from mbsym.formulas.latex import latex_names
 from mbsym.formulas.tree import angles_or
-from mbsym.model.quantities import rate_unit, unit_of
-from mbsym.model.system import System
-from mbsym.problems.integrals import ENERGY
-from mbsym.problems.stability import Stability
-from mbsym.problems.stability.word import Word
+from mbsym.model.quantities import unit_of
 from mbsym.report.code.functions import moving
 from mbsym.report.compact import compact
-from mbsym.report.conditions import Shown, cases, factors, label_meanings, provided, statements
 from mbsym.report.language import Language
 from mbsym.report.latex.description import (
     expression,
@@ -30,25 +23,21 @@ from mbsym.report.latex.diagram import diagram
 from mbsym.report.latex.form import Form, heading, subheading
 from mbsym.report.latex.formulas import (
     Measured,
-    condition,
-    eigenvalues,
     formula,
     measured_matrix,
-    polynomial,
 )
 from mbsym.report.latex.integrals import of_integrals, of_list, of_symmetries, weights_of
 from mbsym.report.latex.invariant import of_invariant_sets
 from mbsym.report.latex.labels import Labels, prefix_of
 from mbsym.report.latex.normal_forms import of_normal_forms
-from mbsym.report.latex.references import keys_of, references, theorems_named
 from mbsym.report.latex.small import of_small_parameters
 from mbsym.report.latex.stabilisation import of_stabilisation, rational_matrix, rational_row
-from mbsym.report.latex.words import RELATIONS, escaped, is_cyrillic, label, prose, refer
+from mbsym.report.latex.words import escaped, is_cyrillic
 from mbsym.report.latex.writer import Writer
 from mbsym.report.lengths import COUNTED, PAPER, PAPER_FORMS, withheld
+from mbsym.report.references import references
 from mbsym.report.results import contents, results
 from mbsym.report.unit_text import bracketed
-from mbsym.report.words.claims import claim_line, counterexample, repair, titles, together
 from mbsym.report.words.integrals_words import OPENING
 from mbsym.report.words.stabilisation_words import FEEDBACK, LYAPUNOV
 from mbsym.source.meaning import meaning
@@ -91,8 +80,6 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
     known = results(analysis, problems)
     long = withheld([found[number] for number in COUNTED if number in found], PAPER)
     long |= withheld(known.forms.forms.results, PAPER_FORMS)
-    taken = {str(names[name]) for name in [*system.coordinates, *system.parameter_names]}
-    taken |= {str(names[item.name]) for item in system.prescribed} | {str(names[item.name]) for item in system.notation}
     verdicts = found.get(6)
     cited = references(verdicts, escaped(system.source)) if form is not Form.FRAGMENT else ()
     writer = Writer(names, tongue, labels, form, long, lambda value: once(measured_matrix, value))
@@ -109,7 +96,6 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "digest": once(meaning, system),
         "babel": tongue.babel,
         "references": cited,
-        "literature": _literature(verdicts, tongue) if form is Form.REPORT else [],
         "system": system,
         "numbers": {"0": 0} | {body.name: k for k, body in enumerate(system.bodies, start=1)},
         "moving": moving,
@@ -130,23 +116,6 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "small_parameter_lines": lambda one: of_small_parameters(one, system, names, tongue),
         "FEEDBACK": FEEDBACK,
         "LYAPUNOV": LYAPUNOV,
-        "label_meanings": label_meanings,
-        "statements": statements,
-        "cases": cases,
-        "Shown": Shown,
-        "rate": bracketed(rate_unit(system), "\\;\\penalty0 "),
-        "relations": RELATIONS,
-        "variable": "\\lambda" if "\\lambda" not in taken else free_name("\\hat{\\lambda}", taken),
-        "characteristic": "\\Lambda" if "\\Lambda" not in taken else free_name("\\hat{\\Lambda}", taken),
-        "factors": factors,
-        "provided": "" if verdicts is None else provided(verdicts.presumed, bool(system.inputs)),
-        "DEPENDS": Word.DEPENDS,
-        "ENERGY": ENERGY,
-        "decided": decided,
-        "claims": analysis.claims,
-        "outcomes": Counter(claim_line(result).word for result in analysis.claims),
-        "repair": repair,
-        "checks": analysis.checks,
         "diagram": lambda: diagram(system, names, escaped, tongue.sentence("inertial frame"), form.picture),
         "cyrillic": tongue.name == "ru" or is_cyrillic(system),
     }
@@ -155,64 +124,15 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
 
 def _filters(analysis: Analysis, tongue: Language, long: frozenset[int], widest: float, measured: Measured) -> Filters:
     """What templates write formulas and words with; the ``long`` formulas are counted."""
-    system, names, printed = analysis.system, latex_names(analysis.ring), claimed_names(analysis)
+    system, names = analysis.system, latex_names(analysis.ring)
     return {
         "tex": escaped,
         "rational_matrix": rational_matrix,
         "rational_row": rational_row,
         "say": tongue.say,
-        "theorem": lambda name: escaped(tongue.say(name)),
         "name": lambda name: str(names[name]),
         "dotted": lambda name: names[name].accented("dot"),
         "math": lambda value: formula(value, long),
         "expression": lambda value: expression(value, names),
         "unit": lambda name, space="": bracketed(unit_of(system, name), space),
-        "sum": polynomial,
-        "condition": condition,
-        "eigenvalues": eigenvalues,
-        "label": lambda words: label(words, tongue.say),
-        "refer": lambda reference: refer(reference, tongue.say),
-        "prose": prose,
-        "claim_line": claim_line,
-        "counterexample": lambda found: counterexample(found).replace("for", "For", 1),
-        "together": together,
-        "titles": titles,
-        "printed": lambda value: expression(value, printed),
-        "printed_name": lambda name: str(printed[name]),
-        "same": lambda words: same(words, printed),
     }
-
-
-def _number_of(system: System, body: str) -> int:
-    return next(k for k, one in enumerate(system.bodies, start=1) if one.name == body)
-
-
-def _literature(found: Stability | None, tongue: Language) -> list[tuple[str, str]]:
-    """(name, keys) of each theorem that problem 6 names."""
-    named = [] if found is None else dict.fromkeys(theorems_named(found))
-    return [(escaped(tongue.say(name)), ",".join(keys_of(name))) for name in named if keys_of(name)]
-
-
-def decided(found: Stability) -> str:
-    """How the verdict at given values was found, if it is one: irrational values have enclosures."""
-    if found.numerical is None or found.numerical.word == Word.UNDECIDED:
-        return ""
-    enclosed = any(part.theory.at_point is None for part in found.subsystems)
-    return ", decided by rigorous enclosures" if enclosed else ", decided exactly"
-
-
-def claimed_names(analysis: Analysis) -> LatexNames:
-    """The names of the system, and those of a publication's abbreviations besides."""
-    kinds = ("coordinate", "prescribed", "parameter")
-    own = ["t", *(g.name for g in analysis.ring.generators if g.kind in kinds)]
-    variables = [claim.variable for claim in analysis.system.claims if claim.variable]
-    given = {one.name: one.latex for one in analysis.system.symbols}
-    return LatexNames([*own, *(item.name for item in analysis.system.abbreviations), *variables], given)
-
-
-def same(words: str, names: LatexNames) -> str:
-    """``-2*c18``: a number and an abbreviation."""
-    number, star, name = words.rpartition("*")
-    sign = "-" if not star and name.startswith("-") else ""
-    bare = str(names[name.removeprefix("-")])
-    return f"{number}\\, {bare}" if star else sign + bare

@@ -9,6 +9,7 @@ from fractions import Fraction
 from functools import singledispatchmethod
 from typing import Any
 
+from mbsym.expressions.tree import Expression
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.latex import LatexNames, latex_names, latex_symbol
 from mbsym.formulas.straight_line import Dialect, listing
@@ -17,12 +18,13 @@ from mbsym.report.content import Inline, Said
 from mbsym.report.language import Language
 from mbsym.report.latex import formulas
 from mbsym.report.latex.description import breakable, call, expression, points, speed_form
+from mbsym.report.latex.displays import loosened
 from mbsym.report.latex.form import Form, heading, subheading
 from mbsym.report.latex.formulas import Measured, measured_matrix
 from mbsym.report.latex.labels import Labels
-from mbsym.report.latex.told import packed, paragraphs
+from mbsym.report.latex.told import CLOSING, OPENING, PARAGRAPH, packed, paragraphs
 from mbsym.report.latex.words import RELATIONS, escaped, prose
-from mbsym.report.lengths import PAPER_PROGRAM, program_not_printed
+from mbsym.report.lengths import PAPER_PROGRAM, length, program_not_printed
 from mbsym.report.unit_text import bracketed
 
 _DOTS = ("", "dot", "ddot")
@@ -93,6 +95,14 @@ class Writer:
         return f"\\textbf{{{self.inline(value.text)}}}"
 
     @inline.register
+    def _(self, value: content.Graded) -> str:
+        return self.inline(content.Strong(value.text) if value.grade == "bad" else value.text)
+
+    @inline.register
+    def _(self, value: content.Link) -> str:
+        return self.inline(value.text)
+
+    @inline.register
     def _(self, value: content.Emphasis) -> str:
         return f"\\textit{{{escaped(value.text)}}}"
 
@@ -138,8 +148,8 @@ class Writer:
         stem = latex_symbol(value.letter)
         accent = _DOTS[value.dots] or _LOOKS.get(value.look, "")
         written = stem.accented(accent) if accent else str(stem)
-        upper = f"^{{{_index(value.upper)}}}" if value.upper else ""
-        return written + upper + (f"_{{{_index(value.lower)}}}" if value.lower else "")
+        lower = f"_{{{_index(value.lower)}}}" if value.lower else ""
+        return written + lower + (f"^{{{_index(value.upper)}}}" if value.upper else "")
 
     @math.register
     def _(self, value: content.Entry) -> str:
@@ -150,6 +160,18 @@ class Writer:
     @math.register
     def _(self, value: content.Notation) -> str:
         return value.tex
+
+    @math.register
+    def _(self, value: content.Power) -> str:
+        return f"{self.math(value.base)}^{{{value.exponent}}}"
+
+    @math.register
+    def _(self, value: content.Text) -> str:
+        return f"\\text{{{self._joined(value.parts)}}}"
+
+    @math.register
+    def _(self, value: content.Readable) -> str:
+        return self.math(value.value) if formulas.is_readable(value.value) else self._length(value.value, value.kept)
 
     @math.register
     def _(self, value: content.Listed) -> str:
@@ -164,11 +186,12 @@ class Writer:
 
     @math.register
     def _(self, value: content.Relation) -> str:
-        return " ".join(map(self.math, value.parts))
+        written = " ".join(map(self.math, value.parts))
+        return f"-{written[2:]}" if written.startswith("- ") else written
 
     @math.register
     def _(self, value: content.Polynomial) -> str:
-        written = formulas.polynomial(value.coefficients, latex_symbol(value.variable).stem)
+        written = formulas.polynomial(value.coefficients, latex_symbol(value.variable).stem, self._length)
         return written if value.power == 1 else f"\\bigl[{written}\\bigr]^{{{value.power}}}"
 
     @math.register
@@ -208,8 +231,15 @@ class Writer:
             written = "".join(self._beside(x) for x in value.value)
         else:
             written = self.math(value.value)
+        if isinstance(value.value, Expression):  # as it was printed, without places where it may be broken
+            written = loosened(written)
         notes = "".join(f" \\quad\\penalty0 \\text{{({self.inline(note)})}}" for note in value.notes)
         return self._display(written + notes, value.key)
+
+    @block.register
+    def _(self, value: content.Definitions) -> str:
+        written = "; ".join(f"$\\displaystyle {loosened(self.math(item))}$" for item in value.items)
+        return f"{OPENING}{PARAGRAPH}{self.said(value.words)}: {written}.{CLOSING}}}\n"
 
     @block.register
     def _(self, value: content.Matrices) -> str:
@@ -279,15 +309,36 @@ class Writer:
     def _(self, value: content.Table) -> str:
         shown = [k for k, column in enumerate(value.columns) if column.width]
         rows = [["".join(map(self.inline, row[k])) for k in shown] for row in value.rows]
-        title = self.said(value.title)
+        title = "" if value.title is None else self.said(value.title)
+        if self.form is not Form.REPORT and not title:
+            return "\n".join(", ".join(filter(None, row[:-1])) + f": {row[-1]}.\n" for row in rows)
         if self.form is not Form.REPORT:
             return f"{title}: " + ";\n".join(", ".join(filter(None, row)) for row in rows) + ".\n"
         widths = [value.columns[k].width for k in shown]
         columns = "".join(f">{{\\raggedright\\arraybackslash}}p{{{x:g}cm}}" for x in widths)
         lines = [f"\\begin{{longtable}}{{@{{}}{columns}@{{}}}}"]
-        lines += [f"\\multicolumn{{{len(shown)}}}{{@{{}}l}}{{\\textbf{{{title}}}}}\\\\"]
+        if title:
+            lines += [f"\\multicolumn{{{len(shown)}}}{{@{{}}l}}{{\\textbf{{{title}}}}}\\\\"]
+        else:
+            lines += [" & ".join(self.said(value.columns[k].title) for k in shown) + r"\\\hline\endhead"]
         lines += [" & ".join(row) + "\\\\" for row in rows]
         return "\n".join([*lines, "\\end{longtable}"])
+
+    @block.register
+    def _(self, value: content.Facts) -> str:
+        items = "".join(f"\\item {self._joined(name)}: {self._joined(said)}.\n" for name, said in value.items)
+        return f"\\begin{{itemize}}\\setlength{{\\itemsep}}{{1pt}}\n{items}\\end{{itemize}}\n"
+
+    @block.register
+    def _(self, value: content.Cited) -> str:
+        if self.form is not Form.REPORT:
+            return ""
+        written = "; ".join(f"{self.inline(words)}~\\cite{{{','.join(keys)}}}" for words, keys in value.items)
+        return f"{self.said(value.words)}: {written}.\n"
+
+    @block.register
+    def _(self, value: content.Beside) -> str:
+        return replace(self, names=self.names.beside(value.names)).document(value.blocks)
 
     @block.register
     def _(self, value: content.Folded) -> str:
@@ -308,6 +359,9 @@ class Writer:
 
     def _joined(self, parts: Iterable[Inline]) -> str:
         return "".join(map(self.inline, parts))
+
+    def _length(self, value: Formula, kept: bool = True) -> str:
+        return f"\\text{{({self.said(length(value, kept))})}}"
 
     def _beside(self, value: Inline) -> str:
         """A part of a displayed line: words stand in it as text."""

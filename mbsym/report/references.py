@@ -79,11 +79,12 @@ def keys_of(theorem: str) -> tuple[str, ...]:
 def theorems_named(found: Stability) -> Iterator[str]:
     """Every theorem that problem 6 names, in the order of the report, with repetitions."""
     for part in found.subsystems:
-        yield from (case.verdict.theorem for case in part.theory.cases if not case.never)
-        yield part.theory.verdict.theorem
-    yield found.verdict.theorem
+        for case in part.theory.cases:
+            yield from () if case.never else case.verdict.theorems
+        yield from part.theory.verdict.theorems
+    yield from found.verdict.theorems
     if found.numerical is not None:
-        yield found.numerical.theorem
+        yield from found.numerical.theorems
 
 
 def references(found: Stability | None, source: str = "") -> tuple[Reference, ...]:
