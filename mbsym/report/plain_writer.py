@@ -101,6 +101,14 @@ class Writer:
         return _notation(value.tex)
 
     @inline.register
+    def _(self, value: content.Text) -> str:
+        return "".join(map(self.inline, value.parts))
+
+    @inline.register
+    def _(self, value: content.Power) -> str:
+        return f"{self.inline(value.base)}^{value.exponent}"
+
+    @inline.register
     def _(self, value: content.Listed) -> str:
         written = ", ".join(map(self.inline, value.items))
         return f"({written})" if value.brackets else f"{{{written}}}" if value.braces else written
