@@ -51,6 +51,7 @@ from mbsym.report.content import (
     Subheading,
     Symbol,
     Text,
+    Unit,
     Words,
     named,
     paragraph,
@@ -60,7 +61,6 @@ from mbsym.report.documents import parts
 from mbsym.report.documents.results import stability as doc
 from mbsym.report.plain import LONGEST, Write, shortened, statement_text
 from mbsym.report.references import keys_of, theorems_named
-from mbsym.report.unit_text import latex as unit_in_tex
 from mbsym.report.words.verdicts import concluded, decided, verdict
 
 if TYPE_CHECKING:
@@ -211,12 +211,12 @@ def content(results: Results) -> Iterator[Block]:
         for spectrum in found.spectra:
             names = named(spectrum.coordinates)
             roots = [part for root in numbers(spectrum) for part in (", ", *_root(root))][1:]
-            unit = unit_in_tex(rate_unit(results.system))
+            unit = rate_unit(results.system)
             yield paragraph(
                 say("Eigenvalues there, in physical time, of $[[names]]$", names=names),
                 ": ",
                 *roots,
-                *((" ", Notation(f"[{unit}]")) if unit else ()),
+                *((" ", Unit(unit)) if unit else ()),
                 ".",
             )
     theorems = [(name, keys_of(name)) for name in dict.fromkeys(theorems_named(found))]

@@ -33,7 +33,7 @@ def _facts(results: Results) -> Iterator[Fact]:
     if 2 in found and found[2].cyclic and not system.constraints:
         yield (Said("Cyclic coordinates"),), (named(found[2].cyclic),)
     if 4 in found:
-        yield (Said("Unperturbed motion"),), _motion(found[4])
+        yield (Said("The unperturbed motion"),), _motion(found[4])
     if 6 in found:
         yield from _stability(found[6], results)
     if 7 in found:
