@@ -19,9 +19,10 @@ _DOTS = ("", "'", "''")
 
 @dataclass(frozen=True)
 class Writer:
-    """Sentences in a language."""
+    """Sentences in a language; ``readable`` formulas are as people write them, others as Python reads them."""
 
     language: Language = field(default_factory=Language)
+    readable: bool = False
 
     def said(self, sentence: Said) -> str:
         """A sentence with its gaps filled."""
@@ -48,7 +49,7 @@ class Writer:
 
     @inline.register
     def _(self, value: Formula) -> str:
-        return str(value)
+        return value.readable() if self.readable else str(value)
 
     @inline.register
     def _(self, value: Said) -> str:
@@ -82,8 +83,10 @@ class Writer:
     def _(self, value: content.Phrase) -> str:
         return "".join(map(self.inline, value.parts))
 
-    @inline.register
-    def _(self, value: content.Strong) -> str:
+    @inline.register(content.Strong)
+    @inline.register(content.Graded)
+    @inline.register(content.Link)
+    def _(self, value: content.Strong | content.Graded | content.Link) -> str:
         return self.inline(value.text)
 
     @inline.register(content.Emphasis)

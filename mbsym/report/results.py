@@ -84,8 +84,8 @@ class Results:
     def _free(self, *letters: str) -> str:
         """The first that is the symbol of nothing declared."""
         system, names = self.system, latex_names(self.analysis.ring)
-        declared = [*system.coordinates, *system.parameter_names, *(item.name for item in system.prescribed)]
-        declared += [item.name for item in system.notation]
+        declared = [*system.coordinates, *system.parameter_names]
+        declared += [*(x.name for x in system.prescribed), *(x.name for x in system.notation)]
         taken = {str(names[name]) for name in declared}
         return next((x for x in letters if str(latex_symbol(x)) not in taken), letters[0])
 

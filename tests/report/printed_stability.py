@@ -494,15 +494,13 @@ def equations(surface: str, text: str) -> list[Value | None]:
             return [latex(x.removesuffix(" = 0")) for x in formulas]
     (section_4,) = [x for x in tree(text).iter("section") if x.get("id") == "problem-4"]
     lines_4: list[list[Token]] = []
+    begun = False
     for node in section_4.iter():
-        if node.tag == "p" and "if and only if" in "".join(node.itertext()):
-            lines_4.clear()  # before stands the motion itself
+        begun = begun or (node.tag == "p" and "if and only if" in "".join(node.itertext()))
         if node.tag == "p" and "use in the form" in "".join(node.itertext()):
             break
-        if node.tag == "div" and node.get("class") == "formula":
+        if begun and node.tag == "div" and node.get("class") == "formula":
             lines_4.append([x for part in node.iter("math") for x in tokens_of(part)])
-    if "if and only if" not in "".join(section_4.itertext()):
-        return []
     assert all(x[-2:] == [("mo", "="), ("mn", "0")] for x in lines_4)
     return [mathml(x[:-2]) for x in lines_4]
 
@@ -534,10 +532,10 @@ def matrices(surface: str, text: str) -> dict[str, dict[tuple[int, int], Value]]
         return found
     (section_5,) = [x for x in tree(text).iter("section") if x.get("id") == "problem-5"]
     for node in section_5.iter():
-        if node.tag == "h3":
-            break
         if node.tag == "div" and node.get("class") == "formula":
             tokens = [x for part in node.iter("math") for x in tokens_of(part)]
+            if str(tokens[0][1]).startswith("M") and str(tokens[1][1]).startswith("q"):  # M q'' + ... of a subsystem
+                break
             name = re.fullmatch(r"([MDGKN])(?:_(\d)(\d))?", str(tokens[0][1])) if tokens[1:2] == [("mo", "=")] else None
             if name is not None and name[2]:
                 found.setdefault(name[1], {})[int(name[2]), int(name[3])] = mathml(tokens[2:])

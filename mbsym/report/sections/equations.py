@@ -100,7 +100,10 @@ def _constraints(found: Constraints, write: Write) -> doc.Constraints:
             )
             for one in found.redundant
         ],
-        parameter_conditions=found.parameter_conditions,
+        parameter_conditions=found.demanded.count,
+        parameter_relations=[write(x) for x in found.demanded.relations],
+        parameters_satisfy_them=found.demanded.satisfied,
+        velocity_rank_beside=found.rank_beside,
         integrability=None
         if integrable is None
         else doc.Integrability(
@@ -336,7 +339,7 @@ def lines(found: Equations, analysis: Analysis) -> Iterator[str]:
     if found.in_speeds:
         own = cast("SpeedEquations", found)
         others = ", ".join(name for name, _ in own.kinematic)
-        yield f"Kane's equations in {', '.join(own.speeds)}" + (f"; with {others}" if others else "")
+        yield f"Kane's equations in {Writer().inline(speeds(own.speeds))}" + (f"; with {others}" if others else "")
     terms = sum(x.terms for x in found.forcing)
     size = counted(found.mass_matrix.terms, "term")
     yield f"{counted(n, 'equation')}; mass matrix {size}, right-hand sides {counted(terms, 'term')}"

@@ -224,7 +224,7 @@ def lines(found: Linearisation, analysis: Analysis) -> Iterator[str]:
         yield "subsystems: " + "; ".join(", ".join(part.coordinates) for part in found.subsystems)
     state = analysis.optional("first_order") if analysis.system.speeds else None
     if state is not None:
-        yield f"in speeds and positions: x' = A x, x = ({', '.join(state.names)})"
+        yield f"in speeds and positions: x' = A x, x = ({Writer().inline(speeds(state.names))})"
 
 
 def _five(found: Any, write: Write) -> dict[str, list[list[Written]]]:

@@ -348,7 +348,7 @@ def lines(found: Stability, analysis: Analysis) -> Iterator[str]:
         items = [] if part.theory.verdict.stable else list(statements(part.ring, part.theory.requirements))
         verdict = _verdict(part.theory.verdict)
         if part.theory.verdict.word in (Word.DEPENDS, Word.UNSTABLE_BUT_BORDERS) and items:
-            verdict += f"; {_heading(part.theory, items)}:"
+            verdict += f"; {kind_of_conditions(part.theory, items)}:"
         yield f"{', '.join(part.coordinates)}: {verdict}"
         shown = Shown()
         for item in items:
@@ -421,7 +421,7 @@ def _condition(item: Statement, shown: Shown) -> str:
     return f"{item.label}: {shortened(statement_text(item), 0 if item.formula is None else item.formula.terms)}{remark}"
 
 
-def _heading(theory: Theory, items: Sequence[Statement]) -> str:
+def kind_of_conditions(theory: Theory, items: Sequence[Statement]) -> str:
     """What the listed conditions are; some may say themselves what they are needed for."""
     if theory.method is Method.EVEN and not theory.potential:
         if any(item.remark for item in items):

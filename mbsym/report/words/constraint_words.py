@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.mechanics.constraints.rows import RowName
-from mbsym.problems.constraints import Constraints, Integrability
+from mbsym.problems.constraints import Constraints, Demanded, Integrability
 from mbsym.problems.reduction import Reduction
 from mbsym.report.content import Name, Phrase, Relation, Said, Words, joined, named, say, speeds
 
@@ -31,10 +31,13 @@ def sentences(found: Constraints) -> Iterator[Said]:
             others=[label(one) for one in redundant.from_rows],
             sure=Words(redundant.certainty.value),
         )
-    if found.parameter_conditions:
+    if found.demanded.count:
+        yield from _demanded(found.demanded)
+    if found.rank_beside is not None:
         yield say(
-            "The constraints can be kept only where the parameters satisfy further relations; their number: [[k]].",
-            k=str(found.parameter_conditions),
+            "These ranks are those at the given values of the parameters; at other values near them [[other]] "
+            "constraints on velocities are independent.",
+            other=str(found.rank_beside),
         )
     if found.integrability is not None:
         yield from _integrable(found.integrability, n - found.position_rank)
@@ -59,6 +62,34 @@ def sentences(found: Constraints) -> Iterator[Said]:
             dependent=named(found.dependent),
             free=named(found.free),
         )
+
+
+def _demanded(found: Demanded) -> Iterator[Said]:
+    """Which relations between parameters, and what the given values make of them."""
+    yield say(
+        "The constraints can be kept, and leave this freedom, only where the parameters satisfy further relations; "
+        "their number: [[k]].",
+        k=str(found.count),
+    )
+    if found.relations:
+        yield say(
+            "The parameters have to satisfy [[relations]] ([[sure]]).",
+            relations=[Relation(x, "=", 0) for x in found.relations],
+            sure=Words(Certainty.VERIFIED.value),
+        )
+    if found.satisfied:
+        yield Said("The given values do so.")
+    elif found.satisfied is not None:
+        yield Said("The given values do not: what is said of the motion here is not about them.")
+        if found.freedom is None:
+            yield Said("At the given values no configuration that keeps all constraints was found.")
+        elif not found.freedom:
+            yield Said("At the given values nothing can move in any configuration that was found.")
+        else:
+            yield say(
+                "At the given values the configurations that were found have [[f]] degrees of freedom at most.",
+                f=str(found.freedom),
+            )
 
 
 def reduction_sentences(found: Reduction) -> Iterator[Said]:
