@@ -60,6 +60,26 @@ class Writer:
         return self.language.say(value.text)
 
     @inline.register
+    def _(self, value: content.Graded) -> str:
+        return self.inline(value.text)
+
+    @inline.register
+    def _(self, value: content.Link) -> str:
+        return self.inline(value.text)
+
+    @inline.register
+    def _(self, value: content.Power) -> str:
+        return f"{self.inline(value.base)}**{value.exponent}"
+
+    @inline.register
+    def _(self, value: content.Text) -> str:
+        return "".join(map(self.inline, value.parts))
+
+    @inline.register
+    def _(self, value: content.Readable) -> str:
+        return self.inline(value.value)
+
+    @inline.register
     def _(self, value: content.Phrase) -> str:
         return "".join(map(self.inline, value.parts))
 
@@ -78,10 +98,6 @@ class Writer:
     @inline.register
     def _(self, value: content.Unit) -> str:
         return f"[{value.text}]"
-
-    @inline.register
-    def _(self, value: content.Phrase) -> str:
-        return "".join(map(self.inline, value.parts))
 
     @inline.register
     def _(self, value: content.Name) -> str:

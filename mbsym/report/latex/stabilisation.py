@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from fractions import Fraction
 
+from mbsym.formulas.formula import Formula
 from mbsym.formulas.latex import LatexNames
 from mbsym.problems.stabilisation import Stabilisation
 from mbsym.report.language import Language
 from mbsym.report.latex.formulas import formula, polynomial
 from mbsym.report.latex.words import escaped
+from mbsym.report.lengths import length
 from mbsym.report.words.stabilisation_words import Medium, sentences
 
 _RELATIONS = {"!=": "\\neq"}
@@ -17,11 +19,16 @@ _RELATIONS = {"!=": "\\neq"}
 
 def of_stabilisation(found: Stabilisation, names: LatexNames, tongue: Language) -> list[str]:
     """The sentences in the language of the report."""
+
+    def counted(x: Formula) -> str:
+        said = length(x)
+        return f"\\text{{({tongue.sentence(said.text, **said.gaps)})}}"
+
     write = Medium(
         names=lambda listed: "$" + ",\\, ".join(str(names[name]) for name in listed) + "$",
         condition=lambda x, relation: f"${formula(x)} {_RELATIONS.get(relation, relation)} 0$",
         formula=lambda x: f"${formula(x)}$",
-        polynomial=lambda factor: f"${polynomial(factor, chr(92) + 'lambda')}$",
+        polynomial=lambda factor: f"${polynomial(factor, chr(92) + 'lambda', counted)}$",
         square=lambda x: f"$\\lambda^2 = -({formula(x)})$",
         word=lambda word: escaped(tongue.say(word)),
     )

@@ -60,7 +60,7 @@ def _facts(results: Results) -> Iterator[Fact]:
         written = [Relation(one, "=", 0) for one in equations]
         yield (Said("Equations of motion"),), (joined(written, ";  "),)
     if 4 in found:
-        yield (Said("Unperturbed motion"),), _motion(found[4])
+        yield (Said("The unperturbed motion"),), _motion(found[4])
     if 6 in found:
         yield from _stability(found[6], results)
     if 7 in found:
