@@ -92,29 +92,28 @@ FLOW = "The flow on it, up to order [[order]]"
 def _show(file: Path, name: str, found: Expansion, told: Measured | str) -> None:
     from rich.text import Text
 
-    from mbsym.report.sections.small_parameters import PLAIN
+    from mbsym.report.content import say
+    from mbsym.report.plain_writer import Writer
     from mbsym.report.words.expansion_words import of_measured, sentences
-    from mbsym.report.words.said import filled
     from mbsym_cli.console import console, printable
 
-    out = console()
+    out, write = console(), Writer()
     manifold = found.manifold
     small = manifold.field.small
     out.print(Text.assemble((name, "bold"), (f"  {printable(file)}", "dim")))
     for parameter, power in manifold.field.powers:
         out.print(Text(f"  {parameter} stands for {parameter} {small}^{power}"))
-    gaps = {"order": manifold.order, "small": small}
     for heading, names, series, mark in (
-        (MANIFOLD, manifold.fast, manifold.functions, ""),
-        (FLOW, manifold.slow, manifold.flow, "'"),
+        (say(MANIFOLD, order=str(manifold.order), small=small), manifold.fast, manifold.functions, ""),
+        (say(FLOW, order=str(manifold.order)), manifold.slow, manifold.flow, "'"),
     ):
-        out.print(Text.assemble("  ", (filled((heading, gaps)), "bold cyan")))
+        out.print(Text.assemble("  ", (write.said(heading), "bold cyan")))
         for variable, one in zip(names, series, strict=True):
             out.print(Text(f"    {variable}{mark} ="))
             for line in _lines(found, small, one):
                 out.print(Text(f"      {line}"), soft_wrap=True)
-    for said in (*sentences(found, PLAIN), *of_measured(small, told, PLAIN)):
-        out.print(Text(f"    {filled(said)}"))
+    for said in (*sentences(found), *of_measured(small, told)):
+        out.print(Text(f"    {write.said(said)}"))
 
 
 def _lines(found: Expansion, small: str, one: Series) -> list[str]:

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 
 from rich.text import Text
 
-from mbsym.report.words.integrals_words import HEADING, sentences, title, weights
-from mbsym.report.words.said import filled
+from mbsym.report.content import say
+from mbsym.report.plain_writer import Writer
+from mbsym.report.words.integrals_words import HEADING, sentences, title, weights_text
 from mbsym_cli.console import console, printable
 from mbsym_cli.integrals_cases import along_lines, cases_lines
 from mbsym_cli.integrals_relations import darboux_lines, darboux_values, level_lines, relation_lines
@@ -37,13 +38,14 @@ def show(file: Path, name: str, there: Setting, found: PolynomialIntegrals, furt
     out = console()
     out.print(Text.assemble((name, "bold"), (f"  {printable(file)}", "dim")))
     uniform = "quasi-homogeneous" if found.grading.homogeneous else "not quasi-homogeneous"
-    out.print(Text(f"  weights {weights(found)}; the equations are {uniform} under them"))
-    out.print(Text.assemble("  ", (filled((HEADING, {"degree": found.degree})), "bold cyan")))
+    weights = weights_text(found.field.variables, found.grading.weights)
+    out.print(Text(f"  weights {weights}; the equations are {uniform} under them"))
+    out.print(Text.assemble("  ", (Writer().said(say(HEADING, degree=str(found.degree))), "bold cyan")))
     for one in found.generators:
         out.print(Text.assemble(f"    weight {one.weight}  ", (title(one), "bold" if one.is_new else "")))
         out.print(Text(f"      {there.formula(one.polynomial)}"), soft_wrap=True)
-    for said in sentences(found):
-        out.print(Text(f"    {filled(said)}"))
+    for text in map(Writer().said, sentences(found)):
+        out.print(Text(f"    {text}"))
     for heading, lines in _sections(there, found, further):
         out.print(Text.assemble("  ", (heading, "bold cyan")))
         for text in lines:

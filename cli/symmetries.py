@@ -69,17 +69,18 @@ def command(file: Path, settings: tuple[str, ...], as_json: bool) -> None:
 def _show(file: Path, name: str, found: Symmetries) -> None:
     from rich.text import Text
 
-    from mbsym.report.words.said import filled
+    from mbsym.report.content import Said
+    from mbsym.report.plain_writer import Writer
     from mbsym.report.words.symmetry_words import HEADING, field_text, second_route, sentences, title
     from mbsym_cli.console import console, printable
 
     out = console()
     out.print(Text.assemble((name, "bold"), (f"  {printable(file)}", "dim")))
-    out.print(Text.assemble("  ", (HEADING, "bold cyan")))
+    out.print(Text.assemble("  ", (Writer().said(Said(HEADING)), "bold cyan")))
     for one in found.symmetries:
         out.print(Text.assemble("    field  ", (field_text(one), "bold" if one.is_new else "")), soft_wrap=True)
         out.print(Text(f"      {one.integral}"), soft_wrap=True)
         out.print(Text(f"      {title(one)}"))
         out.print(Text(f"      {second_route(one)}"))
-    for said in sentences(found):
-        out.print(Text(f"    {filled(said)}"))
+    for text in map(Writer().said, sentences(found)):
+        out.print(Text(f"    {text}"))

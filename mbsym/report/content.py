@@ -7,8 +7,10 @@ content and nothing of results.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+import re
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from fractions import Fraction
 from typing import Any
 
 from mbsym.algebra.ring import Ring
@@ -59,6 +61,40 @@ class Notation:
 
 
 @dataclass(frozen=True)
+class Number:
+    """A number as it is printed: ``-1.5e-3``, ``3/7``; ``0 within 2e-9`` is one that is not told from zero."""
+
+    text: str
+
+    @property
+    def tex(self) -> str:
+        """In the common part of TeX."""
+        text = re.sub(r"(\d+)/(\d+)", r"\\tfrac{\1}{\2}", self.text.replace(" within ", " \\pm "))
+        return re.sub(r"e([-+]?\d+)", lambda m: f" \\cdot 10^{{{int(m[1])}}}", text)
+
+
+def exact(value: Fraction) -> Number:
+    """A decimal where it is exact and not long, else a fraction."""
+    text = f"{float(value):.15g}"
+    return Number(text if "e" not in text and Fraction(text) == value else str(value))
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Values in rows, in brackets."""
+
+    rows: tuple[tuple[Math, ...], ...]
+
+
+@dataclass(frozen=True)
+class Raised:
+    """A value with an index in brackets above: ``Raised(Name("x"), 2)`` is x^(2), a coefficient of a series."""
+
+    of: Math
+    index: int
+
+
+@dataclass(frozen=True)
 class Listed:
     """Values side by side: a, b, c.  ``brackets``: (a, b, c)."""
 
@@ -85,7 +121,21 @@ class Polynomial:
     power: int = 1
 
 
-Math = Symbol | Entry | Name | Notation | Listed | Relation | Polynomial | Formula | Expression | int
+Math = (
+    Symbol
+    | Entry
+    | Name
+    | Notation
+    | Number
+    | Rows
+    | Raised
+    | Listed
+    | Relation
+    | Polynomial
+    | Formula
+    | Expression
+    | int
+)
 
 
 # --- text -------------------------------------------------------------------------------------------------------------
@@ -100,7 +150,7 @@ class Said:
     """
 
     text: str
-    gaps: Mapping[str, Inline | Sequence[Inline]] = field(default_factory=dict)
+    gaps: Gaps = field(default_factory=dict)
 
 
 def say(text: str, **gaps: Inline | Sequence[Inline]) -> Said:
@@ -127,8 +177,17 @@ class Strong:
     grade: str = ""
 
 
+@dataclass(frozen=True)
+class Phrase:
+    """Parts one after the other."""
+
+    parts: tuple[Inline, ...]
+
+
+#: What stands in the gaps of a sentence.
+Gaps = dict[str, "Inline | Sequence[Inline]"]
 #: What stands in a line; a ``str`` is as it is in every language: a name of a body, a number, punctuation.
-Inline = Said | Words | Strong | Math | str
+Inline = Said | Words | Strong | Phrase | Math | str
 
 
 # --- blocks -----------------------------------------------------------------------------------------------------------
@@ -149,10 +208,14 @@ class Subheading:
 
 @dataclass(frozen=True)
 class Paragraph:
-    """Sentences, formulas and punctuation one after the other.  ``missing``: it says why there is no result."""
+    """Sentences, formulas and punctuation one after the other.
+
+    ``missing``: it says why there is no result; ``ragged``: for the formulas in it lines end where they do.
+    """
 
     parts: tuple[Inline, ...]
     missing: bool = False
+    ragged: bool = False
 
 
 @dataclass(frozen=True)
@@ -206,9 +269,20 @@ def paragraph(*parts: Inline) -> Paragraph:
     return Paragraph(parts)
 
 
-def named(names: Iterable[str]) -> Listed:
+def ragged(*sentences: Inline) -> Paragraph:
+    """A paragraph of these sentences, with spaces between them, around long formulas."""
+    return Paragraph(joined(sentences, " ").parts, ragged=True)
+
+
+def joined(items: Iterable[Inline], *between: Inline) -> Phrase:
+    """The items with ``between`` from one to the next."""
+    parts = [part for item in items for part in (*between, item)]
+    return Phrase(tuple(parts[len(between) :]))
+
+
+def named(names: Iterable[str], ring: Ring | None = None) -> Listed:
     """Declared names side by side."""
-    return Listed(tuple(map(Name, names)))
+    return Listed(tuple(Name(name, ring=ring) for name in names))
 
 
 def speed(name: str) -> Name:

@@ -11,7 +11,7 @@ from typing import Any
 from markupsafe import Markup, escape
 
 from mbsym.formulas.formula import Formula
-from mbsym.formulas.mathml import MathNames, bracketed, letter, mathml_names, mi, mn, mo, mtext, power
+from mbsym.formulas.mathml import MathNames, bracketed, letter, mathml_names, mi, mn, mo, mtext, power, table
 from mbsym.formulas.mathml import row as bracketed_row
 from mbsym.formulas.names import greek
 from mbsym.report import content
@@ -94,6 +94,10 @@ class Writer:
         grade = Markup(' class="{}"').format(value.grade) if value.grade else ""
         return Markup("<strong{}>{}</strong>").format(grade, self.inline(value.text))
 
+    @inline.register
+    def _(self, value: content.Phrase) -> Markup:
+        return self._joined(value.parts)
+
     # --- mathematics ---
 
     @singledispatchmethod
@@ -129,6 +133,18 @@ class Writer:
     @math.register
     def _(self, value: content.Notation) -> str:
         return notation(value.tex)
+
+    @math.register
+    def _(self, value: content.Number) -> str:
+        return notation(value.tex)
+
+    @math.register
+    def _(self, value: content.Rows) -> str:
+        return table([list(map(self.math, row)) for row in value.rows])
+
+    @math.register
+    def _(self, value: content.Raised) -> str:
+        return power(self.math(value.of), bracketed(mn(value.index)))
 
     @math.register
     def _(self, value: content.Listed) -> str:
@@ -255,7 +271,8 @@ def notation(tex: str) -> str:
     """Fixed notation as elements of MathML."""
     from latex2mathml.converter import convert  # few formulas need it
 
-    return re.sub(r"</?math[^>]*>", "", convert(tex))
+    elements = re.sub(r"</?math[^>]*>", "", convert(tex))
+    return re.sub(r'(?:<mi mathvariant="normal">\w</mi>){2,}', lambda m: mi(re.sub("<.*?>", "", m[0])), elements)
 
 
 def _untexed(text: str) -> Markup:

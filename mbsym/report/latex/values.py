@@ -55,13 +55,8 @@ from mbsym.report.latex.formulas import (
     row,
     tensor,
 )
-from mbsym.report.latex.integrals import of_integrals, of_list, of_symmetries, weights_of
-from mbsym.report.latex.invariant import of_invariant_sets
 from mbsym.report.latex.labels import Labels, prefix_of
-from mbsym.report.latex.normal_forms import of_normal_forms
 from mbsym.report.latex.references import keys_of, references, theorems_named
-from mbsym.report.latex.small import of_small_parameters
-from mbsym.report.latex.stabilisation import of_stabilisation, rational_matrix, rational_row
 from mbsym.report.latex.told import packed, paragraphs
 from mbsym.report.latex.words import RELATIONS, displayed, escaped, is_cyrillic, label, prose, refer
 from mbsym.report.latex.writer import Writer
@@ -69,8 +64,6 @@ from mbsym.report.lengths import COUNTED, PAPER, PAPER_FORMS, PAPER_PROGRAM, pro
 from mbsym.report.results import contents, results
 from mbsym.report.unit_text import bracketed
 from mbsym.report.words.claims import claim_line, counterexample, repair, titles, together
-from mbsym.report.words.integrals_words import OPENING
-from mbsym.report.words.stabilisation_words import FEEDBACK, LYAPUNOV
 from mbsym.source.meaning import meaning
 
 if TYPE_CHECKING:
@@ -148,17 +141,6 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "code": _code(analysis, names) if 3 in stages and 3 not in found else None,
         "constraint_sentences": lambda tied: _of_constraints(tied, names, tongue),
         "reduction_sentences": lambda about: _of_reduction(about, names, tongue),
-        "stabilisation_sentences": lambda one: of_stabilisation(one, names, tongue),
-        "polynomial_integrals": lambda one: of_integrals(one, tongue),
-        "polynomial_weights": lambda one: weights_of(one),
-        "polynomial_sentences": lambda one: of_list(one, tongue),
-        "polynomial_symmetries": lambda one: of_symmetries(one, tongue),
-        "OPENING": OPENING,
-        "normal_form_sentences": lambda one: of_normal_forms(one, names, tongue),
-        "invariant_paragraphs": lambda one: of_invariant_sets(one, names, tongue),
-        "small_parameter_lines": lambda one: of_small_parameters(one, system, names, tongue),
-        "FEEDBACK": FEEDBACK,
-        "LYAPUNOV": LYAPUNOV,
         "constraint_label": lambda name: constraint_words().label(name, _writer(names, tongue)),
         "reactions": analysis.optional("reactions") if system.reactions and 3 in problems else (),
         "forms": forms,
@@ -215,8 +197,6 @@ def _filters(analysis: Analysis, tongue: Language, long: frozenset[int], widest:
     system, names, printed = analysis.system, latex_names(analysis.ring), claimed_names(analysis)
     return {
         "tex": escaped,
-        "rational_matrix": rational_matrix,
-        "rational_row": rational_row,
         "say": tongue.say,
         "theorem": lambda name: escaped(tongue.say(name)),
         "name": lambda name: str(names[name]),

@@ -9,7 +9,7 @@ from functools import singledispatchmethod
 from typing import Any
 
 from mbsym.formulas.formula import Formula
-from mbsym.formulas.latex import LatexNames, latex_names, latex_symbol
+from mbsym.formulas.latex import LatexNames, latex_matrix, latex_names, latex_symbol
 from mbsym.report import content
 from mbsym.report.content import Inline, Said
 from mbsym.report.language import Language
@@ -76,6 +76,10 @@ class Writer:
     def _(self, value: content.Strong) -> str:
         return f"\\textbf{{{self.inline(value.text)}}}"
 
+    @inline.register
+    def _(self, value: content.Phrase) -> str:
+        return "".join(map(self.inline, value.parts))
+
     # --- mathematics ---
 
     @singledispatchmethod
@@ -117,6 +121,18 @@ class Writer:
         return value.tex
 
     @math.register
+    def _(self, value: content.Number) -> str:
+        return value.tex
+
+    @math.register
+    def _(self, value: content.Rows) -> str:
+        return latex_matrix([list(map(self.math, row)) for row in value.rows])
+
+    @math.register
+    def _(self, value: content.Raised) -> str:
+        return f"{{{self.math(value.of)}}}^{{({value.index})}}"
+
+    @math.register
     def _(self, value: content.Listed) -> str:
         # Of equations each may stand in a line of its own.
         comma = ",\\quad \\penalty0 " if any(isinstance(x, content.Relation) for x in value.items) else ",\\, "
@@ -149,7 +165,8 @@ class Writer:
 
     @block.register
     def _(self, value: content.Paragraph) -> str:
-        return "".join(map(self.inline, value.parts)) + "\n"
+        written = "".join(map(self.inline, value.parts))
+        return f"{{\\raggedright {written}\\par}}" if value.ragged else written + "\n"
 
     @block.register
     def _(self, value: content.Display) -> str:
