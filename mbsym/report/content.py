@@ -38,19 +38,23 @@ class Symbol:
 
 @dataclass(frozen=True)
 class Entry:
-    """An entry of a matrix that has an index itself: (M_1)_12."""
+    """An entry of a matrix, which may have an index itself: (M_1)_12; a component by a name: Q_theta."""
 
     whole: Symbol
-    index: str
+    index: str | Name
 
 
 @dataclass(frozen=True)
 class Name:
-    """A name that the description declares, ``dots`` above it; ``ring``: that of the formulas that hold it besides."""
+    """A name that the description declares, ``dots`` above it; ``at``: its value at a time, theta(0).
+
+    ``ring``: that of the formulas that hold it, where it is not the system's.
+    """
 
     name: str
     dots: int = 0
     ring: Ring | None = None
+    at: str = ""
 
 
 @dataclass(frozen=True)
@@ -96,10 +100,11 @@ class Raised:
 
 @dataclass(frozen=True)
 class Listed:
-    """Values side by side: a, b, c.  ``brackets``: (a, b, c)."""
+    """Values side by side: a, b, c.  ``brackets``: (a, b, c); ``braces``: {a, b, c}."""
 
     items: tuple[Math, ...]
     brackets: bool = False
+    braces: bool = False
 
 
 @dataclass(frozen=True)
@@ -121,6 +126,28 @@ class Polynomial:
     power: int = 1
 
 
+@dataclass(frozen=True)
+class SpeedForm:
+    """What a speed is made of, in which components of the angular velocity of body number ``body`` may stand."""
+
+    form: Expression
+    body: int
+
+
+@dataclass(frozen=True)
+class Tensor:
+    """A tensor of the description, row by row."""
+
+    rows: tuple[tuple[Expression, Expression, Expression], ...]
+
+
+@dataclass(frozen=True)
+class Points:
+    """The points (x, y) of a table; of many the first and the last."""
+
+    points: tuple[tuple[Fraction, Fraction], ...]
+
+
 Math = (
     Symbol
     | Entry
@@ -132,6 +159,9 @@ Math = (
     | Listed
     | Relation
     | Polynomial
+    | SpeedForm
+    | Tensor
+    | Points
     | Formula
     | Expression
     | int
@@ -184,10 +214,39 @@ class Phrase:
     parts: tuple[Inline, ...]
 
 
+@dataclass(frozen=True)
+class Emphasis:
+    """A name in italics: that of a body."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Verbatim:
+    """What somebody typed: a name of the description, a file."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A unit in brackets, as the description has it."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Citation:
+    """A publication: its number where there is a list of literature, else its ``text``."""
+
+    key: str
+    text: str
+
+
 #: What stands in the gaps of a sentence.
 Gaps = dict[str, "Inline | Sequence[Inline]"]
 #: What stands in a line; a ``str`` is as it is in every language: a name of a body, a number, punctuation.
-Inline = Said | Words | Strong | Phrase | Math | str
+Inline = Said | Words | Strong | Phrase | Emphasis | Verbatim | Unit | Citation | Math | str
 
 
 # --- blocks -----------------------------------------------------------------------------------------------------------
@@ -246,6 +305,31 @@ class Components:
 
 
 @dataclass(frozen=True)
+class Itemised:
+    """A list; each item is one block or several."""
+
+    items: tuple[tuple[Block, ...], ...]
+    numbered: bool = False
+
+
+@dataclass(frozen=True)
+class TableColumn:
+    """A column of a table; ``width``: that on a wide page in cm, 0 for what screens alone show."""
+
+    title: Said
+    width: float
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows of cells, each of them parts of a line; in narrow columns of paper its rows follow one another."""
+
+    title: Said
+    columns: tuple[TableColumn, ...]
+    rows: tuple[tuple[tuple[Inline, ...], ...], ...]
+
+
+@dataclass(frozen=True)
 class Folded:
     """What a screen unfolds on request; paper is without it."""
 
@@ -261,7 +345,7 @@ class Intermediates:
     passages: tuple[Passage, ...]
 
 
-Block = Heading | Subheading | Paragraph | Display | Matrices | Components | Folded | Intermediates
+Block = Heading | Subheading | Paragraph | Display | Matrices | Components | Itemised | Table | Folded | Intermediates
 
 
 def paragraph(*parts: Inline) -> Paragraph:

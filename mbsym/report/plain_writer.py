@@ -84,11 +84,21 @@ class Writer:
     def _(self, value: content.Strong) -> str:
         return self.inline(value.text)
 
+    @inline.register(content.Emphasis)
+    @inline.register(content.Verbatim)
+    @inline.register(content.Citation)
+    def _(self, value: content.Emphasis | content.Verbatim | content.Citation) -> str:
+        return value.text
+
+    @inline.register
+    def _(self, value: content.Unit) -> str:
+        return f"[{value.text}]"
+
     @inline.register
     def _(self, value: content.Name) -> str:
         if value.name in self.images:
             return "d/dt " * value.dots + self.images[value.name]
-        return value.name + _DOTS[value.dots]
+        return value.name + _DOTS[value.dots] + (f"({value.at})" if value.at else "")
 
     @inline.register
     def _(self, value: content.Symbol) -> str:
@@ -96,7 +106,8 @@ class Writer:
 
     @inline.register
     def _(self, value: content.Entry) -> str:
-        return f"{self.inline(value.whole)}[{value.index}]"
+        index = value.index if isinstance(value.index, str) else self.inline(value.index)
+        return f"{self.inline(value.whole)}[{index}]"
 
     @inline.register
     def _(self, value: content.Notation) -> str:
@@ -105,7 +116,7 @@ class Writer:
     @inline.register
     def _(self, value: content.Listed) -> str:
         written = ", ".join(map(self.inline, value.items))
-        return f"({written})" if value.brackets else written
+        return f"({written})" if value.brackets else f"{{{written}}}" if value.braces else written
 
     @inline.register
     def _(self, value: content.Relation) -> str:

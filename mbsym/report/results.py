@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, TypeVar
+from functools import cached_property
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from mbsym.report.canonical import Forms, forms_of
 from mbsym.report.compact import Compact, compact
-from mbsym.report.content import Block, Intermediates, Paragraph, Said, Words, paragraph, say
+from mbsym.report.content import Block, Heading, Intermediates, Paragraph, Said, Words, paragraph, say
 from mbsym.report.sections import section_of
 
 if TYPE_CHECKING:
@@ -76,12 +77,36 @@ class Results:
             yield Paragraph((Said("No result"), ": ", Words(failure.reason), *hint, "."), missing=True)
 
 
-def contents(known: Results, write: Callable[[Iterator[Block]], T]) -> dict[int, Callable[[], T]]:
-    """By number, what writes the section of a problem."""
+#: What stands beside the problems, by the names of its modules in ``sections``.
+BESIDE = ("system",)
+
+
+@dataclass(frozen=True)
+class Section(Generic[T]):
+    """A section of a report: what is called writes it, ``title`` what its heading says."""
+
+    build: Callable[[Results], Iterator[Block]]
+    known: Results
+    write: Callable[[Iterator[Block]], T]
+
+    def __call__(self) -> T:
+        return self.write(self.build(self.known))
+
+    @property
+    def title(self) -> Said:
+        """Of its heading, which every section begins with."""
+        heading = next(self.build(self.known))
+        assert isinstance(heading, Heading)
+        return heading.title
+
+
+def contents(known: Results, write: Callable[[Iterator[Block]], T]) -> dict[int | str, Section[T]]:
+    """The sections: those of the problems by their numbers, others by their names."""
     from mbsym.analysis import PROBLEMS
 
-    sections = {number: section_of(PROBLEMS[number]) for number in known.problems}
-    return {n: partial(lambda x: write(x.content(known)), x) for n, x in sections.items() if hasattr(x, "content")}
+    modules: dict[int | str, Any] = {number: section_of(PROBLEMS[number]) for number in known.problems}
+    modules |= {name: import_module(f"mbsym.report.sections.{name}") for name in BESIDE}
+    return {key: Section(x.content, known, write) for key, x in modules.items() if hasattr(x, "content")}
 
 
 def results(analysis: Analysis, problems: Sequence[int]) -> Results:

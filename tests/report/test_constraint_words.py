@@ -11,9 +11,8 @@ import pytest
 import mbsym
 from mbsym.algebra.certainty import Certainty
 from mbsym.problems.constraints import Integrability
-from mbsym.report import constraint_description
 from mbsym.report.language import Language
-from mbsym.report.words import constraint_words
+from mbsym.report.words import constraint_words, description
 from mbsym.report.words.constraint_words import Writer, filled, sentences
 
 DISC = Path(__file__).parents[2] / "systems" / "rolling-disc.yaml"
@@ -23,7 +22,7 @@ WRITE = Writer(", ".join)
 def said() -> set[str]:
     """Every sentence in the sources of the two modules."""
     found = set()
-    for module in (constraint_words, constraint_description):
+    for module in (constraint_words, description):
         tree = ast.parse(Path(str(module.__file__)).read_text(encoding="utf-8"))
         inner = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}  # docstrings
         for node in ast.walk(tree):

@@ -307,7 +307,7 @@ def test_a_browser_shows_the_satellite(tmp_path: Path) -> None:
     file.write_text(page, encoding="utf-8")
     dom, said = browsed(file)
     assert said == []
-    assert 'id="fold" type="button">' in dom  # its script ran: the button is no longer hidden
+    assert 'id="fold" type="button" data-fold=' in dom  # its script ran: the button is no longer hidden
     assert dom.count("<math>") == page.count("<math>") > 500
     results = json.loads(TARGETS["json"].render(analysis, ALL))["stability"]
     assert re.search(r'id="verdict"[^>]*>([^<]*)<', dom)[1] == results["verdict"]

@@ -5,7 +5,7 @@ What was found stands first.  Formulas are MathML; long ones are folded away beh
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -27,35 +27,31 @@ from mbsym.report.code.functions import moving
 from mbsym.report.code.programs import programs_of
 from mbsym.report.compact import compact
 from mbsym.report.conditions import Shown, cases, factors, label_meanings, provided, statements
+from mbsym.report.content import Said
 from mbsym.report.first_order import first_order
 from mbsym.report.html import formulas as shown
 from mbsym.report.html.description import (
-    constraint_in_words,
     expression,
-    load_in_words,
-    point_of_table,
     speed,
-    speed_form,
 )
 from mbsym.report.html.diagram import diagram
 from mbsym.report.html.environment import page
 from mbsym.report.html.motion import asked_motion
 from mbsym.report.html.told import longer, told_passages, told_terms
 from mbsym.report.html.writer import Writer
-from mbsym.report.inertias import accepted_inertias
 from mbsym.report.language import Language
-from mbsym.report.latex.description import shown_points
 from mbsym.report.lengths import COUNTED, PAPER, PAPER_PROGRAM, program_not_printed, withheld
-from mbsym.report.results import contents, results
+from mbsym.report.results import Section, contents, results
 from mbsym.report.sections.stability import root_text
 from mbsym.report.summary import title_of
-from mbsym.report.unit_text import labelled, pretty
+from mbsym.report.unit_text import labelled
 from mbsym.report.words.claims import HELD, REFUTED, claim_line, counterexample, repair, titles, together
 from mbsym.source.meaning import meaning
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
     from mbsym.formulas.formula import Formula
+    from mbsym.model.system import System
     from mbsym.problems.constraints import Constraints
     from mbsym.problems.reduction import Reduction
 
@@ -91,6 +87,7 @@ def context(
     taken |= {str(names[item.name]) for item in system.prescribed}
     taken |= {str(names[item.name]) for item in system.notation}
     writer = Writer(names, Language(analysis.language or system.language), long)
+    sections = contents(results(analysis, problems), writer.document)
     known: dict[str, Callable[..., Any]] = {
         **_functions(long),
         "name": lambda name: Markup(str(names[name])),
@@ -101,33 +98,26 @@ def context(
         "momentum": lambda name: Markup(str(mathml_names(forms.hamilton_ring)[name])),
         "momentum_rate": lambda name: Markup(str(mathml_names(forms.hamilton_ring)[name].dotted("˙"))),
         "upper_brackets": upper_brackets,
-        "speed_form": lambda one: speed_form(one, names, [body.name for body in system.bodies].index(one.body) + 1),
         "expression": lambda value: expression(value, names),
-        "points": lambda value: Markup(
-            _points([shown.math(point_of_table(x, y, names)) for x, y in shown_points(value)], len(value))
-        ),
-        "vector": lambda values: Markup(shown.row([expression(x, names) for x in values])),
-        "tensor": lambda rows: Markup(shown.table([[expression(x, names) for x in line] for line in rows])),
+        "tr": lambda text, **gaps: writer.said(Said(text, gaps)),
+        "title": lambda number: _title(number, sections, system, writer),
         "printed": lambda value: expression(value, printed),
         "printed_name": lambda name: Markup(str(printed[name])),
-        "load": lambda value: load_in_words(value, names),
         "unperturbed": lambda: _motion(analysis, names),
         "unit": lambda name: labelled("", unit_of(system, name)),
-        "pretty": pretty,
         "constraint_sentences": lambda tied: list(_of_constraints(tied, names)),
         "reduction_sentences": lambda about: list(_of_reduction(about, names)),
-        "constraint": lambda value: constraint_in_words(value, names),
         "claim_groups": lambda: list(together(map(claim_line, analysis.claims))),
     }
     values = dict(
         system=system,
         title_of=title_of,
         rate=labelled("", rate_unit(system)),
-        accepted=accepted_inertias(system),
         numbers={"0": 0} | {body.name: k for k, body in enumerate(system.bodies, start=1)},
         found=found,
         problems=[(number, PROBLEMS[number]) for number in ORDER if number in problems],
-        contents=contents(results(analysis, problems), writer.document),
+        contents=sections,
+        language=writer.language.name,
         failures={number: stage.failure for number, stage in stages.items() if stage.failure is not None},
         code=_code(analysis) if 3 in stages and 3 not in found else None,
         state=analysis.optional("first_order") if system.speeds and 5 in found else None,
@@ -150,6 +140,22 @@ def context(
         digest=meaning(system),
     )
     return known, values
+
+
+def title_in(analysis: Analysis, part: int | str) -> Markup:
+    """The title of a problem, by its number, or a word of ours, in the language of the report."""
+    language = Language(analysis.language or analysis.system.language)
+    writer = Writer(mathml_names(analysis.ring), language)
+    if isinstance(part, str):
+        return writer.said(Said(part))
+    return _title(part, contents(results(analysis, (part,)), writer.document), analysis.system, writer)
+
+
+def _title(part: int | str, sections: Mapping[int | str, Section[Markup]], system: System, writer: Writer) -> Markup:
+    if part in sections:
+        return writer.said(sections[part].title)
+    words = title_of(system, int(part))
+    return escape(f"Problem {part}. {words[:1].upper()}{words[1:]}")
 
 
 def _of_constraints(tied: Constraints, names: MathNames) -> Iterator[Markup]:
@@ -301,9 +307,3 @@ def _code(analysis: Analysis) -> list[str] | None:
     lines = [f"{name} = {text}" for name, text in body.assignments]
     lines += [f"M[{i + 1}, {j + 1}] = {text}" for (i, j), text in zip(upper, body.results, strict=False)]
     return lines + [f"f[{i + 1}] = {text}" for i, text in enumerate(body.results[len(upper) :])]
-
-
-def _points(written: list[str], count: int) -> str:
-    """The points of a table; of many the first and the last."""
-    half = len(written) // 2
-    return ", ".join(written if len(written) == count else [*written[:half], "\u2026", *written[half:]])

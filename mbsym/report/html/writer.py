@@ -17,10 +17,12 @@ from mbsym.formulas.names import greek
 from mbsym.report import content
 from mbsym.report.content import Inline, Math, Said
 from mbsym.report.html import formulas
-from mbsym.report.html.description import expression
+from mbsym.report.html.description import expression, point_of_table, speed_form
 from mbsym.report.html.formulas import RELATIONS
 from mbsym.report.html.told import told_passages
 from mbsym.report.language import Language
+from mbsym.report.latex.description import shown_points
+from mbsym.report.unit_text import labelled
 
 _DOTS = ("", "\u02d9", "\u00a8")
 _COMMA = '<mo separator="true">,</mo><mspace width="0.3em"/>'
@@ -98,6 +100,22 @@ class Writer:
     def _(self, value: content.Phrase) -> Markup:
         return self._joined(value.parts)
 
+    @inline.register
+    def _(self, value: content.Emphasis) -> Markup:
+        return Markup("<i>{}</i>").format(value.text)
+
+    @inline.register
+    def _(self, value: content.Verbatim) -> Markup:
+        return Markup("<code>{}</code>").format(value.text)
+
+    @inline.register
+    def _(self, value: content.Unit) -> Markup:
+        return escape(labelled("", value.text).strip())
+
+    @inline.register
+    def _(self, value: content.Citation) -> Markup:
+        return escape(value.text)
+
     # --- mathematics ---
 
     @singledispatchmethod
@@ -120,7 +138,8 @@ class Writer:
     @math.register
     def _(self, value: content.Name) -> str:
         symbol = (self.names if value.ring is None else mathml_names(value.ring))[value.name]
-        return str(symbol.dotted(_DOTS[value.dots]) if value.dots else symbol)
+        written = str(symbol.dotted(_DOTS[value.dots]) if value.dots else symbol)
+        return written + bracketed(mn(value.at)) if value.at else written
 
     @math.register
     def _(self, value: content.Symbol) -> str:
@@ -128,7 +147,10 @@ class Writer:
 
     @math.register
     def _(self, value: content.Entry) -> str:
-        return str(formulas.entry(value.whole.letter, value.whole.lower, value.index, value.whole.upper))
+        whole = value.whole
+        if isinstance(value.index, content.Name):
+            return f"<msub>{self.math(whole)}{self.math(value.index)}</msub>"
+        return str(formulas.entry(whole.letter, whole.lower, value.index, whole.upper))
 
     @math.register
     def _(self, value: content.Notation) -> str:
@@ -149,6 +171,8 @@ class Writer:
     @math.register
     def _(self, value: content.Listed) -> str:
         items = [self.math(x) for x in value.items]
+        if value.braces:
+            return bracketed(_COMMA.join(items), "{}")
         return bracketed_row(items) if value.brackets else _COMMA.join(items)
 
     @math.register
@@ -159,6 +183,22 @@ class Writer:
     def _(self, value: content.Polynomial) -> str:
         written = "".join(_pieces(value))
         return written if value.power == 1 else power(bracketed(written, "[]"), mn(value.power))
+
+    @math.register
+    def _(self, value: content.SpeedForm) -> str:
+        return str(speed_form(value.form, self.names, value.body))
+
+    @math.register
+    def _(self, value: content.Tensor) -> str:
+        return table([[self.math(x) for x in line] for line in value.rows])
+
+    @math.register
+    def _(self, value: content.Points) -> str:
+        written = [point_of_table(x, y, self.names) for x, y in shown_points(value.points)]
+        half = len(written) // 2
+        return _COMMA.join(
+            written if len(written) == len(value.points) else [*written[:half], mo("\u2026"), *written[half:]]
+        )
 
     # --- blocks ---
 
@@ -244,6 +284,25 @@ class Writer:
         )
 
     @block.register
+    def _(self, value: content.Itemised) -> Markup:
+        kind = "ol" if value.numbered else "ul"
+        items = Markup("\n").join(Markup("<li>{}</li>").format(self.document(item)) for item in value.items)
+        return Markup(f"<{kind}>\n{items}\n</{kind}>")
+
+    @block.register
+    def _(self, value: content.Table) -> Markup:
+        head = Markup("").join(Markup('<th scope="col">{}</th>').format(self.said(x.title)) for x in value.columns)
+        rows = Markup("\n").join(
+            Markup("<tr>{}</tr>").format(
+                Markup("").join(Markup("<td>{}</td>").format(self._joined(cell)) for cell in row)
+            )
+            for row in value.rows
+        )
+        return Markup(
+            '<h3>{}</h3>\n<div class="scroll"><table>\n<thead><tr>{}</tr></thead>\n<tbody>\n{}\n</tbody></table></div>'
+        ).format(self.said(value.title), head, rows)
+
+    @block.register
     def _(self, value: content.Folded) -> Markup:
         return Markup("<details><summary>{}</summary>\n{}\n</details>").format(
             self.said(value.title), self.document(value.blocks)
@@ -271,7 +330,7 @@ def notation(tex: str) -> str:
     """Fixed notation as elements of MathML."""
     from latex2mathml.converter import convert  # few formulas need it
 
-    elements = re.sub(r"</?math[^>]*>", "", convert(tex))
+    elements = re.sub(r"</?math[^>]*>", "", convert(re.sub(r"\\penalty\d+ ?", "", tex)))
     return re.sub(r'(?:<mi mathvariant="normal">\w</mi>){2,}', lambda m: mi(re.sub("<.*?>", "", m[0])), elements)
 
 

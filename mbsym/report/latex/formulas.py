@@ -8,10 +8,9 @@ from math import gcd
 
 from flint import fmpq
 
-from mbsym.expressions.tree import ZERO
+from mbsym.expressions.tree import ZERO, Expression
 from mbsym.formulas.formula import Column, Formula, Matrix
 from mbsym.formulas.latex import LatexNames, latex_factor, latex_matrix, latex_text
-from mbsym.model.system import Tensor
 from mbsym.problems.linearisation import Subsystem
 from mbsym.problems.stability.spectrum import Spectrum, numbers
 from mbsym.report.latex.description import expression
@@ -96,7 +95,7 @@ def _common_number(value: Matrix) -> int:
     return gcd(*(int(c.p) for c in coefficients)) if whole else 1
 
 
-def tensor(value: Tensor, names: LatexNames, widest: float) -> str:
+def tensor(value: Sequence[Sequence[Expression]], names: LatexNames, widest: float) -> str:
     """A tensor of inertia; a wide one row by row."""
     if all(value[i][j] == ZERO for i in range(3) for j in range(3) if i != j):
         return "\\operatorname{diag}(" + ",\\; ".join(expression(value[k][k], names) for k in range(3)) + ")"

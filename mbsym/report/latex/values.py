@@ -28,16 +28,11 @@ from mbsym.report.code.programs import programs_of
 from mbsym.report.compact import compact
 from mbsym.report.conditions import Shown, cases, factors, label_meanings, provided, statements
 from mbsym.report.first_order import first_order
-from mbsym.report.inertias import accepted_inertias
 from mbsym.report.language import Language
 from mbsym.report.latex.description import (
     call,
-    constraint_in_words,
     expression,
-    load_in_words,
-    points,
     speed,
-    speed_form,
 )
 from mbsym.report.latex.diagram import diagram
 from mbsym.report.latex.form import Form, heading, subheading
@@ -53,12 +48,11 @@ from mbsym.report.latex.formulas import (
     measured_matrix,
     polynomial,
     row,
-    tensor,
 )
 from mbsym.report.latex.labels import Labels, prefix_of
 from mbsym.report.latex.references import keys_of, references, theorems_named
 from mbsym.report.latex.told import packed, paragraphs
-from mbsym.report.latex.words import RELATIONS, displayed, escaped, is_cyrillic, label, prose, refer
+from mbsym.report.latex.words import RELATIONS, escaped, is_cyrillic, label, prose, refer
 from mbsym.report.latex.writer import Writer
 from mbsym.report.lengths import COUNTED, PAPER, PAPER_FORMS, PAPER_PROGRAM, program_not_printed, withheld
 from mbsym.report.results import contents, results
@@ -129,7 +123,6 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "references": cited,
         "literature": _literature(verdicts, tongue) if form is Form.REPORT else [],
         "system": system,
-        "accepted": accepted_inertias(system),
         "numbers": {"0": 0} | {body.name: k for k, body in enumerate(system.bodies, start=1)},
         "moving": moving,
         "found": found,
@@ -202,13 +195,10 @@ def _filters(analysis: Analysis, tongue: Language, long: frozenset[int], widest:
         "name": lambda name: str(names[name]),
         "dotted": lambda name: names[name].accented("dot"),
         "speed": lambda name: speed(name, names),
-        "speed_form": lambda one: speed_form(one, names, _number_of(system, one.body)),
         "math": lambda value: formula(value, long),
         "expression": lambda value: expression(value, names),
-        "points": lambda value: points(value, names),
         "unit": lambda name, space="": bracketed(unit_of(system, name), space),
         "matrix": lambda value: matrix(value, long, widest, measured),
-        "tensor": lambda value: tensor(value, names, widest),
         "row": lambda values: row(values, long, widest),
         "entries": entries,
         "sum": polynomial,
@@ -216,8 +206,6 @@ def _filters(analysis: Analysis, tongue: Language, long: frozenset[int], widest:
         "eigenvalues": eigenvalues,
         "label": lambda words: label(words, tongue.say),
         "refer": lambda reference: refer(reference, tongue.say),
-        "load": lambda value: displayed(load_in_words(value, names, escaped, tongue)),
-        "constraint": lambda value: constraint_in_words(value, names, escaped, tongue),
         "index": index,
         "displays": lambda part, k: displays(part, k, widest, measured),
         "prose": prose,

@@ -14,12 +14,13 @@ from mbsym.report import content
 from mbsym.report.content import Inline, Said
 from mbsym.report.language import Language
 from mbsym.report.latex import formulas
-from mbsym.report.latex.description import expression
+from mbsym.report.latex.description import breakable, expression, points, speed_form
 from mbsym.report.latex.form import Form, heading, subheading
 from mbsym.report.latex.formulas import Measured, measured_matrix
 from mbsym.report.latex.labels import Labels
 from mbsym.report.latex.told import paragraphs
 from mbsym.report.latex.words import RELATIONS, escaped, prose
+from mbsym.report.unit_text import bracketed
 
 _DOTS = ("", "dot", "ddot")
 
@@ -57,7 +58,7 @@ class Writer:
     @singledispatchmethod
     def inline(self, value: Any) -> str:
         """What stands in a line; mathematics between dollars."""
-        return f"${self.math(value)}$"
+        return breakable(self.math(value))
 
     @inline.register
     def _(self, value: str) -> str:
@@ -79,6 +80,22 @@ class Writer:
     @inline.register
     def _(self, value: content.Phrase) -> str:
         return "".join(map(self.inline, value.parts))
+
+    @inline.register
+    def _(self, value: content.Emphasis) -> str:
+        return f"\\textit{{{escaped(value.text)}}}"
+
+    @inline.register
+    def _(self, value: content.Verbatim) -> str:
+        return f"\\texttt{{{escaped(value.text)}}}"
+
+    @inline.register
+    def _(self, value: content.Unit) -> str:
+        return f"${bracketed(value.text)}$"
+
+    @inline.register
+    def _(self, value: content.Citation) -> str:
+        return f"\\cite{{{value.key}}}" if self.form is Form.REPORT else escaped(value.text)
 
     # --- mathematics ---
 
@@ -102,7 +119,8 @@ class Writer:
     @math.register
     def _(self, value: content.Name) -> str:
         symbol = (self.names if value.ring is None else latex_names(value.ring))[value.name]
-        return symbol.accented(_DOTS[value.dots]) if value.dots else str(symbol)
+        written = symbol.accented(_DOTS[value.dots]) if value.dots else str(symbol)
+        return f"{written}({value.at})" if value.at else written
 
     @math.register
     def _(self, value: content.Symbol) -> str:
@@ -114,7 +132,8 @@ class Writer:
     @math.register
     def _(self, value: content.Entry) -> str:
         whole = self.math(value.whole)
-        return f"({whole})_{{{value.index}}}" if value.whole.lower else f"{whole}_{{{value.index}}}"
+        index = value.index if isinstance(value.index, str) else self.math(value.index)
+        return f"({whole})_{{{index}}}" if value.whole.lower else f"{whole}_{{{index}}}"
 
     @math.register
     def _(self, value: content.Notation) -> str:
@@ -135,9 +154,13 @@ class Writer:
     @math.register
     def _(self, value: content.Listed) -> str:
         # Of equations each may stand in a line of its own.
-        comma = ",\\quad \\penalty0 " if any(isinstance(x, content.Relation) for x in value.items) else ",\\, "
+        comma = ",\\, "
+        if any(isinstance(x, content.Relation) for x in value.items):
+            comma = ",\\quad \\penalty0 "
+        elif value.brackets:
+            comma = ",\\; \\allowbreak "
         written = comma.join(map(self.math, value.items))
-        return f"({written})" if value.brackets else written
+        return f"({written})" if value.brackets else f"\\{{{written}\\}}" if value.braces else written
 
     @math.register
     def _(self, value: content.Relation) -> str:
@@ -147,6 +170,18 @@ class Writer:
     def _(self, value: content.Polynomial) -> str:
         written = formulas.polynomial(value.coefficients, latex_symbol(value.variable).stem)
         return written if value.power == 1 else f"\\bigl[{written}\\bigr]^{{{value.power}}}"
+
+    @math.register
+    def _(self, value: content.SpeedForm) -> str:
+        return speed_form(value.form, self.names, value.body)
+
+    @math.register
+    def _(self, value: content.Tensor) -> str:
+        return formulas.tensor(value.rows, self.names, self.form.widest)
+
+    @math.register
+    def _(self, value: content.Points) -> str:
+        return points(value.points, self.names)
 
     # --- blocks ---
 
@@ -203,6 +238,28 @@ class Writer:
             self._display(f"{self.math(_component(value.symbol, k))} = {self.math(entry)}", f"{value.key}:{k}")
             for k, entry in enumerate(value.value, start=1)
         )
+
+    @block.register
+    def _(self, value: content.Itemised) -> str:
+        items = [self.document(item).strip() for item in value.items]
+        if value.numbered:
+            return "\n\n".join(f"{{\\raggedright {k}. {text}\\par}}" for k, text in enumerate(items, start=1)) + "\n"
+        listed = "\n".join(f"\\item {text}" for text in items)
+        return f"\\begin{{itemize}}\\setlength{{\\itemsep}}{{1pt}}\n{listed}\n\\end{{itemize}}"
+
+    @block.register
+    def _(self, value: content.Table) -> str:
+        shown = [k for k, column in enumerate(value.columns) if column.width]
+        rows = [["".join(map(self.inline, row[k])) for k in shown] for row in value.rows]
+        title = self.said(value.title)
+        if self.form is not Form.REPORT:
+            return f"{title}: " + ";\n".join(", ".join(filter(None, row)) for row in rows) + ".\n"
+        widths = [value.columns[k].width for k in shown]
+        columns = "".join(f">{{\\raggedright\\arraybackslash}}p{{{x:g}cm}}" for x in widths)
+        lines = [f"\\begin{{longtable}}{{@{{}}{columns}@{{}}}}"]
+        lines += [f"\\multicolumn{{{len(shown)}}}{{@{{}}l}}{{\\textbf{{{title}}}}}\\\\"]
+        lines += [" & ".join(row) + "\\\\" for row in rows]
+        return "\n".join([*lines, "\\end{longtable}"])
 
     @block.register
     def _(self, value: content.Folded) -> str:
