@@ -8,7 +8,7 @@ content and nothing of results.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
@@ -78,9 +78,9 @@ class Number:
 
 
 def exact(value: Fraction) -> Number:
-    """A decimal where it is exact and not long, else a fraction."""
+    """A decimal where it is exact, else a fraction."""
     text = f"{float(value):.15g}"
-    return Number(text if "e" not in text and Fraction(text) == value else str(value))
+    return Number(text if Fraction(text) == value else str(value))
 
 
 @dataclass(frozen=True)
@@ -180,7 +180,7 @@ class Said:
     """
 
     text: str
-    gaps: Gaps = field(default_factory=dict)
+    gaps: Mapping[str, Inline | Sequence[Inline]] = field(default_factory=dict)
 
 
 def say(text: str, **gaps: Inline | Sequence[Inline]) -> Said:
@@ -243,7 +243,7 @@ class Citation:
     text: str
 
 
-#: What stands in the gaps of a sentence.
+#: What stands in the gaps of a sentence, where it is made piece by piece.
 Gaps = dict[str, "Inline | Sequence[Inline]"]
 #: What stands in a line; a ``str`` is as it is in every language: a name of a body, a number, punctuation.
 Inline = Said | Words | Strong | Phrase | Emphasis | Verbatim | Unit | Citation | Math | str

@@ -141,7 +141,7 @@ def sentences(told: Oscillating, drifts: bool = False) -> Iterator[Said]:
         yield say(_REAL, **values, condition=real) if rooted else say(_NONZERO, **values, condition=nonzero)
     for one in told.resonances:
         zeros = (Relation(numerator(told, x), "=", 0) for x in one.parts)
-        gaps = {"harmonic": str(one.harmonic), "order": str(one.order), "names": named(one.variables)}
+        gaps: Gaps = {"harmonic": str(one.harmonic), "order": str(one.order), "names": named(one.variables)}
         gaps |= dict(zip(("condition", "other"), zeros, strict=False))
         yield Said(_RESONANCE if one.damping is None else _BOTH, gaps)
     for group, other in found.others:
