@@ -37,6 +37,11 @@ class Options:
     def complain(self, option: str, code: str, message: str, hint: str | None = None) -> None:
         self.complaints.append(render_option(Complaint(code, message, None, hint), "", option))
 
+    def complain_whole(self, option: str, text: str, code: str, message: str, hint: str | None = None) -> None:
+        """Of a text as a whole, which is shown."""
+        span = Span(1, 1, max(1, len(text)))
+        self.complaints.append(render_option(Complaint(code, message, span, hint), text, option))
+
     def refused(self, file: Path | None = None) -> bool:
         """Whether there is anything to complain about; then it is printed (of no ``file``: of the options alone)."""
         if not self.complaints:

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
+from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
 from mbsym.expressions.rates import without_velocity
 from mbsym.expressions.tree import Expression
@@ -27,13 +28,15 @@ from mbsym.report.words.passages import Passage
 class Symbol:
     """A letter of ours with indices: ``Symbol("omega", "1")``, ``Symbol("V", "O1")``, ``Symbol("R", upper="01")``.
 
-    The letter is one of the alphabet or the English name of a Greek one; ``dots`` are those above it.
+    The letter is one of the alphabet or the English name of a Greek one; ``dots`` are those above it, ``look`` is "",
+    "bar" (above it) or "script".
     """
 
     letter: str
     lower: str = ""
     upper: str = ""
     dots: int = 0
+    look: str = ""
 
 
 @dataclass(frozen=True)
@@ -99,6 +102,32 @@ class Raised:
 
 
 @dataclass(frozen=True)
+class Power:
+    """A value with an exponent."""
+
+    base: Math
+    exponent: int
+
+
+@dataclass(frozen=True)
+class Text:
+    """Words in a formula: ``Text(Said("at"), " ")``."""
+
+    parts: tuple[Inline, ...]
+
+    def __init__(self, *parts: Inline) -> None:
+        object.__setattr__(self, "parts", parts)
+
+
+@dataclass(frozen=True)
+class Readable:
+    """A formula, or its length where nobody would read it.  ``kept``: it stands in full in results.json."""
+
+    value: Formula
+    kept: bool = True
+
+
+@dataclass(frozen=True)
 class Listed:
     """Values side by side: a, b, c.  ``brackets``: (a, b, c); ``braces``: {a, b, c}."""
 
@@ -156,6 +185,9 @@ Math = (
     | Number
     | Rows
     | Raised
+    | Power
+    | Text
+    | Readable
     | Listed
     | Relation
     | Polynomial
@@ -201,10 +233,27 @@ class Words:
 
 @dataclass(frozen=True)
 class Strong:
-    """What stands out: a verdict, an outcome.  ``grade``: good, bad or open."""
+    """What stands out: a verdict, an outcome.  ``grade``: good, bad or open; ``key``: a page knows it by that."""
 
     text: Inline
     grade: str = ""
+    key: str = ""
+
+
+@dataclass(frozen=True)
+class Graded:
+    """Words among others that are good, bad or open: coloured on a screen; on paper the bad ones stand out."""
+
+    text: Inline
+    grade: str
+
+
+@dataclass(frozen=True)
+class Link:
+    """Words that lead on a screen to the section ``to``."""
+
+    text: Inline
+    to: str
 
 
 @dataclass(frozen=True)
@@ -246,7 +295,7 @@ class Citation:
 #: What stands in the gaps of a sentence, where it is made piece by piece.
 Gaps = dict[str, "Inline | Sequence[Inline]"]
 #: What stands in a line; a ``str`` is as it is in every language: a name of a body, a number, punctuation.
-Inline = Said | Words | Strong | Phrase | Emphasis | Verbatim | Unit | Citation | Math | str
+Inline = Said | Words | Strong | Graded | Link | Phrase | Emphasis | Verbatim | Unit | Citation | Math | str
 
 
 # --- blocks -----------------------------------------------------------------------------------------------------------
@@ -279,19 +328,43 @@ class Paragraph:
 
 @dataclass(frozen=True)
 class Display:
-    """A formula in lines of its own, broken where it is long; ``key``: that of its label."""
+    """A formula in lines of its own, broken where it is long; ``key``: that of its label.
+
+    ``notes`` are said beside it, in brackets.
+    """
 
     value: Math | tuple[Inline, ...]
     key: str = ""
+    notes: tuple[Inline, ...] = ()
+
+
+@dataclass(frozen=True)
+class Definitions:
+    """What letters stand for, one after the other, led in by words."""
+
+    words: Said
+    items: tuple[Relation, ...]
 
 
 @dataclass(frozen=True)
 class Matrices:
-    """A matrix as a whole where it fits, else its entries; of a ``symmetric`` one the upper half."""
+    """A matrix as a whole where it fits, else its entries; of a ``symmetric`` one the upper half.
+
+    ``packed``: its entries in any case, side by side on paper.
+    """
 
     symbol: Symbol
     value: Matrix
     symmetric: bool
+    key: str
+    packed: bool = False
+
+
+@dataclass(frozen=True)
+class SideBySide:
+    """Several matrices, on paper beside each other where they fit; ``key``: that of their labels then."""
+
+    matrices: tuple[Matrices, ...]
     key: str
 
 
@@ -322,11 +395,37 @@ class TableColumn:
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of cells, each of them parts of a line; in narrow columns of paper its rows follow one another."""
+    """Rows of cells, each of them parts of a line; in narrow columns of paper its rows follow one another.
 
-    title: Said
+    One without a title has headings of its columns on paper, too, and its rows are paragraphs where they follow.
+    """
+
+    title: Said | None
     columns: tuple[TableColumn, ...]
     rows: tuple[tuple[tuple[Inline, ...], ...], ...]
+
+
+@dataclass(frozen=True)
+class Facts:
+    """A list of what was found: of each the name, and what is said of it."""
+
+    items: tuple[tuple[tuple[Inline, ...], tuple[Inline, ...]], ...]
+
+
+@dataclass(frozen=True)
+class Cited:
+    """Words, each with the keys of its literature; told where there is a list of literature."""
+
+    words: Said
+    items: tuple[tuple[Inline, tuple[str, ...]], ...]
+
+
+@dataclass(frozen=True)
+class Beside:
+    """Blocks in which these names occur besides those of the system."""
+
+    names: tuple[str, ...]
+    blocks: tuple[Block, ...]
 
 
 @dataclass(frozen=True)
@@ -345,7 +444,37 @@ class Intermediates:
     passages: tuple[Passage, ...]
 
 
-Block = Heading | Subheading | Paragraph | Display | Matrices | Components | Itemised | Table | Folded | Intermediates
+@dataclass(frozen=True)
+class Steps:
+    """A straight-line program: what occurs more than once has a number, then ``results`` by what they are called.
+
+    ``names`` are those of its inputs; a screen unfolds it under the ``title``.
+    """
+
+    program: Program
+    results: tuple[tuple[Symbol, Node], ...]
+    names: Mapping[str, Math]
+    title: Said
+
+
+Block = (
+    Heading
+    | Subheading
+    | Paragraph
+    | Display
+    | Definitions
+    | Matrices
+    | SideBySide
+    | Components
+    | Itemised
+    | Table
+    | Facts
+    | Cited
+    | Beside
+    | Folded
+    | Intermediates
+    | Steps
+)
 
 
 def paragraph(*parts: Inline) -> Paragraph:
@@ -364,6 +493,17 @@ def joined(items: Iterable[Inline], *between: Inline) -> Phrase:
     return Phrase(tuple(parts[len(between) :]))
 
 
+def equalities(pairs: Iterable[tuple[Math, Math]], key: str) -> Iterator[Display]:
+    """Each is equal to its other one, in lines of their own; ``key`` and its number is that of its label."""
+    for k, (left, right) in enumerate(pairs, start=1):
+        yield Display(Relation(left, "=", right), f"{key}:{k}")
+
+
+def numbered(symbol: Symbol, values: Iterable[Formula]) -> Iterator[tuple[Symbol, Formula]]:
+    """Components, by the symbol with their number as its index."""
+    return ((replace(symbol, lower=str(k)), value) for k, value in enumerate(values, start=1))
+
+
 def named(names: Iterable[str], ring: Ring | None = None) -> Listed:
     """Declared names side by side."""
     return Listed(tuple(Name(name, ring=ring) for name in names))
@@ -373,6 +513,11 @@ def speed(name: str) -> Name:
     """A variable of velocity: a declared speed by its name, the velocity of a coordinate as the dotted coordinate."""
     plain = without_velocity(name)
     return Name(plain, int(plain != name))
+
+
+def speeds(names: Iterable[str]) -> Listed:
+    """Variables of velocity side by side."""
+    return Listed(tuple(map(speed, names)))
 
 
 def pieces(text: str) -> Iterator[tuple[bool, str]]:

@@ -22,12 +22,14 @@ _DOTS = ("", "'", "''")
 
 @dataclass(frozen=True)
 class Writer:
-    """Sentences in a language; formulas with a text of more than ``longest`` letters are counted.
+    """Sentences in a language; ``readable`` formulas are as people write them, others as Python reads them.
 
-    ``images``: what stands for names that formulas have for others.
+    Formulas with a text of more than ``longest`` letters are counted.  ``images``: what stands for names that formulas
+    have for others.
     """
 
     language: Language = field(default_factory=Language)
+    readable: bool = False
     longest: int = sys.maxsize
     images: Mapping[str, str] = field(default_factory=dict)
 
@@ -63,7 +65,7 @@ class Writer:
 
     @inline.register
     def _(self, value: Formula) -> str:
-        written = str(value)
+        written = value.readable() if self.readable else str(value)
         if len(written) > self.longest:
             return f"({counted(value.terms, 'term')}; see the reports)"
         return re.sub(r"\b[A-Za-z_]\w*", lambda m: self.images.get(m[0], m[0]), written) if self.images else written
@@ -80,8 +82,10 @@ class Writer:
     def _(self, value: content.Words) -> str:
         return self.language.say(value.text)
 
-    @inline.register
-    def _(self, value: content.Strong) -> str:
+    @inline.register(content.Strong)
+    @inline.register(content.Graded)
+    @inline.register(content.Link)
+    def _(self, value: content.Strong | content.Graded | content.Link) -> str:
         return self.inline(value.text)
 
     @inline.register(content.Emphasis)

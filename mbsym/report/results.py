@@ -8,9 +8,13 @@ from functools import cached_property
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from mbsym.report.canonical import Forms, forms_of
+from mbsym.formulas.latex import latex_names, latex_symbol
+from mbsym.model.system import INERTIAL
+from mbsym.report.canonical import forms_of
+from mbsym.report.canonical_denominators import Denominators, with_names
 from mbsym.report.compact import Compact, compact
-from mbsym.report.content import Block, Heading, Intermediates, Paragraph, Said, Words, paragraph, say
+from mbsym.report.conditions import provided
+from mbsym.report.content import Block, Heading, Inline, Intermediates, Paragraph, Said, Words, paragraph, say
 from mbsym.report.sections import section_of
 
 if TYPE_CHECKING:
@@ -58,9 +62,39 @@ class Results:
         return compact(self.analysis, {number: self.found.get(number) for number in self.problems})
 
     @cached_property
-    def forms(self) -> Forms:
-        """Routh's and Hamilton's forms, where they were asked for."""
-        return forms_of(self.analysis, self.problems)
+    def forms(self) -> Denominators:
+        """Routh's and Hamilton's forms, where they were asked for; their long denominators have names."""
+        return with_names(forms_of(self.analysis, self.problems), self.system)
+
+    @property
+    def numbers(self) -> dict[str, int]:
+        """Of the bodies by name, in the order of the description; the inertial frame has 0."""
+        return {INERTIAL: 0} | {body.name: k for k, body in enumerate(self.system.bodies, start=1)}
+
+    @cached_property
+    def variable(self) -> str:
+        """The letter of characteristic polynomials."""
+        return self._free("lambda", "mu", "sigma", "s", "p", "z", "zeta")
+
+    @cached_property
+    def characteristic(self) -> str:
+        """The letter that stands for such a polynomial."""
+        return self._free("Lambda", "Delta", "Phi", "P", "Q")
+
+    def _free(self, *letters: str) -> str:
+        """The first that is the symbol of nothing declared."""
+        system, names = self.system, latex_names(self.analysis.ring)
+        declared = [*system.coordinates, *system.parameter_names]
+        declared += [*(x.name for x in system.prescribed), *(x.name for x in system.notation)]
+        taken = {str(names[name]) for name in declared}
+        return next((x for x in letters if str(latex_symbol(x)) not in taken), letters[0])
+
+    @cached_property
+    def presumed(self) -> tuple[Inline, ...]:
+        """What the verdicts of problem 6 presume, after a comma."""
+        found = self.found.get(6)
+        text = "" if found is None else provided(found.presumed, bool(self.system.inputs))
+        return (", ", Words(text)) if text else ()
 
     def intermediates(self, number: int) -> Iterator[Block]:
         """The named quantities through which the formulas of a problem are told."""
@@ -73,12 +107,17 @@ class Results:
         """Why a problem has no result, if it has none."""
         failure = self.failures.get(number)
         if failure is not None:
-            hint = (" (", Words(failure.hint), ")") if failure.hint else ()
-            yield Paragraph((Said("No result"), ": ", Words(failure.reason), *hint, "."), missing=True)
+            yield no_result(failure)
+
+
+def no_result(failure: NoResult) -> Paragraph:
+    """Why there is none."""
+    hint = (" (", Words(failure.hint), ")") if failure.hint else ()
+    return Paragraph((Said("No result"), ": ", Words(failure.reason), *hint, "."), missing=True)
 
 
 #: What stands beside the problems, by the names of its modules in ``sections``.
-BESIDE = ("system",)
+BESIDE = ("summary", "system", "conventions", "claims", "checks")
 
 
 @dataclass(frozen=True)

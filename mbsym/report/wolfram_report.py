@@ -28,7 +28,7 @@ from mbsym.report.conditions import Statement, provided, statements
 from mbsym.report.environment import rendered
 from mbsym.report.first_order import first_order
 from mbsym.report.lengths import COUNTED, FILE, FILE_PROGRAM, formulas, not_printed, program_not_printed, withheld
-from mbsym.report.plain_writer import TERMINAL
+from mbsym.report.plain_writer import TERMINAL, Writer
 from mbsym.report.sections import section_of
 from mbsym.report.words import oscillation_words
 from mbsym.report.words.expansion_measured import averages
@@ -208,7 +208,7 @@ def _code(analysis: Analysis) -> dict[str, Any] | None:
     n = len(system.coordinates)
     body: Listing = listing(programs.program, [*nodes, *programs.forcing], inputs, DIALECT)
     if len(body.assignments) > FILE_PROGRAM:
-        return {"omitted": program_not_printed(len(body.assignments))}
+        return {"omitted": Writer().said(program_not_printed(len(body.assignments)))}
     prescribed = {names[item.name]: prescribed_value(item) for item in system.prescribed if item.name in body.inputs}
     return {
         "positions": [names[name] for name in system.coordinates],

@@ -10,6 +10,7 @@ import pytest
 from conftest import SHIPPED, derived
 
 import mbsym
+from mbsym.algebra.program import Program
 from mbsym.expressions import tree
 from mbsym.formulas.formula import Column, Formula, Matrix
 from mbsym.formulas.latex import latex_names
@@ -135,3 +136,46 @@ def test_screens_unfold_and_paper_is_without(analysis: mbsym.Analysis) -> None:
 def test_notation_knows_no_breaks_on_screens() -> None:
     assert "penalty" not in html.notation(r"U = \sum \Bigl[ a \penalty0 - b \Bigr]")
     assert Notation(r"\dot x").tex == r"\dot x"
+
+
+def test_matrices_stand_side_by_side_where_they_fit(analysis: mbsym.Analysis) -> None:
+    """Two of one symbol share a line of paper, the empty one has its own; a packed one is written entry by entry."""
+    ring = analysis.ring
+    m, nothing = Matrix.of(ring, [[ring.generator("parameter", "m")]]), Matrix.of(ring, [[ring.zero]])
+    three = tuple(
+        content.Matrices(Symbol(letter, "1"), value, True, letter)
+        for letter, value in (("M", m), ("D", nothing), ("K", m))
+    )
+    written = in_latex(analysis).block(content.SideBySide(three, "part"))
+    assert r"M_{1} = \begin{pmatrix} m \end{pmatrix},\quad K_{1} = \begin{pmatrix} m \end{pmatrix}" in written
+    assert written.count("\\label{mbsym:pendulum:eq:part:matrices:1}") == 1
+    assert "\\longformula[mbsym:pendulum:eq:D]{D_{1} = 0}" in written
+    assert in_html(analysis).block(content.SideBySide(three, "part")).count('class="formula"') == 3
+    packed = content.Matrices(Symbol("M"), m, True, "M", packed=True)
+    assert "M_{11} = m" in in_latex(analysis).block(packed)
+    assert "table" not in in_html(analysis).block(packed)
+
+
+def test_notes_bars_and_script_letters(analysis: mbsym.Analysis) -> None:
+    line = content.Display(Relation(Symbol("M", look="bar"), "=", 0), "", (Words("stable"),))
+    assert in_latex(analysis).block(line) == r"\longformula{\bar{M} = 0 \quad\penalty0 \text{(stable)}}"
+    assert "\u00af" in in_html(analysis).block(line)
+    assert in_html(analysis).block(line).endswith('<p class="note soft">(stable)</p>')
+    assert in_latex(analysis).math(Symbol("A", look="script")) == r"\mathcal{A}"
+    assert in_html(analysis).math(Symbol("A", look="script")) == "<mi>\U0001d49c</mi>"
+    assert plain_writer.Writer().inline(content.joined(("a", "b", "c"), "; ")) == "a; b; c"
+
+
+def test_a_program_is_a_listing_in_names_of_its_medium() -> None:
+    """Of (theta + theta)^2: what occurs twice has a number; in the listing of a screen names are as declared."""
+    program = Program()
+    angle = program.input("theta_dot")
+    double = angle + angle
+    steps = content.Steps(
+        program, ((Symbol("M", "11"), double * double),), {"theta_dot": Name("theta", 1)}, Said("The program")
+    )
+    analysis = derived(SHIPPED / "simple-pendulum.yaml")
+    assert "s_{1} = \\dot{\\theta} + \\dot{\\theta}" in in_latex(analysis).block(steps)
+    assert "M_{11} = s_{1}\\,s_{1}" in in_latex(analysis).block(steps)
+    assert "<pre>s1 = theta_dot + theta_dot\nM_11 = s1*s1</pre>" in in_html(analysis).block(steps)
+    assert "<summary>Программа</summary>" in in_html(analysis, "ru").block(steps)

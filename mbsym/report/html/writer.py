@@ -14,6 +14,7 @@ from mbsym.formulas.formula import Formula
 from mbsym.formulas.mathml import MathNames, bracketed, letter, mathml_names, mi, mn, mo, mtext, power, table
 from mbsym.formulas.mathml import row as bracketed_row
 from mbsym.formulas.names import greek
+from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.report import content
 from mbsym.report.content import Inline, Math, Said
 from mbsym.report.html import formulas
@@ -22,9 +23,14 @@ from mbsym.report.html.formulas import RELATIONS
 from mbsym.report.html.told import told_passages
 from mbsym.report.language import Language
 from mbsym.report.latex.description import shown_points
+from mbsym.report.lengths import PAPER_PROGRAM, length, not_printed, program_not_printed
+from mbsym.report.plain_writer import Writer as PlainWriter
 from mbsym.report.unit_text import labelled
 
 _DOTS = ("", "\u02d9", "\u00a8")
+_PLAIN = PlainWriter()
+_DIALECT = Dialect(call=lambda function, argument: f"{function}({argument})", local=lambda count: f"s{count}")
+_SCRIPT = {"A": "\U0001d49c", "B": "\u212c", "C": "\U0001d49e", "D": "\U0001d49f"}
 _COMMA = '<mo separator="true">,</mo><mspace width="0.3em"/>'
 
 
@@ -89,12 +95,22 @@ class Writer:
     @inline.register
     def _(self, value: content.Words) -> Markup:
         said = self.language.say(value.text)
-        return formulas.prose(said, value.variable) if value.variable else escape(said)
+        variable = letter(value.variable) if greek(value.variable) else value.variable
+        return formulas.prose(said, variable) if variable else escape(said)
 
     @inline.register
     def _(self, value: content.Strong) -> Markup:
+        key = Markup(' id="{}"').format(value.key) if value.key else ""
         grade = Markup(' class="{}"').format(value.grade) if value.grade else ""
-        return Markup("<strong{}>{}</strong>").format(grade, self.inline(value.text))
+        return Markup("<strong{}{}>{}</strong>").format(key, grade, self.inline(value.text))
+
+    @inline.register
+    def _(self, value: content.Graded) -> Markup:
+        return Markup('<span class="{}">{}</span>').format(value.grade, self.inline(value.text))
+
+    @inline.register
+    def _(self, value: content.Link) -> Markup:
+        return Markup('<a href="#{}">{}</a>').format(value.to, self.inline(value.text))
 
     @inline.register
     def _(self, value: content.Phrase) -> Markup:
@@ -133,7 +149,7 @@ class Writer:
 
     @math.register
     def _(self, value: Formula) -> str:
-        return str(formulas.inline(value))
+        return mtext(f"({not_printed(value)})") if id(value) in self.long else str(formulas.inline(value))
 
     @math.register
     def _(self, value: content.Name) -> str:
@@ -143,14 +159,18 @@ class Writer:
 
     @math.register
     def _(self, value: content.Symbol) -> str:
-        return str(formulas.symbol(value.letter, value.lower, value.upper, _DOTS[value.dots]))
+        letter = _SCRIPT[value.letter] if value.look == "script" else value.letter
+        above = "\u00af" if value.look == "bar" else _DOTS[value.dots]
+        return str(formulas.symbol(letter, value.lower, value.upper, above))
 
     @math.register
     def _(self, value: content.Entry) -> str:
         whole = value.whole
         if isinstance(value.index, content.Name):
             return f"<msub>{self.math(whole)}{self.math(value.index)}</msub>"
-        return str(formulas.entry(whole.letter, whole.lower, value.index, whole.upper))
+        if whole.lower:
+            return str(formulas.indexed(bracketed(self.math(whole)), value.index))
+        return self.math(replace(whole, lower=value.index))
 
     @math.register
     def _(self, value: content.Notation) -> str:
@@ -169,6 +189,18 @@ class Writer:
         return power(self.math(value.of), bracketed(mn(value.index)))
 
     @math.register
+    def _(self, value: content.Power) -> str:
+        return power(self.math(value.base), mn(value.exponent))
+
+    @math.register
+    def _(self, value: content.Text) -> str:
+        return mtext(self._joined(value.parts).unescape())
+
+    @math.register
+    def _(self, value: content.Readable) -> str:
+        return self.math(value.value) if formulas.is_readable(value.value) else self._length(value.value, value.kept)
+
+    @math.register
     def _(self, value: content.Listed) -> str:
         items = [self.math(x) for x in value.items]
         if value.braces:
@@ -181,7 +213,7 @@ class Writer:
 
     @math.register
     def _(self, value: content.Polynomial) -> str:
-        written = "".join(_pieces(value))
+        written = "".join(self._pieces(value))
         return written if value.power == 1 else power(bracketed(written, "[]"), mn(value.power))
 
     @math.register
@@ -221,26 +253,33 @@ class Writer:
 
     @block.register
     def _(self, value: content.Display) -> Markup:
-        shown = value.value
+        notes = (Markup('\n<p class="note soft">({})</p>').format(self.inline(note)) for note in value.notes)
+        return Markup("").join((self._displayed(value.value), *notes))
+
+    def _displayed(self, shown: Math | tuple[Inline, ...]) -> Markup:
         match shown:
             case Formula():
                 return formulas.line("", shown, self.long)
             case content.Polynomial():
-                return formulas.whole(_pieces(shown))
+                return formulas.whole(self._pieces(shown))
             case content.Relation(parts):
                 return self._relation(parts)
+            case content.Listed(items, False) if items:
+                *first, last = map(self.math, items)
+                return formulas.whole([*(item + _COMMA for item in first), last])
             case tuple():
                 return formulas.text_line(*map(self._beside, shown))
         return formulas.text_line(self.math(shown))
 
     def _relation(self, parts: Sequence[Math | str]) -> Markup:
         """A line that breaks in the last long formula that it holds."""
+        parts = [x.value if isinstance(x, content.Readable) and formulas.is_readable(x.value) else x for x in parts]
         place = max((k for k, x in enumerate(parts) if isinstance(x, Formula)), default=-1)
         if place < 0:
             *before, last = parts
             if isinstance(last, content.Polynomial) and last.power == 1:
                 left = "".join(map(self.math, before))
-                first, *rest = _pieces(last)
+                first, *rest = self._pieces(last)
                 return formulas.whole([left + first, *rest])
             return formulas.text_line(*map(self.math, parts))
         value = parts[place]
@@ -254,21 +293,30 @@ class Writer:
     def _beside(self, value: Inline) -> str:
         """A part of a displayed line: words stand in it as text."""
         if isinstance(value, (str, Said, content.Words)):
-            return mtext(str(self.inline(value)))
+            return mtext(self.inline(value).unescape())
         return self.math(value)
+
+    @block.register
+    def _(self, value: content.Definitions) -> Markup:
+        lines = (self._relation(item.parts) for item in value.items)
+        return Markup("\n").join((Markup("<p>{}:</p>").format(self.said(value.words)), *lines))
 
     @block.register
     def _(self, value: content.Matrices) -> Markup:
         left = self.math(value.symbol)
         if value.value.is_zero:
             return formulas.text_line(left, mo("="), mn(0))
-        whole = formulas.matrix(value.value, self.long)
+        whole = "" if value.packed else formulas.matrix(value.value, self.long)
         if whole:
             return formulas.text_line(left, mo("="), whole)
         return Markup("\n").join(
             formulas.line(self.math(content.Entry(value.symbol, index)), entry, self.long)
             for index, entry in formulas.entries(value.value, value.symmetric)
         )
+
+    @block.register
+    def _(self, value: content.SideBySide) -> Markup:
+        return self.document(value.matrices)
 
     @block.register
     def _(self, value: content.Components) -> Markup:
@@ -298,9 +346,26 @@ class Writer:
             )
             for row in value.rows
         )
+        title = "" if value.title is None else Markup("<h3>{}</h3>\n").format(self.said(value.title))
         return Markup(
-            '<h3>{}</h3>\n<div class="scroll"><table>\n<thead><tr>{}</tr></thead>\n<tbody>\n{}\n</tbody></table></div>'
-        ).format(self.said(value.title), head, rows)
+            '{}<div class="scroll"><table>\n<thead><tr>{}</tr></thead>\n<tbody>\n{}\n</tbody></table></div>'
+        ).format(title, head, rows)
+
+    @block.register
+    def _(self, value: content.Facts) -> Markup:
+        items = (
+            Markup("<dt>{}</dt>\n<dd>{}</dd>\n").format(self._joined(name), self._joined(said))
+            for name, said in value.items
+        )
+        return Markup("<dl>\n{}</dl>").format(Markup("").join(items))
+
+    @block.register
+    def _(self, value: content.Cited) -> Markup:
+        return Markup("")
+
+    @block.register
+    def _(self, value: content.Beside) -> Markup:
+        return replace(self, names=self.names.beside(value.names)).document(value.blocks)
 
     @block.register
     def _(self, value: content.Folded) -> Markup:
@@ -312,13 +377,25 @@ class Writer:
     def _(self, value: content.Intermediates) -> Markup:
         return told_passages(value.told, value.passages, lambda words: self.inline(content.Words(words)))
 
+    @block.register
+    def _(self, value: content.Steps) -> Markup:
+        same = {name: name for name in value.names} | {"pi": "pi"}
+        body = listing(value.program, [node for _, node in value.results], same, _DIALECT)
+        if len(body.assignments) > PAPER_PROGRAM:
+            return Markup("<p>{}</p>").format(self.said(program_not_printed(len(body.assignments))))
+        called = [(_PLAIN.inline(symbol), text) for (symbol, _), text in zip(value.results, body.results, strict=True)]
+        lines = "\n".join(f"{left} = {right}" for left, right in [*body.assignments, *called])
+        return Markup("<details><summary>{}</summary>\n<pre>{}</pre></details>").format(self.said(value.title), lines)
+
     def _joined(self, parts: Iterable[Inline]) -> Markup:
         return Markup("").join(map(self.inline, parts))
 
+    def _length(self, value: Formula, kept: bool = True) -> str:
+        return mtext(f"({self.said(length(value, kept)).unescape()})")
 
-def _pieces(value: content.Polynomial) -> list[str]:
-    variable = letter(value.variable) if greek(value.variable) else value.variable
-    return formulas.polynomial_pieces(value.coefficients, variable)
+    def _pieces(self, value: content.Polynomial) -> list[str]:
+        variable = letter(value.variable) if greek(value.variable) else value.variable
+        return formulas.polynomial_pieces(value.coefficients, variable, self._length)
 
 
 #: Letters for private use, which stand for values in notation.

@@ -1,4 +1,4 @@
-"""What each numbered problem shows, one problem a file.
+"""What each numbered problem shows, one problem a file, and what reports say besides.
 
 A problem's module is found by its attribute: ``content(results)`` is what reports say of it, ``lines(found, analysis)``
 its lines in the terminal, ``data(found, system, write)`` its section of results.json.  Its part of report.wl is a
