@@ -93,7 +93,7 @@ def test_goryachev_and_chaplygins_is_told_with_its_level(tmp_path):
     result = mbsym.load(path).polynomial_integrals
     assert result.found.new == ()
     assert [(one.level.weight, [w for w, _ in one.integrals]) for one in result.levels] == [(3, [3])]
-    words = ["run", path, "--problems", "9", "--format", "json,latex,wolfram,html", "--language", "es"]
+    words = ["run", path, "-v", "--problems", "9", "--format", "json,latex,wolfram,html", "--language", "es"]
     done = CliRunner().invoke(main, [*map(str, words), "--out", str(tmp_path / "out")])
     assert done.exit_code == 0, done.output
     told = "where the integral of weight 3 (angular momentum about axis 3) is zero, one of weight 3"
