@@ -15,7 +15,7 @@ from mbsym import loads
 from mbsym.analysis import PROBLEMS, Analysis, Derived
 from mbsym.expressions.tree import FUNCTIONS
 from mbsym.model.claims import CLAIMS
-from mbsym.source.keys import BODY, LOADS, SYSTEM
+from mbsym.source.keys import BODY, CONSTRAINTS, LOADS, SYSTEM
 from mbsym.source.topics import EXAMPLES
 from mbsym_cli import files
 from mbsym_cli.explain import TOPICS
@@ -262,7 +262,8 @@ def test_explain_lists_and_refuses() -> None:
 
 @pytest.mark.parametrize("topic", TOPICS)
 def test_topics_name_everything_that_is_read(topic: str) -> None:
-    wanted = {"description": {**SYSTEM, **BODY}, "loads": LOADS, "expressions": FUNCTIONS, "claims": CLAIMS}[topic]
+    known = {"description": {**SYSTEM, **BODY}, "loads": LOADS, "constraints": CONSTRAINTS}
+    wanted = {**known, "expressions": FUNCTIONS, "claims": CLAIMS}[topic]
     done = mbsym("explain", topic)
     assert done.exit_code == 0
     assert not [word for word in wanted if word not in done.stdout]
