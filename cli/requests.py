@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -41,6 +41,9 @@ def option_of(field: Field) -> click.Option:
     beside = f"  [{f'default: {kind.usual}' if kind.usual else 'required'}]" if kind.usual or needed else ""
     told = kind.help + beside or None
     if isinstance(kind, Flag):
+        if kind.both:
+            words = f"{field.option}/--no-{field.option.removeprefix('--')}"
+            return click.Option([words, field.name], default=None, help=told)
         return click.Option([*names, field.name], is_flag=True, help=told)
     if isinstance(kind, Place):
         return click.Option([*names, field.name], metavar=kind.metavar, type=click.Path(path_type=Path), help=told)
@@ -50,6 +53,28 @@ def option_of(field: Field) -> click.Option:
         [*names, field.name], metavar=kind.metavar, multiple=repeated, default=usual,
         show_default=usual is not None and not kind.usual and getattr(kind, "shown", True), help=told,
     )  # fmt: skip
+
+
+def decorators(request: type, *names: str) -> list[Callable[[Any], Any]]:
+    """The options of some fields as decorators of a command that is written out."""
+    by_name = {field.name: field for field in fields_of(request)}
+
+    def decorator(option: click.Option) -> Callable[[Any], Any]:
+        def decorate(command: Any) -> Any:
+            if not hasattr(command, "__click_params__"):
+                command.__click_params__ = []
+            command.__click_params__.append(option)
+            return command
+
+        return decorate
+
+    return [decorator(option_of(by_name[name])) for name in names]
+
+
+def read_some(request: type, names: Sequence[str], texts: Mapping[str, Any], options: Options) -> dict[str, Any]:
+    """The values of some fields that do not ask for a system."""
+    by_name = {field.name: field for field in fields_of(request)}
+    return {name: _read(by_name[name], texts[name], None, options) for name in names}
 
 
 def _text(default: Any) -> str:
@@ -89,7 +114,7 @@ def _read(field: Field, given: Any, system: System | None, options: Options) -> 
                 options.complain(field.option, "missing-option", *kind.absent)
             return options.number(field.option, given, kind.least, kind.most)
         case Whole() as kind:
-            return options.whole(field.option, given, kind.least, kind.most)
+            return options.whole(field.option, given, kind.least, kind.most, kind.why)
         case Word() as kind:
             return None if given is None else options.word(field.option, given, kind.choices, kind.what)
         case Words() as kind:

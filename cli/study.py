@@ -119,6 +119,8 @@ class _Run:
                     self.options.complain(option, *self.study.out.unwritten)
             if self.writes and self.as_json and self.study.out.alone is not None:
                 self.options.complain("--json", *self.study.out.alone)
+        order = [field.option for field in fields_of(self.study.request)]
+        self.options.sort(order)
 
     def _unfit(self, one: Unfit) -> None:
         if one.name:
