@@ -30,6 +30,7 @@ COMMANDS = {
     "batch": Listed("batch", "Derive folders of descriptions: in parallel, only what changed."),
     "watch": Listed("watch", "Derive a description again whenever it is saved."),
     "diff": Listed("diff", "Say exactly what changed between results, or descriptions."),
+    "show": Listed("show_formulas", "Print one formula, or the equations of motion."),
     "simulate": Listed("simulate", "Integrate the equations of motion and draw figures."),
     "view": Listed("view", "Show a system in three dimensions, as one page."),
     "inverse": Listed("mbsym.studies.inverse", "Find the inputs that a given motion needs."),
@@ -56,6 +57,18 @@ COMMANDS = {
 }
 
 
+#: The commands by what a person is about; every one stands in one group.
+GROUPS = {
+    "Start": ("new", "examples", "check", "edit", "explain"),
+    "Derive": ("run", "show", "watch", "batch", "diff"),
+    "Motion": ("simulate", "view", "orbit", "inverse", "lyapunov"),
+    "Stability": ("equilibria", "map", "sweep", "floquet", "nonlinear"),
+    "Integrals, small parameters": ("integrals", "symmetries", "groups", "average", "expand", "oscillations"),
+    "Accuracy": ("tradeoff", "extremes"),
+    "Files": ("convert", "schema", "lsp"),
+}
+
+
 class LazyGroup(click.Group):
     """A group whose commands are imported on demand."""
 
@@ -76,9 +89,10 @@ class LazyGroup(click.Group):
         return command
 
     def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:
-        """The list of commands, for which none of them is imported."""
-        with formatter.section("Commands"):
-            formatter.write_dl([(name, listed.does) for name, listed in COMMANDS.items()])
+        """The commands in their groups, for which none of them is imported."""
+        for title, names in GROUPS.items():
+            with formatter.section(title):
+                formatter.write_dl([(f"{name:<12}", COMMANDS[name].does) for name in names])
 
     def resolve_command(
         self, context: click.Context, args: list[str]

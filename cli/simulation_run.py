@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 def run(file: Path, folder: Path, given: Scenario, wanted: Asked, options: Options) -> int:
     """The exit code; ``options`` takes the complaint of a method that does not apply here."""
     from mbsym.algebra.failures import Failure, SingularPoint
-    from mbsym.numerics.closing import NotClosed
+    from mbsym.numerics.closing import NotClosed, NothingMoves
     from mbsym.numerics.enclosure.field import NotAnalytic
     from mbsym.numerics.methods.interface import Breakdown, Unusable
     from mbsym.simulation import NoEvent, simulate
@@ -70,6 +70,11 @@ def run(file: Path, folder: Path, given: Scenario, wanted: Asked, options: Optio
         return BROKEN_DOWN
     except NotClosed as error:
         return not_closed(file, error, given.system)
+    except NothingMoves as error:
+        complain(file, f"error[{error.code}]: {error}")
+        complain(file, f"  hint: {error.remedy}")
+        complain(file, "nothing was written.")
+        return BROKEN_DOWN
     except Failure as error:
         complain(file, f"error[no-program]: there is no program for these equations: {error}")
         complain(file, "nothing was written.")
@@ -107,8 +112,9 @@ def _code(file: Path, found: Simulation, paths: list[Path]) -> int:
         )
         complain(file, f"interrupted{kept}")
         return INTERRUPTED
-    if found.certificate is not None and not found.certificate.whole:
-        return INTERRUPTED if found.certificate.ended == CERTIFICATE_INTERRUPTED else BROKEN_DOWN
+    proof = found.certificate
+    if proof is not None and not (proof.whole and proof.narrow):
+        return INTERRUPTED if CERTIFICATE_INTERRUPTED in (proof.ended, proof.enclosure.cut) else BROKEN_DOWN
     return OK if found.plan is None or found.plan.reached else BROKEN_DOWN
 
 

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from in_markdown import code, escaped, fenced, table
 
 from mbsym.source import keys, topics
+from mbsym.source.grammar import Key
 
 _HEAD = """\
 # Description
@@ -44,19 +45,19 @@ def page() -> str:
         "## Loads\n",
         "A list; each load is `- kind: {key: value, ...}`, or `- kind: expression`.\n",
     ]
-    for kind, members in keys.LOADS.items():
-        parts += [f"### {kind}\n", f"{escaped(keys.LOAD_MEANINGS[kind])}.\n", _keys(members) if members else ""]
+    for name, kind in keys.LOADS.items():
+        parts += [f"### {name}\n", f"{escaped(kind.meaning)}.\n", _keys(kind.keys) if kind.keys else ""]
     parts += ["### Points\n", "For `between`.\n", _keys(keys.POINT)]
     parts += ["## Formulas\n", fenced(topics.expressions()), "## Claims\n", _claims()]
     return "\n".join(parts)
 
 
-def _section(title: str, members: Mapping[str, str], remark: str) -> str:
+def _section(title: str, members: Mapping[str, Key], remark: str) -> str:
     return f"## {title}\n\n{remark}\n\n{_keys(members)}"
 
 
-def _keys(members: Mapping[str, str]) -> str:
-    return table(("key", "meaning"), [(code(key), escaped(meaning)) for key, meaning in members.items()])
+def _keys(members: Mapping[str, Key]) -> str:
+    return table(("key", "meaning"), [(code(name), escaped(key.meaning)) for name, key in members.items()])
 
 
 def _claims() -> str:

@@ -28,6 +28,7 @@ from mbsym.report.conditions import Statement, provided, statements
 from mbsym.report.environment import rendered
 from mbsym.report.first_order import first_order
 from mbsym.report.lengths import COUNTED, FILE, FILE_PROGRAM, formulas, not_printed, program_not_printed, withheld
+from mbsym.report.plain_writer import Writer
 from mbsym.report.sections import invariant_sets, polynomial_integrals, small_parameters
 from mbsym.report.sections.normal_forms import PLAIN as HIGHER
 from mbsym.report.sections.stabilisation import PLAIN
@@ -214,7 +215,7 @@ def _code(analysis: Analysis) -> dict[str, Any] | None:
     n = len(system.coordinates)
     body: Listing = listing(programs.program, [*nodes, *programs.forcing], inputs, DIALECT)
     if len(body.assignments) > FILE_PROGRAM:
-        return {"omitted": program_not_printed(len(body.assignments))}
+        return {"omitted": Writer().said(program_not_printed(len(body.assignments)))}
     prescribed = {names[item.name]: prescribed_value(item) for item in system.prescribed if item.name in body.inputs}
     return {
         "positions": [names[name] for name in system.coordinates],

@@ -10,12 +10,12 @@ from textwrap import wrap
 
 from mbsym.expressions.tree import SMOOTH
 from mbsym.model.claims import CLAIMS, EXPRESSION, ClaimKind
+from mbsym.source.grammar import Key
 from mbsym.source.keys import (
     BODY,
     CLAIM,
     INERTIA,
     INPUT,
-    LOAD_MEANINGS,
     LOADS,
     PARAMETER,
     POINT,
@@ -46,8 +46,8 @@ def description() -> str:
 def loads() -> str:
     """Every kind of load with its keys."""
     parts = []
-    for kind, keys in LOADS.items():
-        parts.append(f"{kind}: {LOAD_MEANINGS[kind]}" + (f"\n\n{_listed(keys)}" if keys else ""))
+    for name, kind in LOADS.items():
+        parts.append(f"{name}: {kind.meaning}" + (f"\n\n{_listed(kind.keys)}" if kind.keys else ""))
     parts.append(f"A point, for 'between'\n\n{_listed(POINT)}")
     return "loads:  a list; each load is  - kind: {key: value, ...}  or  - kind: expression\n\n" + "\n\n".join(parts)
 
@@ -75,11 +75,11 @@ def _keys(entry: ClaimKind) -> str:
     return f"  [{', '.join(needed)}]" if needed else ""
 
 
-def _listed(table: Mapping[str, str]) -> str:
+def _listed(table: Mapping[str, Key]) -> str:
     width = max(map(len, table))
     lines = []
-    for key, meaning in table.items():
-        first, *others = wrap(meaning, WIDTH - width - 6)
+    for key, one in table.items():
+        first, *others = wrap(one.meaning, WIDTH - width - 6)
         lines.append(f"    {key:<{width}}  {first}")
         lines += [" " * (width + 6) + other for other in others]
     return "\n".join(lines)
