@@ -43,7 +43,8 @@ def option_of(field: Field) -> click.Option:
     if isinstance(kind, Flag):
         if kind.both:
             words = f"{field.option}/--no-{field.option.removeprefix('--')}"
-            return click.Option([words, field.name], default=None, help=told)
+            shown = field.default is not None
+            return click.Option([words, field.name], default=field.default, show_default=shown, help=told)
         return click.Option([*names, field.name], is_flag=True, help=told)
     if isinstance(kind, Place):
         return click.Option([*names, field.name], metavar=kind.metavar, type=click.Path(path_type=Path), help=told)
@@ -80,7 +81,7 @@ def read_some(request: type, names: Sequence[str], texts: Mapping[str, Any], opt
 def _text(default: Any) -> str:
     if isinstance(default, tuple):
         return ",".join(default)
-    return f"{default:g}" if isinstance(default, float) else str(default)
+    return f"{default:g}".replace("e-0", "e-") if isinstance(default, float) else str(default)
 
 
 def read_fields(
@@ -118,7 +119,7 @@ def _read(field: Field, given: Any, system: System | None, options: Options) -> 
         case Word() as kind:
             return None if given is None else options.word(field.option, given, kind.choices, kind.what)
         case Words() as kind:
-            return options.words(field.option, given, kind.choices, kind.what, kind.every) if given is not None else ()
+            return options.words(field.option, given, kind.known, kind.what, kind.every) if given is not None else ()
         case Range():
             from mbsym_cli.section_options import read_axis
 

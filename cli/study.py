@@ -172,7 +172,7 @@ class _Run:
         loud = not self.quiet
         if loud:
             seconds = f", {time.perf_counter() - self.started:.2f} s" if self.study.timed else ""
-            tell((asked.system.name, "bold"), (f"  {printable(self.file)}{seconds}", "dim"))
+            tell((asked.system.name, "bold"), (f"  {printable(self.file)}{answer.after}{seconds}", "dim"))
         for one in answer.lines:
             if isinstance(one, Line) and (loud or one.always):
                 tell(*one.parts, whole=one.whole)

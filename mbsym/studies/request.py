@@ -86,15 +86,22 @@ class Word(Kind):
 
 @dataclass(frozen=True)
 class Words(Kind):
-    """Some of a few words, separated by commas; ``every`` stands for all of them."""
+    """Some of a few words, separated by commas; ``every`` stands for all of them.
 
-    choices: tuple[str, ...] = ()
+    ``choices`` are a function where much would have to be imported to know them.
+    """
+
+    choices: tuple[str, ...] | Callable[[], tuple[str, ...]] = ()
     what: str = "choice"
     every: str = ""
 
     def wrong(self, name: str, value: Sequence[str]) -> str:
-        others = ", ".join(one for one in value if one not in self.choices)
-        return f"there is no {self.what} {others}: choose from {', '.join(self.choices)}" if others else ""
+        others = ", ".join(one for one in value if one not in (*self.known, self.every))
+        return f"there is no {self.what} {others}: choose from {', '.join(self.known)}" if others else ""
+
+    @property
+    def known(self) -> tuple[str, ...]:
+        return self.choices() if callable(self.choices) else self.choices
 
 
 @dataclass(frozen=True)
@@ -109,7 +116,7 @@ class Names(Kind):
 
 @dataclass(frozen=True)
 class Flag(Kind):
-    """Said or not; ``both``: ``--name`` and ``--no-name``, neither of which is usual."""
+    """Said or not; ``both``: ``--name`` or ``--no-name``."""
 
     both: bool = False
 
