@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.problems.symmetries import Symmetries, Symmetry
-from mbsym.report.content import Gaps, Inline, Name, Said, Words, say
+from mbsym.report.content import Gaps, Inline, Name, Relation, Said, Symbol, Words, say
 
 #: In reports: what a symmetry gives.
 OPENING = (
@@ -29,11 +29,13 @@ def field_text(one: Symmetry) -> str:
     return "; ".join(parts)
 
 
-def field(one: Symmetry) -> tuple[Said, ...]:
+def field(one: Symmetry) -> tuple[Inline, ...]:
     """xi_x = -y, xi_y = x, tau = 1, Gamma = b y."""
     ring = one.integral.ring
-    shown = [say("$\\xi_{[[name]]} = [[value]]$", name=Name(x, ring=ring), value=xi) for x, xi in one.directions]
-    shown += [] if one.time.is_zero else [say("$\\tau = [[value]]$", value=one.time)]
+    shown: list[Inline] = [
+        say("$\\xi_{[[name]]} = [[value]]$", name=Name(x, ring=ring), value=xi) for x, xi in one.directions
+    ]
+    shown += [] if one.time.is_zero else [Relation(Symbol("tau"), "=", one.time)]
     shown += [] if one.gauge.is_zero else [say("$\\Gamma = [[value]]$", value=one.gauge)]
     return tuple(shown)
 
