@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, singledispatchmethod
+from functools import singledispatchmethod
 from typing import Any
 
 from markupsafe import Markup, escape
@@ -14,6 +14,7 @@ from mbsym.formulas.formula import Formula
 from mbsym.formulas.mathml import MathNames, bracketed, letter, mathml_names, mi, mn, mo, mtext, power, table
 from mbsym.formulas.mathml import row as bracketed_row
 from mbsym.formulas.names import greek
+from mbsym.formulas.notation import notation
 from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.report import content
 from mbsym.report.content import Inline, Math, Said
@@ -400,15 +401,6 @@ class Writer:
 
 #: Letters for private use, which stand for values in notation.
 _FIRST = 0xE000
-
-
-@cache
-def notation(tex: str) -> str:
-    """Fixed notation as elements of MathML."""
-    from latex2mathml.converter import convert  # few formulas need it
-
-    elements = re.sub(r"</?math[^>]*>", "", convert(re.sub(r"\\penalty\d+ ?", "", tex)))
-    return re.sub(r'(?:<mi mathvariant="normal">\w</mi>){2,}', lambda m: mi(re.sub("<.*?>", "", m[0])), elements)
 
 
 def _untexed(text: str) -> Markup:
