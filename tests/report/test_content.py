@@ -161,6 +161,8 @@ def test_notes_bars_and_script_letters(analysis: mbsym.Analysis) -> None:
     assert in_html(analysis).block(line).endswith('<p class="note soft">(stable)</p>')
     assert in_latex(analysis).math(Symbol("A", look="script")) == r"\mathcal{A}"
     assert in_html(analysis).math(Symbol("A", look="script")) == "<mi>\U0001d49c</mi>"
+    above = in_html(analysis).math(Symbol("R", "2", "(1)"))  # what the first multiplier adds, not R_21
+    assert above == ("<msubsup><mi>R</mi><mrow><mn>2</mn></mrow><mrow><mo>(</mo><mn>1</mn><mo>)</mo></mrow></msubsup>")
     assert plain_writer.Writer().inline(content.joined(("a", "b", "c"), "; ")) == "a; b; c"
 
 
