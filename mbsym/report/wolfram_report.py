@@ -62,7 +62,9 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         del found[3]  # equations that are not whole are none: the program takes their place
 
     def written(value: Formula) -> str:
-        return string(not_printed(value)) if id(value) in long else wolfram_text(value.ring, value.polynomial)
+        if id(value) in long:
+            return string(Writer().said(not_printed(value)))
+        return wolfram_text(value.ring, value.polynomial)
 
     return rendered(
         "report.wl.j2",

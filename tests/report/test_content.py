@@ -67,9 +67,7 @@ def test_notation_and_gaps_are_the_same_in_all_media(analysis: mbsym.Analysis) -
     energy = analysis.energy.kinetic_energy
     said = say("$L$ does not contain $[[names]]$: cyclic.", names=content.named(["theta"]))
     assert in_latex(analysis).said(said) == r"$L$ does not contain $\theta$: cyclic."
-    assert in_html(analysis).said(said) == (
-        "<math><mrow><mi>L</mi></mrow></math> does not contain <math><mrow><mi>θ</mi></mrow></math>: cyclic."
-    )
+    assert in_html(analysis).said(said) == ("<math><mi>L</mi></math> does not contain <math><mi>θ</mi></math>: cyclic.")
     assert plain_writer.Writer().said(said) == "L does not contain theta: cyclic."
     outside = say("with [[value]] and [[words]]", value=Relation(Symbol("T"), "=", energy), words=Words("stable"))
     assert in_latex(analysis).said(outside).startswith("with $T = ")
@@ -163,6 +161,8 @@ def test_notes_bars_and_script_letters(analysis: mbsym.Analysis) -> None:
     assert in_html(analysis).block(line).endswith('<p class="note soft">(stable)</p>')
     assert in_latex(analysis).math(Symbol("A", look="script")) == r"\mathcal{A}"
     assert in_html(analysis).math(Symbol("A", look="script")) == "<mi>\U0001d49c</mi>"
+    above = in_html(analysis).math(Symbol("R", "2", "(1)"))  # what the first multiplier adds, not R_21
+    assert above == ("<msubsup><mi>R</mi><mrow><mn>2</mn></mrow><mrow><mo>(</mo><mn>1</mn><mo>)</mo></mrow></msubsup>")
     assert plain_writer.Writer().inline(content.joined(("a", "b", "c"), "; ")) == "a; b; c"
 
 

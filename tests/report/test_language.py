@@ -42,8 +42,8 @@ def sentences() -> set[str]:
             if isinstance(node, ast.Call) and ast.unparse(node.func) in ("Said", "say") and node.args:
                 found |= _literals(node.args[0])
             elif isinstance(node, ast.Assign) and "[[" in ast.unparse(node.value):
-                found |= _literals(node.value)
-    return found
+                found |= {x for x in _literals(node.value) if re.match(r"[A-Z$[].*[.:]$", x)}  # no part of one
+    return {x for x in found if re.search("[A-Za-z]", re.sub(r"\$[^$]*\$|\[\[\w+\]\]", "", x))}
 
 
 def _literals(node: ast.expr) -> set[str]:

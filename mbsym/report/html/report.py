@@ -120,7 +120,6 @@ def _functions(long: frozenset[int]) -> dict[str, Callable[..., Any]]:
         "indexed": shown.indexed,
         "mi": lambda name: Markup(mi(name)),
         "mo": lambda sign: Markup(mo(sign)),
-        "line": lambda left, value, right="": shown.line(left, value, long, right),
         "text_line": shown.text_line,
         "inline": shown.inline,
         "moving": moving,

@@ -23,7 +23,6 @@ from mbsym.report.latex.diagram import diagram
 from mbsym.report.latex.form import Form, heading, subheading
 from mbsym.report.latex.formulas import (
     Measured,
-    formula,
     measured_matrix,
 )
 from mbsym.report.latex.labels import Labels, prefix_of
@@ -112,7 +111,6 @@ def _filters(analysis: Analysis, tongue: Language, long: frozenset[int], widest:
         "say": tongue.say,
         "name": lambda name: str(names[name]),
         "dotted": lambda name: names[name].accented("dot"),
-        "math": lambda value: formula(value, long),
         "expression": lambda value: expression(value, names),
         "unit": lambda name, space="": bracketed(unit_of(system, name), space),
     }
