@@ -30,7 +30,7 @@ from mbsym.report.content import (
     say,
 )
 from mbsym.report.sections.stability import kind_of_conditions
-from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line
+from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line, titles
 from mbsym.report.words.verdicts import decided, grade, verdict
 
 if TYPE_CHECKING:
@@ -77,8 +77,8 @@ def _facts(results: Results) -> Iterator[Fact]:
         yield (Said("Claims"),), (Link(Graded(said, grade(gravest)), "claims"),)
         for line in map(claim_line, claims):
             if line.word != HELD:
-                place = f"{line.place}, {line.title}" if line.place else line.title
-                yield (Words(place),), (Graded(Words(line.outcome), grade(line.word)),)
+                place = (line.place, ", ") if line.place else ()
+                yield (*place, titles([line])), (Graded(Phrase(line.said), grade(line.word)),)
     for number, failure in results.failures.items():
         link = Link(say("Problem [[number]]", number=str(number)), f"problem-{number}")
         yield (link,), (Said("no result"), ": ", Words(failure.reason))
