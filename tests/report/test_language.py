@@ -45,8 +45,8 @@ def sentences() -> set[str]:
             if isinstance(node, ast.Call) and ast.unparse(node.func) in ("Said", "say") and node.args:
                 found |= _literals(node.args[0])
             elif isinstance(node, ast.Assign) and "[[" in ast.unparse(node.value):
-                found |= _literals(node.value)
-    return found
+                found |= {x for x in _literals(node.value) if not x.startswith("(")}  # that is the end of sentences
+    return {x for x in found if re.search("[A-Za-z]", re.sub(r"\$[^$]*\$|\[\[\w+\]\]", "", x))}  # no mere formulas
 
 
 def _literals(node: ast.expr) -> set[str]:
