@@ -32,7 +32,7 @@ from mbsym.report.content import (
 )
 from mbsym.report.sections.canonical import TITLES
 from mbsym.report.sections.stability import kind_of_conditions
-from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line
+from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line, titles
 from mbsym.report.words.verdicts import decided, grade, verdict
 
 if TYPE_CHECKING:
@@ -81,7 +81,8 @@ def _facts(results: Results) -> Iterator[Fact]:
         for line in map(claim_line, claims):
             if line.word != HELD:
                 place = (line.place, ", ") if line.place else ()
-                yield (Said("Claim"), " ", *place, line.title), (Graded(Words(line.outcome), grade(line.word)),)
+                about = (Said("Claim"), " ", *place, titles([line]))
+                yield about, (Graded(Phrase(line.said), grade(line.word)),)
     for reason, several in groupby(results.failures.items(), key=lambda one: one[1].reason):
         numbers = [number for number, _ in several]
         named_ones = ", ".join(map(str, numbers))
