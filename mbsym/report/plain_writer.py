@@ -75,6 +75,14 @@ class Writer:
         return self.said(value)
 
     @inline.register
+    def _(self, value: content.Text) -> str:
+        return "".join(map(self.inline, value.parts))
+
+    @inline.register
+    def _(self, value: content.Readable) -> str:
+        return self.inline(value.value)
+
+    @inline.register
     def _(self, value: content.Phrase) -> str:
         return "".join(map(self.inline, value.parts))
 
@@ -116,6 +124,10 @@ class Writer:
     @inline.register
     def _(self, value: content.Notation) -> str:
         return _notation(value.tex)
+
+    @inline.register
+    def _(self, value: content.Power) -> str:
+        return f"{self.inline(value.base)}{'^' if self.readable else '**'}{value.exponent}"
 
     @inline.register
     def _(self, value: content.Listed) -> str:
