@@ -43,7 +43,12 @@ def sentences() -> set[str]:
                 found |= _literals(node.args[0])
             elif isinstance(node, ast.Assign) and "[[" in ast.unparse(node.value):
                 found |= _literals(node.value)
-    return found
+    return set(filter(_has_words, found))
+
+
+def _has_words(text: str) -> bool:
+    """Not of formulas alone, which are the same in every language."""
+    return re.search(r"[A-Za-z]{2}", re.sub(r"\$[^$]*\$|\[\[\w+\]\]", "", text)) is not None
 
 
 def _literals(node: ast.expr) -> set[str]:
