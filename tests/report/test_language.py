@@ -46,7 +46,12 @@ def sentences() -> set[str]:
                 found |= _literals(node.args[0])
             elif isinstance(node, ast.Assign) and "[[" in ast.unparse(node.value):
                 found |= {x for x in _literals(node.value) if re.match(r"[A-Z$[].*[.:]$", x)}  # no part of one
-    return {x for x in found if re.search("[A-Za-z]", re.sub(r"\$[^$]*\$|\[\[\w+\]\]", "", x))}
+    return set(filter(_has_words, found))
+
+
+def _has_words(text: str) -> bool:
+    """Not of formulas alone, which are the same in every language."""
+    return re.search(r"[A-Za-z]{2}", re.sub(r"\$[^$]*\$|\[\[\w+\]\]", "", text)) is not None
 
 
 def _literals(node: ast.expr) -> set[str]:
