@@ -35,7 +35,7 @@ from mbsym.source.grammar import (
     Vector,
     Word,
 )
-from mbsym.source.keys import ALIASES, DESCRIPTION, VERSION
+from mbsym.source.keys import ALIASES, DESCRIPTION, VERSION, spellings
 
 Schema = dict[str, Any]
 
@@ -131,9 +131,7 @@ def _list(item: Schema, least: int, most: int | None) -> Schema:
 
 def _choices(choices: tuple[str | int, ...]) -> list[str | int]:
     """Words in all their spellings; numbers may be quoted."""
-    found: list[str | int] = []
-    for one in choices:
-        found += [one, *(other for other, word in ALIASES.items() if word == one)]
+    found = [other for one in choices for other in (one, *spellings(str(one)))]
     return [*found, *(str(one) for one in choices if isinstance(one, int))]
 
 
