@@ -38,6 +38,7 @@ def show_finding(
     found: Facts, title: str, path: Path, seconds: float, files: Sequence[Path], language: Language
 ) -> None:
     """What was found, in a line each; where all of it is."""
+    from mbsym.report.content import say
     from mbsym.report.plain_writer import Writer
 
     writer = Writer(language, readable=True)
@@ -48,8 +49,8 @@ def show_finding(
     if files:
         folder = files[0].parent
         page = next((x for x in files if x.name == "report.html"), files[0])
-        more = f" and {counted(len(files) - 1, 'file')} more" if len(files) > 1 else ""
-        tell(f"{page.name}{more} in ", (printable(folder), "bold"), "; with -v all of it is told here", indent=2)
+        text = "[[file]], [[count]] files in all, in [[folder]]; with -v all of it is told here"
+        tell(writer.said(say(text, file=page.name, count=str(len(files)), folder=printable(folder))), indent=2)
 
 
 def _style(value: object) -> str:

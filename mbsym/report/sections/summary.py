@@ -29,6 +29,7 @@ from mbsym.report.content import (
     named,
     say,
 )
+from mbsym.report.sections.canonical import TITLES
 from mbsym.report.sections.stability import kind_of_conditions
 from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line
 from mbsym.report.words.verdicts import decided, grade, verdict
@@ -59,7 +60,7 @@ def _facts(results: Results) -> Iterator[Fact]:
         written = [Relation(one, "=", 0) for one in equations]
         yield (Said("Equations of motion"),), (joined(written, ";  "),)
     if 4 in found:
-        yield (Said("Unperturbed motion"),), _motion(found[4])
+        yield (Said("The unperturbed motion"),), _motion(found[4])
     if 6 in found:
         yield from _stability(found[6], results)
     if 7 in found:
@@ -77,11 +78,13 @@ def _facts(results: Results) -> Iterator[Fact]:
         yield (Said("Claims"),), (Link(Graded(said, grade(gravest)), "claims"),)
         for line in map(claim_line, claims):
             if line.word != HELD:
-                place = f"{line.place}, {line.title}" if line.place else line.title
-                yield (Words(place),), (Graded(Words(line.outcome), grade(line.word)),)
+                place = (line.place, ", ") if line.place else ()
+                yield (Said("Claim"), " ", *place, line.title), (Graded(Words(line.outcome), grade(line.word)),)
     for number, failure in results.failures.items():
         link = Link(say("Problem [[number]]", number=str(number)), f"problem-{number}")
         yield (link,), (Said("no result"), ": ", Words(failure.reason))
+    for form, failure in results.forms.forms.failures:
+        yield (Said(TITLES[form]),), (Said("no result"), ": ", Words(failure.reason))
     checks = results.analysis.checks
     if checks:
         yield (Said("Self-check"),), (Link(Graded(self_check(checks), grade(worst(checks))), "checks"),)
@@ -107,7 +110,7 @@ def _is_short(value: Formula) -> bool:
 
 
 def _size(system: System) -> Fact:
-    freedom = say("[[count]]: [[names]]", count=str(len(system.coordinates)), names=named(system.coordinates))
+    freedom = Phrase((str(len(system.coordinates)), ": ", named(system.coordinates)))
     if system.linear:
         return (Said("Degrees of freedom"),), (freedom, "; ", Said("given by its matrices"))
     bodies = str(len(system.bodies))
@@ -159,7 +162,7 @@ def _conditions(part: SubsystemStability) -> Iterator[Inline]:
     items = list(statements(part.ring, part.theory.requirements))
     if not items:
         return
-    yield from ("; ", Words(kind_of_conditions(part.theory, items)), ": ")
+    yield from ("; ", kind_of_conditions(part.theory, items), ": ")
     if all(one.formula is not None and _is_short(one.formula) for one in items):
         shown: list[Inline] = []
         for one in items:
