@@ -31,7 +31,7 @@ from mbsym.report.code.formula_code import formula_functions
 from mbsym.report.code.functions import Function, Functions, prescribed_value, words_of_inputs
 from mbsym.report.code.identifiers import prefix_of
 from mbsym.report.code.lookups import identifier, python_definition
-from mbsym.report.code.model_code import Solved, first_integrals, programs_of, solved
+from mbsym.report.code.model_code import Solved, first_integrals, programs_of, solved, undetermined
 from mbsym.report.code.model_values import initial_values, ordered, parameters_of, starting
 from mbsym.report.environment import rendered
 
@@ -148,6 +148,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         no_slopes=plain(known.no_slopes or known.no_forward),
         no_reactions=plain(known.no_reactions),
         reactions=_reactions(writer, known),
+        undetermined=wrap(plain(undetermined(analysis)), 112, break_long_words=False),
         related=[item for item in ordered(parameters) if item.needs],
         names=writer.names,
         initial=initial_values(system, writer),

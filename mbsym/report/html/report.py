@@ -70,6 +70,7 @@ if TYPE_CHECKING:
     from mbsym.problems.constraints import Constraints
     from mbsym.problems.invariant_sets import InvariantSets
     from mbsym.problems.normal_forms import NormalForms
+    from mbsym.problems.reactions import Reaction
     from mbsym.problems.reduction import Reduction
     from mbsym.problems.stabilisation import Stabilisation
 
@@ -128,6 +129,7 @@ def context(
         "unit": lambda name: labelled("", unit_of(system, name)),
         "pretty": pretty,
         "constraint_sentences": lambda tied: list(_of_constraints(tied, names)),
+        "of_reaction": lambda one: list(_of_reaction(one)),
         "reduction_sentences": lambda about: list(_of_reduction(about, names)),
         "constraint": lambda value: constraint_in_words(value, names),
         "stabilisation_sentences": lambda one: list(_of_stabilisation(one, names)),
@@ -188,6 +190,20 @@ def _of_constraints(tied: Constraints, names: MathNames) -> Iterator[Markup]:
 
 def _condition(value: Formula, sign: str) -> Markup:
     return shown.math(shown.inline(value), mo("≠" if sign == "!=" else sign), "<mn>0</mn>")
+
+
+def _of_reaction(one: Reaction) -> Iterator[Markup]:
+    """What is not determined of a reaction, formulas in MathML."""
+    if not one.balances:
+        return
+    from mbsym.report.words.constraint_words import Writer, reaction_sentences
+
+    write = Writer(
+        lambda listed: escape(", ".join(listed)),
+        components=lambda places: shown.math(*_separated([shown.symbol("RL"[k // 3], str(k % 3 + 1)) for k in places])),
+        vector=lambda x: shown.math(mo("("), *_separated([shown.inline(y) for y in x]), mo(")")),
+    )
+    yield from _filled(reaction_sentences(one, write))
 
 
 def _of_reduction(about: Reduction, names: MathNames) -> Iterator[Markup]:

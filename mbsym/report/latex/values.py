@@ -76,6 +76,7 @@ if TYPE_CHECKING:
 
     from mbsym.analysis import Analysis
     from mbsym.problems.constraints import Constraints
+    from mbsym.problems.reactions import Reaction
     from mbsym.problems.reduction import Reduction
     from mbsym.report.canonical_denominators import Denominators
 
@@ -155,6 +156,7 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "small_parameter_lines": lambda one: of_small_parameters(one, system, names, tongue),
         "FEEDBACK": FEEDBACK,
         "LYAPUNOV": LYAPUNOV,
+        "of_reaction": lambda one: _of_reaction(one, names, tongue),
         "constraint_label": lambda name: constraint_words().label(name, _writer(names, tongue)),
         "reactions": analysis.optional("reactions") if system.reactions and 3 in problems else (),
         "forms": forms,
@@ -268,6 +270,13 @@ def _of_constraints(tied: Constraints, names: LatexNames, tongue: Language) -> l
     return [tongue.sentence(text, **values) for text, values in said]
 
 
+def _of_reaction(one: Reaction, names: LatexNames, tongue: Language) -> list[str]:
+    if not one.balances:
+        return []
+    said = constraint_words().reaction_sentences(one, _writer(names, tongue))
+    return [tongue.sentence(text, **values) for text, values in said]
+
+
 def _of_reduction(about: Reduction, names: LatexNames, tongue: Language) -> list[str]:
     said = constraint_words().reduction_sentences(about, _writer(names, tongue))
     return [tongue.sentence(text, **values) for text, values in said]
@@ -280,6 +289,8 @@ def _writer(names: LatexNames, tongue: Language) -> Any:
         lambda rates: ", ".join(f"${names[name].accented('dot')} = {formula(x)}$" for name, x in rates),
         lambda value, sign: f"${formula(value)} {chr(92) + 'neq' if sign == '!=' else sign} 0$",
         lambda listed: "$" + ",\\, ".join(speed(name, names) for name in listed) + "$",
+        lambda places: "$" + ",\\, ".join(f"{'RL'[k // 3]}_{k % 3 + 1}" for k in places) + "$",
+        lambda x: "$(" + ",\\, ".join(map(formula, x)) + ")$",
     )
 
 

@@ -103,6 +103,16 @@ def reaction_data(found: Sequence[Reaction], tied: Constraints | None, write: Wr
                 doc.PerMultiplier(row=name, force=column_text(force, write), moment=column_text(moment, write))
                 for name, (force, moment) in zip(names, one.per_multiplier, strict=True)
             ],
+            undetermined=[
+                doc.Balance(
+                    rows=[name.label for name in balance.rows],
+                    components=list(balance.components),
+                    force=None if balance.added is None else column_text(balance.added[0], write),
+                    moment=None if balance.added is None else column_text(balance.added[1], write),
+                )
+                for balance in one.balances
+            ],
+            determined_combinations=one.combinations,
         )
         for one in found
     ]
@@ -147,6 +157,10 @@ def lines(found: Equations, analysis: Analysis) -> Iterator[str]:
         yield "without multipliers: longer than the budget of terms"
     for reaction in analysis.optional("reactions") or () if analysis.system.reactions else ():
         yield f"reaction in the joint of {reaction.body}: {counted(reaction.terms, 'term')}"
+        if reaction.balances:
+            from mbsym.report.words.constraint_words import Writer, filled, reaction_sentences
+
+            yield from map(filled, reaction_sentences(reaction, Writer(", ".join)))
     if analysis.forms:
         from mbsym.report.canonical import form_lines
 

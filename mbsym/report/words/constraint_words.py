@@ -5,13 +5,14 @@ A sentence stands in English with ``[[name]]`` for what is filled in, as the tem
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from mbsym.algebra.certainty import Certainty
-from mbsym.formulas.formula import Formula
+from mbsym.formulas.formula import Column, Formula
 from mbsym.mechanics.constraints.rows import RowName
 from mbsym.problems.constraints import Constraints, Demanded, Integrability
+from mbsym.problems.reactions import Reaction
 from mbsym.problems.reduction import Reduction
 from mbsym.report.words.said import Said as Said
 from mbsym.report.words.said import filled as filled
@@ -26,6 +27,10 @@ class Writer:
     rates: Callable[[tuple[tuple[str, Formula], ...]], str] = lambda rates: ", ".join(f"{n}' = {x}" for n, x in rates)
     condition: Callable[[Formula, str], str] = lambda value, sign: f"{value} {sign} 0"
     speeds: Callable[[tuple[str, ...]], str] = ", ".join
+    components: Callable[[Sequence[int]], str] = lambda places: ", ".join(
+        f"{'force' if k < 3 else 'moment'} {k % 3 + 1}" for k in places
+    )
+    vector: Callable[[Column], str] = lambda x: f"({', '.join(map(str, x))})"
 
 
 def sentences(found: Constraints, write: Writer) -> Iterator[Said]:
@@ -106,6 +111,40 @@ def _demanded(found: Demanded, write: Writer) -> Iterator[Said]:
                 "At the given values the configurations that were found have [[f]] degrees of freedom at most.",
                 {"f": found.freedom},
             )
+
+
+def reaction_sentences(found: Reaction, write: Writer) -> Iterator[Said]:
+    """What is not determined of a reaction; nothing where all is."""
+    if not found.balances:
+        return
+    yield (
+        "The joint of [[body]] is statically indeterminate: the equations do not determine [[components]].",
+        {"body": write.word(found.body), "components": write.components(found.undetermined)},
+    )
+    for one in found.balances:
+        rows = ", ".join(label(name, write) for name in one.rows)
+        if one.added is None:
+            yield (
+                "Forces of [[rows]] may be in balance within the mechanism, whatever their size, and change "
+                "[[components]].",
+                {"rows": rows, "components": write.components(one.components)},
+            )
+        else:
+            force, moment = map(write.vector, one.added)
+            yield (
+                "Forces of [[rows]] may be in balance within the mechanism: they add any multiple of [[force]] to the "
+                "force and of [[moment]] to the moment.",
+                {"rows": rows, "force": force, "moment": moment},
+            )
+    if found.combinations:
+        yield (
+            "Combinations of these components to which they add nothing are determined: [[k]] in number.",
+            {"k": found.combinations},
+        )
+    yield (
+        "The formulas are those without the forces of [[rows]].",
+        {"rows": ", ".join(label(one.rows[0], write) for one in found.balances)},
+    )
 
 
 def reduction_sentences(found: Reduction, write: Writer) -> Iterator[Said]:
