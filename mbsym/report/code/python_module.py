@@ -44,7 +44,7 @@ RESERVED = {
     "result", "velocities", "accelerations", "annotations", "COORDINATES", "PARAMETERS", "DEFAULTS", "mass_matrix",
     "forcing", "rhs", "energy", "generalized_energy", "linear_matrices", "jacobian", "integrals", "values", "zero",
     "main", "simulate", "complete", "initial_state", "given", "npt", "Any", "Sequence", "TypeAlias", "Array", "NAME",
-    "Parameters", "INTEGRALS", "UNITS", "with_unit",
+    "Parameters", "INTEGRALS", "UNITS", "with_unit", "LINEAR",
     "polynomial_integrals", "invariant_sets", "normal_forms", "small_parameters", "missing", "name",
     "SPEEDS", "POSITIONS", "speed_state", "speed_rhs", "speed_restored",
     "speed_simulate", "y", "right", "matrix",
@@ -109,6 +109,9 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
     matrices = gains = None
     if linear is not None and linear.failure is None:
         matrices, gains = writer.linear(analysis, linear.value), writer.gains(analysis, linear.value)
+    linear_names: tuple[str, ...] = ()
+    if linear is not None and linear.failure is None and linear.value.coordinates != system.coordinates:
+        linear_names = linear.value.coordinates
     return rendered(
         "model.py.j2",
         {},
@@ -154,6 +157,9 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         initial=initial_values(system, writer),
         starting=starting(system, parameters),
         linear=matrices,
+        linear_names=linear_names,
+        linear_size=len(linear_names) or n,
+        following=bool(linear_names and linear.value.constrained and linear.value.constrained.following),
         gains=gains,
         held=writer.held(),
         input_meanings=[(one.name, plain(one.meaning)) for one in system.inputs if one.meaning],
