@@ -112,8 +112,9 @@ def _code(file: Path, found: Simulation, paths: list[Path]) -> int:
         )
         complain(file, f"interrupted{kept}")
         return INTERRUPTED
-    if found.certificate is not None and not found.certificate.whole:
-        return INTERRUPTED if found.certificate.ended == CERTIFICATE_INTERRUPTED else BROKEN_DOWN
+    proof = found.certificate
+    if proof is not None and not (proof.whole and proof.narrow):
+        return INTERRUPTED if CERTIFICATE_INTERRUPTED in (proof.ended, proof.enclosure.cut) else BROKEN_DOWN
     return OK if found.plan is None or found.plan.reached else BROKEN_DOWN
 
 

@@ -141,3 +141,21 @@ def test_what_is_not_certified_is_not_called_proved(tmp_path: Path) -> None:
     assert done.exit_code == 0, done.output
     assert "at every row (proved" not in done.stdout
     assert "proved_at_rows" not in record_of(tmp_path)["plan"]["bounds"][0]
+
+
+def test_a_width_that_is_not_reached_is_exit_code_3(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """x'' = x from (1, -1): what a ball is wide by grows by 2.4e17 until t = 40, and more bits cost too much here."""
+    monkeypatch.setattr("mbsym_cli.simulation_certify.WORK", 0.08)
+    text = LINE + "loads:\n  - potential: -x**2/2\ninitial: {x: {position: 1, velocity: -1}}\n"
+    done = simulated(tmp_path, text, "--time", "40", "--samples", "21", "--certify", "1e-10")
+    assert done.exit_code == 3, done.output
+    assert "that is wider than the 1e-10 that was asked for: it takes more work than it may" in " ".join(
+        done.output.split()
+    )
+    found = record_of(tmp_path)["certificate"]
+    assert (found["whole"], found["narrow"], found["asked"]) == (True, False, 1e-10)
+    assert found["known"] > 1e-10
+    monkeypatch.undo()
+    done = simulated(tmp_path, text, "--time", "40", "--samples", "21", "--certify", "1e-10")
+    assert done.exit_code == 0, done.output
+    assert record_of(tmp_path)["certificate"]["narrow"] is True

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from fractions import Fraction
+from functools import cache
 from typing import Any
 
 import mpmath
@@ -18,11 +20,15 @@ import mbsym
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.enclosure import disc as discs
 from mbsym.numerics.enclosure import segment as segments
-from mbsym.numerics.enclosure.compare import certified
+from mbsym.numerics.enclosure.compare import Certificate, certified
 from mbsym.numerics.enclosure.enclose import INTERRUPTED, NO_STEP, OUT_OF_TIME, TOO_DEAR, Enclosure, enclosed
 from mbsym.numerics.enclosure.field import Field, cap
 from mbsym.numerics.enclosure.model import Model, Ring
+from mbsym.numerics.methods.interface import Setting
+from mbsym.numerics.methods.table import METHODS
+from mbsym.numerics.rows import rows
 from mbsym.numerics.scenario import scenario
+from mbsym.report.runs.certificate import certificate_lines
 
 LINE = (
     "mbsym: 1\nname: one\nbodies:\n"
@@ -298,3 +304,88 @@ def test_events_that_are_none_are_not_proved() -> None:
         wrong = replace(honest, **change)
         lied = certified(run.dynamics, run.times, run.trajectory.states, 1e-12, happened=wrong)
         assert lied.passages == (None,)
+
+
+# --- units, and what was asked for ---
+
+#: A pendulum on a spring, 35 g, 40 N/m, 250 mm, in units of length, mass and time, each a part of the SI's.
+SPRING = """
+mbsym: 1
+name: A pendulum on a spring
+parameters: {{m: positive, k: positive, l: positive, g: positive}}
+bodies:
+  - name: b
+    attached to: 0
+    connection point: [r*sin(th), -r*cos(th), 0]
+    mass: m
+    coordinates: [r, th]
+loads:
+  - uniform gravity: {{vector: [0, -g, 0]}}
+  - spring: {{coordinate: r, stiffness: k, rest: l}}
+values: {{m: 0.035/({mass}), k: 40*({time})**2/({mass}), l: 0.25/({length}), g: 9.81*({time})**2/({length})}}
+initial: {{r: 0.265/({length}), th: 0.7}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("length", "mass", "time"), [("1/1000", "1/1000", "1"), ("1/1000", "1/1000", "1/1000"), ("1/1000000", "1", "60")]
+)
+def test_an_enclosure_is_no_matter_of_units(length: str, mass: str, time: str) -> None:
+    """As many bits, as many steps, as narrow: 131 bits were taken in millimetres and grams where metres took 75."""
+
+    here, there = spring_in("1", "1", "1"), spring_in(length, mass, time)
+    assert (there.enclosure.bits, len(there.enclosure.segments)) == (here.enclosure.bits, len(here.enclosure.segments))
+    assert there.known == pytest.approx(here.known, rel=0.01)
+    assert here.narrow
+
+
+@cache
+def spring_in(length: str, mass: str, time: str) -> Certificate:
+    dynamics = dynamics_of(SPRING.format(length=length, mass=mass, time=time))
+    times = np.linspace(0, 0.25 / float(Fraction(time)), 11)
+    return certified(dynamics, times, rows(METHODS["dop853"], dynamics, Setting(1e-12), times).states, 1e-12)
+
+
+#: x'' = x from (1, -1): x = exp(-t), and what a ball is wide by at first has grown by exp(40), 2.4e17, at t = 40.
+FALLING = LINE + "loads:\n  - potential: -x**2/2\ninitial: {x: {position: 1, velocity: -1}}\n"
+
+
+def test_a_width_that_is_not_reached_is_told_with_what_is_in_its_way() -> None:
+    """57 bits make it to the end with 1e-7; as many as the width asked for needs cost too much."""
+    dynamics = dynamics_of(FALLING)
+    times = np.linspace(0, 40, 21)
+    states = np.vstack([np.exp(-times), -np.exp(-times)])
+    found = certified(dynamics, times, states, 1e-10, limit=0.08)
+    assert found.whole
+    assert found.enclosure.cut == TOO_DEAR
+    assert 1e-10 < found.known < 1e-5
+    assert not found.narrow
+    lines = list(certificate_lines(found, dynamics.system, len(times)))
+    assert "that is wider than the 1e-10 that was asked for: it takes more work than it may" in lines[2]
+    paid = certified(dynamics, times, states, 1e-10)
+    assert paid.narrow
+    assert paid.enclosure.cut == ""
+    assert not any("wider" in line for line in certificate_lines(paid, dynamics.system, len(times)))
+    assert np.all(found.radius >= paid.radius)
+
+
+def test_a_width_between_the_digits_of_a_table_is_one_of_the_enclosure() -> None:
+    dynamics = dynamics_of(OSCILLATOR)
+    times = np.linspace(0, 5, 11)
+    found = certified(dynamics, times, np.vstack([np.cos(times), -np.sin(times)]), 1e-30)
+    assert found.narrow
+    assert found.known <= 1e-30 < 1e-17 < found.width
+    (told,) = (line for line in certificate_lines(found, dynamics.system, len(times)) if "in the digits of a" in line)
+    assert "e-16 in the digits of a table)" in told
+
+
+def test_what_rests_but_for_rounding_is_measured_by_the_motion() -> None:
+    """y rests; a run that has 1e-17 there does not ask for 1e-27 to be proved.
+
+    The velocity that carries the energy of x is 1, and x has a range of 2 at a speed of 1: so far it would take y.
+    """
+    dynamics = dynamics_of(PLANE + "loads:\n  - potential: x**2/2 + y**2/2\ninitial: {x: 1, y: 0}\n")
+    times = np.linspace(0, 5, 301)
+    rest = 1e-17 * np.cos(7 * times)
+    found = certified(dynamics, times, np.vstack([np.cos(times), rest, -np.sin(times), rest]), 1e-10)
+    assert found.scale == pytest.approx([1, 2, 1, 1], rel=0.01)

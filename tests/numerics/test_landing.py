@@ -259,3 +259,22 @@ def test_short_floats_of_a_method_end_a_run_by_a_breakdown_and_in_no_other_way()
         run.fill(times[1:])
     assert ended.value.kind == STUCK
     assert 0 < ended.value.time < math.sqrt(2 / 9.81)  # before the fall from 1 is over
+
+
+def rubbed_spring(t: Any) -> Any:
+    """x'' = -4 x - sign x', from rest at 5.3: each half period pi/2 the amplitude loses 1/2.
+
+    In the k-th one x = (-1)^k (1/4 + (5.3 - k/2 - 1/4) cos 2 (t - k pi/2)).
+    """
+    k = np.floor(t / (math.pi / 2))
+    return (-1.0) ** k * (0.25 + (5.05 - 0.5 * k) * np.cos(2 * (t - k * math.pi / 2)))
+
+
+def test_rows_between_a_switch_and_the_nearest_short_float_belong_to_the_step_that_begins_there() -> None:
+    """3 pi/2 lies between short floats 5e-7 apart: a series that begins at the nearest one begins at the switch."""
+    pytest.importorskip("heyoka")
+    text = described("-sign(x_dot)", "  - potential: 2*x**2\n", "position: 5.3")
+    run = METHODS["taylor"].start(Dynamics(scenario(mbsym.loads(text).system)), Setting(1e-6), "float32")
+    turns = [k * math.pi / 2 + np.linspace(-3e-7, 3e-7, 25) for k in range(1, 5)]
+    times = np.unique(np.concatenate([np.linspace(0, 7.5, 300)[1:], *turns]))
+    assert np.max(np.abs(run.fill(times)[0] - rubbed_spring(times))) < 3e-5

@@ -291,6 +291,26 @@ def test_a_finite_escape_time_is_an_answer(tmp_path: Path) -> None:
     assert "no reference solution up to t = 20" in found.output
 
 
+def test_a_trial_that_fails_in_a_way_that_nobody_foresaw_costs_its_ladder_and_nothing_else(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(*_: Any) -> Any:
+        raise ValueError("planted")
+
+    monkeypatch.setattr(METHODS["scipy-rk45"], "start", broken)
+    path = tmp_path / "pendulum.yaml"
+    path.write_text(PENDULUM)
+    words = ("--time", 2, "--target", "1e-6", "--budget", 8, "-m", "scipy-rk45,dop853", "--out", tmp_path)
+    found = run(path, *words)
+    assert found.exit_code == 1, found.output
+    assert "internal error, please report it: ValueError: planted" in found.output
+    assert "dop853" in found.output
+    assert "reaches 1e-06 in the least time measured here" in found.output
+    rows = list(csv.DictReader((tmp_path / "tradeoff.csv").read_text().splitlines()))
+    failed = [row for row in rows if row["method"] == "scipy-rk45"]
+    assert [(row["error"], row["trouble"]) for row in failed] == [("", "internal error: ValueError: planted")]
+
+
 def gravity_models(text: str, tmp_path: Path, time: int = 1000) -> dict[str, str]:
     path = tmp_path / "system.yaml"
     path.write_text(text)

@@ -33,6 +33,7 @@ from mbsym.algebra.failures import NOT_THERE, NotRational
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.program import Node
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.tree import Expression
 from mbsym.mechanics.constraints.programs import ConstrainedPrograms
 from mbsym.mechanics.constraints.ranks import Eliminated, eliminated, is_certain
 from mbsym.mechanics.oracle import State
@@ -165,11 +166,11 @@ class Manifold:
         system = self.system
         initial = {one.coordinate: one for one in system.initial if one.position is not None}
         motion = {one.coordinate: one for one in system.motion}
-        places = {name: one.position for name, one in initial.items()}
-        rates = {name: one.velocity for name, one in initial.items()}
+        places: dict[str, Expression | None] = {name: one.position for name, one in initial.items()}
+        rates: dict[str, Expression | None] = {name: one.velocity for name, one in initial.items()}
         if places.keys() < {*system.coordinates}:
-            places = {name: one.value for name, one in motion.items()} | places
-            rates = {name: one.rate for name, one in motion.items()} | rates
+            places = {**{name: one.value for name, one in motion.items()}, **places}
+            rates = {**{name: one.rate for name, one in motion.items()}, **rates}
         if not self._positions or places.keys() < {*system.coordinates}:
             return None
         _, rational = self._random(random.Random(SEED))

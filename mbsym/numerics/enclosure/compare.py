@@ -16,6 +16,7 @@ from mbsym.numerics.enclosure.enclose import GUARD, Enclosure, enclosed
 from mbsym.numerics.enclosure.field import function_of
 from mbsym.numerics.enclosure.passages import passage_radii
 from mbsym.numerics.events.events import Occurrences
+from mbsym.numerics.planning.sizes import scaled, sizes_of_scene
 
 #: How much further than the last row the solution is enclosed where events are looked at.
 AFTER = 1 + 1e-6
@@ -32,6 +33,9 @@ class Certificate:
     ``scale`` is what each component is measured by; only the first ``rows`` rows are enclosed, up to ``reached``, and
     ``ended`` says why they are not all ("": they are).  ``passages`` has a radius for every event of the run: the exact
     solution has it once within that of its time; None where that is not proved.
+
+    ``known`` is the largest radius of the enclosure itself at these rows, before anything is printed, as a part of the
+    scale, and ``wanted`` what it should be at most.
     """
 
     enclosure: Enclosure
@@ -40,7 +44,14 @@ class Certificate:
     error: Any
     scale: Any
     ended: str
+    known: float
+    wanted: float
     passages: tuple[float | None, ...] = ()
+
+    @property
+    def narrow(self) -> bool:
+        """Whether the solution is known as narrowly as was asked for, at the rows that are enclosed."""
+        return self.known <= self.wanted
 
     @property
     def whole(self) -> bool:
@@ -55,19 +66,16 @@ class Certificate:
     @property
     def width(self) -> float:
         """The largest radius over rows and components, each as a part of its scale."""
-        return self._largest(self.radius)
+        return _largest(self.radius, self.scale)
 
     @property
     def largest_error(self) -> float:
         """A proved bound of the run's error at the enclosed rows, each component as a part of its scale."""
-        return self._largest(self.error)
+        return _largest(self.error, self.scale)
 
     def error_of(self, component: int) -> float:
         """The same of one component."""
         return float(np.max(self.error[component], initial=0.0) / self.scale[component]) * LARGER
-
-    def _largest(self, values: Any) -> float:
-        return float(np.max(np.max(values, axis=1, initial=0.0) / self.scale, initial=0.0)) * LARGER
 
 
 def analytic(dynamics: Dynamics) -> None:
@@ -89,29 +97,35 @@ def certified(
 ) -> Certificate:
     """The solution of the scenario's equations enclosed to ``width``, and the distance of ``states`` (n, m) from it.
 
-    A component is measured by its largest absolute value at the rows; one that is zero there by 1.  Raises NotAnalytic
-    where the equations have no power series.
+    A component is measured by its largest absolute value at the rows; where it rests but for rounding, by what the
+    scene would move it (``planning.sizes``).  Raises NotAnalytic where the equations have no power series.
     """
-    sizes = np.max(np.abs(states), axis=1).astype(float)
-    scale = np.where(sizes > 0, sizes, 1.0)
+    scale = scaled(np.max(np.abs(states), axis=1).astype(float), sizes_of_scene(dynamics, times, states))
     # An event at the end needs a little of what comes after it.
     end = float(times[-1]) * (1.0 if happened is None else AFTER)
     state = dynamics.scenario.state
     equations = dynamics.right_hand_side, dynamics.jacobian
     found = enclosed(*equations, state, end, width, scale.tolist(), seconds, watch, limit)
     rows = int(np.searchsorted(times, found.reached, side="right")) if found.segments else 0
-    centre, radius, error = (np.zeros((len(states), rows)) for _ in range(3))
+    centre, radius, error, own = (np.zeros((len(states), rows)) for _ in range(4))
     with ctx.workprec(found.bits + GUARD):
         for k in range(rows):
             for i, value in enumerate(found.at(float(times[k]))):
                 middle = float(value.mid())
                 centre[i, k] = middle
                 # What is printed of a float is within half a unit in its last place of it.
+                own[i, k] = _above(value - value.mid())
                 radius[i, k] = _above(value - arb(middle)) + 2.0**-52 * abs(middle)
                 error[i, k] = _above(value - _exact(states[i, k]))
     passages = passage_radii(found, dynamics, happened) if happened is not None and found.segments else ()
     ended = found.ended if rows < len(times) else ""
-    return Certificate(found, centre, radius, error, scale, ended, passages)
+    known = _largest(own, scale)
+    return Certificate(found, centre, radius, error, scale, ended, known, width, passages)
+
+
+def _largest(values: Any, scale: Any) -> float:
+    """The largest over rows of (n, m) numbers, each as a part of its scale, rounded up."""
+    return float(np.max(np.max(values, axis=1, initial=0.0) / scale, initial=0.0)) * LARGER
 
 
 def _above(value: arb) -> float:

@@ -1,8 +1,9 @@
 """Enclosures over a stretch of time, with as many bits as the width asked for needs.
 
-The solution from exact initial numbers is enclosed with few bits first; where its widest component at the end is wider
-than asked for, or no further step can be proved, as many bits more are taken as that needs, and it begins again: the
-width of a solution from a point grows by a factor that belongs to the motion, whatever the bits.
+The solution from exact initial numbers is enclosed with few bits first; where its widest component is wider than asked
+for, or no further step can be proved, as many bits more are taken as that needs, and it begins again: the width of a
+solution from a point grows by a factor that belongs to the motion, whatever the bits.  Components are reckoned as parts
+of their sizes, so that nothing of this depends on units.
 """
 
 from __future__ import annotations
@@ -51,7 +52,7 @@ class Enclosure:
     """Segments that follow each other from 0 to ``reached``; ``ended`` says why that is not the end ("": it is).
 
     ``end`` is the time asked for; ``bits`` of the series; every component of the exact solution is within ``at(t)`` for
-    t up to ``reached``.
+    t up to ``reached``.  ``cut`` says why no try with more bits, to make it narrower, came as far ("": none was cut).
     """
 
     segments: tuple[Segment, ...]
@@ -60,6 +61,7 @@ class Enclosure:
     ended: str
     seconds: float
     end: float = inf
+    cut: str = ""
 
     @property
     def whole_seconds(self) -> float:
@@ -106,7 +108,7 @@ def enclosed(
 ) -> Enclosure:
     """The solution of x' = rates(t, x) from ``state`` (exact numbers, or balls) at 0 to ``end``.
 
-    ``width`` is the radius wanted of every component at the end, as a part of its ``scale``.  The enclosure that comes
+    ``width`` is the radius wanted of every component, as a part of its ``scale``.  The enclosure that comes
     furthest within ``seconds``, and for a cost of ``limit`` (counted work), is given; its ``ended`` says what was
     missing.  Raises NotAnalytic where the equations have no power series.
     """
@@ -124,17 +126,19 @@ def enclosed(
         finished = not missing or found.ended in CUT or bits >= MOST
         if finished:
             # A try with more bits that was cut short is why there is no more, however far an earlier one came.
-            cut = best.ended and found.ended in CUT
-            ended = found.ended if cut else best.ended
-            return Enclosure(best.segments, best.bits, best.reached, ended, perf_counter() - began, end)
+            cut = found.ended if found.ended in CUT else ""
+            ended = cut if best.ended and cut else best.ended
+            return Enclosure(best.segments, best.bits, best.reached, ended, perf_counter() - began, end, cut)
         bits = min(MOST, bits + missing)
 
 
 def _missing(found: Enclosure, width: float, scales: Sequence[float]) -> int:
     """How many bits more would make it as narrow as wanted; 0 where it is, or more bits would not help."""
     if found.ended == "":
-        widest = max(_radius(x) / scale for x, scale in zip(found.at(found.reached), scales, strict=True))
-        return 0 if widest <= width else 8 + int(log2(widest / width))
+        radii = [max(one) for one in zip(*(segment.radii for segment in found.segments), strict=True)]
+        widest = max(radius / scale for radius, scale in zip(radii, scales, strict=True))
+        # Twice: what the series of a segment are rounded by comes on top of that.
+        return 0 if 2 * widest <= width else 8 + int(log2(2 * widest / width))
     # Too wide on the way: as many bits as that part of the way has cost, for the rest of it, with some to spare.
     return max(32, found.bits) if found.ended == TOO_WIDE else 0
 
@@ -155,15 +159,15 @@ def _once(
     segments: list[Segment] = []
     guess, ended = FIRST_GUESS * end, ""
     with ctx.workprec(bits + GUARD):
-        field = Field(rates, jacobian, bits + GUARD)
-        now = bundle(arb(0), [_ball(value) for value in state])
+        field = Field(rates, jacobian, bits + GUARD, scales)
+        now = bundle(arb(0), [_ball(value) / size for value, size in zip(state, field.sizes, strict=True)])
         goal = arb(end)
         try:
             while now.time < goal:
                 segment, now, found = advanced(field, now, bits, guess, goal)
                 segments.append(segment)
                 guess = min(found.radius * GROWTH, end)
-                widest = max(_radius(value) / scale for value, scale in zip(now.hull, scales, strict=True))
+                widest = max(_radius(value) / scale for value, scale in zip(segment.last, scales, strict=True))
                 if not widest <= max(MUCH_WIDER * width, WIDE):
                     ended = TOO_WIDE
                 elif found.radius < LEAST * end:

@@ -97,28 +97,39 @@ class cap:
 
 
 class Field:
-    """f: (t, x) -> x' (n numbers) and J = df/dx (n*n numbers, row by row), both at ``bits`` bits."""
+    """f: (t, y) -> y' (n numbers) and J = df/dy (n*n numbers, row by row), both at ``bits`` bits.
 
-    def __init__(self, rates: Code, jacobian: Code, bits: int) -> None:
+    The components are those of the equations, x_i, as parts of ``sizes``: y_i = x_i / u_i, f_i = x_i' / u_i,
+    J_ij = dx_i'/dx_j u_j / u_i.  So boxes, axes and discs are no matter of the units of a description.
+    """
+
+    def __init__(self, rates: Code, jacobian: Code, bits: int, sizes: Sequence[float] | None = None) -> None:
         self.bits = bits
         self.size = len(rates.outputs)
+        self.sizes = [arb(size) for size in sizes or [1.0] * self.size]
+        self._parts = [1 / size for size in self.sizes]
+        self._slopes = [over * part for part in self._parts for over in self.sizes]
         self._rates = function_of(rates, bits)
         self._jacobian = function_of(jacobian, bits)
 
-    def rates(self, t: Any, x: Sequence[Any]) -> list[Any]:
+    def rates(self, t: Any, y: Sequence[Any]) -> list[Any]:
         """f at numbers of one kind."""
-        return self._rates([t, *x])
+        return [x * part for x, part in zip(self._rates([t, *self.whole(y)]), self._parts, strict=True)]
 
-    def jacobian(self, t: Any, x: Sequence[Any]) -> list[Any]:
+    def jacobian(self, t: Any, y: Sequence[Any]) -> list[Any]:
         """J at numbers of one kind."""
-        return self._jacobian([t, *x])
+        return [x * part for x, part in zip(self._jacobian([t, *self.whole(y)]), self._slopes, strict=True)]
 
-    def solution(self, t: arb, x: Sequence[arb], order: int) -> list[list[arb]]:
-        """Taylor coefficients of the solutions through x (a point or a box): those of s^0 to s^order, n lists.
+    def whole(self, y: Sequence[Any]) -> list[Any]:
+        """x, in the units of the equations."""
+        return [value * size for value, size in zip(y, self.sizes, strict=True)]
 
-        x_(k+1) = [f(t + s, x(s))]_k / (k + 1): each pass gives one coefficient more.
+    def solution(self, t: arb, y: Sequence[arb], order: int) -> list[list[arb]]:
+        """Taylor coefficients of the solutions through y (a point or a box): those of s^0 to s^order, n lists.
+
+        y_(k+1) = [f(t + s, y(s))]_k / (k + 1): each pass gives one coefficient more.
         """
-        found = [[value] for value in x]
+        found = [[value] for value in y]
         for k in range(order):
             with cap(k + 1):
                 slopes = self.rates(series([t, arb(1)]), [series(item) for item in found])

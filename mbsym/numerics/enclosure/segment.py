@@ -32,7 +32,10 @@ WIDER = 3.0
 
 @dataclass(frozen=True)
 class Bundle:
-    """The states  centre + axes * box  at ``time``: exact numbers but for the box, n balls about 0."""
+    """The states  centre + axes * box  at ``time``: exact numbers but for the box, n balls about 0.
+
+    In parts of the sizes of a ``Field``.
+    """
 
     time: arb
     centre: tuple[arb, ...]
@@ -50,7 +53,7 @@ class Bundle:
 class Segment:
     """Solutions from ``start`` to ``end``: x_i(start + s) is within ``spread_i`` of  sum_k coefficients_i,k s^k.
 
-    ``last`` are balls of every component at the end, where the set is known best.
+    ``last`` are balls of every component at the end, where the set is known best.  All in the units of the equations.
     """
 
     start: arb
@@ -58,6 +61,13 @@ class Segment:
     coefficients: tuple[tuple[arb, ...], ...]
     spread: tuple[arb, ...]
     last: tuple[arb, ...]
+
+    @property
+    def radii(self) -> list[float]:
+        """How far, at most, the balls of ``at`` reach from their middles at any time of the segment."""
+        return [
+            float(max(spread, upper(x - x.mid()), key=float)) for spread, x in zip(self.spread, self.last, strict=True)
+        ]
 
     def at(self, t: arb) -> list[arb]:
         """Balls that contain every component at ``t`` (a point or an interval of times within the segment)."""
@@ -115,11 +125,12 @@ def advanced(field: Field, now: Bundle, bits: int, guess: float, end: arb) -> tu
     tail = found.tail(float(step), terms)
     reached = [_horner(row, step) + arb(0, left_out) for row, left_out in zip(coefficients, tail, strict=True)]
     derivative, bound = _derivative(field, now.time, solutions, found, step)
-    spread = bound * (_absolute(now.axes) * _absolute(now.box))
-    between = tuple(upper(spread[i, 0] + tail[i]) for i in range(field.size))
+    grown = bound * (_absolute(now.axes) * _absolute(now.box))
+    between = tuple(upper(grown[i, 0] + tail[i]) for i in range(field.size))
     later = _carried(after, reached, derivative * now.axes, now.box)
-    segment = Segment(now.time, after, tuple(tuple(row) for row in coefficients), between, tuple(later.hull))
-    return segment, later, found
+    series = tuple(tuple(value * size for value in row) for row, size in zip(coefficients, field.sizes, strict=True))
+    spread = tuple(upper(value) for value in field.whole(between))
+    return Segment(now.time, after, series, spread, tuple(field.whole(later.hull))), later, found
 
 
 def _blurred(coefficients: Sequence[Sequence[arb]]) -> bool:

@@ -160,13 +160,17 @@ class TaylorRun(Stepping):
         self.restart(at, self._taylor.state if initial is None else initial)
 
     def restart(self, time: float, state: Any) -> None:
-        """Go on from another state."""
+        """Go on from another state.
+
+        heyoka begins at the nearest of its own floats.  The run is at ``time`` all the same: where it is the next part
+        of one that ended there, rows may lie in between.
+        """
         self._taylor.time = self._dtype(time)
         self._taylor.state[:] = state
         if self._cells is not None:
             self._taylor.pars[:] = self._cells.values[: len(self._taylor.pars)]
         self._start: Any = None
-        self.time, self.state = self.reached, np.array(self._taylor.state)
+        self.time, self.state = time, np.array(self._taylor.state)
 
     @property
     def reached(self) -> Any:

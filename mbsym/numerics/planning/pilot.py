@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from mbsym.algebra.failures import Defect, Failure
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64
 from mbsym.numerics.methods.interface import Breakdown, Method, Setting, Unusable, Work
@@ -191,7 +192,10 @@ def _preferred(one: Trial, other: Trial) -> bool:
 def _tried(bench: Bench, method: Method, scalar: str, setting: Setting) -> Trial | None:
     try:
         return bench.run(method, scalar, setting, often=True)
-    except (Breakdown, Unusable):
+    except (Breakdown, Unusable, Failure):
+        return None
+    except Exception as error:  # told of; what else there is to try is tried
+        Defect.of(error)
         return None
 
 

@@ -57,6 +57,11 @@ def worth_of(scene: Scene, taken: Tried) -> tuple[Any, float, str]:
     return worth, GOAL, text
 
 
+def fits(one: Trial, known: float, room: float) -> bool:
+    """Whether the error of a trial, doubled, is within ``room``; with ``known``, that of what it was measured by."""
+    return DOUBLED * (one.ratio - known) + known <= room
+
+
 def shares_of(bench: Bench, found: Trial, stick: Yardstick, model: ModelChoice) -> Shares:
     """(name, errors (2n + 1,), how) of model, integration, arithmetic."""
     how = Certainty.PROVED if not np.any(model.taken.errors) else model.taken.how

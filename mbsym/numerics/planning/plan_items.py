@@ -29,7 +29,8 @@ from mbsym.numerics.planning.kinds import (
 from mbsym.numerics.planning.model_choice import PART, ModelChoice, Scene, Tried
 from mbsym.numerics.planning.models import Model, described, parted
 from mbsym.numerics.planning.pilot import ALIKE, WASTEFUL, Bench, Trial
-from mbsym.numerics.planning.plan import SECONDS, Item, Refused
+from mbsym.numerics.planning.plan import ARITHMETIC, SECONDS, Bound, Item, Refused
+from mbsym.numerics.planning.plan_bounds import fits
 from mbsym.numerics.planning.reduced import Reduced
 from mbsym.numerics.separable import Part
 from mbsym.numerics.trade.yardstick import Yardstick
@@ -42,7 +43,8 @@ DIGITS = (FLOAT32, FLOAT64, EXTENDED)
 class Settled:
     """Everything that was found out; ``pinned`` names the kinds that the user settled.
 
-    ``goal`` is what rho had to be; ``enough``: it is, and the bound beside it is within what was asked for.
+    ``enough``: the error that was measured, doubled, is within ``room``, the part of what is tolerable that the model
+    leaves, and so is every bound, of which ``bound`` is the one with least room.
     """
 
     scene: Scene
@@ -55,12 +57,13 @@ class Settled:
     found: Trial
     pinned: frozenset[str]
     enough: bool
-    goal: float
+    room: float
+    bound: Bound
 
     @property
     def fitting(self) -> list[Trial]:
-        """Whatever was tried and is good enough."""
-        return [one for one in self.bench.trials if one.ratio <= self.goal]
+        """Whatever was tried and whose measured error, doubled, is small enough."""
+        return [one for one in self.bench.trials if fits(one, self.stick.known, self.room)]
 
 
 def items_of(settled: Settled) -> tuple[Item, ...]:
@@ -157,31 +160,34 @@ def _settings(settled: Settled) -> Iterator[Item]:
     word = f"tolerance {found.fineness:g}" if found.setting.step is None else f"step {found.fineness:g}"
     yield Item(FINENESS, (), word, why, None, Certainty.MEASURED, found.seconds, SECONDS)
     refused = tuple(_other_scalars(settled))
-    fits = _why_scalar(found) if settled.enough or found.scalar == EXTENDED else "none tried is accurate enough"
-    why = "as asked for" if SCALAR in pinned else fits
+    why = "as asked for" if SCALAR in pinned else _why_scalar(settled)
     yield Item(SCALAR, (), found.scalar, why, None, Certainty.MEASURED, found.seconds, SECONDS, refused)
     yield Item(KERNEL, (), "scalar", "one motion: nothing to lay side by side", 0.0, Certainty.PROVED)
 
 
 def _why_method(settled: Settled, others: bool) -> str:
     """What is called the cheapest is that by counted work, and is so."""
-    fits = "its measured error, doubled, is small enough"
+    enough = "its measured error, doubled, is small enough"
     if not others:
-        return f"{fits}; no other method came to the end here"
-    least = min((one.cost for one in settled.fitting), default=inf)
+        return f"{enough}; no other method came to the end here"
+    least = min((one.cost for one in settled.fitting), default=0.0)
     if settled.found.cost > ALIKE * least:
-        return fits
-    return "by counted work the cheapest tried here whose measured error, doubled, is small enough"
+        return enough
+    return f"by counted work {_cheapest(settled.found, least)} whose measured error, doubled, is small enough"
+
+
+def _cheapest(found: Trial, least: float) -> str:
+    return "the cheapest tried here" if found.cost <= least else "within a tenth of the cheapest tried here"
 
 
 def _closest(settled: Settled) -> str:
     """Of a plan that is not accurate enough."""
     found, none = settled.found, "none tried is accurate enough"
     least = min((one.ratio for one in settled.bench.trials), default=inf)
-    near = [one.cost for one in settled.bench.trials if one.ratio <= 2 * least]
-    if found.ratio > 2 * least or found.cost > ALIKE * min(near, default=0.0):
+    near = min((one.cost for one in settled.bench.trials if one.ratio <= 2 * least), default=0.0)
+    if found.ratio > 2 * least or found.cost > ALIKE * near:
         return none
-    return f"{none}: by counted work the cheapest of those within twice the least error"
+    return f"{none}: by counted work {_cheapest(found, near)} within twice the least error"
 
 
 def _why_fineness(settled: Settled) -> str:
@@ -189,9 +195,12 @@ def _why_fineness(settled: Settled) -> str:
         return "none tried is good enough"
     found = settled.found
     same = [one for one in settled.fitting if (one.method, one.scalar) == (found.method, found.scalar)]
-    if any(one.fineness > found.fineness for one in same):
-        return "good enough, and cheaper by counted work than what is coarser"
-    return "the coarsest tried that is good enough"
+    coarser = [one.cost for one in same if one.fineness > found.fineness]
+    if not coarser:
+        return "the coarsest tried that is good enough"
+    return (
+        "good enough, and cheaper by counted work than what is coarser" if found.cost < min(coarser) else "good enough"
+    )
 
 
 def _fitting(found: Trial) -> str:
@@ -200,10 +209,28 @@ def _fitting(found: Trial) -> str:
     return ", finer than this accuracy needs" if found.ratio < WASTEFUL else ""
 
 
-def _why_scalar(found: Trial) -> str:
-    if found.scalar == FLOAT32:
-        return "its rounding stays below the error, and it costs less by counted work"
-    return "its rounding stays below the error" if found.scalar == FLOAT64 else "float64 does not reach the error"
+def _why_scalar(settled: Settled) -> str:
+    """By what was measured: the share of rounding, what fewer digits reached, and what more digits cost."""
+    found, fitting = settled.found, settled.fitting
+    usual = min((one.cost for one in fitting if one.scalar == FLOAT64), default=None)
+    if found.scalar == EXTENDED and usual is None:
+        return "in float64 every error that was measured, doubled, is too large"
+    if not settled.enough:
+        return "none tried is accurate enough"
+    cheaper = usual is not None and found.cost < usual
+    less = "it costs less by counted work" if cheaper and found.scalar != FLOAT64 else ""
+    rounding = _rounding(settled.bound) if found.scalar != EXTENDED else ""
+    return ", and ".join(text for text in (rounding, less) if text) or "good enough"
+
+
+def _rounding(bound: Bound) -> str:
+    """Nothing where it was not told apart."""
+    arithmetic = next(one for one in bound.shares if one.name == ARITHMETIC)
+    if arithmetic.how is None:
+        return ""
+    if arithmetic.error <= bound.integrated - arithmetic.error:
+        return "its rounding stays below the error of the method"
+    return "its rounding is most of the error, and small enough"
 
 
 def _cheapest_others(settled: Settled) -> tuple[Refused, ...]:

@@ -8,7 +8,7 @@ scene, and doubled.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from math import inf
 from typing import Any
@@ -27,9 +27,9 @@ from mbsym.numerics.planning.contenders import Contender, contenders, first_sett
 from mbsym.numerics.planning.kinds import FINENESS, GRAVITY, LEFT_OUT, LINEARITY, METHOD, PARTS, RESTING, SCALAR, WELDED
 from mbsym.numerics.planning.model_choice import ModelChoice, Scene, model_chosen, model_settled, richest
 from mbsym.numerics.planning.models import Model, described
-from mbsym.numerics.planning.pilot import Bench, Trial, searched
-from mbsym.numerics.planning.plan import ENERGY, Accuracy, Plan
-from mbsym.numerics.planning.plan_bounds import bounds_of, shares_of, worth_of
+from mbsym.numerics.planning.pilot import ALIKE, Bench, Trial, searched
+from mbsym.numerics.planning.plan import ENERGY, Accuracy, Bound, Plan
+from mbsym.numerics.planning.plan_bounds import GOAL, bounds_of, fits, shares_of, worth_of
 from mbsym.numerics.planning.plan_items import Settled, items_of
 from mbsym.numerics.planning.reduced import Reduced, reduced
 from mbsym.numerics.planning.sizes import scaled, usual_sizes
@@ -102,6 +102,7 @@ def planned(
     model = _model(scene, pins, watch)
     resting = None if pins.whole or model.taken.model.linear else _resting(model.dynamics)
     worth, goal, too_simple = worth_of(scene, model.taken)
+    room = goal / GOAL
     complete, parts = _completing(model.dynamics, resting, pins, model.taken.model.linear)
     bench = Bench(model.dynamics, scene.times, times, worth, complete, scene.scale, longest=pins.longest)
     watch("a run to measure by")
@@ -112,14 +113,20 @@ def planned(
         found = _settled(
             bench, model.taken.model, choice, goal, pins, stick.start, watch, len(times) >= GRID, stick.cost
         )
-        shares = shares_of(bench, found, stick, model)
-        bounds = bounds_of(scene, accuracy, shares)
-        over = max(one.total / one.target for one in bounds)
+        bounds = bounds_of(scene, accuracy, shares_of(bench, found, stick, model))
+        over = _over(bounds)
         if over <= 1 or too_simple or pins.setting is not None or found.ratio > goal:
             break
         goal *= 0.7 / over
-    enough = found.ratio <= goal and (over <= 1 or bool(too_simple))
-    settled = Settled(scene, model, choice, resting, parts, bench, stick, found, pins.kinds, enough, goal)
+    if pins.setting is None:
+        for one in _cheaper(bench, found, stick.known, room, pins):
+            others = bounds_of(scene, accuracy, shares_of(bench, one, stick, model))
+            if _over(others) <= 1 or too_simple:
+                found, bounds = one, others
+                break
+    worst = max(bounds, key=lambda one: one.total / one.target)
+    enough = fits(found, stick.known, room) and (_over(bounds) <= 1 or bool(too_simple))
+    settled = Settled(scene, model, choice, resting, parts, bench, stick, found, pins.kinds, enough, room, worst)
     more, less = alternatives(bench, found, model.tried, model.taken, accuracy, goal)
     return Plan(
         accuracy,
@@ -136,6 +143,22 @@ def planned(
         less,
         tuple(text for text in (remark, too_simple) if text),
     )
+
+
+def _over(bounds: Sequence[Bound]) -> float:
+    """The largest bound as a part of what is tolerable."""
+    return max(one.total / one.target for one in bounds)
+
+
+def _cheaper(bench: Bench, found: Trial, known: float, room: float, pins: Pins) -> list[Trial]:
+    """What the search passed by, aiming at less than is tolerable: good enough, and clearly cheaper than ``found``.
+
+    A few, the cheapest first; where ``found`` is not good enough, whatever is.
+    """
+    least = found.cost / ALIKE if fits(found, known, room) else inf
+    able = [one for one in bench.trials if one.cost < least and fits(one, known, room)]
+    allowed = [one for one in able if pins.scalar in (None, one.scalar)]
+    return sorted(allowed, key=lambda one: one.cost)[:REPEATS]
 
 
 # --- the scene ---

@@ -20,13 +20,13 @@ from typing import Any
 
 import numpy as np
 
-from mbsym.algebra.failures import Failure
+from mbsym.algebra.failures import Defect, Failure
 from mbsym.model.loads import EXACT, GRAVITY_ORDERS, NewtonianGravity
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import FLOAT64
 from mbsym.numerics.ledger.described import relative_size
 from mbsym.numerics.linearised import LinearisedDynamics
-from mbsym.numerics.methods.interface import Breakdown, Method, Setting
+from mbsym.numerics.methods.interface import Breakdown, Method, Setting, Unusable
 from mbsym.numerics.planning.prices import cost
 from mbsym.numerics.planning.reduction import Reduction, resting
 from mbsym.numerics.scenario import Scenario
@@ -122,7 +122,8 @@ def measured(
         watch(variant.label)
         try:
             runs.append((variant, *_run(scenario, variant, method, times)))
-        except Failure as reason:
+        except Exception as error:  # whatever goes wrong with one model is told of that one
+            reason = error if isinstance(error, (Failure, Unusable)) else Defect.of(error)
             runs.append((variant, None, 0, 0, 0.0, str(reason)))
     solved = [(variant.rank, states) for variant, states, *_ in runs if states is not None]
     if not solved:
@@ -134,8 +135,10 @@ def measured(
     scale = np.asarray(scale)[:, np.newaxis]
     rows = []
     for variant, states, operations, evaluations, seconds, trouble in runs:
-        error = inf if states is None else float(np.max(np.abs(states - truth) / scale))
-        rows.append(ModelError(variant, error if isfinite(error) else inf, operations, evaluations, seconds, trouble))
+        largest = inf if states is None else float(np.max(np.abs(states - truth) / scale))
+        rows.append(
+            ModelError(variant, largest if isfinite(largest) else inf, operations, evaluations, seconds, trouble)
+        )
     return tuple(rows)
 
 

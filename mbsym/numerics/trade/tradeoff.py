@@ -27,6 +27,7 @@ from typing import Any
 
 import numpy as np
 
+from mbsym.algebra.failures import Defect, Failure
 from mbsym.numerics.constrained import drift
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
@@ -135,6 +136,7 @@ def tradeoff(
     The budget is one of counted work, of everything that happens here, compiling included, about as many seconds on a
     usual machine.  It is shared evenly between the ladders; a ladder stops where its next rung would cost too much, or
     where a finer setting no longer gives a smaller error.  Ctrl-C ends the measuring and keeps the rows that there are.
+    An exception that nobody foresaw costs its row and the rest of its ladder (``Defect``), and nothing else.
     """
     judge = _Judge(dynamics, reference)
     rows: list[Measured] = []
@@ -146,7 +148,7 @@ def tradeoff(
         try:
             for row in _ladder(judge, method, scalar, max(share, 0.0), watch):
                 rows.append(row)
-        except Unusable as reason:
+        except (Unusable, Failure) as reason:
             unusable.append((method.traits.name, str(reason)))
         except KeyboardInterrupt:
             interrupted = True
@@ -164,12 +166,23 @@ class _Judge:
         self.scale = np.asarray(reference.scale)[:, np.newaxis]
         self.energy = kernels({"energy": dynamics.relative_energy})["energy"]
         self.spent = self.starting = 0.0
+        self.defect = False
         self._ladders: set[tuple[str, str]] = set()
 
     def measure(self, candidate: Candidate, limit: float = inf) -> Measured:
-        """Error, drift and median seconds of a candidate; a breakdown is a result too, so is a ``limit`` of cost."""
-        with np.errstate(over="ignore"):  # extended numbers beyond the range of float64
-            return self._measure(candidate, limit)
+        """Error, drift and median seconds of a candidate; a breakdown is a result too, so is a ``limit`` of cost.
+
+        So is an exception that nobody foresaw; ``defect`` says whether it was one.  Raises Unusable.
+        """
+        self.defect = False
+        try:
+            with np.errstate(over="ignore"):  # extended numbers beyond the range of float64
+                return self._measure(candidate, limit)
+        except (Unusable, Failure):
+            raise
+        except Exception as error:
+            self.defect = True
+            return Measured(candidate, inf, inf, 0, 0, 0.0, str(Defect.of(error)))
 
     def _measure(self, candidate: Candidate, limit: float) -> Measured:
         times = self.reference.times
@@ -262,7 +275,7 @@ def _ladder(
         growth = max(1.3, (now - before) / dearest) if dearest else 1.3
         # What was compiled for the first rung is there for the next one, but for methods that compile every setting.
         dearest = now - before - (0.0 if dearest else judge.starting)
-        if idle >= 3 or now - begun + min(growth, 4.0) * dearest > share:
+        if judge.defect or idle >= 3 or now - begun + min(growth, 4.0) * dearest > share:
             return
 
 

@@ -279,7 +279,7 @@ class Certificate(Part, frozen=True):
     rows: Annotated[int, "how many rows are enclosed", Meta(ge=0)]
     bits: Annotated[int, "bits of the series"]
     steps: Annotated[int, "steps of the enclosure"]
-    largest_radius: Annotated[float | str, "the largest radius, as a part of the quantity's scale"]
+    largest_radius: Annotated[float | str, "the largest radius as printed, as a part of the quantity's scale"]
     largest_error: Annotated[
         float | str, "the largest distance of the run from the exact solution, as a part of the quantity's scale"
     ]
@@ -288,6 +288,13 @@ class Certificate(Part, frozen=True):
         float | None, "how near to its time each of them is, at worst; null where there is none"
     ]
     quantities: Annotated[dict[str, Enclosure], "coordinates and velocities by name"]
+    asked: Annotated[float | UnsetType, "the largest radius that was asked for, as a part of the quantity's scale"] = (
+        UNSET
+    )
+    known: Annotated[
+        float | str | UnsetType, "the largest radius before it is rounded to printed digits, as a part of the scale"
+    ] = UNSET
+    narrow: Annotated[bool | UnsetType, "whether that is as narrow as was asked for, at the enclosed rows"] = UNSET
 
 
 class WatchedEvent(Part, frozen=True):

@@ -42,7 +42,13 @@ def certificate_lines(found: Certificate, system: System, rows: int) -> Iterator
             "quantity's size)"
         )
         steps = counted(len(found.enclosure.segments), "step", "steps")
-        yield f"the exact solution is known to {at_most(found.width)} there: {steps} of {found.enclosure.bits} bits"
+        known = at_most(found.known)
+        if found.narrow and found.width > found.wanted:
+            known += f" ({at_most(found.width)} in the digits of a table)"
+        yield f"the exact solution is known to {known} there: {steps} of {found.enclosure.bits} bits"
+        if not found.narrow:
+            why = f": {WHY[found.enclosure.cut]}" if found.whole and found.enclosure.cut else ""
+            yield f"that is wider than the {found.wanted:.2g} that was asked for{why}"
     if found.passages:
         proved = [radius for radius in found.passages if radius is not None]
         which = f"{len(proved)} of the run's {counted(len(found.passages), 'event', 'events')}"
@@ -82,6 +88,9 @@ def certificate_json(found: Certificate, names: list[str]) -> doc.Certificate:
         rows=found.rows,
         bits=found.enclosure.bits,
         steps=len(found.enclosure.segments),
+        asked=found.wanted,
+        known=found.known,
+        narrow=found.narrow,
         largest_radius=found.width,
         largest_error=found.largest_error,
         events_proved=sum(radius is not None for radius in found.passages),
