@@ -136,10 +136,8 @@ class _Balances:
         self.tables = [
             {name: flat[i * n : (i + 1) * n] for name, i in places.items()} for flat in values
         ]  # J by rows at every state
-        self.sets = [
-            (name, *(one.from_rows for one in tied.redundant if one.name == name))
-            for name in rows[len(tied.independent) :]
-        ]
+        follow = {one.name: one.from_rows for one in tied.redundant}
+        self.sets = [(name, *follow.get(name, ())) for name in rows[len(tied.independent) :]]
 
     def of(self, parts: Sequence[tuple[Column, Column]]) -> dict[str, Any]:
         """``balances`` and ``combinations`` of one joint, by what every row adds to it for lambda = 1."""
@@ -150,8 +148,7 @@ class _Balances:
         with ctx.workprec(PRECISION):
             per_state: list[list[list[Any]]] = [[] for _ in self.states]
             found = []
-            for name, *others in self.sets:
-                names = (name, *(others[0] if others else ()))
+            for names in self.sets:
                 changes = [self._added(k, names, added) for k in range(len(self.states))]
                 components = tuple(c for c in range(6) if any(is_certain(one[c]) for one in changes))
                 if components:

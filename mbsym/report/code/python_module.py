@@ -110,8 +110,10 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
     if linear is not None and linear.failure is None:
         matrices, gains = writer.linear(analysis, linear.value), writer.gains(analysis, linear.value)
     linear_names: tuple[str, ...] = ()
+    following = False
     if linear is not None and linear.failure is None and linear.value.coordinates != system.coordinates:
-        linear_names = linear.value.coordinates
+        linear_names, reduced = linear.value.coordinates, linear.value.constrained
+        following = bool(reduced and reduced.following)
     return rendered(
         "model.py.j2",
         {},
@@ -159,7 +161,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         linear=matrices,
         linear_names=linear_names,
         linear_size=len(linear_names) or n,
-        following=bool(linear_names and linear.value.constrained and linear.value.constrained.following),
+        following=following,
         gains=gains,
         held=writer.held(),
         input_meanings=[(one.name, plain(one.meaning)) for one in system.inputs if one.meaning],
