@@ -30,9 +30,7 @@ class Assigned:
 
     def complain(self, name: str, code: str, message: str, options: Options, hint: str | None = None) -> None:
         """A complaint about one of them as a whole."""
-        text = self.texts[name]
-        span = Span(1, 1, max(1, len(text)))
-        options.complaints.append(render_option(Complaint(code, message, span, hint), text, "--set"))
+        options.complain_whole("--set", self.texts[name], code, message, hint)
 
 
 def assignments(texts: Sequence[str], system: System, options: Options) -> Assigned:
@@ -83,16 +81,18 @@ def given_numbers(
     options: Options,
     laws: Mapping[str, Expression] | None = None,
     declared: bool = False,
+    state: bool = True,
 ) -> tuple[Scenario | None, Mapping[str, Expression]]:
     """The scenario of a system with the values of ``--set``, and these; every complaint joins those of ``options``.
 
-    ``laws`` are those of its inputs; ``declared``: the run is one in declared variables.
+    ``laws`` are those of its inputs; ``declared``: the run is one in declared variables; ``state``:
+    whether it needs an initial state.
     """
     from mbsym.numerics.scenario import Incomplete, scenario
 
     assigned = assignments(settings, system, options)
     try:
-        return scenario(system, assigned.values, laws=laws, declared=declared), assigned.values
+        return scenario(system, assigned.values, state, laws=laws, declared=declared), assigned.values
     except Incomplete as error:
         contradictions(file, error.lack, assigned, options)
         unread = _unread(system, assigned)

@@ -23,9 +23,11 @@ from mbsym.expressions.safe import safe as escaped
 if TYPE_CHECKING:
     from rich.console import Console
     from rich.status import Status
+    from rich.table import Table
     from rich.text import Text
 
     from mbsym.model.system import System
+    from mbsym.studies.study import Rows
 
 #: Exit codes: everything held; a result failed its self-check, or is missing; the input is wrong.
 OK, FAILED, BAD_INPUT = 0, 1, 2
@@ -148,8 +150,11 @@ _FORCED = ("FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE")
 _CONTROLS = dict.fromkeys((7, 8, 11, 12, 13))
 
 
-def tell(*parts: str | tuple[str, str], indent: int = 0) -> None:
-    """A line of words, some with a style, as rich prints it; into a file or pipe without waiting for rich."""
+def tell(*parts: str | tuple[str, str], indent: int = 0, whole: bool = False) -> None:
+    """A line of words, some with a style, as rich prints it; into a file or pipe without waiting for rich.
+
+    One that is ``whole`` is not wrapped.
+    """
     if sys.stdout.isatty() or any(name in os.environ for name in _FORCED):
         from rich.text import Text
 
@@ -157,11 +162,41 @@ def tell(*parts: str | tuple[str, str], indent: int = 0) -> None:
         if indent:
             indented(text, indent)
         else:
-            console().print(text)
+            console().print(text, soft_wrap=whole or None)
         return
     words = " " * indent + "".join([part if isinstance(part, str) else part[0] for part in parts])
-    width = asked_width()
+    width = None if whole else asked_width()
     print("\n".join([wrapped(line.expandtabs(), width) for line in words.translate(_CONTROLS).split("\n")]))
+
+
+#: Columns of a wide table that does not go to a terminal.
+WIDE = 400
+
+
+def show_rows(table: Rows) -> None:
+    """A table as wide as it must be where nobody's screen is the limit, if it is a wide one."""
+    from rich.console import Console
+
+    out = console()
+    (Console(width=WIDE, highlight=False) if table.wide and not out.is_terminal else out).print(rich_table(table))
+
+
+def rich_table(table: Rows) -> Table:
+    """Numbers of a wide table never fold; what else it holds does."""
+    from rich.table import Table
+    from rich.text import Text
+
+    shown = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold cyan")
+    for place, one in enumerate(table.columns):
+        whole = table.wide and one.right
+        width = max((len(Text.assemble(row[place])) for row in table.rows), default=0)
+        shown.add_column(
+            Text(one.name), justify="right" if one.right else "left", style=one.style,
+            overflow="fold" if one.fold or whole else "ellipsis", min_width=width if whole else None,
+        )  # fmt: skip
+    for row in table.rows:
+        shown.add_row(*(Text.assemble(cell) for cell in row))
+    return shown
 
 
 def indented(text: Text, indent: int) -> None:

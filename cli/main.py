@@ -1,4 +1,4 @@
-"""The ``mbsym`` command: one file a sub-command; this one only lists them.
+"""The ``mbsym`` command: a file here, or a study, a sub-command; this one only lists them.
 
 Sub-commands are imported when they are called, so that ``mbsym --help`` does not wait for the algebra.
 """
@@ -16,7 +16,7 @@ import mbsym
 
 
 class Listed(NamedTuple):
-    """A command: the module of this package that defines ``command``, and what it does in a line."""
+    """A command: the module here that defines ``command``, or that of a study; what it does in a line."""
 
     module: str
     does: str
@@ -30,29 +30,42 @@ COMMANDS = {
     "batch": Listed("batch", "Derive folders of descriptions: in parallel, only what changed."),
     "watch": Listed("watch", "Derive a description again whenever it is saved."),
     "diff": Listed("diff", "Say exactly what changed between results, or descriptions."),
+    "show": Listed("show_formulas", "Print one formula, or the equations of motion."),
     "simulate": Listed("simulate", "Integrate the equations of motion and draw figures."),
     "view": Listed("view", "Show a system in three dimensions, as one page."),
-    "inverse": Listed("inverse", "Find the inputs that a given motion needs."),
-    "orbit": Listed("orbit", "Find a periodic motion near a guess, with its multipliers."),
-    "lyapunov": Listed("lyapunov", "Measure how fast neighbouring motions part."),
-    "floquet": Listed("floquet", "Judge stability where coefficients are periodic in time."),
-    "tradeoff": Listed("tradeoff", "Measure what accuracy of a simulation costs."),
-    "extremes": Listed("extremes", "Measure how many digits are kept at extreme values."),
-    "map": Listed("map", "Divide a plane of parameters into regions of one verdict."),
-    "groups": Listed("groups", "Find the dimensionless groups of a system."),
-    "average": Listed("average", "Average a system over a fast phase."),
-    "expand": Listed("expand", "Expand a slow integral manifold in a small parameter."),
-    "oscillations": Listed("oscillations", "Find periodic motions in powers of a small parameter."),
-    "integrals": Listed("integrals", "Find all polynomial first integrals, or prove there are none."),
-    "symmetries": Listed("symmetries", "Find symmetries that coordinates hide, and their integrals."),
+    "inverse": Listed("mbsym.studies.inverse", "Find the inputs that a given motion needs."),
+    "orbit": Listed("mbsym.studies.orbit", "Find a periodic motion near a guess, with its multipliers."),
+    "lyapunov": Listed("mbsym.studies.lyapunov", "Measure how fast neighbouring motions part."),
+    "floquet": Listed("mbsym.studies.floquet", "Judge stability where coefficients are periodic in time."),
+    "tradeoff": Listed("mbsym.studies.tradeoff", "Measure what accuracy of a simulation costs."),
+    "extremes": Listed("mbsym.studies.extremes", "Measure how many digits are kept at extreme values."),
+    "map": Listed("mbsym.studies.map", "Divide a plane of parameters into regions of one verdict."),
+    "groups": Listed("mbsym.studies.groups", "Find the dimensionless groups of a system."),
+    "average": Listed("mbsym.studies.average", "Average a system over a fast phase."),
+    "expand": Listed("mbsym.studies.expand", "Expand a slow integral manifold in a small parameter."),
+    "oscillations": Listed("mbsym.studies.oscillations", "Find periodic motions in powers of a small parameter."),
+    "integrals": Listed("mbsym.studies.integrals", "Find all polynomial first integrals, or prove there are none."),
+    "symmetries": Listed("mbsym.studies.symmetries", "Find symmetries that coordinates hide, and their integrals."),
     "sweep": Listed("sweep", "Measure stability or a number at a million parameter values."),
-    "equilibria": Listed("equilibria", "List relative equilibria at values, with their stability."),
-    "nonlinear": Listed("nonlinear", "List where terms of higher order decide otherwise."),
+    "equilibria": Listed("mbsym.studies.equilibria", "List relative equilibria at values, with their stability."),
+    "nonlinear": Listed("mbsym.studies.nonlinear", "List where terms of higher order decide otherwise."),
     "convert": Listed("convert", "Convert YAML, plain text, and robots (URDF, MJCF)."),
     "schema": Listed("schema", "Print a JSON Schema, for editors and scripts."),
     "edit": Listed("edit", "Draw, describe and understand a mechanism in the browser."),
     "lsp": Listed("lsp", "Serve an editor: complaints, completion, hover."),
     "explain": Listed("explain", "Tell what a problem computes, what a description holds."),
+}
+
+
+#: The commands by what a person is about; every one stands in one group.
+GROUPS = {
+    "Start": ("new", "examples", "check", "edit", "explain"),
+    "Derive": ("run", "show", "watch", "batch", "diff"),
+    "Motion": ("simulate", "view", "orbit", "inverse", "lyapunov"),
+    "Stability": ("equilibria", "map", "sweep", "floquet", "nonlinear"),
+    "Integrals, small parameters": ("integrals", "symmetries", "groups", "average", "expand", "oscillations"),
+    "Accuracy": ("tradeoff", "extremes"),
+    "Files": ("convert", "schema", "lsp"),
 }
 
 
@@ -67,7 +80,7 @@ class LazyGroup(click.Group):
             return None
         # Formulas are many small objects and hardly ever cycles: looking for those less often saves time.
         gc.set_threshold(200_000, 20, 20)
-        command: click.Command = importlib.import_module(f"mbsym_cli.{COMMANDS[name].module}").command
+        command = _command(COMMANDS[name].module)
         command.short_help = COMMANDS[name].does
         if not any(option.name == "debug" for option in command.params):
             if name == "new" or any(option.name == "out" for option in command.params):
@@ -76,9 +89,10 @@ class LazyGroup(click.Group):
         return command
 
     def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:
-        """The list of commands, for which none of them is imported."""
-        with formatter.section("Commands"):
-            formatter.write_dl([(name, listed.does) for name, listed in COMMANDS.items()])
+        """The commands in their groups, for which none of them is imported."""
+        for title, names in GROUPS.items():
+            with formatter.section(title):
+                formatter.write_dl([(f"{name:<12}", COMMANDS[name].does) for name in names])
 
     def resolve_command(
         self, context: click.Context, args: list[str]
@@ -142,6 +156,15 @@ class LazyGroup(click.Group):
             print("interrupted; what has been written is whole", file=sys.stderr)
             sys.exit(INTERRUPTED)
         sys.exit(FAILED)
+
+
+def _command(module: str) -> click.Command:
+    if not module.startswith("mbsym."):
+        written: click.Command = importlib.import_module(f"mbsym_cli.{module}").command
+        return written
+    from mbsym_cli.study import command_of
+
+    return command_of(importlib.import_module(module).STUDY)
 
 
 def _force() -> click.Option:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
 
 from mbsym.expressions.counting import counted
@@ -36,6 +36,20 @@ class Options:
 
     def complain(self, option: str, code: str, message: str, hint: str | None = None) -> None:
         self.complaints.append(render_option(Complaint(code, message, None, hint), "", option))
+
+    def complain_whole(self, option: str, text: str, code: str, message: str, hint: str | None = None) -> None:
+        """Of a text as a whole, which is shown."""
+        span = Span(1, 1, max(1, len(text)))
+        self.complaints.append(render_option(Complaint(code, message, span, hint), text, option))
+
+    def sort(self, options: Sequence[str]) -> None:
+        """Complaints in the order of these options, what is not about one of them behind."""
+
+        def place(complaint: str) -> int:
+            option = complaint.split(":")[0].split(" ")[0]
+            return options.index(option) if option in options else len(options)
+
+        self.complaints.sort(key=place)
 
     def refused(self, file: Path | None = None) -> bool:
         """Whether there is anything to complain about; then it is printed (of no ``file``: of the options alone)."""

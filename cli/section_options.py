@@ -5,7 +5,7 @@ A name is that of a parameter or of a symbol of the notation; a number is ration
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -14,6 +14,7 @@ from mbsym.expressions.parser import ascii_safe, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.model.system import rational
 from mbsym.source import render_option
+from mbsym.studies.section import unfit_section
 from mbsym_cli.options import MAX_LENGTH, Options
 
 if TYPE_CHECKING:
@@ -74,17 +75,6 @@ def read_axis(text: str | None, option: str, system: System, options: Options) -
     return Axis(name, start, stop) if exists else None
 
 
-def distinct(axes: Sequence[Axis], settings: Mapping[str, Fraction], options: Options) -> None:
-    """No name is taken twice, as two axes or as an axis that has a number."""
-    names = [axis.name for axis in axes]
-    for name in dict.fromkeys(name for name in names if names.count(name) > 1):
-        options.complain("--y", "repeated-name", f"'{name}' is taken for two axes", "choose another one")
-    for name in names:
-        if name in settings:
-            told = f"'{name}' has an interval and a number"
-            options.complain("--set", "repeated-name", told, "leave one of them out")
-
-
 def known(name: str, option: str, names: Sequence[str], options: Options) -> bool:
     """Whether a name is one of ``names``; if it is not, that is one of the complaints."""
     if name in names:
@@ -114,36 +104,5 @@ def read_rational(text: str, option: str, options: Options) -> Fraction | None:
 
 def complain_unfit(wrong: Sequence[Complaint], axis_option: str, options: Options) -> None:
     """Why a section cannot be made: everything at once, each with what to do."""
-    from mbsym.maps.given import Fault
-
-    lacking = list(dict.fromkeys(one.name for one in wrong if one.fault is Fault.MISSING))
-    if lacking:
-        example = " ".join(f"--set {name}=1" for name in lacking[:3]) + (" ..." if len(lacking) > 3 else "")
-        options.complain("--set", "missing-value", f"no number for {', '.join(lacking)}", f"for example {example}")
-    for one in dict.fromkeys(wrong):
-        match one.fault:
-            case Fault.RELATED:
-                told = f"{one.name} follows from other parameters: {one.about}"
-                options.complain(axis_option, "given-by-relation", told, "take those of which its relation is made")
-            case Fault.SOLVED:
-                told = f"{one.name} has one value on the motion only: {one.about}"
-                options.complain(axis_option, "given-by-motion", told, "take those of which its value is made")
-            case Fault.DEPENDENT:
-                told = f"{one.name} is not independent of {one.about or 'the parameters'}"
-                options.complain(axis_option, "not-independent", told, "leave one of them out")
-            case Fault.SIGN:
-                told = f"{one.name} is declared {one.about}, or is by its definition"
-                options.complain("--set", "against-sign", told, "choose a number of that sign")
-            case Fault.NOWHERE:
-                told = f"the motion of the description exists nowhere there: {one.name or one.about}"
-                options.complain("--set", "no-motion", told, "see problem 4 for the conditions")
-            case Fault.OUTSIDE:
-                told = f"no point of the map keeps what has to be kept: {one.about}"
-                options.complain("--set", "outside", told, "choose other values, or another interval")
-            case Fault.IRRATIONAL:
-                told = f"the matrices hold what is no rational number there: {one.name}"
-                options.complain("--set", "irrational", told, "choose values at which roots and angles are rational")
-            case Fault.SINGULAR:
-                options.complain(
-                    "--set", "division-by-zero", f"a division by zero in {one.name}", "choose other values"
-                )
+    for one in unfit_section(wrong, axis_option):
+        options.complain(one.option, one.code, one.message, one.hint)

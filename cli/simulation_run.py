@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 def run(file: Path, folder: Path, given: Scenario, wanted: Asked, options: Options) -> int:
     """The exit code; ``options`` takes the complaint of a method that does not apply here."""
     from mbsym.algebra.failures import Failure, SingularPoint
-    from mbsym.numerics.closing import NotClosed
+    from mbsym.numerics.closing import NotClosed, NothingMoves
     from mbsym.numerics.enclosure.field import NotAnalytic
     from mbsym.numerics.methods.interface import Breakdown, Unusable
     from mbsym.simulation import NoEvent, simulate
@@ -70,6 +70,11 @@ def run(file: Path, folder: Path, given: Scenario, wanted: Asked, options: Optio
         return BROKEN_DOWN
     except NotClosed as error:
         return not_closed(file, error, given.system)
+    except NothingMoves as error:
+        complain(file, f"error[{error.code}]: {error}")
+        complain(file, f"  hint: {error.remedy}")
+        complain(file, "nothing was written.")
+        return BROKEN_DOWN
     except Failure as error:
         complain(file, f"error[no-program]: there is no program for these equations: {error}")
         complain(file, "nothing was written.")

@@ -1,21 +1,199 @@
-"""What commands that study one motion have in common: what keeps them from beginning, what may end them.
+"""A study as a command: options, complaints, what is shown meanwhile, files, lines, exit codes, Ctrl-C.
 
-``orbit``, ``floquet``, ``lyapunov`` and the ensembles and derivatives of ``simulate`` read their own options and have
-their own words; files, failures and Ctrl-C are told alike.
+``attempted``, ``leave`` and ``prevented`` are the same for commands that are written out.
 """
 
 from __future__ import annotations
 
+import inspect
 import sys
-from collections.abc import Callable, Mapping
+import time
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import NoReturn, TypeVar
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
-from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OK, complain, reason_of
-from mbsym_cli.files import obstacle
+import click
+
+from mbsym.studies.request import fields_of
+from mbsym.studies.study import Answer, Asked, Document, Folder, Line, NotFit, Rows, Single, Study, Unfit
+from mbsym_cli.console import (
+    BAD_INPUT,
+    FAILED,
+    INTERRUPTED,
+    OK,
+    OutPath,
+    complain,
+    printable,
+    read_description,
+    reason_of,
+    show_rows,
+    tell,
+)
+from mbsym_cli.files import deliver, folder_for, obstacle, write_whole
 from mbsym_cli.options import Options
+from mbsym_cli.progress import watching
+from mbsym_cli.requests import option_of, read_fields
+
+if TYPE_CHECKING:
+    from mbsym.model.system import System
 
 Found = TypeVar("Found")
+
+
+def command_of(study: Study[Any, Any]) -> click.Command:
+    """The command; its help is what the request says of itself."""
+
+    def called(file: Path, **texts: Any) -> None:
+        leave(file, lambda: _Run(study, file, texts).code())
+
+    return click.Command(
+        study.name,
+        params=[
+            click.Argument(["file"], type=click.Path(path_type=Path)),
+            *(option_of(field) for field in fields_of(study.request)),
+            *_further(study),
+        ],
+        callback=called,
+        help=inspect.getdoc(study.request),
+    )
+
+
+def _further(study: Study[Any, Any]) -> Iterator[click.Option]:
+    """``--json``, ``--out`` and ``--quiet``, where there is something to them."""
+    if study.json is not None:
+        yield click.Option(["--json", "as_json"], is_flag=True, help=study.json_help)
+    match study.out:
+        case Folder() as out:
+            yield click.Option(["--out", "-o"], type=OutPath(path_type=Path, file_okay=False), help=out.help)
+            if out.quiet is not None:
+                yield click.Option(["--quiet", "-q"], is_flag=True, help=out.quiet)
+        case Single() as out:
+            yield click.Option(["--out", "-o"], type=OutPath(path_type=Path, dir_okay=False), help=out.help)
+            yield click.Option(["--quiet", "-q"], is_flag=True, help="Print nothing but complaints.")
+
+
+class _Run:
+    """One command at work: everything is read and complained about, then derived, written and told."""
+
+    def __init__(self, study: Study[Any, Any], file: Path, texts: Mapping[str, Any]) -> None:
+        self.study, self.file, self.texts = study, file, texts
+        self.out: Path | None = texts.get("out")
+        self.quiet = bool(texts.get("quiet"))
+        self.as_json = bool(texts.get("as_json"))
+        self.options = Options()
+        self.writes = False
+        self.started = time.perf_counter()
+
+    def code(self) -> int:
+        study, file = self.study, self.file
+        system = self._described()
+        values, given = read_fields(file, system, study.request, self.texts, self.options)
+        request = study.request(**values)
+        self.writes = isinstance(study.out, Folder) and study.writes(request)
+        self._complain(request, system)
+        code = prevented(file, folder_for(file, self.out) if self.writes else None, system is not None, self.options)
+        if code or system is None:
+            return code or BAD_INPUT
+        return self._answered(Asked(system, given, printable(file)), request)
+
+    def _described(self) -> System | None:
+        """The system, None after complaints; inputs are held, which is said, where the study does so."""
+        study = self.study
+        if study.held:
+            from mbsym_cli.simulation_inputs import read_held
+
+            return read_held(self.file, study.name, study.constraints, not study.matrices)
+        unknown = "" if study.constraints else study.name
+        return read_description(self.file, unknown, "" if study.matrices else study.name)
+
+    def _complain(self, request: Any, system: System | None) -> None:
+        """About what does not go together."""
+        for one in self.study.unfit(request, system) if system is not None else ():
+            self._unfit(one)
+        if isinstance(self.study.out, Single):
+            self.options.unwritten("--out", self.out)
+        elif isinstance(self.study.out, Folder):
+            options = {"--out": self.out is not None, "--quiet": self.quiet}
+            for option in (name for name, given in options.items() if given and not self.writes):
+                if self.study.out.unwritten is not None:
+                    self.options.complain(option, *self.study.out.unwritten)
+            if self.writes and self.as_json and self.study.out.alone is not None:
+                self.options.complain("--json", *self.study.out.alone)
+        order = [field.option for field in fields_of(self.study.request)]
+        self.options.sort(order)
+
+    def _unfit(self, one: Unfit) -> None:
+        if one.name:
+            self.options.complain_whole(one.option, self._text(one), one.code, one.message, one.hint)
+        else:
+            self.options.complain(one.option or str(self.file), one.code, one.message, one.hint)
+
+    def _text(self, one: Unfit) -> str:
+        """What was typed for that name."""
+        field = next(field for field in fields_of(self.study.request) if field.option == one.option)
+        typed = [" ".join(text.splitlines()) for text in self.texts[field.name]]
+        return next(text for text in typed if text.partition("=")[0].strip() == one.name)
+
+    def _answered(self, asked: Asked, request: Any) -> int:
+        """Derives, writes the files of a folder, then tells."""
+        study, file = self.study, self.file
+        try:
+            with watching(self.quiet or self.as_json, file.name) as watch:
+                found = study.derive(asked, request, watch)
+                answer = study.answer(asked, request, found)
+                if answer.files:
+                    deliver(folder_for(file, self.out), answer.files, study.name)
+        except OSError as error:
+            complain(file, f"the results cannot be written: {reason_of(error)}")
+            return FAILED
+        except NotFit as error:
+            for one in error.reasons:
+                self._unfit(one)
+            self.options.refused(file)
+            return BAD_INPUT
+        except Exception as error:
+            refusal = study.refusal(error, asked, request)
+            if refusal is None:
+                raise
+            for text in (refusal.text, *refusal.more):
+                complain(file, text)
+            return refusal.code
+        if self.as_json and study.json is not None:
+            click.echo(study.json(asked, request, found), nl=False)
+        else:
+            self._tell(asked, answer)
+        for text in answer.complaints:
+            complain(file, text)
+        if answer.code or self.out is None or study.document is None:
+            return answer.code
+        return self._written(self.out, study.document(asked, request, found))
+
+    def _tell(self, asked: Asked, answer: Answer) -> None:
+        loud = not self.quiet
+        if loud:
+            seconds = f", {time.perf_counter() - self.started:.2f} s" if self.study.timed else ""
+            tell((asked.system.name, "bold"), (f"  {printable(self.file)}{answer.after}{seconds}", "dim"))
+        for one in answer.lines:
+            if isinstance(one, Line) and (loud or one.always):
+                tell(*one.parts, whole=one.whole)
+            elif isinstance(one, Rows) and loud:
+                show_rows(one)
+        if answer.files and loud:
+            folder = folder_for(self.file, self.out)
+            tell("  files in ", (printable(folder), "bold"), f": {', '.join(answer.files)}")
+
+    def _written(self, out: Path, document: Document) -> int:
+        """The exit code of a single file."""
+        for text in document.complaints:
+            complain(self.file, text)
+        if document.text is None:
+            return FAILED
+        try:
+            write_whole(out, document.text)
+        except OSError as error:
+            complain(out, f"cannot be written: {error.strerror or error}")
+            return FAILED
+        return OK
 
 
 def leave(file: Path, command: Callable[[], int]) -> NoReturn:
@@ -27,11 +205,11 @@ def leave(file: Path, command: Callable[[], int]) -> NoReturn:
         sys.exit(INTERRUPTED)
 
 
-def prevented(file: Path, folder: Path, read: bool, asked: Options) -> int:
+def prevented(file: Path, folder: Path | None, read: bool, asked: Options) -> int:
     """The exit code where options are wrong (``read``: the description is not) or nothing can be written; else 0."""
     if asked.refused(file if read else None) or not read:
         return BAD_INPUT
-    reason = obstacle(folder)
+    reason = "" if folder is None else obstacle(folder)
     if reason:
         complain(file, f"the results cannot be written: {reason}")
         return FAILED

@@ -31,16 +31,17 @@ BELOW = {
     "simulation": "expressions algebra model mechanics formulas problems analysis numerics",
     "sweeps": "expressions algebra model mechanics formulas problems analysis maps numerics",
     "report": "expressions algebra model source mechanics formulas problems analysis numerics simulation maps sweeps",
-    "studies": "expressions algebra model mechanics formulas problems analysis numerics simulation",
+    "studies": "expressions algebra model source mechanics formulas problems analysis maps numerics simulation sweeps"
+    " report",
     "editing": "expressions algebra model source formulas analysis report",
     "batch": "expressions algebra model source formulas problems analysis report sweeps __init__",
     "diff": "expressions algebra formulas report",
     "picture": "expressions algebra model source formulas mechanics problems analysis numerics simulation maps report",
     "serving": "expressions algebra model source formulas problems analysis maps numerics simulation report editing"
     " picture __init__",
-    "__init__": "source model analysis numerics simulation studies",
-    "cli": "expressions algebra model source mechanics formulas problems analysis numerics simulation report batch"
-    " diff editing maps sweeps picture serving __init__",
+    "__init__": "studies",
+    "cli": "expressions algebra model source mechanics formulas problems analysis numerics simulation report studies"
+    " batch diff editing maps sweeps picture serving __init__",
 }
 MODULES = sorted([*ROOT.rglob("*.py"), *COMMANDS.glob("*.py")])
 HEAVY = ("sympy", "numpy", "scipy", "jinja2", "rich", "matplotlib", "llvmlite")

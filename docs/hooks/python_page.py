@@ -11,12 +11,13 @@ from typing import Any
 from in_markdown import code, escaped, fenced, table
 
 import mbsym
-from mbsym import simulation, studies
+from mbsym import simulation
 from mbsym.analysis import PROBLEMS, Analysis
 from mbsym.formulas.formula import Formula, Matrix
 from mbsym.problems import energy, equations, equilibrium, integrals, kinematics, linearisation
 from mbsym.problems.stability.problem import Stability
 from mbsym.problems.stability.verdict import Verdict
+from mbsym.studies import tables
 
 _HEAD = """\
 # Python
@@ -45,10 +46,10 @@ _RESULTS: dict[type, tuple[str, ...]] = {
         *("system", "times", "coordinates", "velocities", "energy", "generalized_energy", "conservation", "error"),
         *("energy_conservation", "invariants", "method", "why", "arithmetic", "whole", "ended"),
     ),
-    studies.Table: (),
-    studies.TradeoffStudy: ("runs", "models", "advice", "reference_error"),
-    studies.ExtremesStudy: ("digits", "verdicts", "singular", "singular_complete", "sentences", "left_out"),
-    studies.EquilibriaStudy: ("table", "complete", "remarks"),
+    tables.Table: (),
+    tables.TradeoffStudy: ("runs", "models", "advice", "reference_error"),
+    tables.ExtremesStudy: ("digits", "verdicts", "singular", "singular_complete", "sentences", "left_out"),
+    tables.EquilibriaStudy: ("table", "complete", "remarks"),
 }
 
 

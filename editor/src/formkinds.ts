@@ -36,28 +36,13 @@ interface Schema {
   description?: string;
   $ref?: string;
   anyOf?: Schema[];
+  /** Of a key with another spelling: it, where the other is not there. */
+  allOf?: { then?: Schema }[];
+  title?: string;
+  /** The ways in which a kind is given, by their first keys; keys of other ways are forbidden. */
+  dependentSchemas?: Record<string, Schema>;
   $defs?: Record<string, Schema>;
 }
-
-/** The keys that name a body. */
-const BODIES = new Set(["body", "axes", "centre", "about", "reaction on", "on"]);
-
-/** Kinds that are given in one of two ways, each with keys of which the schema says only that they may be there; those
- * that may be left out even so stand apart. */
-const WAYS: Record<string, [words: string, keys: string[], optional?: string[]][]> = {
-  "uniform gravity": [
-    ["size and direction", ["acceleration", "direction"]],
-    ["as a vector", ["vector"]],
-  ],
-  spring: [
-    ["on a coordinate", ["coordinate", "stiffness", "rest"], ["rest"]],
-    ["between points", ["between", "stiffness", "length"]],
-  ],
-  damper: [
-    ["on a coordinate", ["coordinate", "coefficient"]],
-    ["between points", ["between", "coefficient"]],
-  ],
-};
 
 function refers(schema: Schema | undefined, name: string): boolean {
   return schema?.$ref === `#/$defs/${name}`;
@@ -75,7 +60,7 @@ function field(key: string, schema: Schema, optional: boolean): Field {
   if (schema.anyOf?.some((one) => one.type === "object")) return { ...made, sort: "state" };
   if (schema.properties?.["axes"]) return { ...made, sort: "turns" };
   if (schema.type === "object" && !schema.properties) return { ...made, sort: "pairs" };
-  return { ...made, sort: BODIES.has(key) ? "body" : "text" };
+  return { ...made, sort: refers(schema, "body name") ? "body" : "text" };
 }
 
 function definitions(model: Model): Record<string, Schema> {
@@ -100,14 +85,15 @@ function wrapped(model: Model, definition: string): Kind[] {
       kinds.push({ words: key, key, fields: [field("", schema, false)] });
       continue;
     }
+    const needed = [...(schema.required ?? []), ...(schema.allOf ?? []).flatMap((one) => one.then?.required ?? [])];
     const fields = Object.entries(schema.properties)
       .filter(([inner]) => inner !== "center")
-      .map(([inner, one]) => field(inner, one, !schema.required?.includes(inner)));
-    const ways = WAYS[key];
-    if (!ways) kinds.push({ words: key, key, fields });
-    for (const [words, keys, optional] of ways ?? []) {
-      const own = fields.filter((one) => keys.includes(one.key));
-      kinds.push({ words: `${key}: ${words}`, key, fields: own.map((one) => ({ ...one, optional: optional?.includes(one.key) ?? false })) });
+      .map(([inner, one]) => field(inner, one, !needed.includes(inner)));
+    const ways = Object.values(schema.dependentSchemas ?? {});
+    if (ways.length === 0) kinds.push({ words: key, key, fields });
+    for (const way of ways) {
+      const own = fields.filter((one) => !(one.key in (way.properties ?? {})));
+      kinds.push({ words: `${key}: ${way.title}`, key, fields: own.map((one) => ({ ...one, optional: !way.required?.includes(one.key) })) });
     }
   }
   return kinds;

@@ -29,6 +29,13 @@ SUM_ROUNDING, PRODUCT_ROUNDING = "rounding of sum", "rounding of product"
 ROUNDINGS = (SUM_ROUNDING, PRODUCT_ROUNDING)
 
 
+class Choice(str):
+    """A sign that only chooses between two ways to one result: where it changes, nothing jumps."""
+
+
+_CHOICE = Choice("sign")
+
+
 class Node:
     """One value of a program: ``number`` in the program's list of instructions."""
 
@@ -237,6 +244,13 @@ class Program(Algebra[Node]):
                 found = self._node(name, (inner.number,))
                 return found if name == "abs" else self.minus(found)
         return self._node(name, (x.number,))
+
+    def exceeds(self, a: Node, b: Node) -> Node:
+        """1 where a > b, 0 where a < b (1/2 where they are equal), for choices that do not change the result."""
+        if a == b:
+            return self.number(Fraction(1, 2))
+        half = self.number(Fraction(1, 2))
+        return half + half * self.function(_CHOICE, a - b)
 
     def rounding(self, operation: str, a: Node, b: Node) -> Node:
         """What rounding takes away from a sum or a product (``mbsym.algebra.compensated``): 0 in exact arithmetic.

@@ -6,29 +6,13 @@ import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from mbsym.editing.keys import keys_in
+from mbsym.editing.keys import keys_in, types_at
 from mbsym.editing.place import Where, where
 from mbsym.expressions.tree import FUNCTIONS
-from mbsym.model.claims import CLAIMS
 from mbsym.model.oscillation_names import names_in, oscillating_variables, oscillation_names
 from mbsym.model.system import System, velocity_name
-from mbsym.source.keys import ALIASES, SIGNS
-
-_AXES = ("1", "2", "3")
-
-#: Key -> the words that its value may be.
-_WORDS = {
-    "sign": SIGNS,
-    "inertia about": ("joint", "mass centre"),
-    "claim": tuple(CLAIMS),
-    "as": ("necessary", "sufficient"),
-}
-
-#: Keys whose values name bodies; those of loads may also be 0.
-_BODIES = ("attached to", "centre", "about", "body", "axes", "reaction on")
-
-#: Keys whose values are for people, or numbers.
-_FREE = ("name", "description", "meaning", "place", "unit", "units", "mbsym", "values", "order", "source")
+from mbsym.source.grammar import About, BodyName, Equation, Formula, Index, Name, Named, Vector, Word
+from mbsym.source.keys import SIGNS
 
 _DECLARED = re.compile(r"^\s+([A-Za-z][A-Za-z0-9_]*)\s*:", re.MULTILINE)
 
@@ -56,31 +40,24 @@ def suggestions(text: str, line: int, column: int, system: System | None = None)
     if found.is_value:
         return list(_values(found, text, system))
     known = keys_in(found.path)
-    keys = [Suggestion(key, "key", meaning, f"{key}: ") for key, meaning in known.items() if key not in found.beside]
-    if keys or found.path[:1] not in {("motion",), ("initial",), ("limits",), ("units",)}:
+    keys = [Suggestion(key, "key", one.meaning, f"{key}: ") for key, one in known.items() if key not in found.beside]
+    if keys or not any(isinstance(one, Named) and one.of for one in types_at(found.path)):
         return keys
     return [Suggestion(name, "name", "a coordinate", f"{name}: ") for name in _coordinates(system)]
 
 
 def _values(found: Where, text: str, system: System | None) -> Iterator[Suggestion]:
-    key = ALIASES.get(found.path[-1], found.path[-1])
-    if key in _WORDS:
-        yield from (Suggestion(word, "word", insert=word) for word in _WORDS[key])
-        return
-    if key == "parameters" or (found.path[:1] == ("parameters",) and len(found.path) == 2):
+    types = types_at(found.path)
+    if found.path == ("parameters",):
         yield from (Suggestion(sign, "word", "its sign", sign) for sign in SIGNS)
-        return
-    if key == "axes" and "rotation" in found.path:
-        yield from (Suggestion(axis, "word", "a rotation axis", axis) for axis in _AXES)
-        return
-    if key in _BODIES and not (key == "body" and found.path[0] == "bodies"):
+    elif words := [str(word) for one in types if isinstance(one, Word) for word in one.choices]:
+        yield from (Suggestion(word, "word", insert=word) for word in words)
+    elif any(isinstance(one, BodyName) and not one.new for one in types):
         yield Suggestion("0", "body", "the inertial frame", "0")
         yield from (Suggestion(body.name, "body", "a body", body.name) for body in (system.bodies if system else ()))
-        return
-    if key in ("coordinate", "coordinates"):
+    elif any(isinstance(one, Name) for one in types):
         yield from (Suggestion(name, "name", "a coordinate", name) for name in _coordinates(system))
-        return
-    if key not in _FREE:
+    elif not types or any(isinstance(one, Formula | Vector | Equation | Index | About) for one in types):
         yield from _names(text, system, "loads" in found.path or "claims" in found.path)
         if system is not None and system.small is not None and found.path[0] in ("claims", "abbreviations"):
             symbols = oscillation_names(oscillating_variables(system), names_in(system)).all

@@ -32,9 +32,9 @@ def explanation(text: str, line: int, column: int, analysis: Analysis | None = N
     found = where(lines, line, len(lines[line][:column]) if not key else lines[line].index(key))
     if key:
         known = keys_in(found.path if not found.is_value else found.path[:-1])
-        meaning = known.get(ALIASES.get(key, key))
-        if meaning is not None:
-            return f"**{plain(key)}**: {meaning}"
+        one = known.get(ALIASES.get(key, key))
+        if one is not None:
+            return f"**{plain(key)}**: {one.meaning}"
     value = lines[line][lines[line].find(":") + 1 :].strip(" {}[],")
     if value in CLAIMS:
         return f"**{value}**: {CLAIMS[value].meaning}"

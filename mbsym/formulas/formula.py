@@ -13,7 +13,7 @@ from typing import Any
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.guessing import GuessesNames
 from mbsym.formulas.latex import latex_text
-from mbsym.formulas.python import python_text
+from mbsym.formulas.python import python_text, readable_text
 from mbsym.formulas.shape import terms_read
 from mbsym.formulas.tree import Angles, angles_as, angles_or
 from mbsym.formulas.wolfram import wolfram_text
@@ -41,6 +41,10 @@ class Formula(GuessesNames):
         """
         with angles_as(angles):
             return python_text(self.ring, self.polynomial)
+
+    def readable(self) -> str:
+        """On one line as people write it: ``(m l^2 + J) theta'' + m g l sin(theta)``."""
+        return readable_text(self.ring, self.polynomial)
 
     def latex(self, angles: Angles | None = None) -> str:
         """LaTeX with amsmath; ``angles`` as for ``text``, and what is shorter unless it was asked otherwise."""

@@ -124,7 +124,7 @@ class LatexNames:
     """One renaming for a system: no two names look alike (``Jx`` and ``J_x`` do not both become J with index x)."""
 
     def __init__(self, names: Iterable[str], given: Mapping[str, str] | None = None) -> None:
-        given = given or {}
+        self._given = given = given or {}
         ordered = list(dict.fromkeys([*given, *names]))  # a given symbol is nobody else's
         symbols = {name: _given(given[name]) if name in given else latex_symbol(name) for name in ordered}
         shown = injective([str(symbols[name]) for name in ordered], str)
@@ -138,6 +138,10 @@ class LatexNames:
     def __getitem__(self, name: str) -> Symbol:
         known = self._symbols.get(name)
         return latex_symbol(name) if known is None else known
+
+    def beside(self, more: Iterable[str]) -> LatexNames:
+        """These names and others, which do not look like them."""
+        return LatexNames([*self._symbols, *more], self._given)
 
 
 def _escaped(name: str) -> str:

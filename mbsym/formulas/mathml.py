@@ -158,7 +158,7 @@ class MathNames:
     def __init__(self, names: Iterable[str], given: Mapping[str, Symbol] | None = None) -> None:
         taken: set[str] = set()
         self._symbols: dict[str, Symbol] = {}
-        given = given or {}
+        self._given = given = given or {}
         for name in dict.fromkeys([*given, *names]):
             symbol = given[name] if name in given else mathml_symbol(name)
             if str(symbol) in taken:
@@ -169,6 +169,10 @@ class MathNames:
     def __getitem__(self, name: str) -> Symbol:
         known = self._symbols.get(name)
         return mathml_symbol(name) if known is None else known
+
+    def beside(self, more: Iterable[str]) -> MathNames:
+        """These names and others, which do not look like them."""
+        return MathNames([*self._symbols, *more], self._given)
 
 
 _NAMES: WeakKeyDictionary[Ring, MathNames] = WeakKeyDictionary()

@@ -22,10 +22,16 @@ def declared_name(generator: Generator) -> str:
     return generator.name + ENDINGS.get(generator.kind, "")
 
 
+def readable_text(ring: Ring, polynomial: Polynomial) -> str:
+    """The polynomial on one line as people write it: ``(m l^2 + J) theta'' + m g l sin(theta)``."""
+    return _ReadablePrinter(ring).sum(present(ring, polynomial, angles_or("shorter")))
+
+
 class InfixPrinter:
-    """Sums, products and quotients on one line; languages differ in their power sign and in how atoms look."""
+    """Sums, products and quotients on one line; languages differ in their signs and in how atoms look."""
 
     power = "**"
+    times = "*"
 
     def __init__(self, ring: Ring) -> None:
         self.ring = ring
@@ -58,8 +64,8 @@ class InfixPrinter:
             over.insert(0, str(top))
         if bottom != 1:
             under.insert(0, str(bottom))
-        quotient = "" if not under else "/" + (under[0] if len(under) == 1 else f"({'*'.join(under)})")
-        return "*".join(over) + quotient
+        quotient = "" if not under else "/" + (under[0] if len(under) == 1 else f"({self.times.join(under)})")
+        return self.times.join(over) + quotient
 
     def factor(self, factor: Factor) -> str:
         if isinstance(factor.base, int):
@@ -86,7 +92,7 @@ class InfixPrinter:
         pieces: list[str] = []
         for name, n in wave.angle:
             pieces.append((" - " if n < 0 else " + ") if pieces else ("-" if n < 0 else ""))
-            times = "" if abs(n.numerator) == 1 else f"{abs(n.numerator)}*"
+            times = "" if abs(n.numerator) == 1 else f"{abs(n.numerator)}{self.times}"
             pieces.append(times + self._named(name) + ("" if n.denominator == 1 else f"/{n.denominator}"))
         return self.call(FUNCTION_OF_KIND[wave.kind], "".join(pieces))
 
@@ -114,3 +120,14 @@ class _PythonPrinter(InfixPrinter):
 
     def symbol(self, generator: Generator) -> str:
         return declared_name(generator)
+
+
+class _ReadablePrinter(_PythonPrinter):
+    power = "^"
+    times = " "
+
+    def symbol(self, generator: Generator) -> str:
+        return generator.name + _PRIMES.get(generator.kind, "")
+
+
+_PRIMES = {"velocity": "'", "acceleration": "''"}

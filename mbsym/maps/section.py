@@ -22,6 +22,7 @@ from mbsym.algebra.failures import Failure, NoValue, SingularPoint
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial
 from mbsym.analysis import Analysis
+from mbsym.maps.axis import Axis
 from mbsym.maps.given import Complaint, Fault, Unfit, numbers_given
 from mbsym.maps.images import Image, Images, Irrational, common_denominator
 from mbsym.model.system import System
@@ -38,15 +39,6 @@ if TYPE_CHECKING:
 MOST_BESIDE = 2
 #: Of so many axes all signs are tried.
 MOST_TRIED = 3
-
-
-@dataclass(frozen=True)
-class Axis:
-    """An open interval of a parameter, or of a symbol of the notation."""
-
-    name: str
-    low: Fraction
-    high: Fraction
 
 
 @dataclass(frozen=True)

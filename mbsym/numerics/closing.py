@@ -18,7 +18,7 @@ from typing import Any, TypeVar
 import numpy as np
 from flint import arb, ctx, fmpq
 
-from mbsym.algebra.failures import Failure
+from mbsym.algebra.failures import Constrained, Failure
 from mbsym.mechanics.constraints.rows import RowName
 from mbsym.numerics.constrained import Constraints
 from mbsym.numerics.dynamics import Dynamics
@@ -30,6 +30,9 @@ STEPS, ALONG, REFINED = 200, 60, 40
 
 #: A gap of a row is closed below this part of the row's slope times the coordinates' sizes.
 CLOSED = 1e-11
+
+#: A value that was led here is nought.
+NOUGHT = 1e-30
 
 #: Below this part of itself (or of 1) a value has not moved but for roundings.
 MOVED = 1e-12
@@ -94,6 +97,31 @@ class NotClosed(Failure):
             text = f"the constraints are satisfied only to roundings{held}: {rank}"
         super().__init__(f"{text} (gap {worst.size:.6g} in {worst.row.label})")
         self.state, self.gaps, self.fixed, self.singular = state, tuple(gaps), tuple(fixed), singular
+
+
+class NothingMoves(Constrained):
+    """The constraints leave no velocity free at the state that they allow, and nothing is driven."""
+
+    code = "no-freedom"
+
+    def __init__(self, found: Scenario) -> None:
+        place = zip(found.system.coordinates, map(float, found.positions), strict=True)
+        shown = ", ".join(f"{name} = {x if abs(x) > NOUGHT else 0:.9g}" for name, x in place)
+        super().__init__(
+            f"the constraints leave no freedom at these values: nothing can move from {shown}, which satisfies them",
+            remedy="check lengths and angles: a mechanism that closes on itself may move at special values only",
+        )
+
+
+def moving(found: Closed) -> Closed:
+    """What was closed.  Raises NothingMoves where its constraints hold it."""
+    constraints = Dynamics(found.scenario).constraints
+    if constraints is None or constraints.freedom or not constraints.steady:
+        return found
+    state = np.array([float(x) for x in found.scenario.state])
+    if len(constraints.independent(0.0, state)) == constraints.size:  # else it may move from a singular position
+        raise NothingMoves(found.scenario)
+    return found
 
 
 def closed(scenario: Scenario, fixed: Collection[str] = ()) -> Closed:

@@ -2,9 +2,10 @@
 
     f(t, q) = 0  (holonomic rows, which come first),      g = J(t, q) q' + j(t, q) = 0  (all rows)
 
-Rows that follow from others are left out of the equations, not of the drift: the rank is found by orthogonalisation
-with pivots (rows measured by the kinetic energy: J M^-1/2, each of length 1) at the initial position and at positions
-beside it on the constraints, since a rank may fall at single ones.
+All rows are in the equations; which of them follow from others is found by orthogonalisation with pivots (rows measured
+by the kinetic energy: J M^-1/2, each of length 1) at the initial position and at positions beside it on the same branch
+of the constraints, since a rank may fall at single ones.  Positions count that are on the constraints for certain: off
+them rows are independent that are not on them.
 
     drift of positions    max over rows of |f_i| / sum_k |J_ik| s_k          s_k:  the size of q_k in the motion
     drift of velocities   max over rows of |g_i| / sum_k |J_ik| s'_k         s'_k: that of q'_k
@@ -24,7 +25,14 @@ import numpy as np
 
 from mbsym.algebra.program import Program
 from mbsym.algebra.ring import Ring
-from mbsym.mechanics.constraints.dynamics import ConstrainedDynamics, conditions, constrained_dynamics, empty_rows
+from mbsym.mechanics.constraints.dependence import Dependent, counted_anew, dependent_sets
+from mbsym.mechanics.constraints.dynamics import (
+    Chosen,
+    ConstrainedDynamics,
+    conditions,
+    constrained_dynamics,
+    empty_rows,
+)
 from mbsym.mechanics.constraints.rows import Row, RowName
 from mbsym.model.constraints import listed
 from mbsym.numerics.kernels import arrays
@@ -37,6 +45,9 @@ if TYPE_CHECKING:
 
 #: A row of length 1 of which others leave no more than this follows from them.
 DEPENDENT = 1e-9
+
+#: Between these a row is neither: the position is not on the constraints for certain, or too near to a singular one.
+CERTAIN = 1e-6
 
 #: Positions beside the initial one at which the rank is looked at, and how far away, in radians or as parts.
 BESIDE, AWAY = 3, 0.05
@@ -128,15 +139,41 @@ class Constraints:
             return vectors / np.sqrt(np.maximum(values, positive[0] if len(positive) else 1.0))
 
     @cached_property
-    def kept(self) -> tuple[int, ...]:
-        """The numbers of the rows that are kept, in increasing order."""
+    def _ranked(self) -> list[tuple[list[int], Any]]:
+        """(independent rows, state) at the positions that are looked at, where most rows are independent."""
         state = np.array([float(x) for x in self._scenario.state])
-        best: list[int] = []
-        for position in self._places(state):
-            found = self.independent(0.0, position)
-            if len(found) > len(best):
-                best = found
-        return tuple(sorted(best))
+        found = [(self.independent(0.0, place), place) for place in self._places(state)]
+        rank = max(len(rows) for rows, _ in found)
+        return [(rows, place) for rows, place in found if len(rows) == rank]
+
+    @cached_property
+    def kept(self) -> tuple[int, ...]:
+        """The numbers of rows that are independent beside the start, in increasing order: as many as the rank."""
+        return tuple(sorted(self._ranked[0][0]))
+
+    @property
+    def rank(self) -> int:
+        """Rows that are independent on this branch of the constraints, but for singular positions."""
+        return len(self.kept)
+
+    def dependent(self, count: int) -> tuple[Dependent, ...]:
+        """Those of the first ``count`` rows that follow from others, in sets that hang together."""
+        relations: list[set[int]] = []
+        independent = [i for i in self._ranked[0][0] if i < count]
+        for _, place in self._ranked:
+            rows = self._of_length_one(0.0, place)
+            own = [i for i in self.independent(0.0, place) if i < count]
+            for i in (i for i in range(count) if i not in own):
+                parts = np.linalg.lstsq(rows[own].T, rows[i], rcond=None)[0]
+                relations.append({i, *(k for k, part in zip(own, parts, strict=True) if abs(part) > CERTAIN)})
+        return dependent_sets(relations, independent)
+
+    @cached_property
+    def chosen(self) -> Chosen:
+        """All rows, and which follow from others; of too many that hang together the independent ones alone."""
+        sets = self.dependent(len(self.names)), self.dependent(self.holonomic)
+        rows, counted = counted_anew(range(len(self.names)), self.kept, *sets)
+        return Chosen(tuple((self.names[k].constraint, self.names[k].component) for k in rows), *counted)
 
     @property
     def redundant(self) -> tuple[RowName, ...]:
@@ -150,11 +187,19 @@ class Constraints:
 
     def independent(self, t: float, state: Any) -> list[int]:
         """Rows that are independent at a position: holonomic ones first, of them the most independent one next."""
+        return self._orthogonalised(t, state)[0]
+
+    def _of_length_one(self, t: float, state: Any) -> Any:
+        """J M^-1/2, each row of length 1, or 0 where it vanishes beside those of its constraint."""
         rows = self.at(t, state).partials @ self.weights(t, state)
         lengths = np.linalg.norm(rows, axis=1)
-        left = rows / np.where(lengths > 0, lengths, 1.0)[:, None]
-        left[lengths <= DEPENDENT * self.slopes(lengths[:, None], 1.0)] = 0.0
-        found: list[int] = []
+        found = rows / np.where(lengths > 0, lengths, 1.0)[:, None]
+        found[lengths <= DEPENDENT * self.slopes(lengths[:, None], 1.0)] = 0.0
+        return found
+
+    def _orthogonalised(self, t: float, state: Any) -> tuple[list[int], float]:
+        """The independent rows, and what others leave at least of one of them."""
+        left, found, least = self._of_length_one(t, state), [], 1.0
         for group in (range(self.holonomic), range(self.holonomic, len(self.names))):
             open_ = list(group)
             while open_:
@@ -163,21 +208,30 @@ class Constraints:
                 place = int(np.argmax(sizes >= 0.5 * np.max(sizes)))
                 if sizes[place] <= DEPENDENT:
                     break
+                least = min(least, float(sizes[place]))
                 number = open_.pop(place)
                 found.append(number)
                 one = left[number] / np.linalg.norm(left[number])
                 for _ in range(2):  # twice is enough
                     left = left - np.outer(left @ one, one)
-        return found
+        return found, least
 
     def _places(self, state: Any) -> list[Any]:
-        """The initial position and some beside it, on the constraints as far as they can be led there."""
+        """The initial position and some beside it to which the constraints let it move: on its way, if it has one."""
         source, n, found = np.random.default_rng(5), self.size, [state]
+        weights = self.weights(0.0, state)
+        rows = self.at(0.0, state).partials
         for _ in range(BESIDE):
+            sizes = AWAY * source.uniform(0.5, 1.0, n) * (1 + np.abs(state[:n]))
+            way = sizes * source.choice((-1, 1), n)
+            if self.holonomic and np.any(state[n:]):  # where branches meet the velocity tells which it is
+                way = state[n:] * np.min(sizes) / np.max(np.abs(state[n:])) * source.choice((-1, 1))
+            elif self.holonomic:  # else any way that all rows allow
+                way -= weights @ np.linalg.lstsq(rows @ weights, rows @ way, rcond=CERTAIN)[0]
             moved = state.copy()
-            moved[:n] += AWAY * source.uniform(0.5, 1.0, n) * (1 + np.abs(state[:n])) * source.choice((-1, 1), n)
+            moved[:n] += way
             place = self.led(0.0, moved)
-            if place is not None:
+            if place is not None and self._orthogonalised(0.0, place)[1] > CERTAIN:
                 found.append(place)
         return found
 
@@ -197,9 +251,8 @@ class Constraints:
 
     @cached_property
     def dynamics(self) -> ConstrainedDynamics:
-        """The equations with the rows that are kept."""
-        chosen = tuple((self.names[k].constraint, self.names[k].component) for k in self.kept)
-        return constrained_dynamics(self._scenario.system, self._ring, chosen, self._apart, self._massless)
+        """The equations with all rows."""
+        return constrained_dynamics(self._scenario.system, self._ring, self.chosen, self._apart, self._massless)
 
     @property
     def _massless(self) -> bool:
@@ -222,15 +275,16 @@ class Constraints:
         is measured by NEAREST times its value at the start.
         """
         state = np.array([float(x) for x in self._scenario.state])
-        kept = list(self.kept)
-        rows = [self.at(0.0, x).partials[kept] @ self.weights(0.0, x) for x in self._places(state)]
-        sizes = np.max([np.sum(one**2, axis=1) for one in rows], axis=0)
         found = self.dynamics
+        rows = [self.at(0.0, x).partials @ self.weights(0.0, x) for x in self._places(state)]
+        lengths = np.max([np.sum(one**2, axis=1) for one in rows], axis=0)
+        numbers_of = [self.names.index(row.name) for row in found.rows]
+        sizes = np.array([max(lengths[numbers_of[k]] for k in owners) for owners in found.owners])
         pivots = substituted(found.program, found.pivots[self.size :], numbers := bound(self._scenario))
         values = arrays.kernel(Code(numbers, self.inputs, tuple(pivots)))(np.concatenate(([0.0], state)))
         with np.errstate(all="ignore"):
             usual = float(np.sum(sizes / values))
-        limit = NEAREST * (usual if np.isfinite(usual) and usual > len(kept) else len(kept))
+        limit = NEAREST * (usual if np.isfinite(usual) and usual > self.rank else self.rank)
         return tuple(Fraction(float(size / limit)) for size in sizes)
 
     @cached_property

@@ -30,6 +30,7 @@ Example:
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -62,6 +63,16 @@ class Equations(Shown):
     def in_speeds(self) -> bool:
         """Whether they are in speeds of their own (``in_speeds.speeds``), not in generalised velocities."""
         return False
+
+    def equalities(self, names: Sequence[str]) -> Column:
+        """(M q'' - f)_i, which vanish along every motion of the open tree; ``names`` are those of the coordinates."""
+        ring = self.forcing[0].ring
+        rates = [ring.generator("acceleration", name) for name in names]
+        found = []
+        for row, force in zip(self.mass_matrix, self.forcing, strict=True):
+            inertia = sum((ring.times(x.polynomial, rate) for x, rate in zip(row, rates, strict=True)), ring.zero)
+            found.append(ring.reduce(inertia - force.polynomial))
+        return column(ring, found)
 
     @property
     def terms(self) -> int:

@@ -8,6 +8,8 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL, SINGULAR, UNDECIDED, Check
+from mbsym.report.content import Inline, Phrase, Said, Words, joined
+from mbsym.report.plain_writer import Writer
 from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line
 
 if TYPE_CHECKING:
@@ -39,8 +41,8 @@ def brief(analysis: Analysis, seconds: float) -> Brief:
             f"{ranges(number for number, _ in group)}: {reason}"
             for reason, group in groupby(failures, key=lambda item: item[1])
         ),
-        self_check=_self_check(analysis.checks),
-        worst=_worst(analysis.checks),
+        self_check=Writer().inline(self_check(analysis.checks)),
+        worst=worst(analysis.checks),
         claims=_claims([claim_line(result).word for result in analysis.claims]),
         seconds=seconds,
     )
@@ -57,20 +59,22 @@ def ranges(numbers: Iterable[int]) -> str:
     return ", ".join(str(run[0]) if len(run) == 1 else f"{run[0]}-{run[-1]}" for run in found)
 
 
-def _self_check(checks: Sequence[Check]) -> str:
+def self_check(checks: Sequence[Check]) -> Inline:
     """``all exact``, or how many are not; what failed by name."""
     outcomes = [check.outcome for check in checks]
     if not outcomes:
-        return "nothing to check"
+        return Said("nothing to check")
     if FAILED in outcomes:
-        return "FAILED: " + ", ".join(check.name for check in checks if check.failed)
+        failed = joined((Words(check.name) for check in checks if check.failed), ", ")
+        return Phrase((Words(FAILED), ": ", failed))
     if set(outcomes) == {EXACT}:
-        return "all exact"
-    words = (EXACT, NUMERICAL, UNDECIDED, SINGULAR)
-    return ", ".join(f"{outcomes.count(word)} {word}" for word in words if word in outcomes)
+        return Said("all exact")
+    words = [word for word in (EXACT, NUMERICAL, UNDECIDED, SINGULAR) if word in outcomes]
+    return joined((Phrase((f"{outcomes.count(word)} ", Words(word))) for word in words), ", ")
 
 
-def _worst(checks: Sequence[Check]) -> str:
+def worst(checks: Sequence[Check]) -> str:
+    """The worst outcome; "" where there are no checks."""
     outcomes = {check.outcome for check in checks}
     return next((word for word in (FAILED, SINGULAR, UNDECIDED, NUMERICAL, EXACT) if word in outcomes), "")
 

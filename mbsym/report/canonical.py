@@ -65,11 +65,7 @@ def forms_of(analysis: Analysis, problems: Sequence[int]) -> Forms:
     return Forms(**{name: stage.value for name, stage in stages.items()}, failures=tuple(failures))
 
 
-def upper_brackets(found: Brackets) -> list[tuple[int, int, Any]]:
-    """The brackets above the diagonal that are not zero, with the numbers of their integrals, from one."""
-    n = len(found.names)
-    places = [(i, j) for i in range(n) for j in range(i + 1, n)]
-    return [(i + 1, j + 1, found.matrix[i, j]) for i, j in places if not found.matrix[i, j].is_zero]
+TITLES = {"routh": "Routh's form", "hamilton": "Hamilton's form", "brackets": "Poisson brackets"}
 
 
 def form_lines(analysis: Analysis) -> Iterator[str]:
@@ -87,8 +83,7 @@ def form_lines(analysis: Analysis) -> Iterator[str]:
         words = {True: "are in involution", False: "are not all in involution", None: "may be in involution or not"}
         yield f"the first integrals {words[known]}"
     for name, failure in found.failures:
-        title = {"routh": "Routh's form", "hamilton": "Hamilton's form"}.get(name, "Poisson brackets")
-        yield f"{title}: no result: {failure.reason}"
+        yield f"{TITLES[name]}: no result: {failure.reason}"
 
 
 def _short(formula: Formula) -> str:

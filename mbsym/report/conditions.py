@@ -146,11 +146,6 @@ class CaseStatement:
     explanation: str
     otherwise: bool = False
 
-    @property
-    def theorem(self) -> str:
-        """The names of the theorems, or nothing."""
-        return ", ".join(self.theorems)
-
 
 def cases(ring: Ring, found: Sequence[Case], told: Labels) -> list[CaseStatement]:
     """The cases that can occur: none after one that always holds.  ``told``: what labels mean beside them."""

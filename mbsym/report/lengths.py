@@ -12,6 +12,7 @@ from dataclasses import dataclass, fields, is_dataclass
 from typing import Any
 
 from mbsym.formulas.formula import Formula
+from mbsym.report.content import Said, say
 
 
 @dataclass(frozen=True)
@@ -59,11 +60,22 @@ def formulas(result: Any) -> Iterator[Formula]:
             yield from formulas(getattr(result, field.name))
 
 
-def program_not_printed(steps: int) -> str:
+def program_not_printed(steps: int) -> Said:
     """The same for straight-line code."""
-    return f"{steps} steps, not printed; model.py and model.c have them"
+    return say("[[count]] steps, not printed; model.py and model.c have them", count=str(steps))
 
 
 def not_printed(formula: Formula) -> str:
     """What stands in a formula's place."""
     return f"{formula.terms} terms, not printed"
+
+
+def length(formula: Formula, kept: bool = True) -> Said:
+    """What stands in the place of a polynomial that nobody would read; ``kept``: results.json has it in full."""
+    degree = max(map(sum, formula.polynomial.monoms()))
+    text = (
+        "[[terms]] terms, of degree [[degree]]; in full in results.json"
+        if kept
+        else "[[terms]] terms, of degree [[degree]]"
+    )
+    return say(text, terms=str(formula.terms), degree=str(degree))

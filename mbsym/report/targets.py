@@ -79,7 +79,7 @@ def _fragment(name: str, number: int | None, title: str) -> Target:
     def text(analysis: Analysis, problems: Sequence[int]) -> str:
         from mbsym.report.latex.appendix import fragment
 
-        return fragment(analysis, problems, name, title)
+        return fragment(analysis, problems, name, title, number)
 
     def wanted(analysis: Analysis, problems: Sequence[int]) -> bool:
         if name in ("claims", "checks"):

@@ -171,18 +171,18 @@ def _dynamics(scenario: Scenario, ring: Ring | None, request: Request) -> Dynami
 def _closed(scenario: Scenario, request: Request) -> Closed | None:
     """The initial state on the constraints; None where there are none.
 
-    Raises NotClosed, and Constrained where something is asked for that leaves constraints out.
+    Raises NotClosed, NothingMoves, and Constrained where something is asked for that leaves constraints out.
     """
     if not scenario.system.constraints:
         return None
     from mbsym.mechanics.constraints.refusal import refuse_constraints
-    from mbsym.numerics.closing import closed
+    from mbsym.numerics.closing import closed, moving
 
     if request.certify is not None:
         refuse_constraints(scenario.system, "enclosures of the solution")
     if request.model.linear:
         refuse_constraints(scenario.system, "linearised equations in numbers")
-    return closed(scenario, request.fixed)
+    return moving(closed(scenario, request.fixed))
 
 
 def drift_along(dynamics: Dynamics, found: integration.Trajectory) -> Drift | None:

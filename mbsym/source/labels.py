@@ -1,83 +1,89 @@
-"""The labels of the editor's plain text (the paper's Figure 3, and what our model needs besides) as YAML keys."""
+"""The labels of the editor's plain text, from the table of keys: the paper's Figure 3, and what we need besides.
+
+A text has a header, sections of ``name = value`` lines, and numbered blocks for what is listed.
+"""
 
 from __future__ import annotations
 
-HEADER = {
-    "mechanical system": "name",
-    "description": "description",
-    "number of bodies": "number of bodies",
-    "dimensionless time": "dimensionless time",
-    "small parameter": "small parameter",
-    "source": "source",
-    "language": "language",
-    "order": "order",
-    "dependent": "dependent",
-    "reactions": "reactions",
-}
+from collections.abc import Iterator, Mapping
 
-BODY = {
-    "name": "name",
-    "previous body number": "attached to",
-    "body mass": "mass",
-    "radius vector of connection point": "connection point",
-    "radius vector of mass center": "mass centre",
-    "vector of relative linear velocity": "relative velocity",
-    "numbers of rotation axes": "axes",
-    "rotation angles": "angles",
-    "inertia about": "inertia about",
-    "tensor of inertia": "inertia",
-    "accept tensor of inertia": "accept",
-    "gyrostatic moment": "gyrostatic moment",
-    "generalized coordinates": "coordinates",
-    "shape": "shapes",
-    "speeds": "speeds",
-    "orientation": "orientation",
-}
-
-#: Sections of ``name = value`` lines and the key of a bare first value (None: the value is one expression).
-SECTIONS: dict[str, tuple[str, str | None]] = {
-    "parameters": ("parameters", "sign"),
-    "prescribed motions": ("prescribed", "rate"),
-    "inputs": ("inputs", "meaning"),
-    "outputs": ("outputs", None),
-    "tables": ("tables", "points"),
-    "linear system": ("linear system", "file"),
-    "units": ("units", None),
-    "relations": ("relations", None),
-    "unperturbed motion": ("motion", "value"),
-    "notation": ("notation", None),
-    "values": ("values", None),
-    "initial state": ("initial", "position"),
-    "abbreviations": ("abbreviations", None),
-    "limits": ("limits", None),
-    "latex symbols": ("latex", None),
-}
+from mbsym.source import keys
+from mbsym.source.grammar import BodyName, Either, Ends, Key, Kind, Kinds, Listed, Named, Record, Type, Vector, plain
 
 ASSUMPTIONS = "assumptions"
 
-LOAD_TYPE = "type of load"
-LOAD_EXPRESSION = "expression"
 
-#: The two points of a spring or damper: label -> (which point, key of the point).
-BETWEEN = {
-    "first body": (0, "body"),
-    "first point": (0, "point"),
-    "second body": (1, "body"),
-    "second point": (1, "point"),
+def _labelled(table: Mapping[str, Key]) -> dict[str, str]:
+    return {key.label or name: name for name, key in table.items()}
+
+
+def _first(one: Type) -> Type:
+    return one.types[0] if isinstance(one, Either) else one
+
+
+def _is_section(one: Type) -> bool:
+    first = _first(one)
+    return isinstance(first, Record) or (isinstance(first, Named) and not first.one)
+
+
+def _alone(section: Type) -> str | None:
+    """The key of a bare first value of the lines of a section; None: the value is one expression."""
+    first = _first(section)
+    keyed = first.keys.values() if isinstance(first, Record) else ()
+    values = [first.value] if isinstance(first, Named) else [key.type for key in keyed]
+    return next((one.alone for value in values for one in plain(value) if isinstance(one, Record) and one.alone), None)
+
+
+_REST = {name: key for name, key in keys.SYSTEM.items() if name not in ("mbsym", ASSUMPTIONS)}
+
+#: What is listed in numbered blocks.
+_BLOCKS = {
+    name for name, key in _REST.items() if isinstance(key.type, Listed) and isinstance(key.type.item, Record | Kinds)
 }
 
-CONSTRAINT_TYPE = "type of constraint"
+#: Sections and the key of a bare first value.
+SECTIONS: dict[str, tuple[str, str | None]] = {
+    label: (name, _alone(_REST[name].type)) for label, name in _labelled(_REST).items() if _is_section(_REST[name].type)
+}
 
-#: The two ends of a constraint: the same, and axes.
-ENDS = {**BETWEEN, "first axis": (0, "axis"), "second axis": (1, "axis")}
+HEADER = {
+    **{label: name for label, name in _labelled(_REST).items() if label not in SECTIONS and name not in _BLOCKS},
+    "number of bodies": "number of bodies",
+}
 
-#: Labels whose values may be numbers of bodies.
-LOAD_BODIES = ("body", "centre", "about", "axes", "reaction on", "first body", "second body")
-CONSTRAINT_BODIES = ("body", "axes", "on", "first body", "second body")
+#: Of a body, those of its rotation among them.
+BODY = {
+    **_labelled({name: key for name, key in keys.BODY.items() if name != "rotation"}),
+    **_labelled({**keys.ROTATION, "accept": keys.INERTIA["accept"]}),
+}
 
-#: Labels of vectors in loads.
-LOAD_VECTORS = ("vector", "direction", "point", "components", "first point", "second point")
-CONSTRAINT_VECTORS = ("point", "first point", "second point", "first axis", "second axis")
+EXPRESSION = "expression"
+
+
+def _inside(kinds: Mapping[str, Kind]) -> Iterator[tuple[str, Type]]:
+    """The keys of all kinds with their types; of two ends with the labels of both."""
+    for kind in kinds.values():
+        for name, one in {"": kind.type, **{name: key.type for name, key in kind.keys.items()}}.items():
+            if isinstance(one, Ends):
+                for which in ("first", "second"):
+                    yield from ((f"{which} {inner}", key.type) for inner, key in one.record.keys.items())
+            else:
+                yield name, one
+
+
+_KINDS = [*_inside(keys.LOADS), *_inside(keys.CONSTRAINTS)]
+
+#: Labels of loads and constraints whose values may be numbers of bodies, and those whose values are vectors.
+NUMBERED = {label for label, one in _KINDS if isinstance(one, BodyName)}
+VECTORS = {label for label, one in _KINDS if isinstance(one, Vector)}
+
+#: The two ends of a load or constraint: label -> (which end, its key).
+ENDS = {
+    label: (("first", "second").index(which), key)
+    for label in sorted(NUMBERED | VECTORS)
+    for which, _, key in [label.partition(" ")]
+    if which in ("first", "second")
+}
 
 SPELLINGS = {
     "radius vector of mass centre": "radius vector of mass center",

@@ -5,13 +5,10 @@ from __future__ import annotations
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.tree import ZERO, Expression, Number
 from mbsym.model.linear import MATRICES, PARTS, GivenMatrix, LinearModel, MatrixFile, Rows
-from mbsym.source.keys import LINEAR_SYSTEM, MATRIX_FILE
+from mbsym.source.keys import LINEAR_SYSTEM, MATRIX_FILE, MOST_COORDINATES
 from mbsym.source.placed import Mapping, Node, Sequence
 from mbsym.source.reading import Fields, Reading, comma_hint
 from mbsym.source.scope import Allowed
-
-#: A system has at most so many coordinates.
-MOST_COORDINATES = 30
 
 #: What describes bodies, and has no meaning beside matrices.
 OF_BODIES = (

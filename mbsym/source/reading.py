@@ -7,7 +7,7 @@ every mistake; a System is only returned when there was none.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
@@ -256,7 +256,7 @@ class Reading:
             raise placed.TooManyComplaints  # without them every name would be unknown
         return node.items
 
-    def fields(self, node: Node, what: str, known: Mapping[str, str], hint: str | None = None) -> Fields:
+    def fields(self, node: Node, what: str, known: Collection[str], hint: str | None = None) -> Fields:
         """A mapping with a fixed set of keys; an unknown one is complained about and taken for what it resembles."""
         found: dict[str, Entry] = {}
         misspelt: dict[str, Entry] = {}

@@ -1,6 +1,6 @@
 """What a text says of itself: whether it is a description, and in which spelling.
 
-Asked of every file in a folder, also of those that are not read; so this imports neither a reader nor the model.
+Asked of every file in a folder, also of those that are not read; so this imports no reader.
 """
 
 from __future__ import annotations

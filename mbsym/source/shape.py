@@ -6,34 +6,25 @@ out, so that a written file is as short as a hand-written one.
 
 from __future__ import annotations
 
-from typing import Union
+from collections.abc import Iterator, Mapping
+from dataclasses import fields
+from typing import Any, Union
 
 from mbsym.expressions.angles import angle_name
 from mbsym.expressions.table import HOLD, LINEAR, Table
 from mbsym.expressions.tree import ZERO, Expression, Name, Number, substitute, text
 from mbsym.model.claims import CLAIMS, INITIAL_STATE, Claim, index_names
-from mbsym.model.constraints import Coincide, Constraint, Distance, Parallel, Rolling, kind_name
+from mbsym.model.constraints import Axis, Constraint
 from mbsym.model.inputs import Input
 from mbsym.model.linear import LinearModel
-from mbsym.model.loads import (
-    CoordinateDamper,
-    CoordinateSpring,
-    ForceFunction,
-    GeneralizedForce,
-    IsotropicDamper,
-    Load,
-    NewtonianGravity,
-    PointDamper,
-    PointForce,
-    PointSpring,
-    Rayleigh,
-    Torque,
-    UniformGravity,
-)
+from mbsym.model.loads import Load
 from mbsym.model.small import SmallParameter
 from mbsym.model.speeds import OMEGA, Speed
 from mbsym.model.system import Body, Inertia, InitialValue, MotionEntry, Parameter, Point, Prescribed, System, Vector
 from mbsym.model.system import Shape as Look
+from mbsym.source.grammar import Ends, Equation, Formula, Key, Kind, Named, Record, Same, Type
+from mbsym.source.grammar import Vector as VectorType
+from mbsym.source.keys import CONSTRAINTS, LOADS
 
 Shape = Union[str, list["Shape"], dict[str, "Shape"]]  # noqa: UP007 (a quoted name takes no |)
 
@@ -197,65 +188,58 @@ def inferred_coordinates(system: System) -> list[tuple[str, ...]]:
 
 def load_shape(load: Load) -> tuple[str, Shape]:
     """The kind of a load and its data.  Raises TypeError for anything else."""
-    match load:
-        case NewtonianGravity(constant, centre, about, order):
-            return "newtonian gravity", {
-                "constant": text(constant),
-                "centre": centre,
-                "about": about,
-                "order": str(order),
-            }
-        case UniformGravity(acceleration):
-            return "uniform gravity", {"vector": vector_shape(acceleration)}
-        case CoordinateSpring(coordinate, stiffness, rest):
-            spring: dict[str, Shape] = {"coordinate": coordinate, "stiffness": text(stiffness)}
-            return "spring", spring if rest == ZERO else {**spring, "rest": text(rest)}
-        case PointSpring(first, second, stiffness, length):
-            return "spring", {
-                "between": [_point(first), _point(second)],
-                "stiffness": text(stiffness),
-                "length": text(length),
-            }
-        case CoordinateDamper(coordinate, coefficient):
-            return "damper", {"coordinate": coordinate, "coefficient": text(coefficient)}
-        case PointDamper(first, second, coefficient):
-            return "damper", {"between": [_point(first), _point(second)], "coefficient": text(coefficient)}
-        case IsotropicDamper(first, second, coefficient):
-            return "isotropic damper", {"between": [_point(first), _point(second)], "coefficient": text(coefficient)}
-        case ForceFunction(spelled=spelled):
-            return spelled, text(load.written)
-        case Rayleigh(expression):
-            return "rayleigh", text(expression)
-        case GeneralizedForce(components):
-            return "generalized force", {name: text(value) for name, value in components}
-        case PointForce(point, components, axes):
-            return "force", {**_point(point), "components": vector_shape(components), "axes": axes}
-        case Torque(body, components, axes, reaction_on):
-            torque: dict[str, Shape] = {"body": body, "components": vector_shape(components), "axes": axes}
-            return "torque", torque if reaction_on is None else {**torque, "reaction on": reaction_on}
-    raise TypeError(f"not a load: {load!r}")
+    return _of_kind(load, LOADS)
 
 
 def constraint_shape(constraint: Constraint) -> tuple[str, Shape]:
     """The kind of a constraint and its data."""
-    kind = kind_name(constraint)
-    match constraint:
-        case Coincide(first, second):
-            return kind, [_point(first), _point(second)]
-        case Parallel(one, other):
-            return kind, [{"body": x.body, "axis": vector_shape(x.direction)} for x in (one, other)]
-        case Distance(first, second, length):
-            return kind, {"between": [_point(first), _point(second)], "length": text(length)}
-        case Rolling(body, contact, axes, on):
-            rolling: dict[str, Shape] = {"body": body, "point": vector_shape(contact)}
-            if axes != body:
-                rolling["axes"] = axes
-            return kind, {**rolling, "on": on}
-    return kind, f"{text(constraint.left)} = {text(constraint.right)}"
+    return _of_kind(constraint, CONSTRAINTS)
 
 
-def _point(point: Point) -> dict[str, Shape]:
-    return {"body": point.body, "point": vector_shape(point.position)}
+def _of_kind(made: object, kinds: Mapping[str, Kind]) -> tuple[str, Shape]:
+    """The way back from what was made of a kind to its keys."""
+    for name, kind in kinds.items():
+        for way in kind.ways:
+            if way.writes(made):
+                parts = iter(way.values(made))
+                if not way.keys:
+                    return name, _of_type(kind.type, _taken(kind.type, parts))
+                values = {key: _taken(kind.keys[key].type, parts) for key in way.keys}
+                said = {key: value for key, value in values.items() if _says(kind.keys[key], value, values)}
+                return name, {key: _of_type(kind.keys[key].type, value) for key, value in said.items()}
+    raise TypeError(f"of no known kind: {made!r}")
+
+
+def _taken(of: Type, parts: Iterator[Any]) -> Any:
+    """The value of a key: two ends or sides are two parts."""
+    return (next(parts), next(parts)) if isinstance(of, Ends | Equation) else next(parts)
+
+
+def _says(key: Key, value: Any, values: dict[str, Any]) -> bool:
+    """Whether a value has to be written: not where it is nothing, zero, or that of another key all the same."""
+    if isinstance(key.default, Same):
+        return bool(value != values[key.default.key])
+    return key.required or (value is not None and value != ZERO)
+
+
+def _of_type(of: Type, value: Any) -> Shape:
+    match of:
+        case Formula():
+            return text(value)
+        case VectorType():
+            return vector_shape(value)
+        case Ends(record):
+            return [_end(record, one) for one in value]
+        case Equation():
+            return f"{text(value[0])} = {text(value[1])}"
+        case Named(inner):
+            return {name: _of_type(inner, one) for name, one in value}
+    return str(value)
+
+
+def _end(record: Record, end: Point | Axis) -> Shape:
+    values = (getattr(end, one.name) for one in fields(end))
+    return {name: _of_type(key.type, value) for (name, key), value in zip(record.keys.items(), values, strict=True)}
 
 
 def motion_shape(entry: MotionEntry) -> Shape:

@@ -43,7 +43,7 @@ def _sizes(kind: str, node: Node, reading: Reading) -> tuple[Expression, ...]:
     items = node.items if isinstance(node, Sequence) else (node,)
     if len(items) != count:
         message = f"a {kind} has {count} size{'s' if count > 1 else ''}, not {len(items)}"
-        reading.error("wrong-shape", message, node.span, SHAPE[kind])
+        reading.error("wrong-shape", message, node.span, SHAPE[kind].meaning)
         return ()
     return tuple(reading.expression(item, _SIZE) for item in items)
 

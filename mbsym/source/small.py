@@ -6,13 +6,11 @@ from collections.abc import Iterator
 
 from mbsym.expressions.parser import ascii_safe
 from mbsym.model.small import SmallParameter
-from mbsym.source.keys import SMALL_PARAMETER
+from mbsym.source.keys import MOST_POWER, SMALL_PARAMETER
 from mbsym.source.placed import Entry, Mapping, Node, Scalar
 from mbsym.source.reading import Reading
 from mbsym.source.scope import Allowed
 
-#: Exponents beyond are complained about.
-MOST_POWER = 6
 _PARAMETER = Allowed("the small parameter", ("parameter",))
 _KINDS = ("coordinate", "speed", "unit vector", "quaternion")
 _SCALED = Allowed("what stands for a power of the small parameter", ("parameter", *_KINDS))

@@ -30,6 +30,7 @@ from mbsym.model.system import INERTIAL, Body, System, Vector, velocity_name
 from mbsym.source import placed
 from mbsym.source.bodies import Draft, read_body_name
 from mbsym.source.identity import independent, vanishes
+from mbsym.source.keys import ANGLES, COSINES
 from mbsym.source.placed import Node
 from mbsym.source.reading import Reading
 from mbsym.source.scope import Allowed
@@ -37,8 +38,6 @@ from mbsym.source.scope import Allowed
 #: How a body's own angular velocity is written in the form of a speed.
 OWN = ("omega1", "omega2", "omega3")
 MAX_SPEEDS = 6
-
-ANGLES, COSINES = "angles", "direction cosines"
 
 _COMPONENT = re.compile(r"\s*omega\[(.*)\]\s*\[\s*([123])\s*\]\s*\Z", re.DOTALL)
 _FORM = Allowed("a speed", ("coordinate", "velocity", "prescribed", "parameter", "time"))

@@ -10,11 +10,10 @@ import re
 
 from mbsym.expressions.parser import ascii_safe
 from mbsym.model.system import WrittenSymbol
+from mbsym.source.keys import LONGEST
 from mbsym.source.placed import Node, Scalar
 from mbsym.source.reading import Reading
 from mbsym.source.scope import Allowed
-
-LONGEST = 80
 
 _LETTERS = frozenset(
     """alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa lambda mu nu xi pi varpi rho varrho

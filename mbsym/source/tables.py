@@ -10,13 +10,10 @@ from mbsym.expressions.place import Span
 from mbsym.expressions.table import CUBIC, ENDS, EXTRAPOLATE, HOLD, LINEAR, OUTSIDE_ZERO, Points, Source, Table
 from mbsym.model.system import rational
 from mbsym.model.units import Declared
-from mbsym.source.keys import TABLE
+from mbsym.source.keys import MAX_POINTS, TABLE
 from mbsym.source.placed import Entry, Node, Sequence
 from mbsym.source.reading import Fields, Reading
 from mbsym.source.scope import NUMBER
-
-#: A table in a description has at most so many points, one from a file ``table_file.MOST_POINTS``.
-MAX_POINTS = 500
 
 Place = tuple[Fraction, Fraction]
 

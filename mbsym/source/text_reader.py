@@ -13,13 +13,13 @@ from dataclasses import dataclass, field
 
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints, Span
-from mbsym.source.keys import VERSION
+from mbsym.source.keys import CONSTRAINTS, LOADS, VERSION
 from mbsym.source.labels import ASSUMPTIONS, BODY, HEADER, SECTIONS
 from mbsym.source.placed import Entry, Mapping, Node, Scalar, Sequence
 from mbsym.source.scope import closest
 from mbsym.source.text_claims import claim
+from mbsym.source.text_kinds import of_kind
 from mbsym.source.text_lines import HEADING, key_of, label_of, lines_of, word_of
-from mbsym.source.text_loads import load
 from mbsym.source.text_values import items, row, split
 
 
@@ -54,17 +54,18 @@ class TextReader:
         bodies = [block for block in blocks if self.kind(block) == "body"]
         self.names = {str(number): _name_in(block) or _unnamed(number) for number, block in enumerate(bodies, start=1)}
         entries += self.header(header)
-        loads = [block for block in blocks if self.kind(block) == "load"]
-        self.check_numbers(bodies)
-        claims = [block for block in blocks if self.kind(block) == "claim"]
-        self.check_numbers(loads)
-        self.check_numbers(claims)
         self.check_count(header, len(bodies))
         entries += [self.section(block) for block in blocks if self.kind(block) == "section"]
-        entries += _list_entry("bodies", bodies, self.body_form)
-        entries += _list_entry("loads", loads, lambda block: load(self, block.heading, block.lines))
-        entries += _list_entry("claims", claims, lambda block: claim(self, block.heading, block.lines))
-        entries += self.constraints(blocks)
+        readers: dict[str, tuple[str, Callable[[_Block], Mapping | None]]] = {
+            "body": ("bodies", self.body_form),
+            "load": ("loads", lambda one: of_kind(self, "load", LOADS, one.heading, one.lines)),
+            "claim": ("claims", lambda one: claim(self, one.heading, one.lines)),
+            "constraint": ("constraints", lambda one: of_kind(self, "constraint", CONSTRAINTS, one.heading, one.lines)),
+        }
+        for kind, (key, read) in readers.items():
+            found = [block for block in blocks if self.kind(block) == kind]
+            self.check_numbers(found)
+            entries += _list_entry(key, found, read)
         return Mapping(tuple(entries), start)
 
     def blocks(self, lines: list[Scalar]) -> tuple[list[Scalar], list[_Block]]:
@@ -317,16 +318,6 @@ class TextReader:
         """Bodies are referred to by number; the tree knows them by name."""
         name = self.names.get(value.text)
         return value if name is None else Scalar(name, value.span, literal=False)
-
-    def constraints(self, blocks: list[_Block]) -> list[Entry]:
-        """The blocks ``Constraint description (1)``, ... as a list of {kind: data}."""
-        found = [block for block in blocks if self.kind(block) == "constraint"]
-        self.check_numbers(found)
-        if not found:
-            return []
-        from mbsym.source.text_constraints import constraint  # few texts have any
-
-        return _list_entry("constraints", found, lambda block: constraint(self, block.heading, block.lines))
 
     def numbers(self, value: Scalar) -> Node:
         """``theta = 0.1; theta_dot = 2`` as a mapping; a single word stays what it is."""

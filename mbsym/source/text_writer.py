@@ -6,6 +6,8 @@ from mbsym.expressions.tree import ZERO, text
 from mbsym.model.claims import BODY, CLAIMS
 from mbsym.model.small import SmallParameter
 from mbsym.model.system import Body, Shape, System, Vector
+from mbsym.source.grammar import BodyName, Ends, Kind, Named
+from mbsym.source.keys import CONSTRAINTS, LOADS
 from mbsym.source.shape import Shape as Data
 from mbsym.source.shape import (
     assumption_text,
@@ -59,17 +61,20 @@ def to_text(system: System) -> str:
         given = {name: _matrix(shape) for name, shape in linear_shape(system.linear).items()}
         lines += _section("Linear system", given)
     for number, load in enumerate(system.loads, start=1):
-        lines += ["", f"Load description ({number})", *_load(*load_shape(load), numbers)]
+        name, shape = load_shape(load)
+        lines += ["", f"Load description ({number})", *_of_kind("load", LOADS[name], name, shape, numbers)]
     for number, constraint in enumerate(system.constraints, start=1):
-        lines += ["", f"Constraint description ({number})", *_constraint(*constraint_shape(constraint), numbers)]
+        name, shape = constraint_shape(constraint)
+        written = _of_kind("constraint", CONSTRAINTS[name], name, shape, numbers)
+        lines += ["", f"Constraint description ({number})", *written]
     lines += _section("Relations", {one.name: text(one.value) for one in system.relations})
     motion = {name: _record(shape, "value") for name, shape in motion_shapes(system).items()}
     lines += _section("Unperturbed motion", motion)
     lines += _section("Notation", {one.name: text(one.value) for one in system.notation})
     lines += _section("Outputs", {one.name: text(one.value) for one in system.outputs})
     if system.assumptions:
-        written = [assumption_text(one.left, one.relation, one.right) for one in system.assumptions]
-        lines += ["", "Assumptions", *(f"  {one}" for one in written)]
+        compared = [assumption_text(one.left, one.relation, one.right) for one in system.assumptions]
+        lines += ["", "Assumptions", *(f"  {one}" for one in compared)]
     initial = {one.coordinate: _record(initial_shape(one), "position") for one in (*system.initial, *system.start)}
     lines += _section("Initial state", initial)
     limits = {one.coordinate: f"({text(one.lower)}, {text(one.upper)})" for one in system.limits}
@@ -185,35 +190,20 @@ def _braces(items: list[str]) -> str:
     return "{" + ", ".join(items) + "}"
 
 
-def _load(kind: str, shape: Data, numbers: dict[str, str]) -> list[str]:
-    lines = [f"  Type of load: {kind}"]
+def _of_kind(what: str, kind: Kind, name: str, shape: Data, numbers: dict[str, str]) -> list[str]:
+    lines = [f"  Type of {what}: {name}"]
+    if isinstance(kind.type, Ends):
+        return [*lines, *_ends(shape, numbers)]
     if not isinstance(shape, dict):
         return [*lines, f"  Expression: {shape}"]
     for key, value in shape.items():
-        if key == "between":
-            lines += _points(value, numbers)
-        elif kind != "generalized force" and key in ("body", "centre", "about", "axes", "reaction on"):
-            lines.append(f"  {key.capitalize()}: {numbers[str(value)]}")
-        elif kind == "generalized force":
+        if isinstance(kind.type, Named):
             lines.append(f"  {key} = {value}")
+        elif isinstance(kind.keys[key].type, Ends):
+            lines += _ends(value, numbers)
         else:
-            lines.append(f"  {key.capitalize()}: {_value(value)}")
-    return lines
-
-
-def _constraint(kind: str, shape: Data, numbers: dict[str, str]) -> list[str]:
-    lines = [f"  Type of constraint: {kind}"]
-    if isinstance(shape, list):
-        return [*lines, *_points(shape, numbers)]
-    if not isinstance(shape, dict):
-        return [*lines, f"  Expression: {shape}"]
-    for key, value in shape.items():
-        if key == "between":
-            lines += _points(value, numbers)
-        elif key in ("body", "axes", "on"):
-            lines.append(f"  {key.capitalize()}: {numbers[str(value)]}")
-        else:
-            lines.append(f"  {key.capitalize()}: {_value(value)}")
+            numbered = isinstance(kind.keys[key].type, BodyName)
+            lines.append(f"  {key.capitalize()}: {numbers[str(value)] if numbered else _value(value)}")
     return lines
 
 
@@ -232,14 +222,13 @@ def _claim(shape: dict[str, Data], numbers: dict[str, str]) -> list[str]:
     return lines
 
 
-def _points(points: Data, numbers: dict[str, str]) -> list[str]:
-    assert isinstance(points, list)
+def _ends(ends: Data, numbers: dict[str, str]) -> list[str]:
+    assert isinstance(ends, list)
     lines = []
-    for which, point in zip(("First", "Second"), points, strict=True):
-        assert isinstance(point, dict)
-        lines.append(f"  {which} body: {numbers[str(point['body'])]}")
-        what = "point" if "point" in point else "axis"
-        lines.append(f"  {which} {what}: {_value(point[what])}")
+    for which, end in zip(("First", "Second"), ends, strict=True):
+        assert isinstance(end, dict)
+        for key, value in end.items():
+            lines.append(f"  {which} {key}: {numbers[str(value)] if key == 'body' else _value(value)}")
     return lines
 
 

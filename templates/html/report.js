@@ -7,6 +7,6 @@ if (fold) {
     const all = [...document.querySelectorAll("details")];
     const open = all.some((item) => !item.open);
     for (const item of all) item.open = open;
-    fold.textContent = open ? "Fold long formulas" : "Unfold all formulas";
+    fold.textContent = open ? fold.dataset.fold : fold.dataset.unfold;
   });
 }

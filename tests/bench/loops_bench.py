@@ -27,7 +27,7 @@ sys.path.insert(0, str(TESTS / "constrained"))
 from test_mechanisms import ANGLES, chain, described, four_bars, reference, shipped  # noqa: E402
 
 import mbsym  # noqa: E402
-from mbsym.mechanics.constraints.dynamics import constrained_dynamics  # noqa: E402
+from mbsym.mechanics.constraints.dynamics import Chosen, constrained_dynamics  # noqa: E402
 from mbsym.mechanics.programs import constants  # noqa: E402
 from mbsym.numerics.closing import closed  # noqa: E402
 from mbsym.numerics.dynamics import Dynamics  # noqa: E402
@@ -132,7 +132,7 @@ def bicycle() -> str:
     analysis = mbsym.load(SHIPPED / "bicycle.yaml", (3,))
     found = analysis.constraints
     kept = [(found.names[i].constraint, found.names[i].component) for i in found.independent]
-    dynamics = constrained_dynamics(analysis.system, analysis.ring, kept)
+    dynamics = constrained_dynamics(analysis.system, analysis.ring, Chosen(tuple(kept)))
     named = dynamics.program.operations(dynamics.accelerations, constants(analysis.system))
     numbers = Dynamics(scenario(analysis.system)).right_hand_side.operations
     return f"bicycle, right-hand side: {named} operations with named parameters, {numbers} with numbers"

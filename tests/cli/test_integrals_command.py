@@ -14,7 +14,7 @@ import mbsym
 from mbsym.analysis.invariant_relations import special_relations
 from mbsym.analysis.polynomial import integrals_of, setting
 from mbsym.report.schemas import schema
-from mbsym_cli.integrals_relations import darboux_values
+from mbsym.studies.integrals.relations import darboux_values
 from mbsym_cli.main import main
 
 CLEBSCH, TOP = "systems/clebsch-poisson.yaml", "systems/euler-poisson.yaml"
@@ -99,7 +99,7 @@ def test_cases_are_conditions():
         ((TOP, *NUMBERS, "--vary", "B=1:5"), "has an interval and a number"),
         ((TOP, *NUMBERS, "--vary", "A=1:5", "--cases"), "choose one of them"),
         ((CLEBSCH, "--weight", "s=1"), "the field has no variable s"),
-        ((CLEBSCH, "--weight", "gamma1"), "a variable and its weight"),
+        ((CLEBSCH, "--weight", "gamma1"), "is no NAME=N"),
     ],
 )
 def test_bad_input_is_complained_about(words, told):

@@ -202,7 +202,7 @@ def test_lengths_of_zero_close_no_loop() -> None:
     found = analysis.equations.constraints
     assert found is not None
     assert (found.position_rank, found.velocity_rank, found.redundant) == (2, 2, ())
-    assert found.parameter_conditions == 0
+    assert found.demanded.count == 0
 
 
 def test_the_flat_parallelogram_is_singular() -> None:

@@ -18,7 +18,8 @@ from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
 from mbsym.problems.constraints import analysis, integrability
 from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.word import Word
-from mbsym.report.words.constraint_words import Writer, filled, reduction_sentences
+from mbsym.report.plain_writer import Writer
+from mbsym.report.words.constraint_words import reduction_sentences
 from mbsym.source import read
 
 BEAD = """
@@ -108,7 +109,7 @@ def test_a_part_that_decays_beside_one_that_does_not_is_stable() -> None:
 def test_the_report_says_that_it_is_about_the_leaf() -> None:
     about = bead().linearisation.constrained
     assert about is not None
-    told = " ".join(filled(x) for x in reduction_sentences(about, Writer(", ".join)))
+    told = " ".join(map(Writer().said, reduction_sentences(about)))
     assert "integrable (Frobenius; proved): they keep relations between the coordinates, 1 in number" in told
     assert "the first approximation is that of disturbances that keep the values of these" in told
     assert "D, G, K and N are taken as no more" not in told

@@ -70,7 +70,7 @@ def replaced(old: str, new: str) -> str:
         (TEXT + "initial:\n  x: {position: 1, |}\n", {"position": "", "velocity": ""}),
         (replaced("{x: 0, theta: 0}", "{x: {|}}"), MOTION),
         (replaced("  - damper:", "  - |\n  - damper:"), LOADS),
-        (replaced("{coordinate: theta, coefficient: m}", "{|}"), LOADS["damper"]),
+        (replaced("{coordinate: theta, coefficient: m}", "{|}"), LOADS["damper"].keys),
         (replaced("{coordinate: theta, coefficient: m}", "{between: [{|"), POINT),
         (TEXT + "claims:\n  - claim: kinetic energy\n    |\n", CLAIM),
     ],
@@ -84,7 +84,7 @@ def test_keys_are_those_of_the_mapping(marked: str, keys: dict[str, str]) -> Non
 def keys_of_everything() -> set[str]:
     paths = [(), ("bodies",), ("bodies", "rotation"), ("loads",), ("claims",), ("loads", "x", "between")]
     paths += [(section, "x") for section in ("parameters", "prescribed", "motion", "initial")]
-    return {key for path in paths for key in keys_in(path)} | {key for keys in LOADS.values() for key in keys}
+    return {key for path in paths for key in keys_in(path)} | {key for kind in LOADS.values() for key in kind.keys}
 
 
 def beside(marked: str) -> list[str]:
@@ -142,9 +142,9 @@ def hover(marked: str) -> str | None:
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
-        ("mass centre: [0", "mass cen|tre: [0", BODY["mass centre"]),
-        ("{axes: [3]", "{ax|es: [3]", ROTATION["axes"]),
-        ("coefficient: m", "coeffi|cient: m", LOADS["damper"]["coefficient"]),
+        ("mass centre: [0", "mass cen|tre: [0", BODY["mass centre"].meaning),
+        ("{axes: [3]", "{ax|es: [3]", ROTATION["axes"].meaning),
+        ("coefficient: m", "coeffi|cient: m", LOADS["damper"].keys["coefficient"].meaning),
         ("mass: m\n    coord", "mass: |m\n    coord", "mass of the bob"),
         ("angles: [theta]", "angles: [the|ta]", "a coordinate of bob"),
         ("[x, 0, 0]", "[|x, 0, 0]", "cyclic"),

@@ -30,8 +30,8 @@ from mbsym.report.language import Language
 from mbsym.report.maps.figure import lettered, letters
 from mbsym.report.maps.words import onset_words
 from mbsym.report.schemas import schema
+from mbsym.studies.map.plane import borders_of_slices, remarks
 from mbsym_cli.main import main
-from mbsym_cli.map_table import borders_of_slices, remarks
 
 TEXT = """
 mbsym: 1

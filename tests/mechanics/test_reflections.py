@@ -12,7 +12,8 @@ import mbsym
 from mbsym.mechanics.reflections import reflections
 from mbsym.mechanics.rest import at_numbers, given_values, rest
 from mbsym.problems.relative_equilibria.equilibria import Equilibria, equilibria
-from mbsym_cli.equilibria import command
+from mbsym.studies.equilibria import STUDY
+from mbsym_cli.study import command_of
 
 TURNED = """
 mbsym: 1
@@ -101,7 +102,7 @@ def test_polar_coordinates_are_recognised() -> None:
 
 
 def test_the_command_says_what_is_left_out() -> None:
-    result = CliRunner().invoke(command, [str(SHIPPED / "spring-pendulum.yaml"), "--set", "l0=0.1"])
+    result = CliRunner().invoke(command_of(STUDY), [str(SHIPPED / "spring-pendulum.yaml"), "--set", "l0=0.1"])
     assert result.exit_code == 0
     assert "1 relative equilibrium: 1 stable" in result.output
     assert "1 more solution with r < 0, not counted" in result.output

@@ -456,11 +456,12 @@ def test_the_command_writes_everything(tmp_path: Path) -> None:
 def test_numbers_stay_whole_on_a_narrow_terminal(whole: Any, width: int) -> None:
     from rich.console import Console
 
-    from mbsym_cli.extremes_run import _table
+    from mbsym.studies.extremes import digits
+    from mbsym_cli.console import rich_table
 
     for columns, rows in tables(whole):
         out = io.StringIO()
-        Console(file=out, width=width, force_terminal=True, color_system=None).print(_table(columns, rows))
+        Console(file=out, width=width, force_terminal=True, color_system=None).print(rich_table(digits(columns, rows)))
         lines = out.getvalue().splitlines()
         assert "…" not in out.getvalue()
         assert max(map(len, lines)) <= width

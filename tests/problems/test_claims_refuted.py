@@ -98,7 +98,7 @@ def test_a_wrong_factor_never_reads_as_holding() -> None:
     for one in written:
         assert ("holds" in one["outcome"]) == (one["word"] == "held")
     table = latex(analysis, range(1, 8))
-    assert r"\textbf{differs by the factor 2}" in table
+    assert r"\textbf{differs by the factor $2$}" in table
     assert table.count("holds up to a factor") == 1
 
 

@@ -358,7 +358,7 @@ def test_a_dependent_set_must_be_right() -> None:
 
 def test_lengths_that_must_agree_are_told() -> None:
     found = analysed(FREE + "  - relation: x = a\n  - relation: x = Om*a").constraints
-    assert (found.position_rank, found.parameter_conditions) == (1, 1)
+    assert (found.position_rank, found.demanded.count) == (1, 1)
 
 
 # --- what does not know constraints says so ---

@@ -30,7 +30,8 @@ from mbsym.numerics.scenario import exact
 from mbsym.problems.relative_equilibria.equilibria import CERTIFIED, EXACT, Equilibria, RelativeEquilibrium, equilibria
 from mbsym.problems.stability import parameter_values
 from mbsym.problems.stability.enclosed import enclosed_verdict
-from mbsym_cli.equilibria import command
+from mbsym.studies.equilibria import STUDY
+from mbsym_cli.study import command_of
 
 
 def at(source: str, **values: str | int) -> tuple[Analysis, Equilibria]:
@@ -593,7 +594,7 @@ def test_satellite_with_a_stabilizer_in_the_plane_of_its_orbit() -> None:
 
 
 def run(*arguments: str) -> Any:
-    return CliRunner().invoke(command, [*arguments])
+    return CliRunner().invoke(command_of(STUDY), [*arguments])
 
 
 def test_command_prints_a_table() -> None:
@@ -829,11 +830,11 @@ def test_irrational_values_are_taken_exactly(tmp_path: Path) -> None:
     file = tmp_path / "x0.yaml"
     file.write_text(IRRATIONAL, encoding="utf-8")
     for options, places in (((), ("pi/6", "5*pi/6")), (("--set", "x0=pi/4"), ("pi/4", "3*pi/4"))):
-        found = json.loads(CliRunner().invoke(command, [str(file), "--json", *options]).stdout)
+        found = json.loads(CliRunner().invoke(command_of(STUDY), [str(file), "--json", *options]).stdout)
         assert found["complete"]
         told = [(one["coordinates"][0]["value"], one["stability"]["verdict"]) for one in found["equilibria"]]
         assert told == [(places[0], "stable"), (places[1], "unstable")]
     assert found["values"] == {"x0": "pi/4", "k": "2"}
-    refused = CliRunner().invoke(command, [str(file), "--vary", "k=1:2"])
+    refused = CliRunner().invoke(command_of(STUDY), [str(file), "--vary", "k=1:2"])
     assert refused.exit_code == 2
     assert "no rational number for x0" in refused.stderr

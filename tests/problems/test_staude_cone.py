@@ -22,7 +22,8 @@ from mbsym.mechanics.rest import given_values
 from mbsym.problems.relative_equilibria import permanent_rotations as module
 from mbsym.problems.relative_equilibria.equilibria import equilibria
 from mbsym.problems.relative_equilibria.permanent_rotations import PermanentRotations, permanent_rotations
-from mbsym_cli.equilibria import command
+from mbsym.studies.equilibria import STUDY
+from mbsym_cli.study import command_of
 
 FILE = TESTS / "cases" / "statements" / "staude2.yaml"
 G = sympy.symbols("g1 g2 g3")
@@ -190,8 +191,8 @@ def test_a_moment_that_does_not_hold_at_other_rates_is_withdrawn(monkeypatch: py
 
 
 def test_the_command_prints_the_cone() -> None:
-    done = CliRunner().invoke(command, [str(FILE)])
+    done = CliRunner().invoke(command_of(STUDY), [str(FILE)])
     assert done.exit_code == 0
     assert "a one-parameter family, the axes on a cone: 3*g1*g2 - 4*g1*g3 + g2*g3 = 0" in done.output
-    data = json.loads(CliRunner().invoke(command, [str(FILE), "--json"]).output)
+    data = json.loads(CliRunner().invoke(command_of(STUDY), [str(FILE), "--json"]).output)
     assert data["permanent_rotations"]["one_parameter_family"] is True

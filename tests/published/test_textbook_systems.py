@@ -171,7 +171,7 @@ def test_families_are_written_without_inner_names(tmp_path: Path) -> None:
 
 
 def test_what_is_zero_but_for_rounding_is_shown_as_zero() -> None:
-    from mbsym_cli.equilibria_table import _text
+    from mbsym.studies.equilibria.listed import _text
 
     assert _text(CoordinateValue("x", "0", -1.2e-292, False, False)) == "0"
     assert _text(CoordinateValue("x", "0.123456789012", 0.123456789012, False, False)) == "0.12345679"

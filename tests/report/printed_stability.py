@@ -253,7 +253,8 @@ def of_latex(text: str) -> list[Part]:
         if kind == "words":
             for word in re.finditer(
                 r"\\subsection\*?\{|The characteristic polynomial|Number of its factors|Conditions \(|"
-                r"(?:Otherwise )?\\textbf\{([^{}]*)\}([^\n]*?):$|and(?: at least one of these holds)?:$|Verdict",
+                r"(?:Otherwise )?\\textbf\{([^{}]*)\}([^\n]*?):$|and(?: at least one of these holds)?:$|Verdict|"
+                r"with: ((?:\$\\displaystyle\s[^$]*\$(?:;\s)?)+)",
                 content,
                 re.MULTILINE,
             ):
@@ -270,6 +271,10 @@ def of_latex(text: str) -> list[Part]:
                     state = "any"
                 elif said == "Verdict":
                     state = ""
+                elif said.startswith("with"):
+                    for one in re.findall(r"\$\\displaystyle\s([^$]*)\$", word[3]):
+                        letter, _, value = " ".join(one.split()).partition(" = ")
+                        _latex_lines(parts[-1], state)[-1].letters[letter.strip()] = latex(value)
                 elif parts and state:
                     parts[-1].cases.append(Case(word[1]))
                     state = "any" if "at least one" in word[2] else "all"
@@ -283,16 +288,12 @@ def of_latex(text: str) -> list[Part]:
             whole, times = (raised[1], int(raised[2])) if raised else (right, 1)
             parts[-1].factors.append((latex(whole), times))
         elif state not in ("", "told"):
-            into = {"lines": lambda: parts[-1].lines, "all": lambda: parts[-1].cases[-1].all_of}.get(
-                state, lambda: parts[-1].cases[-1].any_of
-            )()
-            if content.startswith(r"\text{with}"):
-                for one in content.removeprefix(r"\text{with}\quad").split(";\\quad"):
-                    letter, _, value = one.partition(" = ")
-                    into[-1].letters[re.sub(r"\s|\\penalty\d+", "", letter)] = latex(value)
-            else:
-                into.append(_latex_line(content))
+            _latex_lines(parts[-1], state).append(_latex_line(content))
     return parts
+
+
+def _latex_lines(part: Part, state: str) -> list[Line]:
+    return part.lines if state == "lines" else part.cases[-1].all_of if state == "all" else part.cases[-1].any_of
 
 
 def _latex_pieces(section: str) -> Iterator[tuple[str, str]]:
@@ -328,7 +329,7 @@ def _latex_line(content: str) -> Line:
 
 
 def _latex_label(label: str) -> str:
-    words = re.sub(r"\\text\{([^{}]*)\}", r"\1", label.strip())
+    words = re.sub(r" ?\\text\{([^{}]*)\}", r"\1", label.strip())
     words = re.sub(r"([av])_\{(\d+)\}\^\{\((\d+)\)\}", r"\1\2 of factor \3", words)
     return re.sub(r"([av])_\{(\d+)\}", r"\1\2", words)
 
@@ -362,7 +363,7 @@ def of_html(page: str) -> list[Part]:
             strong = node.find("strong")
             if words.startswith("The characteristic polynomial"):
                 state = "polynomial"
-            elif words.startswith("It has"):
+            elif words.startswith("Number of its factors"):
                 state = "factors"
             elif words.startswith("Conditions ("):
                 state = "lines"
@@ -381,14 +382,16 @@ def of_html(page: str) -> list[Part]:
 def _html_line(part: Part, state: str, tokens: list[Token]) -> None:
     colon = next((k for k, x in enumerate(tokens) if x == ("mo", ":")), None)
     equals = next((k for k, x in enumerate(tokens) if x == ("mo", "=")), None)
-    if state in ("polynomial", "factors"):
+    if state == "polynomial":
         assert equals is not None
-        value = mathml(tokens[equals + 1 :])
-        if state == "polynomial":
-            part.polynomial = value
-        else:
-            times = re.search(r"occurs (\d+) times", str(tokens[0][1]))
-            part.factors.append((value, int(times[1]) if times else 1))
+        part.polynomial = mathml(tokens[equals + 1 :])
+        return
+    if state == "factors":
+        assert colon is not None
+        whole, times = tokens[colon + 1 :], 1
+        if whole[0] == ("mo", "[") and whole[-1][0] == "power" and whole[-2] == ("mo", "]"):
+            whole, times = whole[1:-2], int(str(whole[-1][1][0][1]))
+        part.factors.append((mathml(whole), times))
         return
     into = part.lines if state == "lines" else part.cases[-1].all_of if state == "all" else part.cases[-1].any_of
     relation = {"\u2260": "!=", "\u2265": ">=", "\u2264": "<="}.get(str(tokens[-2][1]), str(tokens[-2][1]))
@@ -491,10 +494,12 @@ def equations(surface: str, text: str) -> list[Value | None]:
             return [latex(x.removesuffix(" = 0")) for x in formulas]
     (section_4,) = [x for x in tree(text).iter("section") if x.get("id") == "problem-4"]
     lines_4: list[list[Token]] = []
+    begun = False
     for node in section_4.iter():
+        begun = begun or (node.tag == "p" and "if and only if" in "".join(node.itertext()))
         if node.tag == "p" and "use in the form" in "".join(node.itertext()):
             break
-        if node.tag == "div" and node.get("class") == "formula":
+        if begun and node.tag == "div" and node.get("class") == "formula":
             lines_4.append([x for part in node.iter("math") for x in tokens_of(part)])
     assert all(x[-2:] == [("mo", "="), ("mn", "0")] for x in lines_4)
     return [mathml(x[:-2]) for x in lines_4]
@@ -527,10 +532,10 @@ def matrices(surface: str, text: str) -> dict[str, dict[tuple[int, int], Value]]
         return found
     (section_5,) = [x for x in tree(text).iter("section") if x.get("id") == "problem-5"]
     for node in section_5.iter():
-        if node.tag == "h3":
-            break
         if node.tag == "div" and node.get("class") == "formula":
             tokens = [x for part in node.iter("math") for x in tokens_of(part)]
+            if str(tokens[0][1]).startswith("M") and str(tokens[1][1]).startswith("q"):  # M q'' + ... of a subsystem
+                break
             name = re.fullmatch(r"([MDGKN])(?:_(\d)(\d))?", str(tokens[0][1])) if tokens[1:2] == [("mo", "=")] else None
             if name is not None and name[2]:
                 found.setdefault(name[1], {})[int(name[2]), int(name[3])] = mathml(tokens[2:])

@@ -11,19 +11,18 @@ import pytest
 import mbsym
 from mbsym.algebra.certainty import Certainty
 from mbsym.problems.constraints import Integrability
-from mbsym.report import constraint_description
 from mbsym.report.language import Language
-from mbsym.report.words import constraint_words
-from mbsym.report.words.constraint_words import Writer, filled, sentences
+from mbsym.report.plain_writer import Writer
+from mbsym.report.words import constraint_words, description
+from mbsym.report.words.constraint_words import sentences
 
 DISC = Path(__file__).parents[2] / "systems" / "rolling-disc.yaml"
-WRITE = Writer(", ".join)
 
 
 def said() -> set[str]:
     """Every sentence in the sources of the two modules."""
     found = set()
-    for module in (constraint_words, constraint_description):
+    for module in (constraint_words, description):
         tree = ast.parse(Path(str(module.__file__)).read_text(encoding="utf-8"))
         inner = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}  # docstrings
         for node in ast.walk(tree):
@@ -43,15 +42,15 @@ def test_every_sentence_has_another(name: str) -> None:
 
 
 def test_the_word_for_integrability_falls_with_what_is_known() -> None:
-    found = mbsym.load(DISC, (1, 2, 3)).constraints
-    told = " ".join(map(filled, sentences(found, WRITE)))
+    found, say = mbsym.load(DISC, (1, 2, 3)).constraints, Writer().said
+    told = " ".join(map(say, sentences(found)))
     assert "The system is nonholonomic (proved)" in told
     open_ = replace(found, integrability=Integrability((), None, 2, Certainty.UNDECIDED, rheonomic=False))
-    told = " ".join(map(filled, sentences(open_, WRITE)))
+    told = " ".join(map(say, sentences(open_)))
     assert "undecided" in told
     assert "nonholonomic" not in told
     assert "proved" not in told.replace("by itself (proved)", "")
     seen = replace(found, integrability=Integrability((3, 3), 2, 2, Certainty.VERIFIED, rheonomic=False))
-    told = " ".join(map(filled, sentences(seen, WRITE)))
+    told = " ".join(map(say, sentences(seen)))
     assert "holonomic" in told
     assert "verified numerically" in told

@@ -19,7 +19,6 @@ from mbsym.problems.stability.sentences import sentence
 from mbsym.problems.stability.word import Word
 from mbsym.report.compact import compact
 from mbsym.report.language import LANGUAGES, Language
-from mbsym.report.latex import description as latex_description
 from mbsym.report.rendering import rendered
 from mbsym.report.targets import TARGETS
 from mbsym_cli.main import main
@@ -31,16 +30,27 @@ BABEL = {"ru": "babel-russian/russianb.ldf", "es": "babel-spanish/spanish.ldf"}
 
 
 def sentences() -> set[str]:
-    """What the templates and the words of loads hand over to be translated, if it stands there as a whole."""
+    """What templates and builders of content hand over to be translated, if it stands there as a whole."""
     folder = Path(mbsym_templates.__path__[0])
     found = set()
     for path in [*(folder / "latex").glob("*.j2"), *folder.glob("*.tex.j2")]:
         for match in re.finditer(r'\btr\(("(?:[^"\\]|\\.)*")[,)]', path.read_text()):
             found.add(ast.literal_eval(match[1]))
-    for node in ast.walk(ast.parse(Path(latex_description.__file__).read_text())):
-        if isinstance(node, ast.Call) and ast.unparse(node.func) in ("tr", "self.tr"):
-            found |= {x.value for x in node.args if isinstance(x, ast.Constant)}
+    for path in (Path(mbsym.__file__).parent / "report").rglob("*.py"):
+        text = path.read_text(encoding="utf-8")
+        for node in ast.walk(ast.parse(text)) if "from mbsym.report.content import" in text else ():
+            if isinstance(node, ast.Call) and ast.unparse(node.func) in ("Said", "say") and node.args:
+                found |= _literals(node.args[0])
+            elif isinstance(node, ast.Assign) and "[[" in ast.unparse(node.value):
+                found |= _literals(node.value)
     return found
+
+
+def _literals(node: ast.expr) -> set[str]:
+    """A string, or one of two."""
+    if isinstance(node, ast.IfExp):
+        return _literals(node.body) | _literals(node.orelse)
+    return {node.value} if isinstance(node, ast.Constant) and isinstance(node.value, str) else set()
 
 
 @pytest.mark.parametrize("name", OTHERS)

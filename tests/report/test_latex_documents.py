@@ -216,4 +216,4 @@ def test_factors_that_labels_speak_of_are_written() -> None:
             product = whole
     assert list(map(str, product)) == [str(x.polynomial) for x in part.characteristic]
     assert r"1 \colon\quad  \penalty0  \lambda^{2} \penalty0 + \omega^{2}" in text
-    assert r"\hat{\Lambda}^{(2)}(\lambda)" in text
+    assert r"\Delta^{(2)} (\lambda)" in text

@@ -14,6 +14,7 @@ from mbsym.report import wolfram_report
 from mbsym.report.code.parsing import unreadable
 from mbsym.report.latex import report as latex_report
 from mbsym.report.latex import values as latex_values
+from mbsym.report.latex import writer as latex_writer
 from mbsym.report.lengths import FILE, PAPER, Limit, formulas, withheld
 from mbsym.report.targets import TARGETS
 
@@ -96,7 +97,7 @@ def test_long_programs_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = latex_report.render(analysis, (3,)), wolfram_report.render(analysis, (3,))
     assert "s_{1} =" in whole[0]
     assert "dynamics[t_" in whole[1]
-    monkeypatch.setattr(latex_values, "PAPER_PROGRAM", 5)
+    monkeypatch.setattr(latex_writer, "PAPER_PROGRAM", 5)
     monkeypatch.setattr(wolfram_report, "FILE_PROGRAM", 5)
     for text in (latex_report.render(analysis, (3,)), wolfram_report.render(analysis, (3,))):
         assert "steps, not printed; model.py and model.c have them" in text

@@ -29,10 +29,15 @@ from mbsym.formulas.latex import LatexNames
 from mbsym.problems.stability.requirements import Case, Requirement
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.report.conditions import Labels, Reference, Shown, Statement, cases, statements
+from mbsym.report.content import Math, Readable
+from mbsym.report.language import Language
 from mbsym.report.latex.description import expression
-from mbsym.report.latex.formulas import LONGEST_CONDITION, counted
+from mbsym.report.latex.form import Form
+from mbsym.report.latex.formulas import LONGEST_CONDITION
+from mbsym.report.latex.labels import Labels as TexLabels
 from mbsym.report.latex.words import LINE, broken
-from mbsym.report.latex.words import label as latex_label
+from mbsym.report.latex.writer import Writer
+from mbsym.report.sections.stability import label_of
 from mbsym.report.summary import summary
 from mbsym.report.targets import TARGETS
 
@@ -72,6 +77,10 @@ SYSTEMS = ["satellite.yaml", "ziegler-damped.yaml", "heavy-top.yaml", "spring-pe
 
 def analysis_of(name: str) -> Analysis:
     return mbsym.loads(NASTY) if name == "nasty" else mbsym.load(SHIPPED / name)
+
+
+def in_latex(value: Math) -> str:
+    return Writer(LatexNames([]), Language(), TexLabels("x"), Form.REPORT).math(value)
 
 
 def loaded(text: str, folder: Path):
@@ -288,19 +297,21 @@ def test_latex_lists_the_loads_and_the_given_motion(tmp_path):
     analysis = mbsym.loads(EVERY_LOAD)
     text = TARGETS["latex"].render(analysis, (2,))
     for part in (
-        r"Uniform gravity, $g = (0,\; -g,\; 0)$ in inertial axes: $U = \sum m\, g \cdot r_C$",
+        r"Uniform gravity, $g = (0,\; \allowbreak -g,\; \allowbreak 0)$ in inertial axes: $U = \sum m\, g \cdot r_C$",
         r"with $\nu = n$, expanded to order 2 about the origin $O$ of \textit{sun}",
-        r"Spring of $x$, stiffness $k + m$, rest at $L$: $U = -\tfrac{1}{2}\, (k + m)\, (x - L)^2$",
-        r"Spring between the point $(0,\; 0,\; 0)$ of \textit{cart} and the point $(0,\; 0,\; L)$ of the inertial",
-        r"natural length $\frac{L}{2}$: $U = -\tfrac{1}{2}\, k\, (d - \frac{L}{2})^2$",
-        r"Damper of $\theta$, coefficient $c$: dissipation function $\tfrac{1}{2}\, c\, \dot{\theta}^2$",
-        r"dissipation function $\tfrac{1}{2}\, 2 c\, \dot{d}^2$ with the distance $d$",
-        r"dissipation function $\tfrac{1}{2}\, 2 c\, v^2$ with their relative velocity $v$",
+        r"Spring of $x$, stiffness $k + m$, rest at $L$: $U = -\frac{1}{2} (k + m) (x - L)^{2}$",
+        r"Spring between the point $(0,\; \allowbreak 0,\; \allowbreak 0)$ of \textit{cart} and the point",
+        r"natural length $\frac{L}{2}$: $U = -\frac{1}{2} k (d - \frac{L}{2})^{2}$",
+        r"Damper of $\theta$, coefficient $c$: dissipation function $R = \frac{1}{2} c \dot{\theta}^{2}$",
+        r"dissipation function $R = \frac{1}{2} 2 c \dot{d}^{2}$ with the distance $d$",
+        r"dissipation function $R = \frac{1}{2} 2 c v^{2}$ with their relative velocity $v$",
         r"Potential: $-U = -k x^{4}$",
-        r"Dissipation function: $c \dot{x}^{4}$",
+        r"Dissipation function: $R = c \dot{x}^{4}$",
         r"Generalised forces: $Q_{x} = -c \dot{x}$, $Q_{\theta} = M$",
-        r"Force $(k,\; 0,\; 0)$ in the axes of \textit{bob}, at the point $(0,\; -L,\; 0)$ of \textit{bob}",
-        r"Torque $(0,\; 0,\; M)$ in the axes of \textit{cart}, on \textit{bob}; the opposite one on \textit{cart}",
+        r"Force $(k,\; \allowbreak 0,\; \allowbreak 0)$ in the axes of \textit{bob}, at the point",
+        r"at the point $(0,\; \allowbreak -L,\; \allowbreak 0)$ of \textit{bob}.",
+        r"Torque $(0,\; \allowbreak 0,\; \allowbreak M)$ in the axes of \textit{cart}, on \textit{bob};",
+        r"the opposite one on \textit{cart}.",
         r"\theta = L + n t",
         r"$x(0) = \frac{1}{2}$",
         r"$\dot{x}(0) = L$",
@@ -408,7 +419,7 @@ def test_parts_of_a_condition_have_names_of_their_own():
         assert second.label == "a3, squared factor"
     alone = Requirement("a3", m - g, Condition("inequality", m - g))
     assert [item.label for item in statements(ring, [alone])] == ["a3"]
-    assert latex_label("a3 of factor 2, squared factor") == r"a_{3}^{(2)}\text{, squared factor}"
+    assert in_latex(label_of("a3 of factor 2, squared factor")) == r"a_{3}^{(2)} \text{, squared factor}"
 
 
 def test_a_number_stands_in_front_of_a_matrix():
@@ -700,5 +711,5 @@ def test_a_short_formula_of_many_terms_is_counted() -> None:
     total = ring.one
     for name in ("m", "g", "l", "A"):
         total = total + ring.context.gen(ring.index("parameter", name))
-    assert counted(Formula(ring, total**20)).startswith(rf"\text{{({comb(24, 4)} terms, of degree 20;")
-    assert counted(Formula(ring, total)) == ""
+    assert in_latex(Readable(Formula(ring, total**20))).startswith(rf"\text{{({comb(24, 4)} terms, of degree 20;")
+    assert "degree" not in in_latex(Readable(Formula(ring, total)))

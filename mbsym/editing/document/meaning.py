@@ -10,6 +10,7 @@ from mbsym.editing.document.pieces import Edit
 from mbsym.editing.document.primitives import Add, Primitive, Replace
 from mbsym.editing.document.written import Data, Path, Refused, Written, child, data_of, spelled_path
 from mbsym.source.keys import BODY, SIGNS, SYSTEM
+from mbsym.source.labels import SECTIONS
 from mbsym.source.placed import Mapping, Node, Scalar, Sequence
 
 Json = Map[str, Any]
@@ -90,9 +91,9 @@ def _missing(holder: Node | None, above: Path, step: str | int, data: Data, sour
 def _in_full(path: Path, text: str) -> dict[str, Data]:
     """What a value alone is short for."""
     section = path[0] if len(path) == 2 else ""
-    first = {"prescribed": "rate", "motion": "value", "initial": "position", "inputs": "meaning"}.get(str(section))
-    if section == "parameters":
-        first = "sign" if text in SIGNS else "value"
+    first = None if section in ("tables", "linear system") else dict(SECTIONS.values()).get(str(section))
+    if section == "parameters" and text not in SIGNS:
+        first = "value"
     if first is None:
         raise Refused("bad-path", f"a value stands there already: {text[:40]}", "change it in the text")
     return {first: text}

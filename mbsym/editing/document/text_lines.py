@@ -8,7 +8,7 @@ from mbsym.editing.document.written import Data
 from mbsym.model.claims import BODY as ABOUT_BODY
 from mbsym.model.claims import CLAIMS
 from mbsym.source.keys import ALIASES
-from mbsym.source.labels import BODY, HEADER, SECTIONS
+from mbsym.source.labels import BODY, HEADER, NUMBERED, SECTIONS
 
 Line = tuple[str, str]
 
@@ -172,9 +172,6 @@ def _shape(value: Data) -> str:
     return record(flat)
 
 
-_NUMBERED = ("body", "centre", "about", "axes", "reaction on", "on")
-
-
 def _tie(kind: str, value: Data, numbers: dict[str, str]) -> list[Line]:
     if isinstance(value, list):
         return _ends(value, numbers)
@@ -185,7 +182,7 @@ def _tie(kind: str, value: Data, numbers: dict[str, str]) -> list[Line]:
     for key, one in value.items():
         if key == "between" and isinstance(one, list):
             lines += _ends(one, numbers)
-        elif key in _NUMBERED and not force:
+        elif ALIASES.get(key, key) in NUMBERED and not force:
             lines.append((key.capitalize(), numbers.get(_flat(one), _flat(one))))
         else:
             lines.append((key if force else key.capitalize(), text_of(one)))

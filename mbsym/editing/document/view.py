@@ -25,15 +25,13 @@ from mbsym.expressions.parser import parse_expression
 from mbsym.expressions.place import Complaint, Complaints, Span
 from mbsym.expressions.tree import Expression
 from mbsym.source.keys import ALIASES, BODY
+from mbsym.source.labels import NUMBERED
 from mbsym.source.placed import Entry, Mapping, Node, Scalar, Sequence
 
 Json = dict[str, Any]
 
 #: Keys of a body whose values are no formulas.
 _NO_FORMULAS = ("name", "attached to", "rotation", "inertia about", "coordinates", "shapes", "speeds", "orientation")
-
-#: Keys under which loads and constraints name bodies.
-BODY_KEYS = ("body", "centre", "center", "about", "axes", "reaction on", "on")
 
 #: So often what cannot be read is looked past.
 _TRIES = 4
@@ -209,7 +207,7 @@ def named_bodies(kind: str, node: Node) -> Iterator[str]:
         value = entry.value
         if entry.key.text == "between":
             yield from named_bodies(kind, value)
-        elif entry.key.text in BODY_KEYS and isinstance(value, Scalar):
+        elif ALIASES.get(entry.key.text, entry.key.text) in NUMBERED and isinstance(value, Scalar):
             name = " ".join(value.text.split())
             if name not in ("0", "ground", ""):
                 yield name

@@ -11,24 +11,30 @@ from typing import Literal
 from mbsym.editing.document.pieces import Edit
 from mbsym.editing.document.primitives import Primitive, Rekey, Replace
 from mbsym.editing.document.spelling import scalar
-from mbsym.editing.document.view import BODY_KEYS
 from mbsym.editing.document.written import Path, Written, is_understood
 from mbsym.model.claims import BODY, CLAIMS
-from mbsym.source.keys import ALIASES, SIGNS, SMALL_PARAMETER
+from mbsym.source.grammar import (
+    About,
+    BodyName,
+    Either,
+    Ends,
+    Equation,
+    Formula,
+    Index,
+    Key,
+    Kinds,
+    Listed,
+    Name,
+    Named,
+    Record,
+    Type,
+    Vector,
+    Word,
+)
+from mbsym.source.keys import ALIASES, SYSTEM
 from mbsym.source.placed import Entry, Mapping, Node, Scalar, Sequence
 
 Role = Literal["formula", "body", "new body"]
-
-#: Sections whose keys are names, and whether their values are formulas.
-_NAMED = {
-    "parameters": True, "prescribed": True, "inputs": False, "outputs": True, "tables": False, "units": False,
-    "relations": True, "motion": True, "notation": True, "values": True, "initial": True, "abbreviations": True,
-    "limits": True, "latex": False,
-}  # fmt: skip
-
-#: Keys of records that hold no formulas.
-_FREE = ("sign", "meaning", "unit", *SIGNS)
-_CLAIM_FREE = ("claim", "component", "variable", "order", "as", "tolerance", "digits", "place")
 
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _SPIN = re.compile(r"(omega\s*\[\s*)([^\]]*?)(\s*\])")
@@ -48,127 +54,80 @@ def places(found: Written) -> Iterator[Place]:
     """Every value and key of a description that names something of it."""
     tree = found.tree
     for entry in tree.entries if isinstance(tree, Mapping) else ():
-        if not (found.editor and is_understood(entry)):
-            yield from _section(ALIASES.get(entry.key.text, entry.key.text), entry, (entry.key.text,), found.editor)
-
-
-def _section(name: str, entry: Entry, path: Path, editor: bool) -> Iterator[Place]:
-    node = entry.value
-    if name in _NAMED:
-        yield from _named(node, path, _NAMED[name])
-    elif name in ("order", "dependent", "dimensionless time", "assumptions"):
-        yield from _formulas(node, path)
-    elif name == "reactions":
-        yield from _formulas(node, path, "body")
-    elif name == "small parameter":
-        for one, at, is_key in _leaves(node, path):
-            if not (is_key and one.text in SMALL_PARAMETER):
-                yield Place(at, one, "formula", is_key)
-    elif name == "linear system" and isinstance(node, Mapping):
-        for part in node.entries:
-            if not isinstance(part.value, Mapping):
-                yield from _formulas(part.value, (*path, part.key.text))
-    elif name in _LISTS and isinstance(node, Sequence):
-        for index, item in enumerate(node.items):
-            for place in _LISTS[name](item, (*path, index)):
-                if not (editor and _goes_without_saying(item, place)):
-                    yield place
-
-
-def _goes_without_saying(item: Node, place: Place) -> bool:
-    return isinstance(item, Mapping) and any(one.value is place.node and is_understood(one) for one in item.entries)
-
-
-def _named(node: Node, path: Path, formulas: bool) -> Iterator[Place]:
-    """A mapping whose keys are names, or a list of names."""
-    if isinstance(node, Sequence):
-        yield from _formulas(node, path)
-    for entry in node.entries if isinstance(node, Mapping) else ():
-        at = (*path, entry.key.text)
-        yield Place(at, entry.key, "formula", True)
-        if not formulas or (isinstance(entry.value, Scalar) and entry.value.text in SIGNS):
+        key = SYSTEM.get(ALIASES.get(entry.key.text, entry.key.text))
+        if key is None or (found.editor and is_understood(entry)):
             continue
-        if isinstance(entry.value, Mapping):
-            for one in entry.value.entries:
-                if one.key.text not in _FREE:
-                    yield from _formulas(one.value, (*at, one.key.text))
-        else:
-            yield from _formulas(entry.value, at)
+        for place in _places(key.type, entry.value, (entry.key.text,)):
+            if not (found.editor and _goes_without_saying(entry.value, place)):
+                yield place
 
 
-def _formulas(node: Node, path: Path, role: Role = "formula") -> Iterator[Place]:
-    for one, at, is_key in _leaves(node, path):
-        if not is_key:
-            yield Place(at, one, role)
+def _goes_without_saying(section: Node, place: Place) -> bool:
+    """Whether it is an entry of an item of a list that is not written."""
+    items = section.items if isinstance(section, Sequence) else ()
+    entries = (one for item in items if isinstance(item, Mapping) for one in item.entries)
+    return any(one.value is place.node and is_understood(one) for one in entries)
 
 
-def _leaves(node: Node, path: Path) -> Iterator[tuple[Scalar, Path, bool]]:
+def _places(of: Type, node: Node, path: Path) -> Iterator[Place]:
+    """What names something in a value of a type; where a value is of another shape, it is taken for a formula."""
+    match of, node:
+        case Either(types), _:
+            fitting = (one for one in types if _fits(one, node))
+            yield from _places(next(fitting, Formula()), node, path)
+        case ((Record() | Kinds()), Mapping(entries)):
+            for entry in entries:
+                yield from _places(_type_of(of, node, entry), entry.value, (*path, entry.key.text))
+        case Named(value), Mapping(entries):
+            for entry in entries:
+                yield Place((*path, entry.key.text), entry.key, "formula", True)
+                yield from _places(value, entry.value, (*path, entry.key.text))
+        case ((Listed(item) | Ends(item)), Sequence(items)):
+            for index, one in enumerate(items):
+                yield from _places(item, one, (*path, index))
+        case BodyName(new), _:
+            yield from _leaves(node, path, "new body" if new else "body")
+        case Name(own=True), _:
+            pass
+        case ((Formula() | Vector() | Equation() | Index() | Name() | About()), _):
+            yield from _leaves(node, path, "formula")
+        case ((Record() | Kinds() | Named() | Listed() | Ends()), _):
+            yield from _leaves(node, path, "formula")
+
+
+def _type_of(holder: Record | Kinds, node: Mapping, entry: Entry) -> Type:
+    """The type of an entry; what is unknown is taken for a formula, an unknown kind for one with the keys of all."""
+    known: Map[str, Key] = holder.keys if isinstance(holder, Record) else holder.kinds
+    key = known.get(ALIASES.get(entry.key.text, entry.key.text))
+    if key is not None and isinstance(key.type, About):
+        kinds = [one.value.text for one in node.entries if one.key.text == "claim" and isinstance(one.value, Scalar)]
+        return BodyName() if any(kind in CLAIMS and CLAIMS[kind].of == BODY for kind in kinds) else Formula()
+    if key is None and isinstance(holder, Kinds):
+        return Record({name: one for kind in holder.kinds.values() for name, one in kind.keys.items()})
+    return Formula() if key is None else key.type
+
+
+def _fits(one: Type, node: Node) -> bool:
+    match one:
+        case Record() | Named():
+            return isinstance(node, Mapping)
+        case Listed() | Vector():
+            return isinstance(node, Sequence)
+        case Word(choices):
+            return isinstance(node, Scalar) and node.text in map(str, choices)
+    return isinstance(node, Scalar)
+
+
+def _leaves(node: Node, path: Path, role: Role) -> Iterator[Place]:
     match node:
         case Scalar():
-            yield node, path, False
+            yield Place(path, node, role)
         case Sequence(items):
             for index, item in enumerate(items):
-                yield from _leaves(item, (*path, index))
+                yield from _leaves(item, (*path, index), role)
         case Mapping(entries):
             for entry in entries:
-                yield entry.key, (*path, entry.key.text), True
-                yield from _leaves(entry.value, (*path, entry.key.text))
-
-
-def _body(node: Node, path: Path) -> Iterator[Place]:
-    for entry in node.entries if isinstance(node, Mapping) else ():
-        key, at = ALIASES.get(entry.key.text, entry.key.text), (*path, entry.key.text)
-        if key in ("name", "attached to"):
-            yield from _formulas(entry.value, at, "new body" if key == "name" else "body")
-        elif key in ("speeds", "orientation"):
-            for one, place, is_key in _leaves(entry.value, at):
-                if is_key or key == "speeds":
-                    yield Place(place, one, "formula", is_key)
-        elif key != "inertia about":
-            yield from (one for one in _formulas(entry.value, at) if one.path[-1] != "accept")
-
-
-def _tie(node: Node, path: Path) -> Iterator[Place]:
-    """A load or a constraint."""
-    for entry in node.entries if isinstance(node, Mapping) else ():
-        kind, at = ALIASES.get(entry.key.text, entry.key.text), (*path, entry.key.text)
-        if kind == "generalized force":
-            yield from (Place(place, one, "formula", is_key) for one, place, is_key in _leaves(entry.value, at))
-        else:
-            yield from _data(entry.value, at)
-
-
-def _data(node: Node, path: Path) -> Iterator[Place]:
-    match node:
-        case Scalar():
-            role: Role = "body" if path[-1] in BODY_KEYS else "formula"
-            if path[-1] != "order":
-                yield Place(path, node, role)
-        case Sequence(items):
-            for index, item in enumerate(items):
-                yield from _data(item, (*path, index))
-        case Mapping(entries):
-            for entry in entries:
-                yield from _data(entry.value, (*path, entry.key.text))
-
-
-def _claim(node: Node, path: Path) -> Iterator[Place]:
-    entries = node.entries if isinstance(node, Mapping) else ()
-    kinds = [entry.value.text for entry in entries if entry.key.text == "claim" and isinstance(entry.value, Scalar)]
-    about_body = any(kind in CLAIMS and CLAIMS[kind].of == BODY for kind in kinds)
-    for entry in entries:
-        at = (*path, entry.key.text)
-        if entry.key.text in _CLAIM_FREE:
-            continue
-        if entry.key.text == "of" and about_body:
-            yield from _formulas(entry.value, at, "body")
-        elif entry.key.text == "state":
-            yield from (Place(place, one, "formula", is_key) for one, place, is_key in _leaves(entry.value, at))
-        else:
-            yield from _formulas(entry.value, at)
-
-
-_LISTS = {"bodies": _body, "loads": _tie, "constraints": _tie, "claims": _claim}
+                yield from _leaves(entry.value, (*path, entry.key.text), role)
 
 
 # --- renaming ---------------------------------------------------------------------------------------------------------

@@ -17,8 +17,8 @@ same accelerations and multipliers follow from a matrix that is positive, with a
 
     (M + J^T w J) q'' = f - J^T w c + J^T lambda
 
-Rows that follow from others make S singular, so that the rows are named that are kept.  The pivots of S vanish where
-the rows that are kept lose their rank, as a four-bar does whose links are in line.
+Rows that follow from others make S singular: which of them are used is chosen locally (``dependence``), so that the
+pivots of S vanish only where all rows lose their rank, as those of a four-bar do whose links are in line.
 
 Source: Featherstone, Rigid Body Dynamics Algorithms (2008), chapter 8; Hairer & Wanner, Solving Ordinary Differential
 Equations II, VII.1 (index 1), VII.2 (projection).
@@ -35,6 +35,7 @@ from mbsym.algebra.ring import Ring
 from mbsym.mechanics.articulation import articulation
 from mbsym.mechanics.bias_forces import bias_forces, forcing
 from mbsym.mechanics.composite import mass_matrix
+from mbsym.mechanics.constraints.dependence import Compliance, Dependent, measured
 from mbsym.mechanics.constraints.rows import Row, RowName, constraint_rows, kept_rows
 from mbsym.mechanics.factorisation import Elimination
 from mbsym.mechanics.kinematics import Scene
@@ -42,7 +43,7 @@ from mbsym.mechanics.programs import scene_without_accelerations
 from mbsym.mechanics.variables import program_environment, ring_environment
 from mbsym.model.system import System
 
-DEPENDENT = "the constraints that are kept are dependent everywhere"
+DEPENDENT = "the constraints are dependent everywhere"
 
 #: How ``constraint_rows`` knows a row: the number of its constraint, and its component.
 Kept = tuple[int, int]
@@ -50,9 +51,10 @@ Kept = tuple[int, int]
 
 @dataclass(frozen=True)
 class ConstrainedDynamics:
-    """Nodes of ``program`` for n coordinates and m rows that are kept, the holonomic ones first.
+    """Nodes of ``program`` for n coordinates and m rows, the holonomic ones first.
 
-    ``accelerations`` (n), ``multipliers`` (m; generalised forces are J^T lambda), ``pivots`` of M (n) and of S (m),
+    ``accelerations`` (n), ``multipliers`` (m; generalised forces are J^T lambda, and only these are unique where rows
+    follow from others), ``pivots`` of M (n) and of S (as many as its rank, ``owners`` says of which rows each may be),
     ``position_correction`` and ``velocity_correction`` (n each).
     """
 
@@ -62,6 +64,7 @@ class ConstrainedDynamics:
     accelerations: tuple[Node, ...]
     multipliers: tuple[Node, ...]
     pivots: tuple[Node, ...]
+    owners: tuple[tuple[int, ...], ...]
     position_correction: tuple[Node, ...]
     velocity_correction: tuple[Node, ...]
 
@@ -106,10 +109,22 @@ def holonomic_first(rows: Sequence[Row]) -> tuple[Row, ...]:
     return tuple(sorted(rows, key=lambda row: row.position is None))
 
 
+@dataclass(frozen=True)
+class Chosen:
+    """The ``rows`` of which equations are made, the holonomic ones first, and those among them that are dependent.
+
+    ``dependent`` counts all rows, ``in_positions`` the holonomic ones alone.
+    """
+
+    rows: tuple[Kept, ...]
+    dependent: tuple[Dependent, ...] = ()
+    in_positions: tuple[Dependent, ...] = ()
+
+
 def constrained_dynamics(
-    system: System, ring: Ring, kept: Sequence[Kept], apart: bool = False, massless: bool = False
+    system: System, ring: Ring, chosen: Chosen, apart: bool = False, massless: bool = False
 ) -> ConstrainedDynamics:
-    """See the module; ``kept`` names the rows, which must be independent.
+    """See the module.
 
     ``massless``: M is known to be singular everywhere; where that is seen from a pivot, it need not be said.  Raises
     SingularPoint where M is singular on what the constraints allow or the rows are dependent at sight, NoClosedForm as
@@ -117,20 +132,20 @@ def constrained_dynamics(
     """
     if not massless:
         try:
-            return _constrained_dynamics(system, ring, kept, apart, False)
+            return _constrained_dynamics(system, ring, chosen, apart, False)
         except SingularPoint:
             pass  # a pivot of M is zero
-    return _constrained_dynamics(system, ring, kept, apart, True)
+    return _constrained_dynamics(system, ring, chosen, apart, True)
 
 
 def _constrained_dynamics(
-    system: System, ring: Ring, kept: Sequence[Kept], apart: bool, massless: bool
+    system: System, ring: Ring, chosen: Chosen, apart: bool, massless: bool
 ) -> ConstrainedDynamics:
     program = Program()
     inputs = program_environment(system, program)
     scene = scene_without_accelerations(system, ring, program, inputs)
     frames = articulation(scene, apart)
-    rows = holonomic_first(constraint_rows(scene, kept))
+    rows = holonomic_first(constraint_rows(scene, chosen.rows))
     partials = [row.partials for row in rows]
     holonomic = sum(row.position is not None for row in rows)
     masses: Sequence[Sequence[Node]] = mass_matrix(frames)
@@ -151,11 +166,13 @@ def _constrained_dynamics(
     shared = {(i, j): paired(weighted[i], weighted[j]) for i in range(len(rows)) for j in range(i + 1)}
     compliance = [[shared[max(i, j), min(i, j)] for j in range(len(rows))] for i in range(len(rows))]
 
-    def answered(count: int, right: Sequence[Node]) -> tuple[tuple[Node, ...], tuple[Node, ...]]:
-        """(x, pivots) with S x = -right over the first ``count`` rows."""
+    kinds = [measured(row.name) for row in rows]
+
+    def answered(right: Sequence[Node], dependent: Sequence[Dependent]) -> Compliance:
+        """S x = -right over as many rows, the first ones."""
+        count = len(right)
         block = [row[:count] for row in compliance[:count]]
-        found = Elimination(program, block, [[-x for x in right]], DEPENDENT)
-        return found.backward(found.forward[0]), found.pivots
+        return Compliance(program, block, [-x for x in right], dependent, kinds[:count], DEPENDENT)
 
     def carried(start: Sequence[Node], weights: Sequence[Node]) -> tuple[Node, ...]:
         """M^-1 (b + J^T weights) from L^-T b."""
@@ -166,18 +183,19 @@ def _constrained_dynamics(
 
     still = [program.zero] * len(free)
     needed = [row.acceleration + paired(column, free) for row, column in zip(rows, weighted, strict=True)]
-    multipliers, pivots = answered(len(rows), needed)
-    shift, _ = answered(holonomic, [row.position for row in rows[:holonomic] if row.position is not None])
-    change, _ = answered(len(rows), [row.velocity for row in rows])
+    forces_needed = answered(needed, chosen.dependent)
+    shift = answered([row.position for row in rows[:holonomic] if row.position is not None], chosen.in_positions)
+    change = answered([row.velocity for row in rows], chosen.dependent)
     return ConstrainedDynamics(
         program=program,
         environment=inputs,
         rows=rows,
-        accelerations=carried(free, multipliers),
-        multipliers=multipliers,
-        pivots=(*tree.pivots, *pivots),
-        position_correction=carried(still, shift),
-        velocity_correction=carried(still, change),
+        accelerations=carried(free, forces_needed.solution()),
+        multipliers=forces_needed.solution(least=True),
+        pivots=(*tree.pivots, *forces_needed.pivots),
+        owners=forces_needed.owners,
+        position_correction=carried(still, shift.solution()),
+        velocity_correction=carried(still, change.solution()),
     )
 
 

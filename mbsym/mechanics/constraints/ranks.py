@@ -33,10 +33,11 @@ class Eliminated:
         return tuple(column for _, column in self.pivots)
 
 
-def eliminated(rows: Sequence[Sequence[Any]], order: Sequence[int]) -> Eliminated:
+def eliminated(rows: Sequence[Sequence[Any]], order: Sequence[int], tiny: arb | None = None) -> Eliminated:
     """The rows one after another, each with its pivot in the first column of ``order`` that is certainly not zero.
 
-    Columns that ``order`` does not name are carried along and get no pivot.  Of balls the best pivot is taken.
+    Columns that ``order`` does not name are carried along and get no pivot.  Of balls the best pivot is taken, and what
+    is not above ``tiny`` gets none.
     """
     left = [list(row) for row in rows]
     pivots: list[tuple[int, int]] = []
@@ -44,7 +45,11 @@ def eliminated(rows: Sequence[Sequence[Any]], order: Sequence[int]) -> Eliminate
     for i in range(len(left)):
         taken = {column for _, column in pivots}
         free = [column for column in order if column not in taken]
-        nonzero = [column for column in free if is_certain(left[i][column])]
+        nonzero = [
+            column
+            for column in free
+            if is_certain(left[i][column]) and (tiny is None or bool(abs(arb(left[i][column])) > tiny))
+        ]
         if not nonzero:
             exact = exact and all(_is_exact_zero(left[i][column]) for column in free)
             continue

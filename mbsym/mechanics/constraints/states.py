@@ -6,35 +6,51 @@ parameters, which are unknowns as good as any for a formula that holds for all o
 linear in its lengths).  One linear solution is exact where phi is linear in the unknowns, which is tried and seen;
 else Newton's iteration gives a place for a ball, and Krawczyk's test proves that it holds a root.  Velocities and
 accelerations follow from linear equations.
+
+Where phi is not linear it may leave several branches, with ranks of their own (a chain of links may also be folded).
+Then states are sought on the branch that the description begins on, if it says where: from there, by steps along the
+constraints, and by parameters near those that it gives.  A mechanism may move at its values only (three bars of one
+length): then parameters stay as they are, and ``at_values`` says so.
 """
 
 from __future__ import annotations
 
 import random
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
+from math import lcm
 from typing import Any
 
 from flint import arb, fmpq
 
 from mbsym.algebra import krawczyk
-from mbsym.algebra.base import Algebra
+from mbsym.algebra.base import Algebra, Lowering
 from mbsym.algebra.derivative import jacobian
 from mbsym.algebra.failures import NOT_THERE, NotRational
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.program import Node
-from mbsym.algebra.ring import Ring
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.tree import Expression
 from mbsym.mechanics.constraints.programs import ConstrainedPrograms
-from mbsym.mechanics.constraints.ranks import eliminated, is_certain
+from mbsym.mechanics.constraints.ranks import Eliminated, eliminated, is_certain
 from mbsym.mechanics.oracle import State
 from mbsym.mechanics.states import SEED, drawn, is_allowed
+from mbsym.model.admissibility import known_values
 from mbsym.model.system import System, acceleration_name, velocity_name
 
 #: Bits of enclosures, and how small a box is that a root is proved in.
 PRECISION, WIDTH = 640, -200
 
-_ATTEMPTS, _NEWTON = 40, 60
+#: Below 2 to this, pivots of a place that Newton's iteration has almost led to the constraints are those of no row.
+ALMOST = -100
+
+#: How far from the description's position its own branch is looked for; how far from there states are, and parameters.
+NEAR, APART, CHANGED = 0.5, 0.12, 0.15
+
+_ATTEMPTS, _TRIED, _NEWTON = 40, 8, 60
 
 
 @dataclass(frozen=True)
@@ -81,17 +97,16 @@ class Manifold:
         To be used at a working precision of ``PRECISION`` where they are enclosures.
         """
         source = random.Random(SEED)
-        rational, found = True, 0
+        draw, found = self._rational, 0
         for attempt in range(_ATTEMPTS * count):
             try:
-                one = self._rational(source) if rational else self._enclosed(source)
+                one = draw(source)
             except NotRational:
-                rational = False
-                continue
+                one = None
             except NOT_THERE:
                 continue
-            if one is None:
-                rational = False
+            if one is None or (draw == self._rational and not found and self._elsewhere(one)):
+                draw = self._enclosed if self._begin is None else self._beside
                 continue
             if attempt < _ATTEMPTS * count // 2 and not is_allowed(self.system, one.state.numbers, one.state.values):
                 continue  # parameters may have been solved for
@@ -99,6 +114,129 @@ class Manifold:
             yield one
             if found == count:
                 return
+
+    @property
+    def at_values(self) -> bool:
+        """Whether parameters had to stay at their values, beside which the rank is another (``rank_beside``)."""
+        return self._begin is not None and self.rank_beside is not None
+
+    def _elsewhere(self, one: OnManifold) -> bool:
+        """Whether the rank at a state is not that of the branch on which the description begins."""
+        own = self._own_rank
+        return own is not None and own != self._pivots(one.state.values, one.state.numbers).rank
+
+    @cached_property
+    def _own_rank(self) -> int | None:
+        """The rank of J at the given parameters, on the branch on which the description begins."""
+        if self._begin is None:
+            return None
+        try:
+            return self._rank(self._root(self._moved(self._begin, random.Random(SEED)), self.system.coordinates))
+        except NOT_THERE:
+            return None
+
+    @cached_property
+    def rank_beside(self) -> int | None:
+        """The rank of J where parameters are a little others, if it is not the one at the given values."""
+        begin, source = self._begin, random.Random(SEED)
+        if begin is None or not self.system.parameter_names:
+            return None
+        others = []
+        for _ in range(_TRIED):  # parameters that have to be led back may be led to those given
+            with suppress(*NOT_THERE):
+                others.append(self._rank(self._closed_anew(self._changed(self._moved(begin, source), source))))
+        other = max(others, default=self._own_rank)
+        return None if other == self._own_rank else other
+
+    def _rank(self, values: Mapping[str, Any]) -> int:
+        return self._pivots(values, Balls(dict(values))).rank
+
+    def _pivots(self, values: Mapping[str, Any], numbers: Algebra) -> Eliminated:
+        """J at a place, eliminated."""
+        n = len(self.system.coordinates)
+        flat = self.program.evaluate([x for row in self.found.jacobian for x in row], values, numbers)
+        return eliminated([flat[i : i + n] for i in range(0, len(flat), n)], range(n))
+
+    @cached_property
+    def _begin(self) -> dict[str, Any] | None:
+        """The description's position on the constraints, or near them; None where it gives none.
+
+        A little further on its way, if it moves: it may begin where branches meet.
+        """
+        system = self.system
+        initial = {one.coordinate: one for one in system.initial if one.position is not None}
+        motion = {one.coordinate: one for one in system.motion}
+        places: dict[str, Expression | None] = {name: one.position for name, one in initial.items()}
+        rates: dict[str, Expression | None] = {name: one.velocity for name, one in initial.items()}
+        if places.keys() < {*system.coordinates}:
+            places = {**{name: one.value for name, one in motion.items()}, **places}
+            rates = {**{name: one.rate for name, one in motion.items()}, **rates}
+        if not self._positions or places.keys() < {*system.coordinates}:
+            return None
+        _, rational = self._random(random.Random(SEED))
+        known = {name: fmpq(x.numerator, x.denominator) for name, x in known_values(system).items()}
+        values = {name: arb(x) for name, x in (rational | known | {"t": 0}).items()} | {"pi": arb.pi()}
+        lower = Lowering(Balls(dict(values)), dict(values))
+        try:
+            values |= {name: arb(lower(one).mid()) for name, one in places.items() if one is not None}
+            begun = self._near(values)
+            way = {name: lower(one) for name, one in rates.items() if one is not None}
+        except NOT_THERE:
+            return None
+        largest = max((float(abs(x).upper()) for x in way.values()), default=0.0)
+        if begun is None or not largest:
+            return begun
+        further = {name: arb((begun[name] + x * arb(APART / largest)).mid()) for name, x in way.items()}
+        timed = {"t": arb(APART / largest)}
+        with suppress(*NOT_THERE):
+            return self._near(begun | further | timed) or begun
+        return begun
+
+    def _near(self, values: Mapping[str, Any]) -> dict[str, Any] | None:
+        """A root not far from a place.  Raises as ``_root`` does."""
+        found = self._root(dict(values), self.system.coordinates)
+        for name in self.system.coordinates:
+            size = 1 + abs(float(values[name].mid()))
+            if not abs(float(found[name].mid()) - float(values[name].mid())) <= NEAR * size:
+                return None
+        return found
+
+    def _beside(self, source: random.Random) -> OnManifold:
+        """A state on the branch of the description's position."""
+        begin = self._begin
+        assert begin is not None
+        if self.at_values:
+            values = self._root(self._moved(begin, source), self.system.coordinates)
+        else:
+            values = self._closed_anew(self._changed(self._moved(begin, source), source))
+        return OnManifold(State(Balls(values), self._moving(Balls(values), values, source)), False)
+
+    def _moved(self, begin: Mapping[str, Any], source: random.Random) -> dict[str, Any]:
+        """A place a little along the constraints, and any velocities and accelerations."""
+        names = self.system.coordinates
+        values = dict(begin)
+        for name in names:
+            for suffix in (velocity_name, acceleration_name):
+                values[suffix(name)] = arb(fmpq(source.randint(-40, 40) or 1, source.randint(1, 24)))
+        done = self._pivots(begin, Balls(dict(begin)))
+        step = {k: arb(source.choice((-1, 1)) * source.randint(50, 100)) / 100 for k in range(len(names))}
+        for i, column in done.pivots:
+            free = (k for k in range(len(names)) if k not in done.columns)
+            step[column] = -sum((done.rows[i][k] * step[k] for k in free), arb(0))
+        largest = max(float(abs(x).upper()) for x in step.values())
+        for k, name in enumerate(names):
+            moved = values[name] + step[k] * arb(APART * (1 + abs(float(values[name].mid()))) / max(largest, 1.0))
+            values[name] = arb(moved.mid())
+        return values
+
+    def _changed(self, values: Mapping[str, Any], source: random.Random) -> dict[str, Any]:
+        """The same place with other parameters, not far from those that it has."""
+        changed = dict(values)
+        for name in self.system.parameter_names:
+            if name in changed:
+                factor = 1 + CHANGED * source.choice((-1, 1)) * source.randint(20, 100) / 100
+                changed[name] = arb((changed[name] * arb(factor)).mid())
+        return changed
 
     def rank_with_parameters(self, at: OnManifold) -> int:
         """The rank of d phi / d (q, parameters) at a state: greater than that of J where parameters are tied, too."""
@@ -109,6 +247,77 @@ class Manifold:
         flat = self.program.evaluate([x for row in slopes for x in row], at.state.values, at.state.numbers)
         n = len(names)
         return eliminated([flat[i : i + n] for i in range(0, len(flat), n)], range(n)).rank
+
+    def relation(self, states: Sequence[OnManifold]) -> Polynomial | None:
+        """A polynomial in the parameters that vanishes at the states, where phi = 0 demands one relation of them.
+
+        The normal of it, sum_i y_i d phi_i/dp with y^T d phi/dq = 0, is constant at all of them for a linear relation;
+        for one between products of powers it is so times the parameters.  None where it is neither.
+        """
+        names, parameters = self.system.coordinates, self.system.parameter_names
+        slopes = self._slopes([*names, *parameters])
+        normals: list[list[arb]] = []
+        for one in (one.enclosed for one in states):
+            flat = self.program.evaluate([x for row in slopes for x in row], one.state.values, one.state.numbers)
+            width = len(names) + len(parameters)
+            done = eliminated([flat[i : i + width] for i in range(0, len(flat), width)], range(len(names)))
+            pivots = {i for i, _ in done.pivots}
+            left = [[arb(x) for x in row[len(names) :]] for i, row in enumerate(done.rows) if i not in pivots]
+            normals.append(max(left, key=lambda row: max(float(abs(x).upper()) for x in row)))
+        values = [[arb(one.enclosed.state.values[name]) for name in parameters] for one in states]
+        return self._linear_relation(normals, values) or self._relation_of_powers(normals, values)
+
+    def _linear_relation(self, normals: Sequence[Sequence[arb]], values: Sequence[Sequence[arb]]) -> Polynomial | None:
+        weights = _common_ratios(normals)
+        if weights is None:
+            return None
+        constants = [sum((arb(w) * x for w, x in zip(weights, own, strict=True)), arb(0)) for own in values]
+        constant = _common_number(constants)
+        if constant is None:
+            return None
+        bottom = lcm(*(int(w.q) for w in (*weights, constant)))
+        whole = self.ring.number(-_whole(constant * bottom))
+        for name, w in zip(self.system.parameter_names, weights, strict=True):
+            whole = whole + self.ring.times(self.ring.number(_whole(w * bottom)), self._parameter(name))
+        return whole
+
+    def _parameter(self, name: str) -> Polynomial:
+        return self.ring.generator("parameter", name)
+
+    def _relation_of_powers(
+        self, normals: Sequence[Sequence[arb]], values: Sequence[Sequence[arb]]
+    ) -> Polynomial | None:
+        pairs = zip(normals, values, strict=True)
+        powers = _common_ratios([[w * x for w, x in zip(row, own, strict=True)] for row, own in pairs])
+        if powers is None:
+            return None
+        bottom = lcm(*(int(w.q) for w in powers))
+        whole = [_whole(w * bottom) for w in powers]
+        products = []
+        for own in values:
+            product = arb(1)
+            for w, x in zip(whole, own, strict=True):
+                product *= x**w
+            products.append(product)
+        constant = _common_number(products)
+        if constant is None:
+            return None
+        sides = [self.ring.one, self.ring.number(Fraction(int(constant.p), int(constant.q)))]
+        for name, w in zip(self.system.parameter_names, whole, strict=True):
+            for _ in range(abs(w)):
+                sides[w < 0] = self.ring.times(sides[w < 0], self._parameter(name))
+        return sides[0] - sides[1]
+
+    def ranks_at_values(self) -> tuple[int, ...]:
+        """The ranks of J at positions that were found at the given values of the parameters."""
+        known = {name: arb(fmpq(x.numerator, x.denominator)) for name, x in known_values(self.system).items()}
+        source = random.Random(SEED)
+        found = [] if self._own_rank is None else [self._own_rank]
+        for _ in range(_TRIED):
+            with suppress(*NOT_THERE):
+                values = self._drawn(source) | known
+                found.append(self._rank(self._root(values, self.system.coordinates)))
+        return tuple(found)
 
     # --- rational numbers ---
 
@@ -177,21 +386,31 @@ class Manifold:
 
     # --- enclosures ---
 
-    def _enclosed(self, source: random.Random) -> OnManifold | None:
+    def _drawn(self, source: random.Random) -> dict[str, Any]:
+        """A random place, which need not be on the constraints."""
         _, rational = self._random(source)
         values = {name: arb(value) for name, value in rational.items()} | {"pi": arb.pi()}
         for name in self.ring.angles:
             if name in values:
                 values[name] = arb(source.randint(-300, 300)) / 100
+        return values
+
+    def _enclosed(self, source: random.Random) -> OnManifold | None:
+        values = self._drawn(source)
         if self._positions:
-            try:
-                values = self._root(values, self.system.coordinates)
-            except ZeroDivisionError:  # parameters may be tied, too
-                further = [x for x in self._unknowns if x not in self.system.coordinates]
-                values = self._root(values, (*self.system.coordinates, *further))
-                if any(not is_certain(values[name]) for name in further):
-                    raise
+            values = self._closed_anew(values)
         return OnManifold(State(Balls(values), self._moving(Balls(values), values, source)), False)
+
+    def _closed_anew(self, values: dict[str, Any]) -> dict[str, Any]:
+        """A root in the coordinates, or where parameters are tied, too, in these as well."""
+        try:
+            return self._root(values, self.system.coordinates)
+        except ZeroDivisionError:
+            further = [x for x in self._unknowns if x not in self.system.coordinates]
+            found = self._root(values, (*self.system.coordinates, *further))
+            if any(not is_certain(found[name]) for name in further):
+                raise
+            return found
 
     def _root(self, values: dict[str, Any], names: Sequence[str]) -> dict[str, Any]:
         """A proved root of phi near a place, in those of the names that phi depends on most there.
@@ -208,7 +427,8 @@ class Manifold:
 
         for _ in range(_NEWTON):
             residual, rows = at(values)
-            done = eliminated([[*row, r] for row, r in zip(rows, residual, strict=True)], range(n))
+            table = [[*row, r] for row, r in zip(rows, residual, strict=True)]
+            done = eliminated(table, range(n), arb(2) ** ALMOST)
             worst = max(float(abs(arb(x)).upper()) for x in residual)
             if not worst < 1e6:
                 raise ZeroDivisionError("Newton's iteration leaves")
@@ -253,3 +473,38 @@ class Manifold:
 def _is_narrow(x: Any) -> bool:
     """Whether an enclosure is so narrow that zero in it means something."""
     return not isinstance(x, arb) or bool(x.rad() < (1 + abs(x.mid())) * arb(2) ** (WIDTH // 2))
+
+
+#: Denominators of what is taken for rational where an enclosure holds it.
+_SHORT = 10_000
+
+
+def _rational_in(x: arb) -> fmpq | None:
+    """The number with a short denominator that an enclosure holds; None where none does."""
+    short = _fraction(x).limit_denominator(_SHORT)
+    near = arb(fmpq(short.numerator, short.denominator))
+    return fmpq(short.numerator, short.denominator) if bool(abs(x - near) < arb(2) ** ALMOST) else None
+
+
+def _fraction(x: arb) -> Fraction:
+    mantissa, exponent = x.mid().man_exp()
+    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
+
+
+def _whole(x: fmpq) -> int:
+    return int(x.p) // int(x.q)
+
+
+def _common_number(values: Sequence[arb]) -> fmpq | None:
+    """The rational number that all are; None where they are not."""
+    found = [_rational_in(x) for x in values]
+    return found[0] if found[0] is not None and all(x == found[0] for x in found) else None
+
+
+def _common_ratios(rows: Sequence[Sequence[arb]]) -> list[fmpq] | None:
+    """Rational numbers to which every row is proportional; None where there are none."""
+    first = max(range(len(rows[0])), key=lambda k: float(abs(rows[0][k]).upper()))
+    if not all(is_certain(row[first]) for row in rows):
+        return None
+    found = [_common_number([row[k] / row[first] for row in rows]) for k in range(len(rows[0]))]
+    return None if any(x is None for x in found) else [x for x in found if x is not None]

@@ -18,7 +18,7 @@ from math import perm
 from typing import Any
 
 from mbsym.algebra.derivative import gradient
-from mbsym.algebra.program import Instruction, Node, Program
+from mbsym.algebra.program import Choice, Instruction, Node, Program
 from mbsym.expressions.table import Curve, Tabulated
 from mbsym.numerics.kernels.interface import Code
 
@@ -56,7 +56,7 @@ def features(code: Code) -> Features:
     narrow: dict[int, str] = {}
     for number in program.live(code.outputs):
         operation, operands, _ = program.instructions[number]
-        if operation in ("abs", "sign"):
+        if operation in ("abs", "sign") and not isinstance(operation, Choice):
             switches[operands[0], None] = None
         elif isinstance(operation, Tabulated):
             switches[operands[0], operation.table.curve] = None

@@ -1,4 +1,4 @@
-"""Extremes of systems with constraints: equations with the rows that are kept, and states that satisfy them all.
+"""Extremes of systems with constraints: equations with their rows, and states that satisfy them all.
 
 A rung is led to the constraints by the shortest way (``mbsym.numerics.closing``): after lengths were changed loops are
 closed anew, after velocities were changed they satisfy J q' + j = 0.  A rung that no state of the constraints is near
@@ -35,12 +35,9 @@ MOST_APPROACHED, LEAST = 3, 1e-8
 
 
 def equations(given: Scenario, ring: Ring) -> ConstrainedDynamics | None:
-    """The equations with the rows that are kept at the scenario's position; None without constraints."""
+    """The equations with the rows of the scenario's branch; None without constraints."""
     known = Dynamics(given, ring).constraints
-    if known is None:
-        return None
-    chosen = [(known.names[k].constraint, known.names[k].component) for k in known.kept]
-    return constrained_dynamics(given.system, ring, chosen)
+    return None if known is None else constrained_dynamics(given.system, ring, known.chosen)
 
 
 def on_constraints(ladder: Ladder, left_out: list[str]) -> Ladder | None:

@@ -139,7 +139,9 @@ class Search:
                 break
             starts += 1
             place = self._from(self._start(number))
-            if place is not None and not any(self._same(place, one) for one in places):
+            if place is None or any(self._same(place, one) for one in places):
+                continue
+            if self._rank(place) < len(self.kept):  # else others take over from the rows that are kept
                 places.append(place)
         shown = [one for one in map(self._described, places[:MOST]) if one is not None]
         shown.sort(key=lambda one: (not one.proved, [abs(x) for x in one.place.values()]))

@@ -54,11 +54,11 @@ def stepped_over(dynamics: Dynamics, times: Any, states: Any, known: Sequence[fl
 
 
 def _least(constraints: Any, search: Search, times: Any, states: Any) -> Any:
-    """The least singular value of the rows that are kept, each of length 1, at every time."""
-    rows = constraints.along(times, states).partials[search.kept] * search.scales[None, :, None]
+    """Of all rows, each of length 1, the singular value that falls to zero where their rank does, at every time."""
+    rows = constraints.along(times, states).partials * search.scales[None, :, None]
     lengths = np.linalg.norm(rows, axis=1)
     rows = rows / np.maximum(np.max(lengths, axis=1), 1e-300)[:, None, None]
-    return np.linalg.svd(np.moveaxis(rows, 2, 0), compute_uv=False)[:, -1]
+    return np.linalg.svd(np.moveaxis(rows, 2, 0), compute_uv=False)[:, constraints.rank - 1]
 
 
 def _met(search: Search, times: Any, states: Any, middle: float) -> float | None:

@@ -135,8 +135,10 @@ def measured(
     scale = np.asarray(scale)[:, np.newaxis]
     rows = []
     for variant, states, operations, evaluations, seconds, trouble in runs:
-        error = inf if states is None else float(np.max(np.abs(states - truth) / scale))
-        rows.append(ModelError(variant, error if isfinite(error) else inf, operations, evaluations, seconds, trouble))
+        largest = inf if states is None else float(np.max(np.abs(states - truth) / scale))
+        rows.append(
+            ModelError(variant, largest if isfinite(largest) else inf, operations, evaluations, seconds, trouble)
+        )
     return tuple(rows)
 
 

@@ -139,7 +139,7 @@ def _need(region: Region, claim: Claim) -> Need:
             break
     labels = region.labels(exponential or ()) if not (everywhere or beyond) else region.labels()
     note = _BODIES if bodies_used else ""
-    because = what or said(Said.FOLLOWS, f"{labels}{note}")
+    because = what or said(Said.FOLLOWS, labels, note)
     return Need(everywhere, beyond, but_borders, because, exponential, "" if everywhere or beyond else note)
 
 

@@ -54,6 +54,9 @@ WORK_OF_A_TRIAL, WORK_OF_A_LOOK = 500, 20_000
 #: Working precision of balls, in bits; a value is shown to so many digits.
 PRECISION, DIGITS_SHOWN = 256, 12
 
+#: Of what a verdict is shown.
+THE_MOTION = "the motion"
+
 
 @dataclass(frozen=True)
 class Counterexample:
@@ -281,7 +284,7 @@ class Trials:
         word = with_theorem(verdict.word, verdict.theorem)
         at = tuple((name, str(trial.values[name])) for name in self.system.parameter_names)
         shows = tuple((text, str(gap)) for text, gap, _ in gaps)
-        return Counterexample(at, (*shows, ("the motion", word)), verdict.word, bool(gaps[0][1] == 0), border)
+        return Counterexample(at, (*shows, (THE_MOTION, word)), verdict.word, bool(gaps[0][1] == 0), border)
 
     def where_zero(self, x: Polynomial) -> Iterator[Trial]:
         """Parameters at which a polynomial in free parameters vanishes: one of them is solved for, rationally.

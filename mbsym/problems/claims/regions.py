@@ -109,13 +109,13 @@ class Region:
                     of = whose if seen else f"{whose} ({text})"
                     yield said(Said.IS, label, of, note), Inequality(self.cleared(formula.polynomial), relation)
 
-    def labels(self, of: Sequence[str] = ()) -> str:
-        """Names of the conditions that an implication rests on, those of one part where its coordinates are given."""
+    def labels(self, of: Sequence[str] = ()) -> str | tuple[Remark, ...]:
+        """The conditions that an implication rests on, those of one part where its coordinates are given."""
         parts = [part for part in self.parts if not of or part.coordinates == of]
         found = [(_needed(part.theory.requirements), part.coordinates) for part in parts]
         if not 0 < sum(len(labels) for labels, _ in found) <= _MOST_LABELS:
             return "the conditions of problem 6"
-        return " and ".join(f"{', '.join(labels)} of {', '.join(names)}" for labels, names in found if labels)
+        return tuple(said(Said.LABELS, tuple(labels), ", ".join(names)) for labels, names in found if labels)
 
     # --- sets ---
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from enum import Enum, auto
@@ -13,7 +14,8 @@ class Said(Enum):
     FOLLOWS_FROM_SIGNS = auto()  # (what is known)
     NEVER_HOLDS = auto()  # (what is known)
     IS = auto()  # (condition, whose, note)
-    FOLLOWS = auto()  # (labels of conditions)
+    FOLLOWS = auto()  # (conditions, or LABELS of each part; note)
+    LABELS = auto()  # (labels of conditions, coordinates)
     UNSTABLE_WITHOUT = auto()
     UNSTABLE_BEYOND = auto()  # but for the case of equality
     UNSTABLE_INSIDE = auto()  # but where another condition is an equality
@@ -49,66 +51,91 @@ def said(code: Said, *data: object) -> Remark:
     return Remark(code, data)
 
 
-def _subject(number: object) -> str:
-    return "it" if number == 1 else "the conditions of this place together"
+def _several(one: str, more: str) -> Callable[..., str]:
+    """By how many conditions of a place there are."""
+    return lambda number, *_: one if number == 1 else more
 
 
-def _is(number: object) -> str:
-    return "is" if number == 1 else "are"
-
-
+#: Sentences with gaps for the data, or what finds one by the data.
 _SENTENCES: dict[Said, str | Callable[..., str]] = {
-    Said.FOLLOWS_FROM_SIGNS: "it follows from {}".format,
-    Said.NEVER_HOLDS: "with {} it never holds".format,
-    Said.IS: lambda label, whose, note: f"it is the condition {label} of {whose}{note}",
-    Said.FOLLOWS: "it follows from {}".format,
+    Said.FOLLOWS_FROM_SIGNS: "it follows from [[1]]",
+    Said.NEVER_HOLDS: "with [[1]] it never holds",
+    Said.IS: "it is the condition [[1]] of [[2]][[3]]",
+    Said.FOLLOWS: "it follows from [[1]][[2]]",
+    Said.LABELS: "[[1]] of [[2]]",
     Said.UNSTABLE_WITHOUT: "without it the motion is unstable",
     Said.UNSTABLE_BEYOND: "without it, but for the case of equality, the motion is unstable",
     Said.UNSTABLE_INSIDE: "without it, but where a condition of problem 6 is an equality, the motion is unstable",
     Said.FOR_EXPONENTIAL: lambda whose, note: (
-        f"it is necessary for exponential stability{f' of {whose}' if whose else ''} (all roots to the left){note}"
+        "it is necessary for exponential stability of [[1]] (all roots to the left)[[2]]"
+        if whose
+        else "it is necessary for exponential stability (all roots to the left)[[2]]"
     ),
     Said.GROWS_WITH_EQUALITY: "with equality solutions grow: the equations are linear",
     Said.STABLE_WITH_EQUALITY: "with equality, too, the motion may be stable",
     Said.STABLE_IN_FIRST_WITH_EQUALITY: "with equality, too, the first approximation may be stable",
     Said.EQUALITY_OPEN: "where it is an equality, nothing is proved in general",
     Said.EQUAL_AT_VALUES: (
-        "where it is an equality nothing is proved but at the given values: there the motion is {}".format
+        "where it is an equality nothing is proved but at the given values: there the motion is [[1]]"
     ),
     Said.GROWTH_LEAVES_OPEN: (
         "with equality the first approximation has solutions that grow; whether the motion is stable there, terms of "
         "higher order decide, if there are any"
     ),
     Said.NEVER_STABLE: lambda verdict, borders: (
-        f"the motion is {verdict}: as it is stable {'nowhere else' if borders else 'for no parameters'}, any condition "
-        "would be necessary, and it says nothing"
+        "the motion is [[1]]: as it is stable nowhere else, any condition would be necessary, and it says nothing"
+        if borders
+        else "the motion is [[1]]: as it is stable for no parameters, any condition would be necessary, and it says "
+        "nothing"
     ),
     Said.NOT_NECESSARY: "it is not necessary for stability",
     Said.NOT_NECESSARY_IN_FIRST: "it is not necessary for stability in the first approximation",
-    Said.NOT_SUFFICIENT: lambda n: f"{_subject(n)} {_is(n)} not sufficient for stability",
-    Said.WITH_IT: lambda n, note, verdict: (
-        f"with {'it' if n == 1 else 'the conditions of this place together'}{note} the motion is {verdict}"
+    Said.NOT_SUFFICIENT: _several(
+        "it is not sufficient for stability",
+        "the conditions of this place together are not sufficient for stability",
     ),
-    Said.FIRST_WITH_IT: lambda n: (
-        f"in the first approximation {_subject(n)} suffice{'s' if n == 1 else ''}; whether the motion itself is stable "
-        "is open"
+    Said.WITH_IT: _several(
+        "with it[[2]] the motion is [[3]]", "with the conditions of this place together[[2]] the motion is [[3]]"
     ),
-    Said.NOT_PROVED_SUFFICIENT: lambda n: f"{_subject(n)} {_is(n)} neither proved sufficient nor refuted",
+    Said.FIRST_WITH_IT: _several(
+        "in the first approximation it suffices; whether the motion itself is stable is open",
+        "in the first approximation the conditions of this place together suffice; whether the motion itself is stable "
+        "is open",
+    ),
+    Said.NOT_PROVED_SUFFICIENT: _several(
+        "it is neither proved sufficient nor refuted",
+        "the conditions of this place together are neither proved sufficient nor refuted",
+    ),
     Said.NOT_PROVED_NECESSARY: "it is neither proved necessary nor refuted",
-    Said.NONE_STABLE: lambda n: (
-        f"parameters that were tried where it fails: {n}, at none of them is the motion known to be stable"
+    Said.NONE_STABLE: (
+        "parameters that were tried where it fails: [[1]], at none of them is the motion known to be stable"
     ),
-    Said.NONE_UNSTABLE: lambda n: (
-        f"parameters that were tried where it holds: {n}, at none of them is the motion known to be unstable"
+    Said.NONE_UNSTABLE: (
+        "parameters that were tried where it holds: [[1]], at none of them is the motion known to be unstable"
     ),
     Said.NOT_TRIED: "no parameters could be tried",
 }
 
 
+def text(remark: Remark) -> str:
+    """Its sentence, with gaps ``[[1]]``, ... for its data."""
+    found = _SENTENCES[remark.code]
+    return found if isinstance(found, str) else found(*remark.data)
+
+
+def sentence(remark: Remark) -> str:
+    """Its sentence in English."""
+    return re.sub(r"\[\[(\d+)\]\]", lambda match: _told(remark.data[int(match[1]) - 1]), text(remark))
+
+
+def _told(value: object) -> str:
+    if isinstance(value, Remark):
+        return sentence(value)
+    if isinstance(value, tuple):
+        return (" and " if any(isinstance(x, Remark) for x in value) else ", ").join(map(_told, value))
+    return str(value)
+
+
 def words(remarks: Iterable[Remark]) -> str:
     """Their sentences, one after another."""
-    found = []
-    for one in remarks:
-        sentence = _SENTENCES[one.code]
-        found.append(sentence if isinstance(sentence, str) else sentence(*one.data))
-    return "; ".join(found)
+    return "; ".join(map(sentence, remarks))

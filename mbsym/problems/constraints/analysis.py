@@ -5,25 +5,29 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
-from flint import ctx, fmpq_mat
+from flint import ctx, fmpq, fmpq_mat
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import Constrained, Failure, NoClosedForm
+from mbsym.algebra.point import Rationals
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Formula, Matrix, column
+from mbsym.mechanics.constraints.dependence import Dependent, dependent_sets
 from mbsym.mechanics.constraints.embedding import Embedding, Pivots, basis_vector, choose, embedded
 from mbsym.mechanics.constraints.programs import ConstrainedPrograms, constrained_programs
 from mbsym.mechanics.constraints.ranks import Eliminated, eliminated, is_certain
 from mbsym.mechanics.constraints.rows import Row, RowName, kept_rows, said_rows
 from mbsym.mechanics.constraints.states import PRECISION, Manifold, OnManifold
 from mbsym.mechanics.kinematics import Scene
+from mbsym.model.admissibility import known_values
 from mbsym.model.constraints import is_holonomic, kind_name
 from mbsym.model.system import System
 from mbsym.problems.constraints.integrability import Field, by_program, integrability, is_exact_by_itself, undecided
-from mbsym.problems.constraints.result import Constraints, Integrability, Redundant, Solved
+from mbsym.problems.constraints.result import Constraints, Demanded, Integrability, Redundant, Solved
 
 #: At so many points ranks are taken.
 POINTS = 3
@@ -96,9 +100,17 @@ class _Points:
             found.append([values[i : i + n] for i in range(0, len(values), n)])
         return found
 
+    def at(self, places: Sequence[int]) -> _Points:
+        """Some of them."""
+        return _Points(self.ring, self.found, [self.states[k] for k in places])
+
+    @cached_property
+    def _first(self) -> list[list[Any]]:
+        return self.jacobians()[0]
+
     def combined(self, independent: Sequence[int], i: int) -> list[int]:
         """Of which independent rows of J a dependent one is a combination at the first point."""
-        jacobian = self.jacobians()[0]
+        jacobian = self._first
         m = len(independent)
         table = [[*(jacobian[k][c] for k in independent), jacobian[i][c]] for c in range(len(jacobian[i]))]
         done = eliminated(table, range(m))
@@ -145,8 +157,10 @@ class _Analysis:
         if not points.states:
             raise Constrained("no configuration that keeps all constraints was found")
         ranked = [self._ranked(jacobian) for jacobian in points.jacobians()]
-        best = max(range(len(ranked)), key=lambda k: ranked[k].rank)
-        independent = [i for i, _ in ranked[best].pivots]
+        rank = max(one.rank for one in ranked)
+        # Where it is lower a point is singular, or on another branch.
+        points = points.at([k for k, one in enumerate(ranked) if one.rank == rank])
+        independent = [i for i, _ in next(one for one in ranked if one.rank == rank).pivots]
         self._check_velocities(points, independent)
         self._check_freedom(independent)
         jacobian = [row.partials for row in self.rows]
@@ -199,7 +213,7 @@ class _Analysis:
             independent=tuple(independent),
             redundant=tuple(self._redundant(i, independent, sides, found, points) for i in m if i not in independent),
             position_rank=holonomic,
-            parameter_conditions=self._parameter_conditions(points, holonomic),
+            demanded=self._demanded(points, holonomic, len(independent)),
             coordinates=names,
             dependent=tuple(names[k] for k in pivots.columns),
             integrability=self._integrability(found, pivots, shifts, holonomic, len(independent) - holonomic, points),
@@ -211,7 +225,19 @@ class _Analysis:
             exact_points=points.exact,
             pivots=pivots,
             solved=None if found is None else self._whole(found),
+            dependent_sets=self._dependent_sets(independent, m, points),
+            dependent_positions=self._dependent_sets(
+                [i for i in independent if self.rows[i].name.holonomic],
+                [i for i in m if self.rows[i].name.holonomic],
+                points,
+            ),
+            rank_beside=self.manifold.rank_beside if self.manifold.at_values else None,
         )
+
+    @staticmethod
+    def _dependent_sets(independent: Sequence[int], rows: Sequence[int], points: _Points) -> tuple[Dependent, ...]:
+        relations = [{i, *points.combined(independent, i)} for i in rows if i not in independent]
+        return dependent_sets(relations, independent)
 
     def _embedding(
         self,
@@ -324,9 +350,25 @@ class _Analysis:
         except NoClosedForm:
             return False
 
-    def _parameter_conditions(self, points: _Points, position_rank: int) -> int:
-        """How many relations between parameters phi = 0 demands: what its rank gains by the parameters."""
-        return self.manifold.rank_with_parameters(points.states[0]) - position_rank
+    def _demanded(self, points: _Points, position_rank: int, rank: int) -> Demanded:
+        """Relations between parameters that phi = 0 demands: what its rank gains by the parameters, and which."""
+        manifold = self.manifold
+        count = manifold.rank_with_parameters(points.states[0]) - position_rank
+        if not count or manifold.at_values:  # at other values of the parameters the constraints are kept, too
+            return Demanded(0)
+        relation = manifold.relation(points.states) if count == 1 else None
+        relations = () if relation is None else (Formula(self.ring, relation),)
+        known = known_values(self.system)
+        if known.keys() < {*self.system.parameter_names}:
+            return Demanded(count, relations)
+        ranks = manifold.ranks_at_values()
+        satisfied = rank in ranks
+        if relation is not None:
+            numbers = Rationals({}, {})
+            values = {name: fmpq(x.numerator, x.denominator) for name, x in known.items()}
+            satisfied = Carrier(self.ring, numbers, values)(relation) == 0
+        freedom = self.n - min(ranks) if ranks else None
+        return Demanded(count, relations, satisfied, freedom)
 
 
 def regular_at(jacobians: Sequence[Sequence[Sequence[Any]]]) -> Any:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from mbsym.algebra.certainty import Certainty
 from mbsym.formulas.formula import Column, Formula, Matrix
 from mbsym.formulas.notebook import Shown
+from mbsym.mechanics.constraints.dependence import Dependent
 from mbsym.mechanics.constraints.embedding import Embedding, Pivots
 from mbsym.mechanics.constraints.rows import RowName
 
@@ -45,6 +46,21 @@ class Redundant:
     certainty: Certainty
 
 
+@dataclass(frozen=True)
+class Demanded:
+    """Relations between parameters without which the constraints cannot be kept as they are here, ``count`` of them.
+
+    ``relations`` are polynomials that vanish, where such were recognised (verified numerically).  ``satisfied``:
+    whether the given values do so; None where values are missing.  ``freedom``: how many velocities the constraints
+    leave at the given values, in the positions that were found there; None where none was.
+    """
+
+    count: int
+    relations: tuple[Formula, ...] = ()
+    satisfied: bool | None = None
+    freedom: int | None = None
+
+
 @dataclass(frozen=True, repr=False)
 class Solved(Shown):
     """q' = Y u + y0 and q'' = Y u' + a0: ``transformation`` Y (n x (n - r)), ``shift`` y0, ``acceleration_shift`` a0.
@@ -68,8 +84,11 @@ class Solved(Shown):
 class Constraints(Shown):
     """Rows that say something, with f, J (m x n), j = velocity at q' = 0, gamma = J' q' + j'.
 
-    ``independent`` are row numbers; ``velocity_rank`` their number r, ``position_rank`` h.  ``parameter_conditions``
-    is how many relations between the parameters the position constraints demand.  ``alone`` says of every independent
+    ``independent`` are row numbers; ``velocity_rank`` their number r, ``position_rank`` h.  ``dependent_sets`` are the
+    rows that follow from others, in sets that hang together, ``dependent_positions`` those of the rows on positions
+    alone.  ``demanded`` are the relations between parameters that the position constraints demand.  ``rank_beside``:
+    the rank at values of the parameters near those given, where it is another, else None.
+    ``alone`` says of every independent
     velocity constraint whether it is integrable by itself, on all configurations (None: undecided).  ``solved`` is None
     where the formulas outgrow the budget; ``pivots`` say how a program does it.  With ``in_speeds`` the
     ``coordinates``, ``dependent`` and ``free`` are names of speeds, velocity and J are in them, f is in the positions.
@@ -83,7 +102,7 @@ class Constraints(Shown):
     independent: tuple[int, ...]
     redundant: tuple[Redundant, ...]
     position_rank: int
-    parameter_conditions: int
+    demanded: Demanded
     coordinates: tuple[str, ...]
     dependent: tuple[str, ...]
     integrability: Integrability | None
@@ -92,6 +111,9 @@ class Constraints(Shown):
     pivots: Pivots
     solved: Solved | None
     in_speeds: bool = False
+    dependent_sets: tuple[Dependent, ...] = ()
+    dependent_positions: tuple[Dependent, ...] = ()
+    rank_beside: int | None = None
 
     @property
     def velocity_rank(self) -> int:

@@ -57,6 +57,10 @@ class SpeedEquations(Equations):
     def in_speeds(self) -> bool:
         return True
 
+    def equalities(self, names: Sequence[str]) -> Column:
+        """What the motion needs less what the loads supply, row by row: zero along every motion of the open tree."""
+        return tuple(needed - supplied for needed, supplied in zip(self.needed, self.supplied, strict=True))
+
     @property
     def kinematic(self) -> list[tuple[str, Formula]]:
         """(position, its rate) of those on which the equations depend."""

@@ -2,15 +2,15 @@
 
     M q'' = f + J^T lambda,     J q'' = -gamma,     phi(q, t) = 0,     J q' + j = 0
 
-Rows are the independent ones, those on positions first.  Accelerations and multipliers are there twice: as a
-straight-line program that differentiates exactly (``mbsym.mechanics.constraints.dynamics``, by factors of M and of
-J M^-1 J^T), and as M, f, J and gamma for languages that solve with pivots.
+Rows are all that say something, those on positions first; some may follow from others.  Accelerations and multipliers
+are there twice: as a straight-line program that differentiates exactly (``mbsym.mechanics.constraints.dynamics``, by
+factors of M and of J M^-1 J^T), and as M, f, J and gamma for languages that solve with pivots.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
@@ -18,7 +18,8 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.program import Node, Program
 from mbsym.analysis.constrained import programs_of
 from mbsym.analysis.stages import Unavailable
-from mbsym.mechanics.constraints.dynamics import ConstrainedDynamics, constrained_dynamics
+from mbsym.mechanics.constraints.dependence import counted_anew
+from mbsym.mechanics.constraints.dynamics import Chosen, ConstrainedDynamics, constrained_dynamics
 from mbsym.mechanics.constraints.programs import ConstrainedPrograms
 from mbsym.mechanics.programs import Programs
 from mbsym.model.system import System
@@ -32,12 +33,15 @@ if TYPE_CHECKING:
 class Tied:
     """``rows`` are numbers of rows of ``code``, those on positions first, ``positions`` of them.
 
-    ``dynamics`` has its rows in the same order; None for the reason ``no_dynamics``.
+    ``rank`` of them are independent, ``position_rank`` of those on positions.  ``dynamics`` has its rows in the same
+    order; None for the reason ``no_dynamics``.
     """
 
     code: ConstrainedPrograms
     rows: tuple[int, ...]
     positions: int
+    rank: int
+    position_rank: int
     dynamics: ConstrainedDynamics | None
     no_dynamics: str
 
@@ -91,26 +95,29 @@ def tied_of(analysis: Analysis) -> Tied | str:
 
 def _tied(analysis: Analysis) -> Tied:
     found, code = analysis.constraints, programs_of(analysis)
-    rows = sorted(found.independent, key=lambda i: code.position[i] is None)
+    order = sorted(range(len(code.names)), key=lambda i: code.position[i] is None)
+    rows, sets = counted_anew(order, found.independent, found.dependent_sets, found.dependent_positions)
     positions = sum(code.position[i] is not None for i in rows)
-    tied = Tied(code, tuple(rows), positions, None, "")
+    tied = Tied(code, tuple(rows), positions, found.velocity_rank, found.position_rank, None, "")
     try:
-        solved = constrained_dynamics(analysis.system, analysis.ring, tied.kept)
+        return replace(tied, dynamics=constrained_dynamics(analysis.system, analysis.ring, Chosen(tied.kept, *sets)))
     except Failure as reason:
-        return Tied(code, tied.rows, positions, None, str(reason))
-    return Tied(code, tied.rows, positions, solved, "")
+        return replace(tied, no_dynamics=str(reason))
 
 
 @dataclass(frozen=True)
 class TiedCode:
-    """Functions of the independent rows: phi (of those on positions), J q' + j, J and gamma.
+    """Functions of the rows: phi (of those on positions), J q' + j, J and gamma.
 
-    ``rows`` are their labels, ``positions`` how many of them, the first ones, are on positions; ``places`` the entries
+    ``rows`` are their labels, ``positions`` how many of them, the first ones, are on positions; ``rank`` and
+    ``position_rank`` how many are independent, of all and of those; ``places`` the entries
     of J that need not be zero; ``given`` see ``given_of``, ``stays`` names what it flags.
     """
 
     rows: tuple[str, ...]
     positions: int
+    rank: int
+    position_rank: int
     phi: Function
     velocity: Function
     jacobian: Function
@@ -144,6 +151,8 @@ def tied_code(analysis: Analysis, writer: Functions) -> tuple[TiedCode | None, P
     code = TiedCode(
         tied.labels,
         tied.positions,
+        tied.rank,
+        tied.position_rank,
         writer.function(program, tied.phi),
         writer.function(program, tied.velocity),
         writer.function(program, [jacobian[k][j] for k, j in places]),

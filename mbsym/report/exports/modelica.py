@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from mbsym.algebra.program import Choice
 from mbsym.formulas.names import free_name
 from mbsym.formulas.straight_line import Dialect
 from mbsym.model.system import System, velocity_name
@@ -19,6 +20,7 @@ from mbsym.report.unit_text import base_unit, modelica
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+    from mbsym.report.code.constrained_code import Tied
 
 _WORDS = """
     algorithm and annotation assert block break class connect connector constant constrainedby der discrete each else
@@ -49,7 +51,9 @@ def proposed(name: str) -> str:
 
 LANGUAGE = Language(
     Dialect(
-        call=lambda function, argument: f"{function}({argument})",
+        call=lambda function, argument: (
+            f"noEvent({function}({argument}))" if isinstance(function, Choice) else f"{function}({argument})"
+        ),
         local=lambda count: f"s{count}",
         number=number,
         angle=lambda function, name: f"{function}_{name}",
@@ -87,14 +91,20 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
     )
 
 
-def _labels(analysis: Analysis) -> tuple[str, ...]:
-    """What the rows of constraints are called."""
+def _tied(analysis: Analysis) -> Tied | None:
+    """The rows of constraints, where there are any."""
     if not analysis.system.constraints:
-        return ()
+        return None
     from mbsym.report.code.constrained_code import tied_of  # few systems have constraints
 
     tied = tied_of(analysis)
-    return () if isinstance(tied, str) else tied.labels
+    return None if isinstance(tied, str) else tied
+
+
+def _labels(analysis: Analysis) -> tuple[str, ...]:
+    """What the rows of constraints are called."""
+    tied = _tied(analysis)
+    return () if tied is None else tied.labels
 
 
 def _at_the_start(analysis: Analysis, shown: Sequence[Written]) -> tuple[set[str], list[str]]:
@@ -104,12 +114,14 @@ def _at_the_start(analysis: Analysis, shown: Sequence[Written]) -> tuple[set[str
     """
     if not any(one.name == "multipliers" for one in shown):
         return set(), []
-    found, rows = analysis.constraints, {one.name: one.shape[0] for one in shown if one.shape}
+    found, tied = analysis.constraints, _tied(analysis)
+    assert tied is not None
     loose = {velocity_name(name) for name in found.dependent}
-    closing = [f"constraint_velocity_{k + 1}" for k in range(rows["constraint_velocity"])]
-    if rows.get("constraints") == len(closing):
+    independent = [k for k, i in enumerate(tied.rows, 1) if i in found.independent]
+    closing = [f"constraint_velocity_{k}" for k in independent]
+    if found.position_rank == len(closing):
         loose |= {*found.dependent}
-        closing += [f"constraint_position_{k + 1}" for k in range(len(closing))]
+        closing += [f"constraint_position_{k}" for k in independent]
     return loose, closing
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from math import gcd
@@ -16,7 +16,6 @@ from mbsym.formulas.formula import Column, Formula, Matrix
 from mbsym.formulas.mathml import (
     TIMES,
     MathPrinter,
-    bracketed,
     mathml_pieces,
     mathml_symbol,
     mathml_text,
@@ -31,7 +30,6 @@ from mbsym.formulas.mathml import (
     table,
 )
 from mbsym.formulas.tree import Factor, leaves
-from mbsym.report.conditions import Reference
 from mbsym.report.lengths import not_printed
 
 #: Formulas with more symbols than this are folded away behind their length.
@@ -43,7 +41,7 @@ LONGEST = 6000
 #: Conditions with more symbols than this are counted instead of written: results.json has them.
 LONGEST_CONDITION = 450
 
-RELATIONS = {"!=": "\u2260", ">=": "\u2265", "<=": "\u2264"}
+RELATIONS = {"!=": "\u2260", ">=": "\u2265", "<=": "\u2264", "+-": "\u00b1", "-": "\u2212"}
 
 
 #: Whether formulas carry what other programs read: an editor copies it, a report goes without.
@@ -83,9 +81,10 @@ def math(*parts: str) -> Markup:
     return Markup(f"<math>{''.join(parts)}</math>")
 
 
-def symbol(name: str, lower: str = "", upper: str = "") -> Markup:
-    """A letter of our own (omega, M) with indices below and above."""
-    letter = mathml_symbol(name).stem
+def symbol(name: str, lower: str = "", upper: str = "", dots: str = "") -> Markup:
+    """A letter of our own (omega, M) with indices below and above, ``dots`` over it."""
+    plain = mathml_symbol(name)
+    letter = plain.dotted(dots).stem if dots else plain.stem
     below, above = (f"<mrow>{_indices(text)}</mrow>" for text in (lower, upper))
     if lower and upper:
         return Markup(f"<msubsup>{letter}{below}{above}</msubsup>")
@@ -95,17 +94,17 @@ def symbol(name: str, lower: str = "", upper: str = "") -> Markup:
 
 
 def _indices(text: str) -> str:
-    """12, O1, ``1,12``: letters, digits, commas."""
+    """12, O1, ``1,12``, (1): letters, digits, commas, brackets."""
     return "".join(
-        mn(piece) if piece.isdigit() else '<mo separator="true">,</mo>' if piece == "," else mi(piece)
-        for piece in re.findall(r"\d+|,|[A-Za-z]", text)
+        mn(piece)
+        if piece.isdigit()
+        else '<mo separator="true">,</mo>'
+        if piece == ","
+        else mi(piece)
+        if piece.isalpha()
+        else mo(piece)
+        for piece in re.findall(r"\d+|[,()]|[A-Za-z]", text)
     )
-
-
-def part_of(name: str, part: object, lower: str) -> Markup:
-    """An entry of a matrix of a subsystem: (M with index 1) with index 12."""
-    whole = f"<mrow><mo>(</mo>{symbol(name, str(part))}<mo>)</mo></mrow>" if part else symbol(name)
-    return Markup(f"<msub>{whole}<mrow>{_indices(lower)}</mrow></msub>")
 
 
 def indexed(base: str, lower: object) -> Markup:
@@ -203,19 +202,22 @@ def entries(value: Matrix, symmetric: bool = False) -> list[tuple[str, Formula]]
     ]
 
 
-# --- problem 6 --------------------------------------------------------------------------------------------------------
+# --- polynomials ------------------------------------------------------------------------------------------------------
 
 
-def polynomial(left: str, coefficients: Sequence[Formula], variable: str) -> Markup:
-    """left = sum of coefficient*variable^k, highest power first."""
+def polynomial_pieces(coefficients: Sequence[Formula], variable: str, length: Callable[[Formula], str]) -> list[str]:
+    """sum of coefficient*variable^k, highest power first, in pieces, between which a line may break.
+
+    Instead of a coefficient that nobody would read there is its ``length``.
+    """
     found: list[str] = []
     for degree, coefficient in reversed(list(enumerate(coefficients))):
         if coefficient.is_zero:
             continue
         raised = "" if degree == 0 else mi(variable) if degree == 1 else power(mi(variable), mn(degree))
         shape = shape_of(coefficient.ring, coefficient.polynomial)
-        if length := counted(coefficient):
-            pieces, negative = [mtext(length)], False
+        if not is_readable(coefficient):
+            pieces, negative = [length(coefficient)], False
         elif raised and len(shape.terms) > 1:
             pieces, negative = MathPrinter(coefficient.ring).factor_pieces(Factor(shape)), False
         else:
@@ -231,51 +233,12 @@ def polynomial(left: str, coefficients: Sequence[Formula], variable: str) -> Mar
         elif negative:
             pieces[0] = sign("\u2212") + pieces[0]
         found += pieces
-    found = found or [mn(0)]
-    return whole([_joined(left, mo("="), found[0]), *found[1:]])
+    return found or [mn(0)]
 
 
-def counted(value: Formula, in_json: bool = True) -> str:
-    """How long a polynomial is that nobody would read; "" for any other."""
-    if value.terms <= LONGEST and _size(value) < LONGEST_CONDITION:
-        return ""
-    degree = max(map(sum, value.polynomial.monoms()))
-    return f"({value.terms} terms, of degree {degree}{'; in full in results.json' if in_json else ''})"
-
-
-def condition(left: str, value: Formula, name: str, in_json: bool = True) -> Markup:
-    """``left: value > 0``; a long one is only counted, and ``in_json`` tells where it is."""
-    end = relation(name)
-    length = counted(value, in_json)
-    if length:
-        return text_line(left, mo(":"), mtext(length), end)
-    return line(left, value, right=end, sign=":")
-
-
-def relation(name: str) -> Markup:
-    """A relation and zero."""
-    return Markup(mo(RELATIONS.get(name, name)) + mn(0))
-
-
-def refer(reference: Reference) -> Markup:
-    """``v4 < 0`` for a polynomial that was shown before."""
-    under = _joined(label(reference.label), mo(":")) if reference.under != reference.label else ""
-    return text_line(under, label(reference.under), relation(reference.relation))
-
-
-def label(words: str) -> Markup:
-    """v6 as a coefficient's symbol, other labels as text."""
-    opposite = re.fullmatch(r"-\((.*)\)", words)
-    if opposite is not None:
-        return Markup(_joined(sign("\u2212"), label(opposite[1])))
-    bare, comma, rest = words.partition(", ")
-    match = re.fullmatch(r"([av])(\d+)( of factor (\d+))?", bare)
-    if match is None:
-        return Markup(mtext(words))
-    shown = symbol(match[1], match[2], f"({match[4]})" if match[4] else "")
-    if match[4]:
-        shown = Markup(f"<msubsup>{mi(match[1])}{mn(match[2])}{bracketed(mn(match[4]))}</msubsup>")
-    return Markup(_joined(shown, mtext(f", {rest}"))) if comma else shown
+def is_readable(value: Formula) -> bool:
+    """Whether anybody would read the polynomial."""
+    return value.terms <= LONGEST and _size(value) < LONGEST_CONDITION
 
 
 def prose(words: str, variable: str = "λ") -> Markup:

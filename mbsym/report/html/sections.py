@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 
 from mbsym.report.html.environment import fragment
 from mbsym.report.html.formulas import spelled
-from mbsym.report.html.report import context
-from mbsym.report.summary import title_of
+from mbsym.report.html.report import context, title_in
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -29,10 +28,7 @@ PARTS = {
 
 def title(analysis: Analysis, part: str | int) -> str:
     """As the report has it: ``Problem 6. Stability``, ``The system``."""
-    if isinstance(part, str):
-        return PARTS[part]
-    words = title_of(analysis.system, part)
-    return f"Problem {part}. {words[:1].upper()}{words[1:]}"
+    return str(title_in(analysis, part if isinstance(part, int) else PARTS[part]))
 
 
 def part_html(analysis: Analysis, part: str | int, problems: Sequence[int]) -> str:

@@ -2,43 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
+from typing import Any
+
 from markupsafe import Markup, escape
 
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.mathml import MathNames, mathml_names, mathml_pieces, mo
-from mbsym.problems.kinematics import BodyKinematics
-from mbsym.problems.telling import ToldKinematics
-from mbsym.report.compact import Compact, told_formulas
+from mbsym.formulas.told import Told
 from mbsym.report.html.formulas import math
 from mbsym.report.words.passages import Passage
 
 
-def told_passages(item: Compact) -> Markup:
+def told_passages(told: Told[Any], found: Iterable[Passage], say: Callable[[str], Markup] = escape) -> Markup:
     """A phrase, then the definitions that it introduces, for every passage."""
-    names = mathml_names(item.system.told.ring)
-    return Markup("").join(_passage(passage, names) for passage in item.passages)
+    names = mathml_names(told.ring)
+    return Markup("").join(_passage(passage, names, say) for passage in found)
 
 
-def told_terms(item: Compact, number: int) -> int:
-    """How many terms there are to read: those of the definitions, and of the formulas of a problem in their terms."""
-    defined = sum(x.formula.terms for passage in item.passages for x in passage.definitions)
-    return defined + sum(x.terms for x in told_formulas(item.system, number))
-
-
-def longer(closed: BodyKinematics, told: ToldKinematics) -> bool:
-    """Whether the velocities of a body say something else when they are written out."""
-    return _terms(closed) > _terms(told)
-
-
-def _terms(found: BodyKinematics | ToldKinematics) -> int:
-    vectors = (found.angular_velocity, found.velocity_origin, found.velocity_mass_centre)
-    return sum(x.terms for vector in vectors for x in vector)
-
-
-def _passage(passage: Passage, names: MathNames) -> Markup:
+def _passage(passage: Passage, names: MathNames, say: Callable[[str], Markup]) -> Markup:
     coordinate = Markup(" ") + math(str(names[passage.coordinate])) if passage.coordinate else Markup("")
     written = "; ".join(_equation(str(names[item.name]), item.formula) for item in passage.definitions)
-    return Markup(f'<p>{escape(passage.words)}{coordinate}:</p>\n<div class="formula told">{written}.</div>\n')
+    return Markup(f'<p>{say(passage.words)}{coordinate}:</p>\n<div class="formula told">{written}.</div>\n')
 
 
 def _equation(left: str, formula: Formula) -> str:

@@ -23,9 +23,18 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
     return filled("appendix.tex.j2", analysis, problems, Form.APPENDIX)
 
 
-def fragment(analysis: Analysis, problems: Sequence[int], name: str, title: str) -> str:
+def fragment(analysis: Analysis, problems: Sequence[int], name: str, title: str, number: int | None = None) -> str:
     """The text of ``fragments/NAME.tex``."""
-    return filled("fragment.tex.j2", analysis, problems, Form.FRAGMENT, title=title, part=f"latex/{name}.j2")
+    return filled(
+        "fragment.tex.j2",
+        analysis,
+        problems,
+        Form.FRAGMENT,
+        title=title,
+        name=name,
+        number=number,
+        part=f"latex/{name}.j2",
+    )
 
 
 def joined(appendices: Sequence[str]) -> str:

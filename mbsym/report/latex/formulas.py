@@ -8,12 +8,9 @@ from math import gcd
 
 from flint import fmpq
 
-from mbsym.expressions.tree import ZERO
+from mbsym.expressions.tree import ZERO, Expression
 from mbsym.formulas.formula import Column, Formula, Matrix
 from mbsym.formulas.latex import LatexNames, latex_factor, latex_matrix, latex_text
-from mbsym.model.system import Tensor
-from mbsym.problems.linearisation import Subsystem
-from mbsym.problems.stability.spectrum import Spectrum, numbers
 from mbsym.report.latex.description import expression
 from mbsym.report.lengths import not_printed
 
@@ -34,18 +31,9 @@ def formula(value: Formula, long: frozenset[int] = frozenset()) -> str:
     return latex_text(value.ring, value.polynomial, breaks=True)
 
 
-def condition(value: Formula, in_json: bool = True) -> str:
-    """A polynomial of problem 6; a long one is only counted, and ``in_json`` tells where it is."""
-    return counted(value, in_json) or formula(value)
-
-
-def counted(value: Formula, in_json: bool = True) -> str:
-    """How long a polynomial is that nobody would read; "" for any other."""
-    if value.terms <= LONGEST and len(re.findall(r" [+-] ", formula(value))) < LONGEST_CONDITION:
-        return ""
-    degree = max(map(sum, value.polynomial.monoms()))
-    where = "; in full in results.json" if in_json else ""
-    return f"\\text{{({value.terms} terms, of degree {degree}{where})}}"
+def is_readable(value: Formula) -> bool:
+    """Whether anybody would read the polynomial."""
+    return value.terms <= LONGEST and len(re.findall(r" [+-] ", formula(value))) < LONGEST_CONDITION
 
 
 def width(latex: str) -> float:
@@ -96,7 +84,7 @@ def _common_number(value: Matrix) -> int:
     return gcd(*(int(c.p) for c in coefficients)) if whole else 1
 
 
-def tensor(value: Tensor, names: LatexNames, widest: float) -> str:
+def tensor(value: Sequence[Sequence[Expression]], names: LatexNames, widest: float) -> str:
     """A tensor of inertia; a wide one row by row."""
     if all(value[i][j] == ZERO for i in range(3) for j in range(3) if i != j):
         return "\\operatorname{diag}(" + ",\\; ".join(expression(value[k][k], names) for k in range(3)) + ")"
@@ -104,30 +92,6 @@ def tensor(value: Tensor, names: LatexNames, widest: float) -> str:
     if sum(max(map(width, column)) + 1.2 for column in zip(*rows, strict=True)) <= widest:
         return latex_matrix(rows)
     return "(" + ";\\; \\penalty0 ".join(",\\; ".join(one) for one in rows) + ")"
-
-
-def displays(part: Subsystem, k: object, widest: float = WIDEST, measured: Measured = measured_matrix) -> list[str]:
-    """The matrices of a subsystem that are not zero and not too wide, side by side where they fit."""
-    lines: list[str] = []
-    room = 0.0
-    for name in "MDGKN":
-        value: Matrix = getattr(part, name)
-        text, wide = ("", 0.0) if value.is_zero else measured(value)
-        if not text or wide > widest:
-            continue
-        needed = wide + 6
-        shown = f"{name}{index(k)} = {text}"
-        if needed <= room:
-            lines[-1] += f",\\quad {shown}"
-        else:
-            lines.append(shown)
-            room = widest
-        room -= needed
-    return lines
-
-
-def index(k: object) -> str:
-    return f"_{{{k}}}" if k else ""
 
 
 def row(values: Column, long: frozenset[int] = frozenset(), widest: float = WIDEST) -> str:
@@ -151,15 +115,15 @@ def entries(value: Matrix, symmetric: bool = False) -> list[tuple[str, Formula]]
     ]
 
 
-def polynomial(coefficients: Sequence[Formula], variable: str) -> str:
-    """sum of coefficient*variable^k, highest power first."""
+def polynomial(coefficients: Sequence[Formula], variable: str, length: Callable[[Formula], str]) -> str:
+    """sum of coefficient*variable^k, highest power first; instead of one that nobody would read its ``length``."""
     written: list[str] = []
     for power, coefficient in reversed(list(enumerate(coefficients))):
         if coefficient.is_zero:
             continue
         raised = "" if power == 0 else f" {variable}" if power == 1 else f" {variable}^{{{power}}}"
-        if length := counted(coefficient):
-            written.append(" \\penalty0 " + ("+ " if written else "") + length + raised)
+        if not is_readable(coefficient):
+            written.append(" \\penalty0 " + ("+ " if written else "") + length(coefficient) + raised)
             continue
         if raised:
             text = latex_factor(coefficient.ring, coefficient.polynomial, breaks=True)
@@ -167,18 +131,3 @@ def polynomial(coefficients: Sequence[Formula], variable: str) -> str:
             text = formula(coefficient)
         written.append(" \\penalty0 " + ("" if text.startswith("-") or not written else "+ ") + text + raised)
     return "".join(written) or "0"
-
-
-def eigenvalues(spectrum: Spectrum) -> str:
-    """``-0.1 \\pm 2.3\\,\\mathrm{i}``, separated by commas; six digits."""
-    written = []
-    for root in numbers(spectrum):
-        real, imaginary = (scientific(x) for x in (root.real, root.imaginary))
-        text = real if not root.imaginary else f"{real if root.real else ''}\\pm {imaginary}\\,\\mathrm{{i}}"
-        written.append(text if root.multiplicity == 1 else f"{text}\\ ({root.multiplicity}\\times)")
-    return ",\\; \\penalty0 ".join(written)
-
-
-def scientific(value: float) -> str:
-    digits, _, exponent = f"{value:.6g}".partition("e")
-    return f"{digits}\\cdot 10^{{{int(exponent)}}}" if exponent else digits

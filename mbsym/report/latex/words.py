@@ -1,16 +1,14 @@
-"""Words in LaTeX: plain text escaped, labels of coefficients, sentences, lines that are not too long."""
+"""Words in LaTeX: plain text escaped, sentences, lines that are not too long."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 
 from mbsym.model.system import System
-from mbsym.report.conditions import Reference
 
 #: Longer lines of the file are broken: TeX reads whole lines into a buffer.
 LINE = 400
-RELATIONS = {"!=": r"\neq", ">=": r"\geq", "<=": r"\leq"}
+RELATIONS = {"!=": r"\neq", ">=": r"\geq", "<=": r"\leq", "+-": r"\pm", ":": r"\colon\quad"}
 
 _SPECIAL = {
     "\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#", "%": r"\%", "_": r"\_",
@@ -56,32 +54,10 @@ def displayed(words: str) -> str:
     return re.sub(r"\\\[ (.*?) \\\]", lambda m: f"\\longformula{{{m[1]}}}", words)
 
 
-def refer(reference: Reference, say: Callable[[str], str] = str) -> str:
-    """``v_4 < 0`` for a polynomial that was shown before."""
-    under = f"{label(reference.label, say)} \\colon\\quad " if reference.under != reference.label else ""
-    relation = RELATIONS.get(reference.relation, reference.relation)
-    return f"{under}{label(reference.under, say)} {relation} 0"
-
-
 def prose(words: str, variable: str = r"\lambda") -> str:
     """Words of the stability kernel, with lambda as the ``variable`` of the characteristic polynomial."""
     power = r"\blambda(\\\^\{\}(\d+))?"
     return re.sub(power, lambda m: f"${variable}^{{{m[2]}}}$" if m[1] else f"${variable}$", escaped(words))
-
-
-def label(words: str, say: Callable[[str], str] = str) -> str:
-    """v6 as a coefficient's symbol, other labels as text, which ``say`` may put into another language."""
-    opposite = re.fullmatch(r"-\((.*)\)", words)
-    if opposite is not None:
-        return "-" + label(opposite[1], say)
-    bare, comma, part = words.partition(", ")
-    match = re.fullmatch(r"([av])(\d+)( of factor (\d+))?", bare)
-    if match is not None and comma:
-        return label(bare) + f"\\text{{, {escaped(say(part))}}}"
-    if match is None:
-        return f"\\text{{{escaped(say(bare) + (f', {say(part)}' if comma else ''))}}}"
-    raised = f"^{{({match[4]})}}" if match[4] else ""
-    return f"{match[1]}_{{{match[2]}}}{raised}"
 
 
 def is_cyrillic(system: System) -> bool:

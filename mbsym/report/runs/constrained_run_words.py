@@ -9,6 +9,7 @@ from msgspec import UNSET, UnsetType
 
 from mbsym.expressions.counting import counted
 from mbsym.model.quantities import time_unit, unit_of, with_unit
+from mbsym.numerics.closing import NOUGHT
 from mbsym.report.documents import simulation as doc
 from mbsym.report.unit_text import pretty
 
@@ -63,7 +64,7 @@ def start_lines(closed: Closed, system: System) -> Iterator[str]:
         return
     if closed.given_stays:
         yield f"the initial state satisfies the constraints; velocities that were left out follow from them{held}"
-        shown = [f"{x.name} = {with_unit(f'{x.found:.9g}', pretty(unit_of(system, x.name)))}" for x in closed.moves]
+        shown = [f"{x.name} = {with_unit(_shown(x.found), pretty(unit_of(system, x.name)))}" for x in closed.moves]
         yield ", ".join(shown[:MOST_MOVES]) + (", ..." if len(shown) > MOST_MOVES else "")
         return
     how = "closest state" if closed.closest else "state near it (not certain to be the closest)"
@@ -71,9 +72,13 @@ def start_lines(closed: Closed, system: System) -> Iterator[str]:
     largest = sorted(closed.moves, key=lambda move: -abs(move.found - move.given) / (1 + abs(move.given)))
     for move in largest[:MOST_MOVES]:
         unit = pretty(unit_of(system, move.name))
-        yield f"{move.name} = {with_unit(f'{move.found:.9g}', unit)} instead of {move.given:.9g}"
+        yield f"{move.name} = {with_unit(_shown(move.found), unit)} instead of {move.given:.9g}"
     if len(largest) > MOST_MOVES:
         yield f"... and {len(largest) - MOST_MOVES} more; all are in simulation.json"
+
+
+def _shown(value: float) -> str:
+    return f"{value if abs(value) > NOUGHT else 0:.9g}"
 
 
 def drift_line(found: Drift, known: Constraints) -> str:

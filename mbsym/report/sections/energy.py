@@ -10,11 +10,26 @@ from msgspec import UNSET
 from mbsym.expressions.counting import counted
 from mbsym.model.system import System
 from mbsym.problems.energy import Energy
+from mbsym.report.content import (
+    Block,
+    Display,
+    Folded,
+    Heading,
+    Matrices,
+    Notation,
+    Relation,
+    Said,
+    Symbol,
+    named,
+    paragraph,
+    say,
+)
 from mbsym.report.documents.results import energy as doc
 from mbsym.report.plain import Write, column_text, matrix_text
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+    from mbsym.report.results import Results
 
 
 def data(found: Energy, system: System, write: Write) -> doc.Energy:
@@ -28,6 +43,60 @@ def data(found: Energy, system: System, write: Write) -> doc.Energy:
         cyclic=list(found.cyclic),
         speeds=list(getattr(found, "speeds", ())) if system.speeds else UNSET,
     )
+
+
+def content(results: Results) -> Iterator[Block]:
+    """What reports say."""
+    system, found, told = results.system, results.found.get(2), results.told.get(2)
+    yield Heading("energy", Said("Problem 2. Kinetic energy and force function"))
+    yield from results.missing(2)
+    closed: tuple[Block, ...] = () if found is None else tuple(_closed(found, results))
+    if told is not None:
+        yield paragraph(
+            Said(
+                "$T = \\frac12 \\sum A_{ij}\\, \\dot q_i \\dot q_j + \\sum A_i\\, \\dot q_i + A_0$ "
+                "is written as a whole."
+            )
+        )
+        yield from results.intermediates(2)
+        yield Display(Relation(Symbol("T"), "=", told.system.kinetic_energy), "T")
+        yield Display(Relation(Symbol("U"), "=", told.system.force_function), "U")
+        if closed:
+            yield Folded(Said("The same, written out"), closed)
+    else:
+        yield from closed
+    if found is not None and found.cyclic:
+        text = (
+            "$L$ does not contain $[[names]]$; whether a momentum is kept depends on the constraints."
+            if system.constraints
+            else "$L$ does not contain $[[names]]$: cyclic."
+        )
+        yield paragraph(say(text, names=named(found.cyclic)))
+
+
+_SUM = r"T = \frac12 \sum A_{ij}\, \dot q_i \dot q_j + \sum A_i\, \dot q_i + A_0"
+_SUM_OF_SPEEDS = r"T = \frac12 \sum A_{ij}\, u_i u_j + \sum A_i\, u_i + A_0"
+
+
+def _closed(found: Energy, results: Results) -> Iterator[Block]:
+    """T by powers of the velocities, and U."""
+    yield Display(Relation(Symbol("T"), "=", found.kinetic_energy), "T")
+    known = 3 in results.found
+    yield paragraph(
+        Notation(_SUM_OF_SPEEDS if results.system.speeds else _SUM),
+        " ",
+        Said("with $A_{ij} = M_{ij}$ of problem 3" if known else "with $A_{ij} = M_{ij}$ and"),
+        ":",
+    )
+    if not known:
+        yield Matrices(Symbol("A"), found.A2, True, "A")
+    if all(x.is_zero for x in found.A1):
+        yield Display(Relation(Symbol("A", "i"), "=", 0), "A:linear")
+    else:
+        for k, entry in enumerate(found.A1, start=1):
+            yield Display(Relation(Symbol("A", str(k)), "=", entry), f"A:linear:{k}")
+    yield Display(Relation(Symbol("A", "0"), "=", found.A0), "A:zero")
+    yield Display(Relation(Symbol("U"), "=", found.force_function), "U")
 
 
 def lines(found: Energy, analysis: Analysis) -> Iterator[str]:

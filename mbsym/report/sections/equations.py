@@ -3,21 +3,49 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import reduce
 from typing import TYPE_CHECKING, Any, cast
 
 from msgspec import UNSET, UnsetType
 
 from mbsym.expressions.counting import counted
+from mbsym.expressions.rates import acceleration_name, velocity_name
+from mbsym.expressions.tree import Expression, add, multiply, number, power
+from mbsym.expressions.tree import Name as Variable
 from mbsym.model.system import System
 from mbsym.problems.equations import Equations
+from mbsym.report.code.programs import programs_of
+from mbsym.report.content import (
+    Block,
+    Components,
+    Display,
+    Folded,
+    Heading,
+    Matrices,
+    Name,
+    Relation,
+    Said,
+    Steps,
+    Subheading,
+    Symbol,
+    equalities,
+    joined,
+    named,
+    numbered,
+    paragraph,
+    say,
+    speeds,
+)
 from mbsym.report.documents.results import equations as doc
 from mbsym.report.plain import Write, column_text, matrix_text
+from mbsym.report.plain_writer import Writer
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
     from mbsym.problems.constraints import Constraints, Solved
     from mbsym.problems.in_speeds.speeds import SpeedEquations
     from mbsym.problems.reactions import Reaction
+    from mbsym.report.results import Results
 
 
 def data(found: Equations, system: System, write: Write) -> doc.Equations:
@@ -72,7 +100,10 @@ def _constraints(found: Constraints, write: Write) -> doc.Constraints:
             )
             for one in found.redundant
         ],
-        parameter_conditions=found.parameter_conditions,
+        parameter_conditions=found.demanded.count,
+        parameter_relations=[write(x) for x in found.demanded.relations],
+        parameters_satisfy_them=found.demanded.satisfied,
+        velocity_rank_beside=found.rank_beside,
         integrability=None
         if integrable is None
         else doc.Integrability(
@@ -124,20 +155,198 @@ def _embedded(found: Equations, write: Write) -> doc.Embedded | UnsetType:
     return doc.Embedded(mass_matrix=matrix_text(matrix, write), forcing=column_text(forcing, write))
 
 
+_LAGRANGE = (
+    r"Lagrange's equations of the second kind, $M(q)\, \ddot q = f(q, \dot q, t)$; $M$ is symmetric, entries that are "
+    "not written are zero."
+)
+_WITH_MULTIPLIERS = (
+    r"$M(q)\, \ddot q = f(q, \dot q, t) + J^T \lambda$, $J \ddot q + \gamma = 0$: $M$ and $f$ are those of the bodies "
+    r"without constraints, $\lambda$ the multipliers of the independent constraints; $M$ is symmetric, entries that "
+    "are not written are zero."
+)
+
+
+def content(results: Results) -> Iterator[Block]:
+    """What reports say."""
+    yield Heading("equations", Said("Problem 3. Equations of motion"))
+    system, found, told = results.system, results.found.get(3), results.told.get(3)
+    equations = Said(_WITH_MULTIPLIERS if system.constraints else _LAGRANGE)
+    yield from results.missing(3)
+    if found is not None and found.in_speeds:
+        yield from _of_kane(found)
+    elif told is not None:
+        yield paragraph(equations)
+        yield from results.intermediates(3)
+        yield Matrices(Symbol("M"), told.system.mass_matrix, True, "M", packed=True)
+        yield from equalities(numbered(Symbol("f"), told.system.forcing), "f")
+        if found is not None:
+            yield Folded(Said("The same, written out"), tuple(_closed(found)))
+    elif found is not None:
+        yield paragraph(equations)
+        yield from _closed(found)
+    else:
+        yield from _program(results.analysis, equations)
+    if found is not None and found.constraints is not None:
+        yield from _of_constraints(found, found.constraints)
+    if results.analysis.forms:
+        from mbsym.report.sections import canonical
+
+        yield from canonical.content(results)
+    yield from _of_reactions(results)
+
+
+def _closed(found: Equations) -> Iterator[Block]:
+    yield Matrices(Symbol("M"), found.mass_matrix, True, "M")
+    yield from equalities(numbered(Symbol("f"), found.forcing), "f")
+
+
+def _of_kane(found: SpeedEquations) -> Iterator[Block]:
+    """In speeds, as they stand in textbooks first."""
+    text = (
+        "Kane's equations (equally those of Boltzmann and Hamel) in the speeds $[[speeds]]$: what the motion needs is "
+        "what the loads supply."
+        if found.constraints is None
+        else "Kane's equations (equally those of Boltzmann and Hamel) in the speeds $[[speeds]]$, of the bodies "
+        r"without constraints: what the motion needs is what the loads supply; constraints add $J^T \lambda$ "
+        "on the right."
+    )
+    yield paragraph(say(text, speeds=speeds(found.speeds)))
+    yield from equalities(zip(found.needed, found.supplied, strict=True), "needed")
+    if found.kinematic:
+        yield paragraph(Said("Kinematic equations:"))
+    yield from equalities(((Name(x, 1), rate) for x, rate in found.kinematic), "kinematic")
+    for pairs in found.relations:
+        yield Display(Relation(_products(pairs), "=", int(pairs[0][0] == pairs[0][1])))
+    if found.aside:
+        text = "No equation above depends on $[[names]]$, which follow by integration:"
+        yield paragraph(say(text, names=named(found.aside)))
+        yield from equalities(((Name(x, 1), rate) for x, rate in found.kinematic_aside), "aside")
+    text = (
+        r"As $M \dot u = f$ with $u = ([[speeds]])$; $M$ is symmetric, entries that are not written are zero."
+        if found.constraints is None
+        else r"$M$ and $f$ of these equations sorted by $\dot u$, $u = ([[speeds]])$; $M$ is symmetric, entries that "
+        "are not written are zero."
+    )
+    yield paragraph(say(text, speeds=speeds(found.speeds)))
+    yield from _closed(found)
+
+
+def _products(pairs: Sequence[tuple[str, str]]) -> Expression:
+    """The sum of the products of these names."""
+    squared = number(2)
+    terms = (power(Variable(a), squared) if a == b else multiply(Variable(a), Variable(b)) for a, b in pairs)
+    return reduce(add, terms)
+
+
+def _program(analysis: Analysis, equations: Said) -> Iterator[Block]:
+    """Equations without closed formulas, where there is a program for them."""
+    programs, _ = programs_of(analysis)
+    if programs is None:
+        return
+    names = {name: Name(name) for name in programs.environment if name != "pi"}
+    for name in analysis.system.coordinates:
+        names |= {velocity_name(name): Name(name, 1), acceleration_name(name): Name(name, 2)}
+    n = len(analysis.system.coordinates)
+    comma = "," if n > 9 else ""
+    places = [(i, j) for i in range(n) for j in range(i, n)]
+    results = [(Symbol("M", f"{i + 1}{comma}{j + 1}"), programs.mass_matrix[i][j]) for i, j in places]
+    results += [(Symbol("f", str(k)), node) for k, node in enumerate(programs.forcing, start=1)]
+    yield paragraph(equations, " ", Said("As a straight-line program:"))
+    yield Steps(programs.program, tuple(results), names, Said("The program"))
+
+
+def _of_constraints(found: Equations, tied: Constraints) -> Iterator[Block]:
+    """What is known of them, J and gamma, and the equations without multipliers."""
+    from mbsym.report.words.constraint_words import label, sentences
+
+    free = speeds(tied.free) if tied.in_speeds else named(tied.free)
+    yield Subheading((Said("Constraints"),))
+    yield paragraph(joined(sentences(tied), " "))
+    for k, (name, position, velocity) in enumerate(zip(tied.names, tied.position, tied.velocity, strict=True), start=1):
+        letter, value = ("chi", velocity) if position is None else ("phi", position)
+        yield Display(Relation(Symbol(letter, str(k)), "=", value, "=", 0), f"phi:{k}", (label(name),))
+    yield paragraph(
+        Said(
+            r"$J = \partial (\dot\varphi, \chi)/\partial u$, a row for each of these, and $\gamma$, their second rates "
+            r"(of $\chi$ the rates) at $\dot u = 0$; with the multipliers $\lambda$ of the independent ones, "
+            r"$M \dot u = f + J^T \lambda$ and $J \dot u + \gamma = 0$."
+            if tied.in_speeds
+            else r"$J = \partial (\dot\varphi, \chi)/\partial \dot q$, a row for each of these, and $\gamma$, their "
+            r"second rates (of $\chi$ the rates) at $\ddot q = 0$:"
+        )
+    )
+    yield Matrices(Symbol("J"), tied.jacobian, False, "J")
+    yield from equalities(numbered(Symbol("gamma"), tied.acceleration), "gamma")
+    solved = tied.solved
+    if solved is not None and tied.free:
+        text = (
+            r"With the independent speeds $v = ([[free]])$: $u = Y v + y_0$, $\dot u = Y \dot v + a_0$."
+            if tied.in_speeds
+            else r"With the velocities $u$ of $[[free]]$: $\dot q = Y u + y_0$, $\ddot q = Y \dot u + a_0$."
+        )
+        yield paragraph(say(text, free=free))
+        if not solved.regular_everywhere:
+            yield paragraph(Said("These are regular where"))
+            yield Display(Relation(solved.regular_where, "!=", 0), "Y:regular")
+        yield Matrices(Symbol("Y"), solved.transformation, False, "Y")
+        if not all(x.is_zero for x in solved.shift):
+            yield Components(Symbol("y", "0"), solved.shift, "y:zero")
+    if not tied.free:
+        return
+    if found.embedded is None:
+        yield paragraph(Said("The equations without multipliers are longer than the budget of terms."))
+    else:
+        yield paragraph(
+            Said(
+                r"Equations without multipliers (Maggi), $\bar M \dot v = \bar f$ with $\bar M = Y^T M Y$ and "
+                r"$\bar f = Y^T (f - M a_0)$, the dependent speeds expressed; $\bar M$ is symmetric, entries that are "
+                "not written are zero."
+                if tied.in_speeds
+                else r"Equations without multipliers (Maggi), $\bar M \dot u = \bar f$ with $\bar M = Y^T M Y$ and "
+                r"$\bar f = Y^T (f - M a_0)$, the dependent velocities expressed; $\bar M$ is symmetric, entries that "
+                "are not written are zero."
+            )
+        )
+        yield Matrices(Symbol("M", look="bar"), found.embedded.mass_matrix, True, "M:embedded")
+        yield from equalities(numbered(Symbol("f", look="bar"), found.embedded.forcing), "f:embedded")
+
+
+def _of_reactions(results: Results) -> Iterator[Block]:
+    """What joints transmit, where that was asked for."""
+    found = results.analysis.optional("reactions") if results.system.reactions else None
+    if not found:
+        return
+    yield Subheading((Said("Reactions in joints"),))
+    sentences = [
+        "Force $R$ and moment $L$ about the connection point that the joint exerts on the body, in its axes; all that "
+        "acts across the joint is in them."
+    ]
+    if results.system.constraints:
+        sentences.append(r"With the multipliers, $R + \sum \lambda_i R^{(i)}$ and $L + \sum \lambda_i L^{(i)}$.")
+    yield paragraph(joined(map(Said, sentences), " "))
+    for one in found:
+        k = str(results.numbers[one.body])
+        yield Components(Symbol("R", k), one.force, f"R:{k}")
+        yield Components(Symbol("L", k), one.moment, f"L:{k}")
+        for i, (force, moment) in enumerate(one.per_multiplier, start=1):
+            yield Components(Symbol("R", k, f"({i})"), force, f"R:{k}:per:{i}")
+            yield Components(Symbol("L", k, f"({i})"), moment, f"L:{k}:per:{i}")
+
+
 def lines(found: Equations, analysis: Analysis) -> Iterator[str]:
     """The lines in the terminal."""
     n = len(found.forcing)
     if found.in_speeds:
         own = cast("SpeedEquations", found)
         others = ", ".join(name for name, _ in own.kinematic)
-        yield f"Kane's equations in {', '.join(own.speeds)}" + (f"; with {others}" if others else "")
+        yield f"Kane's equations in {Writer().inline(speeds(own.speeds))}" + (f"; with {others}" if others else "")
     terms = sum(x.terms for x in found.forcing)
     size = counted(found.mass_matrix.terms, "term")
     yield f"{counted(n, 'equation')}; mass matrix {size}, right-hand sides {counted(terms, 'term')}"
     if found.constraints is not None:
-        from mbsym.report.words.constraint_words import Writer, filled, sentences
+        from mbsym.report.words.constraint_words import sentences
 
-        yield from map(filled, sentences(found.constraints, Writer(", ".join)))
+        yield from map(Writer().said, sentences(found.constraints))
     if found.embedded is not None:
         yield f"without multipliers: {counted(found.embedded.terms, 'term')}"
     elif found.constraints is not None:

@@ -8,11 +8,14 @@ from typing import TYPE_CHECKING
 from mbsym.expressions.tree import text
 from mbsym.model.system import System
 from mbsym.problems.equilibrium import Equilibrium
+from mbsym.report.code.functions import moving
+from mbsym.report.content import Block, Display, Heading, Listed, Name, Relation, Said, paragraph
 from mbsym.report.documents import results as doc
 from mbsym.report.plain import Write, column_text, shortened
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+    from mbsym.report.results import Results
 
 
 def data(found: Equilibrium, system: System, write: Write) -> doc.Equilibrium:
@@ -23,6 +26,42 @@ def data(found: Equilibrium, system: System, write: Write) -> doc.Equilibrium:
         conditions=column_text(found.conditions, write),
         solved={name: str(value) for name, value in found.solved},
     )
+
+
+IN_COORDINATES = (
+    "Problems 4 to 6 are told in generalised coordinates and velocities. Near the motion these and the state in speeds "
+    "(and unit vectors) are smooth functions of each other, so that stability is the same in both."
+)
+
+
+def content(results: Results) -> Iterator[Block]:
+    """What reports say."""
+    system, found = results.system, results.found.get(4)
+    yield Heading("equilibrium", Said("Problem 4. The unperturbed motion"))
+    if system.motion or found is not None:
+        yield paragraph(Said("The unperturbed motion"))
+    if system.motion:
+        items = [Relation(Name(x.coordinate), "=", moving(x.value, x.rate)) for x in system.motion]
+        held = [Relation(Name(x.name), "=", x.held) for x in system.inputs]
+        yield Display(Listed((*items, *held)), "motion")
+    yield from results.missing(4)
+    if found is None:
+        return
+    if found.satisfied:
+        yield paragraph(Said("satisfies the equations of motion identically."))
+    elif found.impossible:
+        yield paragraph(Said("does not satisfy the equations of motion: these can never vanish."))
+        yield from map(Display, found.impossible)
+    else:
+        yield paragraph(Said("satisfies the equations of motion if and only if"))
+        for k, condition in enumerate(found.conditions, start=1):
+            yield Display(Relation(condition, "=", 0), f"equilibrium:{k}")
+        if found.solved:
+            yield paragraph(Said("which problems 5 and 6 use in the form"))
+        for k, (name, value) in enumerate(found.solved, start=1):
+            yield Display(Relation(Name(name), "=", value), f"solved:{k}")
+    if system.speeds:
+        yield paragraph(Said(IN_COORDINATES))
 
 
 def lines(found: Equilibrium, analysis: Analysis) -> Iterator[str]:

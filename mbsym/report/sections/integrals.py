@@ -6,12 +6,14 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from mbsym.model.system import System
-from mbsym.problems.integrals import Integral
+from mbsym.problems.integrals import ENERGY, Integral
+from mbsym.report.content import Block, Display, Folded, Heading, Notation, Relation, Said, Words, paragraph, say
 from mbsym.report.documents import results as doc
 from mbsym.report.plain import Write
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+    from mbsym.report.results import Results
 
 
 def data(found: tuple[Integral, ...], system: System, write: Write) -> list[doc.Integral]:
@@ -20,6 +22,38 @@ def data(found: tuple[Integral, ...], system: System, write: Write) -> list[doc.
         doc.Integral(name=item.name, kind=item.kind, of=item.of, formula=write(item.formula), status=item.status)
         for item in found
     ]
+
+
+_ENERGY = (
+    "where $T_2 = \\frac12 \\sum M_{ij}\\, \\dot q_i \\dot q_j$ and $T_0$, the value of $T$ at $\\dot q = 0$, are the "
+    "parts of $T$ that are quadratic in the velocities and free of them; $T$ and $U$ are those of problem 2, $M$ is "
+    "that of problem 3."
+)
+_CONSTANT = Notation(r"\mathrm{const}")
+
+
+def content(results: Results) -> Iterator[Block]:
+    """What reports say."""
+    yield Heading("integrals", Said("Problem 7. First integrals"))
+    yield from results.missing(7)
+    if 7 not in results.found:
+        return
+    found: tuple[Integral, ...] = results.found[7]
+    for number, item in enumerate(found, start=1):
+        yield paragraph(Words(item.name), " (", Words(item.status), "):")
+        written = Display(Relation(item.formula, "=", _CONSTANT), f"integral:{number}")
+        if item.kind == ENERGY and 2 in results.told and 3 in results.problems:
+            yield Display(Relation(Notation("T_2 - T_0 - U"), "=", _CONSTANT), f"integral:{number}")
+            yield paragraph(
+                Said(_ENERGY),
+                " ",
+                say("Written out there are [[count]] terms.", count=str(item.formula.terms)),
+            )
+            yield Folded(Said("The same, written out"), (written,))
+        else:
+            yield written
+    if not found:
+        yield paragraph(Said("None in closed form of the kinds that are looked for."))
 
 
 def lines(found: tuple[Integral, ...], analysis: Analysis) -> Iterator[str]:

@@ -7,12 +7,26 @@ from typing import TYPE_CHECKING
 
 from mbsym.expressions.counting import counted
 from mbsym.model.system import System
-from mbsym.problems.kinematics import Kinematics
+from mbsym.problems.kinematics import BodyKinematics, Kinematics
+from mbsym.problems.telling import ToldKinematics
+from mbsym.report.content import (
+    Block,
+    Components,
+    Display,
+    Folded,
+    Heading,
+    Matrices,
+    Relation,
+    Said,
+    Subheading,
+    Symbol,
+)
 from mbsym.report.documents.results import kinematics as doc
 from mbsym.report.plain import Write, column_text, matrix_text
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+    from mbsym.report.results import Results
 
 
 def data(found: Kinematics, system: System, write: Write) -> doc.Kinematics:
@@ -29,6 +43,49 @@ def data(found: Kinematics, system: System, write: Write) -> doc.Kinematics:
             for body in found.bodies
         ]
     )
+
+
+def content(results: Results) -> Iterator[Block]:
+    """What reports say."""
+    yield Heading("kinematics", Said("Problem 1. Kinematics"))
+    found, told = results.found.get(1), results.told.get(1)
+    closed = {} if found is None else {body.name: body for body in found.bodies}
+    yield from results.missing(1)
+    if told is None:
+        for k, body in enumerate(closed.values(), start=1):
+            yield Subheading((f"{k}. {body.name}",))
+            yield _rotation(k, body, results)
+            yield from _velocities(k, body)
+        return
+    for k, body in enumerate(closed.values(), start=1):
+        yield _rotation(k, body, results)
+    yield from results.intermediates(1)
+    for k, (name, motion) in enumerate(told.system.kinematics.items(), start=1):
+        yield Subheading((f"{k}. {name}",))
+        yield from _velocities(k, motion)
+        if name in closed and _terms(closed[name]) > _terms(motion):
+            yield Folded(Said("The same, written out"), tuple(_velocities(k, closed[name])))
+
+
+def _rotation(k: int, body: BodyKinematics, results: Results) -> Block:
+    comma = "," if k > 9 else ""
+    upper = f"{results.numbers[body.attached_to]}{comma}{k}"
+    return Matrices(Symbol("R", upper=upper), body.rotation, False, f"R{k}")
+
+
+def _velocities(k: int, body: BodyKinematics | ToldKinematics) -> Iterator[Block]:
+    joint, centre = Symbol("V", f"O{k}"), Symbol("V", f"C{k}")
+    yield Components(Symbol("omega", str(k)), body.angular_velocity, f"omega{k}")
+    yield Components(joint, body.velocity_origin, f"VO{k}")
+    if body.velocity_mass_centre == body.velocity_origin:
+        yield Display(Relation(centre, "=", joint), f"VC{k}")
+    else:
+        yield Components(centre, body.velocity_mass_centre, f"VC{k}")
+
+
+def _terms(body: BodyKinematics | ToldKinematics) -> int:
+    vectors = (body.angular_velocity, body.velocity_origin, body.velocity_mass_centre)
+    return sum(x.terms for vector in vectors for x in vector)
 
 
 def lines(found: Kinematics, analysis: Analysis) -> Iterator[str]:

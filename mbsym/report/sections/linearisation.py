@@ -10,13 +10,36 @@ from msgspec import UNSET
 from mbsym.expressions.tree import text
 from mbsym.formulas.formula import Matrix
 from mbsym.model.system import System
-from mbsym.problems.linearisation import Linearisation
+from mbsym.problems.linearisation import Linearisation, Subsystem
+from mbsym.report.content import (
+    Block,
+    Display,
+    Heading,
+    Listed,
+    Math,
+    Matrices,
+    Name,
+    Relation,
+    Said,
+    SideBySide,
+    Symbol,
+    Words,
+    joined,
+    named,
+    paragraph,
+    say,
+    speeds,
+)
 from mbsym.report.documents.results import linearisation as doc
+from mbsym.report.first_order import first_order
 from mbsym.report.plain import Write, Written, matrix_text
+from mbsym.report.plain_writer import Writer
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+    from mbsym.problems.first_order import FirstOrder
     from mbsym.problems.reduction import Reduction
+    from mbsym.report.results import Results
 
 
 #: B of at most so many terms stands in the terminal.
@@ -52,12 +75,141 @@ def _reduction(about: Reduction, write: Write) -> doc.Reduction:
     )
 
 
+#: The matrices, with how often what they multiply is differentiated, and whether they are symmetric.
+_FIVE = (("M", 2, True), ("D", 1, True), ("G", 1, False), ("K", 0, True), ("N", 0, False))
+
+
+def content(results: Results) -> Iterator[Block]:
+    """What reports say."""
+    yield Heading("linearisation", Said("Problem 5. First approximation"))
+    system, found = results.system, results.found.get(5)
+    yield from results.missing(5)
+    if found is None:
+        return
+    if found.constrained is not None:
+        from mbsym.report.words.constraint_words import reduction_sentences
+
+        yield paragraph(joined(reduction_sentences(found.constrained), " "))
+    yield paragraph(
+        say(
+            "In physical time and the declared parameters, $q = ([[q]])$ meaning deviations; entries that are not "
+            "written are zero.",
+            q=named(found.coordinates),
+        )
+    )
+    for letter, _, symmetric in _FIVE:
+        matrix = getattr(found, letter)
+        if letter == "M" or not matrix.is_zero:
+            yield Matrices(Symbol(letter), matrix, symmetric, f"linear:{letter}")
+    if found.B is not None:
+        yield paragraph(
+            say(
+                "With the deviations $v$ of the inputs $([[inputs]])$ from the values at which they are held, the "
+                "right side is $B v$ instead of zero.",
+                inputs=named(found.inputs),
+            )
+        )
+        yield Matrices(Symbol("B"), found.B, False, "linear:B")
+    yield from _first_order(results, found)
+    if found.time_scale is not None or system.notation or len(found.subsystems) > 1:
+        yield from _subsystems(found)
+    if system.notation:
+        yield paragraph(Said("Notation"), ":")
+        yield Display(Listed(tuple(Relation(Name(x.name), "=", x.value) for x in system.notation)), "notation")
+    state = results.analysis.optional("first_order") if system.speeds else None
+    if state is not None:
+        yield from _in_speeds(state)
+
+
+def _first_order(results: Results, found: Linearisation) -> Iterator[Block]:
+    """A, B, C, D of systems with inputs or outputs."""
+    known = first_order(results.analysis, found)
+    form = known["first_order"]
+    if form is None:
+        if known["no_first_order"]:
+            yield paragraph(Said("There is no first-order form"), ": ", Words(known["no_first_order"]), ".")
+        return
+    yield paragraph(
+        say(
+            r"In first-order form, in physical time, with the state $x = (q, \dot q)$ and the deviations $w$ of the "
+            "outputs $([[outputs]])$:",
+            outputs=named(form.outputs),
+        )
+        if form.outputs
+        else Said(r"In first-order form, in physical time, with the state $x = (q, \dot q)$:")
+    )
+    a, b, c, d = (Symbol(letter, look="script") for letter in "ABCD")
+    x, v, plus = Symbol("x"), Symbol("v"), ("+",) if form.inputs else ()
+    rates = Relation(Symbol("x", dots=1), "=", a, x, *((*plus, b, v) if form.inputs else ()))
+    outputs = Relation(Symbol("w"), "=", c, x, *((*plus, d, v) if form.inputs else ()))
+    yield Display(Listed((rates, outputs) if form.outputs else (rates,)), "first-order")
+    yield Matrices(a, form.A, False, "first-order:A")
+    if form.inputs:
+        yield Matrices(b, form.B, False, "first-order:B")
+    if form.outputs:
+        yield Matrices(c, form.C, False, "first-order:C")
+    if form.inputs and form.outputs:
+        yield Matrices(d, form.D, False, "first-order:D")
+
+
+def _subsystems(found: Linearisation) -> Iterator[Block]:
+    """What problem 6 decides about, in its time and notation."""
+    several = len(found.subsystems) > 1
+    if several:
+        yield paragraph(
+            say("The equations split into subsystems: [[count]].", count=str(len(found.subsystems))),
+        )
+    if found.time_scale is not None:
+        yield paragraph(say(r"Derivatives are with respect to $\tau = [[scale]]\, t$.", scale=found.time_scale))
+    for k, part in enumerate(found.subsystems, start=1):
+        index, key = str(k) if several else "", f"subsystem:{k}"
+        present = [x for x in _FIVE if x[0] == "M" or not getattr(part, x[0]).is_zero]
+        yield Display(_equation(part, index, present), key)
+        matrices = (
+            Matrices(Symbol(letter, index), getattr(part, letter), symmetric, f"{key}:{letter}")
+            for letter, _, symmetric in present
+        )
+        yield SideBySide(tuple(matrices), key)
+
+
+def _equation(part: Subsystem, index: str, present: list[tuple[str, int, bool]]) -> Listed:
+    """M q'' + D q' + ... = 0, q = (...)."""
+    terms: list[Math | str] = []
+    for letter, dots, _ in present:
+        terms += [*(["+"] if terms else []), Symbol(letter, index), Symbol("q", index, dots=dots)]
+    names = Listed(tuple(map(Name, part.coordinates)), brackets=True)
+    return Listed((Relation(*terms, "=", 0), Relation(Symbol("q", index), "=", names)))
+
+
+def _in_speeds(state: FirstOrder) -> Iterator[Block]:
+    yield paragraph(
+        say(
+            r"In speeds and positions: $\dot x = A x$ with the deviations $x$ of $([[names]])$ from $([[values]])$.",
+            names=speeds(state.names),
+            values=Listed(tuple(state.values)),
+        )
+    )
+    yield Matrices(Symbol("A"), state.A, False, "linear:A")
+    zeros = []
+    if state.relations - state.norms:
+        text = (
+            "Unit vectors keep their lengths and the angles between them: zero roots of $A$ that belong to no motion: "
+            "[[count]]."
+        )
+        zeros.append(say(text, count=str(state.relations - state.norms)))
+    if state.norms:
+        text = "Quaternions keep their norm: zero roots of $A$ that belong to no motion: [[count]]."
+        zeros.append(say(text, count=str(state.norms)))
+    if zeros:
+        yield paragraph(joined(zeros, " "))
+
+
 def lines(found: Linearisation, analysis: Analysis) -> Iterator[str]:
     """The lines in the terminal."""
     if found.constrained is not None:
-        from mbsym.report.words.constraint_words import Writer, filled, reduction_sentences
+        from mbsym.report.words.constraint_words import reduction_sentences
 
-        yield from map(filled, reduction_sentences(found.constrained, Writer(", ".join)))
+        yield from map(Writer().said, reduction_sentences(found.constrained))
     if analysis.system.linear is not None and analysis.system.linear.of_first_order:
         yield "x' = A x, as M = 0, D = 1, K + N = -A"
     present = [name for name in "MDGKN" if not _is_zero(getattr(found, name))]
@@ -72,7 +224,7 @@ def lines(found: Linearisation, analysis: Analysis) -> Iterator[str]:
         yield "subsystems: " + "; ".join(", ".join(part.coordinates) for part in found.subsystems)
     state = analysis.optional("first_order") if analysis.system.speeds else None
     if state is not None:
-        yield f"in speeds and positions: x' = A x, x = ({', '.join(state.names)})"
+        yield f"in speeds and positions: x' = A x, x = ({Writer().inline(speeds(state.names))})"
 
 
 def _five(found: Any, write: Write) -> dict[str, list[list[Written]]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,7 @@ from mbsym.expressions.counting import counted
 from mbsym.expressions.tree import names
 from mbsym.formulas.names import free_name
 from mbsym.mechanics.variables import expressions
+from mbsym.model.quantities import rate_unit
 from mbsym.model.system import System
 from mbsym.problems.stability import Stability
 from mbsym.problems.stability.problem import SubsystemStability
@@ -22,13 +24,50 @@ from mbsym.problems.stability.spectrum import RootNumbers, Spectrum, numbers
 from mbsym.problems.stability.symbolic import Theory
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word
-from mbsym.report.conditions import CaseStatement, Shown, Statement, cases, label_meanings, provided, statements
+from mbsym.report.conditions import (
+    CaseStatement,
+    Shown,
+    Statement,
+    cases,
+    factors,
+    label_meanings,
+    provided,
+    statements,
+)
+from mbsym.report.content import (
+    Block,
+    Cited,
+    Definitions,
+    Display,
+    Heading,
+    Inline,
+    Listed,
+    Math,
+    Notation,
+    Phrase,
+    Polynomial,
+    Readable,
+    Relation,
+    Said,
+    Subheading,
+    Symbol,
+    Text,
+    Unit,
+    Words,
+    named,
+    paragraph,
+    say,
+)
 from mbsym.report.documents import parts
 from mbsym.report.documents.results import stability as doc
 from mbsym.report.plain import LONGEST, Write, shortened, statement_text
+from mbsym.report.plain_writer import Writer as PlainWriter
+from mbsym.report.references import keys_of, theorems_named
+from mbsym.report.words.verdicts import concluded, decided, verdict
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+    from mbsym.report.results import Results
 
 #: A theorem on a subsystem of the first approximation says nothing of its coordinates where others run away: the
 #: nonlinear equations couple them.
@@ -42,6 +81,9 @@ _OF_DRIFTS = (Because.LINEAR_DRIFTS, Because.COASTING)
 
 #: More eigenvalues of a subsystem are left to the files.
 MOST_ROOTS = 10
+
+#: A polynomial that never has the sign it should have is written out up to this length.
+SHORT = 60
 
 
 def data(found: Stability, system: System, write: Write) -> doc.Stability:
@@ -133,6 +175,173 @@ def _case(case: CaseStatement, shown: Shown) -> doc.Case:
     )
 
 
+# --- reports ----------------------------------------------------------------------------------------------------------
+
+
+def content(results: Results) -> Iterator[Block]:
+    """What reports say."""
+    found: Stability | None = results.found.get(6)
+    yield Heading("stability", Said("Problem 6. Stability"))
+    yield from results.missing(6)
+    if found is None:
+        return
+    variable, presumed = results.variable, results.presumed
+    for number, part in enumerate(found.subsystems, start=1):
+        yield from _told(part, number, len(found.subsystems) > 1, results)
+    if len(found.subsystems) > 1:
+        yield paragraph(
+            Said(
+                "Each of these verdicts is about coordinates of one subsystem while the others keep to the unperturbed "
+                "motion."
+            ),
+            " ",
+            Said("For the whole system"),
+            *presumed,
+            ": ",
+            *verdict(found.verdict),
+            ".",
+        )
+    if found.numerical is not None:
+        yield paragraph(
+            Said("At the given values of the parameters"),
+            Words(decided(found)),
+            ": ",
+            *verdict(found.numerical),
+            ". ",
+            Words(found.numerical.explanation, variable),
+        )
+        for spectrum in found.spectra:
+            names = named(spectrum.coordinates)
+            roots = [part for root in numbers(spectrum) for part in (", ", *_root(root))][1:]
+            unit = rate_unit(results.system)
+            yield paragraph(
+                say("Eigenvalues there, in physical time, of $[[names]]$", names=names),
+                ": ",
+                *roots,
+                *((" ", Unit(unit)) if unit else ()),
+                ".",
+            )
+    theorems = [(name, keys_of(name)) for name in dict.fromkeys(theorems_named(found))]
+    cited = tuple((Words(name), keys) for name, keys in theorems if keys)
+    if cited:
+        yield Cited(Said("On the theorems"), cited)
+
+
+def _told(part: SubsystemStability, number: int, several: bool, results: Results) -> Iterator[Block]:
+    """A subsystem: its characteristic polynomial, conditions, cases and verdict."""
+    theory, variable = part.theory, results.variable
+    title: tuple[Inline, ...] = (Said("Subsystem"), f" {number}: ") if several else ()
+    yield Subheading((*title, named(part.coordinates), " (", Words(theory.kind), ")"))
+    symbol = Symbol(results.characteristic, upper=f"({number})" if several else "")
+    shown = Relation(symbol, Listed((Symbol(variable),), brackets=True))
+    yield paragraph(say("The characteristic polynomial $[[symbol]]$, freed of a positive factor, is", symbol=shown))
+    yield Display(Relation(symbol, "=", Polynomial(part.characteristic, variable)), f"characteristic:{number}")
+    if len(theory.factors) > 1:
+        text = (
+            "Number of its factors: [[count]]. A label with $k$ below and $(j)$ above belongs to the power $k$ of "
+            "$[[variable]]$ in factor $j$."
+        )
+        yield paragraph(say(text, count=str(len(theory.factors)), variable=Symbol(variable)))
+        for k, (powers, multiplicity) in enumerate(factors(part), start=1):
+            factor = Polynomial(tuple(powers), variable, multiplicity)
+            yield Display(Relation(k, ":", factor), f"factor:{number}:{k}")
+    seen, told = Shown(), label_meanings(part.ring, theory.requirements)
+    wanted = list(statements(part.ring, theory.requirements, True, told))
+    if wanted:
+        yield paragraph(Said("Conditions"), " (", Words(theory.wanted, variable), "):")
+        yield from _conditions(wanted, seen)
+    first = True
+    for case in cases(part.ring, theory.cases, told):
+        if case.all_of or case.any_of or case.otherwise:
+            yield from _case_told(case, first, seen, variable)
+            first = False
+    for remark in theory.remarks:
+        yield paragraph(Words(remark, variable))
+    yield paragraph(Said("Verdict"), *results.presumed, ": ", *_verdict_told(theory.verdict, variable))
+
+
+def _verdict_told(found: Verdict, variable: str) -> tuple[Inline, ...]:
+    if found.word is Word.DEPENDS:
+        return *concluded(found.word, ()), "; ", Said("see the cases.")
+    return *verdict(found), ". ", Words(found.explanation, variable)
+
+
+def _case_told(case: CaseStatement, first: bool, seen: Shown, variable: str) -> Iterator[Block]:
+    word = concluded(case.word, case.theorems)
+    if case.otherwise:
+        yield paragraph(Said("Otherwise"), " ", *word, ":")
+    else:
+        several = len(case.all_of) > 1 or (not case.all_of and len(case.any_of) > 1)
+        which = "if all of these hold" if case.all_of else "if at least one of these holds"
+        opening: tuple[Inline, ...] = () if first else (Said("Otherwise"), " ")
+        yield paragraph(*opening, *word, ", ", Said(which if several else "if"), ":")
+    yield from _conditions(case.all_of, seen)
+    if case.all_of and case.any_of:
+        yield paragraph(Said("and at least one of these holds" if len(case.any_of) > 1 else "and"), ":")
+    yield from _conditions(case.any_of, seen)
+    yield paragraph(Words(case.explanation, variable))
+
+
+def _conditions(items: Sequence[Statement], seen: Shown) -> Iterator[Block]:
+    """Conditions; of a polynomial that was shown before only its name."""
+    for item in items:
+        yield from _condition_told(item, seen)
+        seen.show(item)
+
+
+def _condition_told(item: Statement, seen: Shown) -> Iterator[Block]:
+    reference, label = seen.reference(item), label_of(item.label)
+    remark: tuple[Inline, ...] = (Words(item.remark),) if item.remark else ()
+    note: tuple[Inline, ...] = (Words(item.note),) if item.note else ()
+    if reference is not None:
+        own: tuple[Math | str, ...] = () if reference.under == reference.label else (label_of(reference.label), ":")
+        yield Display(Relation(*own, label_of(reference.under), reference.relation, 0))
+    elif item.formula is None:
+        never = item.never is not None and item.never.terms < SHORT
+        yield Display(Relation(label, *(("=", item.never) if never else ()), item.relation, 0), notes=note)
+    elif item.told is not None:
+        text = "written out [[terms]] terms, of degree [[degree]]; in full in results.json"
+        long = say(text, terms=str(item.formula.terms), degree=str(item.formula.degree))
+        yield Display(Relation(label, ":", item.told.formula, item.relation, 0), notes=(long, *remark))
+        letters = seen.unshown(item.told)
+        if letters:
+            yield Definitions(Said("with"), tuple(Relation(letter, "=", value) for letter, value in letters))
+    else:
+        shown = Readable(item.formula, not item.note)
+        yield Display(Relation(label, ":", shown, item.relation, 0), notes=note or remark)
+
+
+def label_of(words: str) -> Math:
+    """v6 as a coefficient's symbol, other labels as words."""
+    opposite = re.fullmatch(r"-\((.*)\)", words)
+    if opposite is not None:
+        return Relation("-", label_of(opposite[1]))
+    bare, comma, rest = words.partition(", ")
+    part: tuple[Inline, ...] = (", ", Words(rest)) if comma else ()
+    match = re.fullmatch(r"([av])(\d+)( of factor (\d+))?", bare)
+    if match is None:
+        return Text(Words(bare), *part)
+    symbol = Symbol(match[1], match[2], f"({match[4]})" if match[4] else "")
+    return Relation(symbol, Text(*part)) if part else symbol
+
+
+def _root(root: RootNumbers) -> tuple[Inline, ...]:
+    """-0.1 +- 2.3 i, with its multiplicity."""
+    real = (_number(root.real),) if root.real or not root.imaginary else ()
+    imaginary = ("+-", _number(root.imaginary), Notation(r"\,\mathrm{i}")) if root.imaginary else ()
+    times = () if root.multiplicity == 1 else (" ", Notation(f"({root.multiplicity}\\times)"))
+    return Relation(*real, *imaginary), *times
+
+
+def _number(value: float) -> Notation:
+    """Six digits."""
+    digits, _, exponent = f"{value:.6g}".partition("e")
+    return Notation(f"{digits} \\cdot 10^{{{int(exponent)}}}" if exponent else digits)
+
+
+# --- the terminal -----------------------------------------------------------------------------------------------------
+
+
 def lines(found: Stability, analysis: Analysis) -> Iterator[str]:
     """The lines in the terminal."""
     presumed = provided(found.presumed, bool(analysis.system.inputs))
@@ -141,7 +350,7 @@ def lines(found: Stability, analysis: Analysis) -> Iterator[str]:
         items = [] if part.theory.verdict.stable else list(statements(part.ring, part.theory.requirements))
         verdict = _verdict(part.theory.verdict)
         if part.theory.verdict.word in (Word.DEPENDS, Word.UNSTABLE_BUT_BORDERS) and items:
-            verdict += f"; {_heading(part.theory, items)}:"
+            verdict += f"; {PlainWriter().inline(kind_of_conditions(part.theory, items))}:"
         yield f"{', '.join(part.coordinates)}: {verdict}"
         shown = Shown()
         for item in items:
@@ -214,18 +423,19 @@ def _condition(item: Statement, shown: Shown) -> str:
     return f"{item.label}: {shortened(statement_text(item), 0 if item.formula is None else item.formula.terms)}{remark}"
 
 
-def _heading(theory: Theory, items: Sequence[Statement]) -> str:
+def kind_of_conditions(theory: Theory, items: Sequence[Statement]) -> Inline:
     """What the listed conditions are; some may say themselves what they are needed for."""
     if theory.method is Method.EVEN and not theory.potential:
         if any(item.remark for item in items):
-            return "conditions, necessary but for the case of equality where nothing else is said"
-        return "necessary conditions, but for the case of equality"
+            return Said("conditions, necessary but for the case of equality where nothing else is said")
+        return Said("necessary conditions, but for the case of equality")
     always = next((case.verdict for case in theory.cases if case.always), None)
     if always is not None and always.stable:
-        return f"{_verdict(always)} in any case, asymptotically stable under these conditions"
+        text = "[[verdict]] in any case, asymptotically stable under these conditions"
+        return say(text, verdict=Phrase(concluded(always.word, always.theorems)))
     if theory.method is Method.HURWITZ:  # a motion may be stable without them: where friction is zero, say
-        return f"conditions for {theory.wanted.replace(': ', ' (')})"
-    return "conditions"
+        return say("conditions ([[wanted]])", wanted=Words(theory.wanted))
+    return Said("conditions")
 
 
 def _verdict(verdict: Verdict) -> str:

@@ -9,7 +9,12 @@ from itertools import groupby
 from mbsym.expressions.tree import text
 from mbsym.formulas.formula import Formula
 from mbsym.problems.claims import DIFFERS, FACTOR, SCALED, UNDECIDED, ClaimResult, Part
-from mbsym.problems.claims.counterexample import Counterexample
+from mbsym.problems.claims.counterexample import THE_MOTION, Counterexample
+from mbsym.problems.claims.remarks import Remark
+from mbsym.problems.claims.remarks import text as text_of
+from mbsym.problems.stability.word import Word
+from mbsym.report.content import Inline, Phrase, Said, Words, joined, say
+from mbsym.report.plain_writer import Writer
 
 #: Differences longer than this are counted, not printed.
 LONGEST_DIFFERENCE = 400
@@ -19,33 +24,75 @@ HELD, REFUTED, OPEN = "held", "refuted", "undecided"
 
 @dataclass(frozen=True)
 class ClaimLine:
-    """One claim: its place, what it is about, the outcome in a few words, and the lines that say by what it differs."""
+    """One claim: its place, what it is about, the outcome in a few words, and the lines that say by what it differs.
+
+    ``said`` is the outcome as reports say it.
+    """
 
     place: str
     title: str
     outcome: str
     word: str
     lines: tuple[str, ...] = ()
+    said: tuple[Inline, ...] = ()
 
 
 def claim_line(result: ClaimResult) -> ClaimLine:
     """The outcome in words; ``word`` is held, refuted or undecided."""
     word = HELD if result.holds else REFUTED if result.refuted else OPEN
-    outcome = result.outcome + (f" {result.where}" if result.where else "")
-    if result.factor is not None and result.outcome == SCALED:
-        outcome = f"differs by the factor {_long(result.factor)}"
-    elif result.factor is not None and result.outcome == FACTOR:
-        outcome += f": claimed = {_long(result.factor)} times derived"
-    elif result.factor is not None:
-        outcome += f" (compared with {_long(result.factor)} times derived)"
-    if result.value:
+    said = tuple(_outcome(result))
+    outcome = "".join(map(Writer().inline, said))
+    return ClaimLine(result.claim.place, result.title, outcome, word, tuple(_differences(result)), said)
+
+
+def _outcome(result: ClaimResult) -> Iterator[Inline]:
+    factor = None if result.factor is None else _shown(result.factor)
+    if factor is not None and result.outcome == SCALED:
+        yield say("differs by the factor [[factor]]", factor=factor)
+    else:
+        yield Words(result.outcome)
+        yield from (" ", Words(result.where)) if result.where else ()
+        if factor is not None and result.outcome == FACTOR:
+            yield from (": ", say("claimed = [[factor]] times derived", factor=factor))
+        elif factor is not None:
+            yield from (" (", say("compared with [[factor]] times derived", factor=factor), ")")
+    if result.value and result.holds:
+        yield f" ({result.value})"
+    elif result.value:
         claimed = result.claim.printed or text(result.claim.equals)
-        outcome += f" ({result.value})" if result.holds else f": claimed {claimed}, derived {result.value}"
+        yield from (": ", say("claimed [[claimed]], derived [[value]]", claimed=claimed, value=result.value))
     if result.digits is not None and result.digits != result.printed_digits:
-        outcome += f", {result.digits} of {result.printed_digits} digits right"
-    if result.outcome == UNDECIDED or (result.remark and (not result.parts or result.outcome == DIFFERS)):
-        outcome += f"{', ' if result.outcome == FACTOR else ': '}{result.remark}" if result.remark else ""
-    return ClaimLine(result.claim.place, result.title, outcome, word, tuple(_differences(result)))
+        right, printed = str(result.digits), str(result.printed_digits)
+        yield from (", ", say("[[right]] of [[printed]] digits right", right=right, printed=printed))
+    if result.remark and (result.outcome in (UNDECIDED, DIFFERS) or not result.parts):
+        yield ", " if result.outcome == FACTOR else ": "
+        yield remarks(result)
+
+
+def remarks(result: ClaimResult) -> Inline:
+    """What else there is to say, sentence by sentence."""
+    return joined(map(_remark, result.remarks), "; ") if result.remarks else Words(result.remark)
+
+
+def _remark(remark: Remark) -> Said:
+    return say(text_of(remark), **{str(k): _datum(x) for k, x in enumerate(remark.data, start=1)})
+
+
+def _datum(value: object) -> Inline:
+    if isinstance(value, Remark):
+        return _remark(value)
+    if isinstance(value, tuple):
+        several = any(isinstance(x, Remark) for x in value)
+        return joined(map(_datum, value), *((" ", Said("and"), " ") if several else (", ",)))
+    return _verdict(str(value))
+
+
+def _verdict(words: str) -> Inline:
+    """``stable (Routh)``, or other words."""
+    word, bracket, theorems = words.removesuffix(")").partition(" (")
+    if not bracket or word not in [*Word]:
+        return Words(words)
+    return Phrase((Words(word), " (", joined(map(Words, theorems.split(", ")), ", "), ")"))
 
 
 def together(lines: Iterable[ClaimLine]) -> Iterator[list[ClaimLine]]:
@@ -58,13 +105,14 @@ def together(lines: Iterable[ClaimLine]) -> Iterator[list[ClaimLine]]:
             yield from ([line] for line in found)
 
 
-def titles(lines: Iterable[ClaimLine]) -> str:
+def titles(lines: Iterable[ClaimLine]) -> Inline:
     """What several claims are about: ``mass matrix [theta, theta], [theta, delta]; angular velocity of A [1]``."""
     stems: dict[str, list[str]] = {}
     for line in lines:
         stem, bracket, index = line.title.partition(" [")
         stems.setdefault(stem, []).extend([bracket.strip() + index] if bracket else [])
-    return "; ".join(f"{stem} {', '.join(indices)}".strip() for stem, indices in stems.items())
+    told = (Phrase((Words(stem), *((" ", ", ".join(indices)) if indices else ()))) for stem, indices in stems.items())
+    return joined(told, "; ")
 
 
 def _differences(result: ClaimResult) -> Iterator[str]:
@@ -76,14 +124,17 @@ def _differences(result: ClaimResult) -> Iterator[str]:
     if not result.parts and result.difference is not None:
         yield f"{left_side(result)} = {_long(result.difference)}"
     if result.counterexample is not None:
-        yield counterexample(result.counterexample)
+        yield Writer().said(counterexample(result.counterexample, "for example at [[at]]: [[shows]]"))
 
 
-def counterexample(found: Counterexample) -> str:
-    """``for example at A = 1, C = 3: C - (7*A) = -4, the motion is stable (Routh)``."""
+def counterexample(found: Counterexample, text: str = "For example at [[at]]: [[shows]].") -> Said:
+    """``For example at A = 1, C = 3: C - (7*A) = -4, the motion is stable (Routh).``"""
     at = ", ".join(f"{name} = {value}" for name, value in found.at)
-    shows = ", ".join(f"{what} {'is' if what == 'the motion' else '='} {value}" for what, value in found.shows)
-    return f"for example at {at}: {shows}"
+    shows = [
+        say("the motion is [[verdict]]", verdict=_verdict(value)) if what == THE_MOTION else f"{what} = {value}"
+        for what, value in found.shows
+    ]
+    return say(text, at=at, shows=shows)
 
 
 def left_side(result: ClaimResult) -> str:
@@ -114,5 +165,10 @@ def _difference(part: Part) -> str:
 
 
 def _long(value: Formula) -> str:
-    written = str(value)
-    return written if len(written) <= LONGEST_DIFFERENCE else f"({value.terms} terms; see the reports)"
+    return Writer().inline(_shown(value))
+
+
+def _shown(value: Formula) -> Formula | Said:
+    """A formula in a line of text, or its length."""
+    short = len(str(value)) <= LONGEST_DIFFERENCE
+    return value if short else say("([[count]] terms; see the reports)", count=str(value.terms))

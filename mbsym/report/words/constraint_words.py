@@ -1,153 +1,180 @@
-"""What is said of constraints: sentences with gaps, filled by whoever writes them (terminal, LaTeX, HTML).
-
-A sentence stands in English with ``[[name]]`` for what is filled in, as the templates of the LaTeX report have them.
-"""
+"""What is said of constraints, and of what they leave of the coordinates."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
 
 from mbsym.algebra.certainty import Certainty
-from mbsym.formulas.formula import Formula
 from mbsym.mechanics.constraints.rows import RowName
-from mbsym.problems.constraints import Constraints, Integrability
+from mbsym.problems.constraints import Constraints, Demanded, Integrability
 from mbsym.problems.reduction import Reduction
-from mbsym.report.words.said import Said as Said
-from mbsym.report.words.said import filled as filled
+from mbsym.report.content import Name, Phrase, Relation, Said, Words, joined, named, say, speeds
 
 
-@dataclass(frozen=True)
-class Writer:
-    """How a medium writes lists of coordinates and of speeds, a word in its language, known rates, a formula != 0."""
-
-    names: Callable[[tuple[str, ...]], str]
-    word: Callable[[str], str] = str
-    rates: Callable[[tuple[tuple[str, Formula], ...]], str] = lambda rates: ", ".join(f"{n}' = {x}" for n, x in rates)
-    nonzero: Callable[[Formula], str] = lambda value: f"{value} != 0"
-    speeds: Callable[[tuple[str, ...]], str] = ", ".join
-
-
-def sentences(found: Constraints, write: Writer) -> Iterator[Said]:
+def sentences(found: Constraints) -> Iterator[Said]:
     """Counts, redundant rows, integrability, and what depends on what."""
     n = len(found.coordinates)
-    yield (
+    yield say(
         "Coordinates: [[n]]; independent constraints on positions: [[h]], on velocities: [[r]] in all; degrees of "
         "freedom: [[f]].",
-        {"n": n, "h": found.position_rank, "r": found.velocity_rank, "f": n - found.velocity_rank},
+        n=str(n),
+        h=str(found.position_rank),
+        r=str(found.velocity_rank),
+        f=str(n - found.velocity_rank),
     )
     if not found.exact_points:
-        yield "The ranks were taken at certified enclosures of points that keep the constraints.", {}
+        yield Said("The ranks were taken at certified enclosures of points that keep the constraints.")
     for redundant in found.redundant:
-        yield (
+        yield say(
             "Redundant: [[row]] follows from [[others]] ([[sure]]).",
-            {
-                "row": label(redundant.name, write),
-                "others": ", ".join(label(one, write) for one in redundant.from_rows),
-                "sure": write.word(redundant.certainty.value),
-            },
+            row=label(redundant.name),
+            others=[label(one) for one in redundant.from_rows],
+            sure=Words(redundant.certainty.value),
         )
-    if found.parameter_conditions:
-        yield (
-            "The constraints can be kept only where the parameters satisfy further relations; their number: [[k]].",
-            {"k": found.parameter_conditions},
+    if found.demanded.count:
+        yield from _demanded(found.demanded)
+    if found.rank_beside is not None:
+        yield say(
+            "These ranks are those at the given values of the parameters; at other values near them [[other]] "
+            "constraints on velocities are independent.",
+            other=str(found.rank_beside),
         )
     if found.integrability is not None:
-        yield from _integrable(found.integrability, n - found.position_rank, write)
+        yield from _integrable(found.integrability, n - found.position_rank)
     for whole, sentence in (
         (True, "Integrable by itself (proved): [[rows]]."),
         (False, "Not integrable by itself (proved): [[rows]]."),
     ):
-        rows = "; ".join(label(name, write) for name, decided in found.alone if decided is whole)
+        rows = [name for name, decided in found.alone if decided is whole]
         if rows and len(found.alone) > 1:  # of one alone it has been said
-            yield sentence, {"rows": rows}
+            yield say(sentence, rows=_labels(rows))
     if found.dependent and found.free and found.in_speeds:
-        yield (
+        yield say(
             "Dependent speeds: [[dependent]]; independent ones: [[free]].",
-            {"dependent": write.speeds(found.dependent), "free": write.speeds(found.free)},
+            dependent=speeds(found.dependent),
+            free=speeds(found.free),
         )
     elif found.dependent and not found.free:
-        yield "The constraints determine all velocities: nothing is left to be integrated.", {}
+        yield Said("The constraints determine all velocities: nothing is left to be integrated.")
     elif found.dependent and found.free:
-        yield (
+        yield say(
             "Dependent velocities: those of [[dependent]]; independent ones: those of [[free]].",
-            {"dependent": write.names(found.dependent), "free": write.names(found.free)},
+            dependent=named(found.dependent),
+            free=named(found.free),
         )
 
 
-def reduction_sentences(found: Reduction, write: Writer) -> Iterator[Said]:
+def _demanded(found: Demanded) -> Iterator[Said]:
+    """Which relations between parameters, and what the given values make of them."""
+    yield say(
+        "The constraints can be kept, and leave this freedom, only where the parameters satisfy further relations; "
+        "their number: [[k]].",
+        k=str(found.count),
+    )
+    if found.relations:
+        yield say(
+            "The parameters have to satisfy [[relations]] ([[sure]]).",
+            relations=[Relation(x, "=", 0) for x in found.relations],
+            sure=Words(Certainty.VERIFIED.value),
+        )
+    if found.satisfied:
+        yield Said("The given values do so.")
+    elif found.satisfied is not None:
+        yield Said("The given values do not: what is said of the motion here is not about them.")
+        if found.freedom is None:
+            yield Said("At the given values no configuration that keeps all constraints was found.")
+        elif not found.freedom:
+            yield Said("At the given values nothing can move in any configuration that was found.")
+        else:
+            yield say(
+                "At the given values the configurations that were found have [[f]] degrees of freedom at most.",
+                f=str(found.freedom),
+            )
+
+
+def reduction_sentences(found: Reduction) -> Iterator[Said]:
     """Which quantities the first approximation is about, and what became of the others."""
-    yield (
+    yield say(
         "The first approximation is about the independent velocities, those of [[free]], and what they depend on.",
-        {"free": write.names(found.speeds)},
+        free=named(found.speeds),
     )
     if found.dependent_coordinates:
-        yield (
+        yield say(
             "Dependent coordinates are expanded about the motion, not solved for: [[names]].",
-            {"names": write.names(found.dependent_coordinates)},
+            names=named(found.dependent_coordinates),
         )
     if found.leaf:
-        yield (
+        yield say(
             "The velocity constraints are integrable (Frobenius; proved): they keep relations between the coordinates, "
             "[[k]] in number, and the first approximation is that of disturbances that keep the values of these; the "
             "zero roots of others, as many, are not among those below.",
-            {"k": found.leaf},
+            k=str(found.leaf),
         )
     if found.rates:
-        yield "On the motion the constraints demand [[rates]].", {"rates": write.rates(found.rates)}
+        rates = [Relation(Name(name, 1), "=", x) for name, x in found.rates]
+        yield say("On the motion the constraints demand [[rates]].", rates=rates)
     if found.idle:
-        yield "No equation of these velocities depends on [[names]].", {"names": write.names(found.idle)}
+        yield say("No equation of these velocities depends on [[names]].", names=named(found.idle))
     if found.following:
-        yield (
+        yield say(
             "The equations depend on [[names]], of which the velocities are dependent: each of them has an equation of "
             "first order of its own, and M has a row of zeros for it.",
-            {"names": write.names(found.following)},
+            names=named(found.following),
         )
     for value in found.assumed:
-        yield "This holds where [[value]].", {"value": write.nonzero(value)}
+        yield say("This holds where [[value]].", value=Relation(value, "!=", 0))
     if not found.holonomic:
-        yield (
+        yield say(
             "Velocities are constrained besides coordinates, so D, G, K and N are taken as no more than the symmetric "
-            "and skew parts of two matrices: nothing is said about forces of a kind.",
-            {},
+            "and skew parts of two matrices: nothing is said about forces of a kind."
         )
 
 
-def _integrable(found: Integrability, dimension: int, write: Writer) -> Iterator[Said]:
+def _integrable(found: Integrability, dimension: int) -> Iterator[Said]:
     """Frobenius' verdict; its word falls with its certainty."""
-    growth = ", ".join(map(str, found.growth))
-    sure = write.word(found.certainty.value)
+    growth = list(map(str, found.growth))
+    sure = Words(found.certainty.value)
     if found.kept is None:
-        yield "Whether the velocity constraints are integrable is undecided: the formulas outgrew their budget.", {}
+        yield Said("Whether the velocity constraints are integrable is undecided: the formulas outgrew their budget.")
         return
     if found.word == "holonomic" and found.rheonomic:
-        yield (
+        yield say(
             "The velocity constraints are integrable (Frobenius; [[sure]]): the system is holonomic, and the "
             "configurations that can be reached at any one time are of dimension [[k]].",
-            {"sure": sure, "k": dimension - found.kept},
+            sure=sure,
+            k=str(dimension - found.kept),
         )
     elif found.word == "holonomic":
-        yield (
+        yield say(
             "The velocity constraints are integrable (Frobenius; [[sure]]): the system is holonomic, and the "
             "configurations that can be reached are of dimension [[k]].",
-            {"sure": sure, "k": dimension - found.kept},
+            sure=sure,
+            k=str(dimension - found.kept),
         )
     elif found.word == "partly":
-        yield (
+        yield say(
             "The velocity constraints are integrable in part ([[sure]]): they keep [[kept]] further relations between "
             "the coordinates; the fields and their Lie brackets span [[growth]] dimensions.",
-            {"sure": sure, "kept": found.kept, "growth": growth},
+            sure=sure,
+            kept=str(found.kept),
+            growth=growth,
         )
     else:
         # That the brackets span everything is reached at a point, and so proved.
-        yield (
+        yield say(
             "The system is nonholonomic ([[sure]]): no relation between the coordinates follows from the velocity "
             "constraints; the fields and their Lie brackets span [[growth]] dimensions.",
-            {"sure": write.word(Certainty.PROVED.value), "growth": growth},
+            sure=Words(Certainty.PROVED.value),
+            growth=growth,
         )
 
 
-def label(name: RowName, write: Writer) -> str:
-    """``rolling 2 (component 3)``."""
-    kind = f"{write.word(name.kind)} {name.constraint + 1}"
-    return f"{kind}, {write.word('component')} {name.component}" if name.component else kind
+def label(name: RowName) -> Phrase:
+    """``rolling 2, component 3``."""
+    component = (", ", Words("component"), f" {name.component}") if name.component else ()
+    return Phrase((Words(name.kind), f" {name.constraint + 1}", *component))
+
+
+def _labels(names: Iterable[RowName]) -> Phrase:
+    """With components that have a comma, semicolons between them."""
+    return joined(map(label, names), "; ")

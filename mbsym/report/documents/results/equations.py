@@ -53,6 +53,15 @@ class Constraints(Part, frozen=True):
     parameter_conditions: Annotated[
         int, "how many relations between the parameters the constraints on positions demand"
     ]
+    parameter_relations: Annotated[
+        list[Formula], "these, as formulas that are zero (verified numerically); empty where they were not recognised"
+    ]
+    parameters_satisfy_them: Annotated[
+        bool | None, "whether the given values satisfy them; null where there are none, or not all values are given"
+    ]
+    velocity_rank_beside: Annotated[
+        int | None, "velocity_rank at values of the parameters near the given ones, where it is another; else null"
+    ]
     integrability: Integrability | None
     integrable_alone: Annotated[
         list[IntegrableAlone], "of each independent velocity constraint by itself (proved; null: undecided)"

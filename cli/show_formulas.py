@@ -1,0 +1,85 @@
+"""``mbsym show``: one formula to the screen, or into another program."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+from mbsym_cli.console import BAD_INPUT, FAILED, OK, complain, printable, read_description, status
+from mbsym_cli.options import Options
+
+
+@click.command("show")
+@click.argument("file", type=click.Path(path_type=Path))
+@click.argument("names", nargs=-1, metavar="[NAME]...")
+@click.option("--latex", "language", flag_value="latex", help="Write LaTeX.")
+@click.option("--wolfram", "language", flag_value="wolfram", help="Write Wolfram Language.")
+@click.option("--python", "language", flag_value="python", help="Write Python, with the names of the description.")
+@click.option("--terms", metavar="N", default="1000000", show_default=True, help="Longest formula that is derived.")
+def command(file: Path, names: tuple[str, ...], language: str | None, terms: str) -> None:
+    """Print formulas of FILE by their NAMEs: its equations of motion, or what is asked for.
+
+    \b
+    equations       M q'' - f = 0              T U L         energies
+    accelerations   solved for q''             M f           of M q'' = f
+    motion          does it satisfy them       constraints   in velocities
+    M0 D G K N B    first approximation
+    characteristic  polynomials                conditions    of stability
+    eigenvalues     at the given values        integrals     first integrals
+
+    The name of a body prints its kinematics.  Without --latex, --wolfram or --python formulas are written as people
+    write them: theta'' is the second derivative, a space multiplies.  Exit codes: 0 printed, 1 there is no such result,
+    2 something is wrong.
+
+    \b
+    Examples:
+      mbsym show systems/simple-pendulum.yaml
+      mbsym show systems/double-pendulum.yaml T U equations
+      mbsym show systems/satellite.yaml conditions --latex
+    """
+    system = read_description(file)
+    asked = Options()
+    budget = asked.whole("--terms", terms, 1, 10**12)
+    if asked.refused(file) or system is None or budget is None:
+        sys.exit(BAD_INPUT)
+    from mbsym.algebra.failures import Failure
+    from mbsym.analysis import Analysis
+    from mbsym.report.formulas_by_name import known_names, lines, written
+
+    analysis = Analysis(system, terms=budget)
+    known = known_names(analysis)
+    wanted = names or (("equations",) if system.linear is None else ("M0", "D", "G", "K", "N"))
+    unknown = [name for name in wanted if name not in known]
+    for name in unknown:
+        asked.complain("NAME", "unknown-name", f"nothing is called '{name}' here", _nearest(name, known))
+    if asked.refused(file):
+        sys.exit(BAD_INPUT)
+    worst = OK
+    for name in wanted:
+        try:
+            with status(False, f"deriving {name}"):
+                found = list(lines(analysis, name))
+        except Failure as error:
+            complain(file, f"{name}: {error}")
+            worst = FAILED
+            continue
+        for line in found:
+            if line.remark:
+                click.echo(_comment(printable(line.remark), language))
+            click.echo(written(line, language or "text"))
+    sys.exit(worst)
+
+
+def _nearest(name: str, known: list[str]) -> str:
+    from difflib import get_close_matches
+
+    near = get_close_matches(name, known, 1)
+    return f"did you mean '{near[0]}'?" if near else f"there are {', '.join(known)}"
+
+
+def _comment(remark: str, language: str | None) -> str:
+    return {"latex": f"% {remark}", "wolfram": f"(* {remark} *)", "python": f"# {remark}"}.get(
+        language or "", f"# {remark}"
+    )

@@ -1,0 +1,251 @@
+"""Rows of constraints of which some follow from the others: all of them are kept, and which are used is chosen locally.
+
+A fixed choice of independent rows becomes dependent at positions in which nothing happens to the mechanism (the two
+wheels of an axle, seen from axes in which the axle turns).  So S lambda = b, with S = J M^-1 J^T positive semidefinite
+of rank r, is solved by elimination with the largest pivots in straight-line code: exchanges are made by factors that
+are 0 or 1,
+
+    c = 1 where S_ii w_k > S_kk w_i, else 0;      x_k <- c x_i + (1 - c) x_k,      x_i <- c x_k + (1 - c) x_i
+
+w measures rows by their own kind, since a moment and a force have other units.  r pivots are taken, what is left is
+zero where the rows keep the rank r, and a pivot vanishes only where all rows together have a lower one.  The solution
+does not depend on the choice, so that nothing jumps where the choice changes, and derivatives are those of the
+solution.
+
+Only rows take part in this that follow from others.  lambda itself is not unique: of all solutions the least is given.
+
+Source: Golub & Van Loan, Matrix Computations, 4th ed. 2013, 4.2.8 (symmetric pivoting of semidefinite matrices).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Hashable, Iterable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from mbsym.algebra.program import Node, Program
+from mbsym.mechanics.constraints.rows import RowName
+from mbsym.mechanics.factorisation import Elimination
+
+#: Of more rows that hang together only independent ones are used: the code would be long.
+MOST_DEPENDENT = 24
+
+#: Of two pivots that are as good as each other the first one stays, whatever the roundings.
+FIRST = Fraction(1) + Fraction(1, 2**30)
+
+
+@dataclass(frozen=True)
+class Dependent:
+    """Rows each of which follows from others of them somewhere; ``rank`` of them are independent."""
+
+    rows: tuple[int, ...]
+    rank: int
+
+
+def dependent_sets(relations: Iterable[Collection[int]], independent: Collection[int]) -> tuple[Dependent, ...]:
+    """Which rows hang together by ``relations``: each names the rows of one that say something about each other."""
+    sets: list[set[int]] = []
+    for relation in relations:
+        joined = set(relation)
+        for one in [one for one in sets if one & joined]:
+            joined |= one
+            sets.remove(one)
+        sets.append(joined)
+    found = (Dependent(tuple(sorted(one)), len(one & set(independent))) for one in sets)
+    return tuple(sorted(found, key=lambda one: one.rows))
+
+
+def counted_anew(
+    order: Iterable[int], independent: Collection[int], *kinds: Sequence[Dependent]
+) -> tuple[list[int], list[tuple[Dependent, ...]]]:
+    """The rows of ``order`` that equations are made of, and the sets counted by their places among these.
+
+    Sets of more than MOST_DEPENDENT rows are left with the ``independent`` ones, of which nothing follows any more.
+    """
+    long = {i for sets in kinds for one in sets if len(one.rows) > MOST_DEPENDENT for i in one.rows}
+    rows = [i for i in order if i not in long or i in independent]
+    return rows, [
+        tuple(
+            Dependent(tuple(sorted(rows.index(i) for i in one.rows)), one.rank)
+            for one in sets
+            if not long & {*one.rows}
+        )
+        for sets in kinds
+    ]
+
+
+def measured(name: RowName) -> Hashable:
+    """What has the units of this row: its kind, or for what has units of its own its constraint."""
+    return name.kind if name.component else name.constraint
+
+
+class Compliance:
+    """S x = b for S with dependent rows among the first ``count`` ones.  Raises SingularPoint as ``Elimination`` does.
+
+    ``pivots`` are those of the rows that are independent, then those of each set of ``dependent`` ones; ``owners`` says
+    of which rows each of them may be.
+    """
+
+    def __init__(
+        self,
+        program: Program,
+        matrix: Sequence[Sequence[Node]],
+        right: Sequence[Node],
+        dependent: Sequence[Dependent],
+        kinds: Sequence[Hashable],
+        singular: str,
+    ) -> None:
+        self.program, self.dependent = program, dependent
+        tied = [i for one in dependent for i in one.rows]
+        loose = [i for i in range(len(matrix)) if i not in tied]
+        self._loose, self._tied = loose, tied
+        rights = [[matrix[i][j] for i in loose] for j in tied]
+        self._first = Elimination(
+            program, [[matrix[i][j] for j in loose] for i in loose], [[right[i] for i in loose], *rights], singular
+        )
+        own, *columns = self._first.forward
+        self._columns = columns
+        block = [[matrix[i][j] - self._paired(x, y) for j, y in zip(tied, columns, strict=True)]
+                 for i, x in zip(tied, columns, strict=True)]  # fmt: skip
+        sizes: dict[Hashable, Node] = {}
+        for i in range(len(matrix)):
+            sizes[kinds[i]] = sizes.get(kinds[i], program.zero) + matrix[i][i]
+        rest = [right[i] - self._paired(x, own) for i, x in zip(tied, columns, strict=True)]
+        self._second = _Chosen(program, block, rest, [sizes[kinds[i]] for i in tied], dependent)
+        self.owners = tuple((i,) for i in loose) + tuple(one.rows for one in dependent for _ in range(one.rank))
+
+    def _paired(self, x: Sequence[Node], y: Sequence[Node]) -> Node:
+        total = self.program.zero
+        for a, b, inverse in zip(x, y, self._first.inverses, strict=True):
+            if not (self.program.vanishes(a) or self.program.vanishes(b)):
+                total = total + a * inverse * b
+        return total
+
+    @property
+    def pivots(self) -> tuple[Node, ...]:
+        return (*self._first.pivots, *self._second.pivots)
+
+    def solution(self, least: bool = False) -> tuple[Node, ...]:
+        """x, one of many where rows are dependent: with zeros for rows that follow, or the ``least`` one."""
+        second = self._second.solution(least)
+        start = list(self._first.forward[0])
+        for x, column in zip(second, self._columns, strict=True):
+            start = [y if self.program.vanishes(c) else y - x * c for y, c in zip(start, column, strict=True)]
+        found = dict(zip(self._loose, self._first.backward(start), strict=True))
+        found |= dict(zip(self._tied, second, strict=True))
+        return tuple(found[i] for i in range(len(found)))
+
+
+class _Chosen:
+    """A x = b with the largest pivots of each set of rows, which stand one after another."""
+
+    def __init__(
+        self,
+        program: Program,
+        matrix: Sequence[Sequence[Node]],
+        right: Sequence[Node],
+        sizes: Sequence[Node],
+        sets: Sequence[Dependent],
+    ) -> None:
+        self.program, n = program, len(right)
+        self._a, self._b, self._sizes = [list(row) for row in matrix], list(right), list(sizes)
+        self._factors: list[list[Node]] = [[program.zero] * n for _ in range(n)]  # by row, then by pivot
+        self._exchanges: list[tuple[int, int, Node]] = []
+        self._taken: list[int] = []
+        self._left: list[tuple[range, list[int]]] = []  # of each set the places of its pivots, and those without
+        start = 0
+        for one in sets:
+            end = start + len(one.rows)
+            for k in range(start, start + one.rank):
+                for i in range(k + 1, end):
+                    self._exchange(k, i, [*range(k, n)])
+                self._eliminate(k, [*range(k + 1, end), *range(end, n)])
+            self._left.append((range(start, start + one.rank), [*range(start + one.rank, end)]))
+            start = end
+
+    @property
+    def pivots(self) -> tuple[Node, ...]:
+        return tuple(self._a[k][k] for k in self._taken)
+
+    def _exchange(self, k: int, i: int, active: Sequence[int]) -> None:
+        """Rows k and i exchanged where i has the larger pivot."""
+        program, a, sizes = self.program, self._a, self._sizes
+        same = sizes[i] == sizes[k]
+        mine, other = (a[k][k], a[i][i]) if same else (a[k][k] * sizes[i], a[i][i] * sizes[k])
+        chosen = program.exceeds(other, program.number(FIRST) * mine)
+        if program.vanishes(chosen):
+            return
+        self._exchanges.append((k, i, chosen))
+        diagonal, beside = (a[k][k], a[i][i]), a[k][i]
+        for j in active:
+            if j not in (k, i):
+                a[k][j], a[i][j] = self._exchanged(a[k][j], a[i][j], chosen)
+                a[j][k], a[j][i] = a[k][j], a[i][j]
+        a[k][k], a[i][i] = self._exchanged(*diagonal, chosen)
+        a[k][i] = a[i][k] = beside
+        for rows in (self._b, *([] if same else [sizes])):
+            rows[k], rows[i] = self._exchanged(rows[k], rows[i], chosen)
+        for p in self._taken:
+            own, others = self._factors[k], self._factors[i]
+            own[p], others[p] = self._exchanged(own[p], others[p], chosen)
+
+    def _exchanged(self, x: Node, y: Node, chosen: Node) -> tuple[Node, Node]:
+        if x == y:
+            return x, y
+        stays = self.program.one - chosen
+        return chosen * y + stays * x, chosen * x + stays * y
+
+    def _eliminate(self, k: int, rows: Sequence[int]) -> None:
+        a, inverse = self._a, self.program.reciprocal(self._a[k][k])
+        for place, i in enumerate(rows):
+            factor = self._factors[i][k] = a[k][i] * inverse
+            for j in rows[: place + 1]:
+                a[i][j] = a[j][i] = a[i][j] - factor * a[k][j]
+            self._b[i] = self._b[i] - factor * self._b[k]
+        self._taken.append(k)
+
+    def solution(self, least: bool) -> list[Node]:
+        program = self.program
+        found = [program.zero] * len(self._b)
+        for k in reversed(self._taken):
+            value = program.divide(self._b[k], self._a[k][k])
+            for i in self._taken:
+                if i > k:
+                    value = value - self._factors[i][k] * found[i]
+            found[k] = value
+        if least:
+            for pivots, without in self._left:
+                self._shorten(found, pivots, without)
+        for k, i, chosen in reversed(self._exchanges):
+            found[k], found[i] = self._exchanged(found[k], found[i], chosen)
+        return found
+
+    def _shorten(self, x: list[Node], pivots: Sequence[int], without: Sequence[int]) -> None:
+        """x - N (N^T w N)^-1 N^T w x, where N spans the null space: a column for each row without pivot."""
+        program = self.program
+        if not without:
+            return
+        columns: list[dict[int, Node]] = []
+        for j in without:
+            column = {j: program.one}
+            for k in reversed(pivots):
+                value = -self._factors[j][k]
+                for i in pivots:
+                    if i > k:
+                        value = value - self._factors[i][k] * column[i]
+                column[k] = value
+            columns.append(column)
+
+        def measured_product(one: dict[int, Node], other: dict[int, Node]) -> Node:
+            total = program.zero
+            for k, value in one.items():
+                if k in other:
+                    total = total + self._sizes[k] * value * other[k]
+            return total
+
+        whole = {k: x[k] for k in pivots}
+        squares = [[measured_product(one, other) for other in columns] for one in columns]
+        solved = Elimination(program, squares, [[measured_product(one, whole) for one in columns]])
+        for weight, column in zip(solved.backward(solved.forward[0]), columns, strict=True):
+            for k, value in column.items():
+                x[k] = x[k] - weight * value

@@ -1,0 +1,417 @@
+"""Content in HTML: one method a kind of value; mathematics is MathML."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import cache, singledispatchmethod
+from typing import Any
+
+from markupsafe import Markup, escape
+
+from mbsym.formulas.formula import Formula
+from mbsym.formulas.mathml import MathNames, bracketed, letter, mathml_names, mi, mn, mo, mtext, power, table
+from mbsym.formulas.mathml import row as bracketed_row
+from mbsym.formulas.names import greek
+from mbsym.formulas.straight_line import Dialect, listing
+from mbsym.report import content
+from mbsym.report.content import Inline, Math, Said
+from mbsym.report.html import formulas
+from mbsym.report.html.description import expression, point_of_table, speed_form
+from mbsym.report.html.formulas import RELATIONS
+from mbsym.report.html.told import told_passages
+from mbsym.report.language import Language
+from mbsym.report.latex.description import shown_points
+from mbsym.report.lengths import PAPER_PROGRAM, length, not_printed, program_not_printed
+from mbsym.report.plain_writer import Writer as PlainWriter
+from mbsym.report.unit_text import labelled
+
+_DOTS = ("", "\u02d9", "\u00a8")
+_PLAIN = PlainWriter()
+_DIALECT = Dialect(call=lambda function, argument: f"{function}({argument})", local=lambda count: f"s{count}")
+_SCRIPT = {"A": "\U0001d49c", "B": "\u212c", "C": "\U0001d49e", "D": "\U0001d49f"}
+_COMMA = '<mo separator="true">,</mo><mspace width="0.3em"/>'
+
+
+@dataclass(frozen=True)
+class Writer:
+    """``names`` of the system; formulas among the ``long`` ones, by their identity, are counted."""
+
+    names: MathNames
+    language: Language
+    long: frozenset[int] = frozenset()
+
+    def document(self, blocks: Iterable[content.Block]) -> Markup:
+        """The blocks one after the other; headings of sections are those of the page."""
+        return Markup("\n").join(map(self.block, blocks))
+
+    # --- text ---
+
+    def said(self, sentence: Said) -> Markup:
+        """A sentence in the language of the report, with its gaps filled."""
+        text = self.language.sentence(sentence.text)
+        return Markup("").join(
+            self._notation(piece, sentence) if inside else self._plain(piece, sentence)
+            for inside, piece in content.pieces(text)
+        )
+
+    def _plain(self, text: str, sentence: Said) -> Markup:
+        parts = re.split(r"\[\[(\w+)\]\]", text)
+        return Markup("").join(
+            self._gap(sentence.gaps[part]) if k % 2 else _untexed(part) for k, part in enumerate(parts)
+        )
+
+    def _gap(self, value: Inline | Sequence[Inline]) -> Markup:
+        if isinstance(value, Sequence) and not isinstance(value, str):
+            return Markup(", ").join(map(self._gap, value))
+        return self.inline(value)
+
+    def _notation(self, text: str, sentence: Said) -> Markup:
+        """Notation with values in it: each stands in it as a letter first, which it then replaces."""
+        gaps = re.findall(r"\[\[(\w+)\]\]", text)
+        for k, gap in enumerate(gaps):
+            text = text.replace(f"[[{gap}]]", chr(_FIRST + k), 1)
+        written = notation(text)
+        for k, gap in enumerate(gaps):
+            value = sentence.gaps[gap]
+            shown = mtext(value) if isinstance(value, str) else self.math(value)
+            written = written.replace(mi(chr(_FIRST + k)), shown)
+        return formulas.math(written)
+
+    @singledispatchmethod
+    def inline(self, value: Any) -> Markup:
+        """What stands in a line."""
+        return formulas.math(self.math(value))
+
+    @inline.register
+    def _(self, value: str) -> Markup:
+        return escape(value)
+
+    @inline.register
+    def _(self, value: Said) -> Markup:
+        return self.said(value)
+
+    @inline.register
+    def _(self, value: content.Words) -> Markup:
+        said = self.language.say(value.text)
+        variable = letter(value.variable) if greek(value.variable) else value.variable
+        return formulas.prose(said, variable) if variable else escape(said)
+
+    @inline.register
+    def _(self, value: content.Strong) -> Markup:
+        key = Markup(' id="{}"').format(value.key) if value.key else ""
+        grade = Markup(' class="{}"').format(value.grade) if value.grade else ""
+        return Markup("<strong{}{}>{}</strong>").format(key, grade, self.inline(value.text))
+
+    @inline.register
+    def _(self, value: content.Graded) -> Markup:
+        return Markup('<span class="{}">{}</span>').format(value.grade, self.inline(value.text))
+
+    @inline.register
+    def _(self, value: content.Link) -> Markup:
+        return Markup('<a href="#{}">{}</a>').format(value.to, self.inline(value.text))
+
+    @inline.register
+    def _(self, value: content.Phrase) -> Markup:
+        return self._joined(value.parts)
+
+    @inline.register
+    def _(self, value: content.Emphasis) -> Markup:
+        return Markup("<i>{}</i>").format(value.text)
+
+    @inline.register
+    def _(self, value: content.Verbatim) -> Markup:
+        return Markup("<code>{}</code>").format(value.text)
+
+    @inline.register
+    def _(self, value: content.Unit) -> Markup:
+        return escape(labelled("", value.text).strip())
+
+    @inline.register
+    def _(self, value: content.Citation) -> Markup:
+        return escape(value.text)
+
+    # --- mathematics ---
+
+    @singledispatchmethod
+    def math(self, value: Any) -> str:
+        """A value of mathematics as elements of MathML."""
+        return str(expression(value, self.names))
+
+    @math.register
+    def _(self, value: int) -> str:
+        return mn(value)
+
+    @math.register
+    def _(self, value: str) -> str:
+        return mo(RELATIONS.get(value, value))
+
+    @math.register
+    def _(self, value: Formula) -> str:
+        return mtext(f"({not_printed(value)})") if id(value) in self.long else str(formulas.inline(value))
+
+    @math.register
+    def _(self, value: content.Name) -> str:
+        symbol = (self.names if value.ring is None else mathml_names(value.ring))[value.name]
+        written = str(symbol.dotted(_DOTS[value.dots]) if value.dots else symbol)
+        return written + bracketed(mn(value.at)) if value.at else written
+
+    @math.register
+    def _(self, value: content.Symbol) -> str:
+        letter = _SCRIPT[value.letter] if value.look == "script" else value.letter
+        above = "\u00af" if value.look == "bar" else _DOTS[value.dots]
+        return str(formulas.symbol(letter, value.lower, value.upper, above))
+
+    @math.register
+    def _(self, value: content.Entry) -> str:
+        whole = value.whole
+        if isinstance(value.index, content.Name):
+            return f"<msub>{self.math(whole)}{self.math(value.index)}</msub>"
+        if whole.lower:
+            return str(formulas.indexed(bracketed(self.math(whole)), value.index))
+        return self.math(replace(whole, lower=value.index))
+
+    @math.register
+    def _(self, value: content.Notation) -> str:
+        return notation(value.tex)
+
+    @math.register
+    def _(self, value: content.Number) -> str:
+        return notation(value.tex)
+
+    @math.register
+    def _(self, value: content.Rows) -> str:
+        return table([list(map(self.math, row)) for row in value.rows])
+
+    @math.register
+    def _(self, value: content.Raised) -> str:
+        return power(self.math(value.of), bracketed(mn(value.index)))
+
+    @math.register
+    def _(self, value: content.Power) -> str:
+        return power(self.math(value.base), mn(value.exponent))
+
+    @math.register
+    def _(self, value: content.Text) -> str:
+        return mtext(self._joined(value.parts).unescape())
+
+    @math.register
+    def _(self, value: content.Readable) -> str:
+        return self.math(value.value) if formulas.is_readable(value.value) else self._length(value.value, value.kept)
+
+    @math.register
+    def _(self, value: content.Listed) -> str:
+        items = [self.math(x) for x in value.items]
+        if value.braces:
+            return bracketed(_COMMA.join(items), "{}")
+        return bracketed_row(items) if value.brackets else _COMMA.join(items)
+
+    @math.register
+    def _(self, value: content.Relation) -> str:
+        return "".join(map(self.math, value.parts))
+
+    @math.register
+    def _(self, value: content.Polynomial) -> str:
+        written = "".join(self._pieces(value))
+        return written if value.power == 1 else power(bracketed(written, "[]"), mn(value.power))
+
+    @math.register
+    def _(self, value: content.SpeedForm) -> str:
+        return str(speed_form(value.form, self.names, value.body))
+
+    @math.register
+    def _(self, value: content.Tensor) -> str:
+        return table([[self.math(x) for x in line] for line in value.rows])
+
+    @math.register
+    def _(self, value: content.Points) -> str:
+        written = [point_of_table(x, y, self.names) for x, y in shown_points(value.points)]
+        half = len(written) // 2
+        return _COMMA.join(
+            written if len(written) == len(value.points) else [*written[:half], mo("\u2026"), *written[half:]]
+        )
+
+    # --- blocks ---
+
+    @singledispatchmethod
+    def block(self, value: Any) -> Markup:
+        """A block."""
+        raise TypeError(f"not a block: {value!r}")
+
+    @block.register
+    def _(self, value: content.Heading) -> Markup:
+        return Markup("")
+
+    @block.register
+    def _(self, value: content.Subheading) -> Markup:
+        return Markup("<h3>{}</h3>").format(self._joined(value.parts))
+
+    @block.register
+    def _(self, value: content.Paragraph) -> Markup:
+        return Markup('<p class="open">{}</p>' if value.missing else "<p>{}</p>").format(self._joined(value.parts))
+
+    @block.register
+    def _(self, value: content.Display) -> Markup:
+        notes = (Markup('\n<p class="note soft">({})</p>').format(self.inline(note)) for note in value.notes)
+        return Markup("").join((self._displayed(value.value), *notes))
+
+    def _displayed(self, shown: Math | tuple[Inline, ...]) -> Markup:
+        match shown:
+            case Formula():
+                return formulas.line("", shown, self.long)
+            case content.Polynomial():
+                return formulas.whole(self._pieces(shown))
+            case content.Relation(parts):
+                return self._relation(parts)
+            case content.Listed(items, False) if items:
+                *first, last = map(self.math, items)
+                return formulas.whole([*(item + _COMMA for item in first), last])
+            case tuple():
+                return formulas.text_line(*map(self._beside, shown))
+        return formulas.text_line(self.math(shown))
+
+    def _relation(self, parts: Sequence[Math | str]) -> Markup:
+        """A line that breaks in the last long formula that it holds."""
+        parts = [x.value if isinstance(x, content.Readable) and formulas.is_readable(x.value) else x for x in parts]
+        place = max((k for k, x in enumerate(parts) if isinstance(x, Formula)), default=-1)
+        if place < 0:
+            *before, last = parts
+            if isinstance(last, content.Polynomial) and last.power == 1:
+                left = "".join(map(self.math, before))
+                first, *rest = self._pieces(last)
+                return formulas.whole([left + first, *rest])
+            return formulas.text_line(*map(self.math, parts))
+        value = parts[place]
+        assert isinstance(value, Formula)
+        right = "".join(map(self.math, parts[place + 1 :]))
+        if place == 0:
+            return formulas.line("", value, self.long, right)
+        left = "".join(map(self.math, parts[: place - 1]))
+        return formulas.line(left, value, self.long, right, str(parts[place - 1]))
+
+    def _beside(self, value: Inline) -> str:
+        """A part of a displayed line: words stand in it as text."""
+        if isinstance(value, (str, Said, content.Words)):
+            return mtext(self.inline(value).unescape())
+        return self.math(value)
+
+    @block.register
+    def _(self, value: content.Definitions) -> Markup:
+        lines = (self._relation(item.parts) for item in value.items)
+        return Markup("\n").join((Markup("<p>{}:</p>").format(self.said(value.words)), *lines))
+
+    @block.register
+    def _(self, value: content.Matrices) -> Markup:
+        left = self.math(value.symbol)
+        if value.value.is_zero:
+            return formulas.text_line(left, mo("="), mn(0))
+        whole = "" if value.packed else formulas.matrix(value.value, self.long)
+        if whole:
+            return formulas.text_line(left, mo("="), whole)
+        return Markup("\n").join(
+            formulas.line(self.math(content.Entry(value.symbol, index)), entry, self.long)
+            for index, entry in formulas.entries(value.value, value.symmetric)
+        )
+
+    @block.register
+    def _(self, value: content.SideBySide) -> Markup:
+        return self.document(value.matrices)
+
+    @block.register
+    def _(self, value: content.Components) -> Markup:
+        left = self.math(value.symbol)
+        if formulas.zero(value.value):
+            return formulas.text_line(left, mo("="), mn(0))
+        whole = formulas.components(value.value, self.long)
+        if whole:
+            return formulas.text_line(left, mo("="), whole)
+        return Markup("\n").join(
+            formulas.line(self.math(replace(value.symbol, lower=f"{value.symbol.lower},{k}")), entry, self.long)
+            for k, entry in enumerate(value.value, start=1)
+        )
+
+    @block.register
+    def _(self, value: content.Itemised) -> Markup:
+        kind = "ol" if value.numbered else "ul"
+        items = Markup("\n").join(Markup("<li>{}</li>").format(self.document(item)) for item in value.items)
+        return Markup(f"<{kind}>\n{items}\n</{kind}>")
+
+    @block.register
+    def _(self, value: content.Table) -> Markup:
+        head = Markup("").join(Markup('<th scope="col">{}</th>').format(self.said(x.title)) for x in value.columns)
+        rows = Markup("\n").join(
+            Markup("<tr>{}</tr>").format(
+                Markup("").join(Markup("<td>{}</td>").format(self._joined(cell)) for cell in row)
+            )
+            for row in value.rows
+        )
+        title = "" if value.title is None else Markup("<h3>{}</h3>\n").format(self.said(value.title))
+        return Markup(
+            '{}<div class="scroll"><table>\n<thead><tr>{}</tr></thead>\n<tbody>\n{}\n</tbody></table></div>'
+        ).format(title, head, rows)
+
+    @block.register
+    def _(self, value: content.Facts) -> Markup:
+        items = (
+            Markup("<dt>{}</dt>\n<dd>{}</dd>\n").format(self._joined(name), self._joined(said))
+            for name, said in value.items
+        )
+        return Markup("<dl>\n{}</dl>").format(Markup("").join(items))
+
+    @block.register
+    def _(self, value: content.Cited) -> Markup:
+        return Markup("")
+
+    @block.register
+    def _(self, value: content.Beside) -> Markup:
+        return replace(self, names=self.names.beside(value.names)).document(value.blocks)
+
+    @block.register
+    def _(self, value: content.Folded) -> Markup:
+        return Markup("<details><summary>{}</summary>\n{}\n</details>").format(
+            self.said(value.title), self.document(value.blocks)
+        )
+
+    @block.register
+    def _(self, value: content.Intermediates) -> Markup:
+        return told_passages(value.told, value.passages, lambda words: self.inline(content.Words(words)))
+
+    @block.register
+    def _(self, value: content.Steps) -> Markup:
+        same = {name: name for name in value.names} | {"pi": "pi"}
+        body = listing(value.program, [node for _, node in value.results], same, _DIALECT)
+        if len(body.assignments) > PAPER_PROGRAM:
+            return Markup("<p>{}</p>").format(self.said(program_not_printed(len(body.assignments))))
+        called = [(_PLAIN.inline(symbol), text) for (symbol, _), text in zip(value.results, body.results, strict=True)]
+        lines = "\n".join(f"{left} = {right}" for left, right in [*body.assignments, *called])
+        return Markup("<details><summary>{}</summary>\n<pre>{}</pre></details>").format(self.said(value.title), lines)
+
+    def _joined(self, parts: Iterable[Inline]) -> Markup:
+        return Markup("").join(map(self.inline, parts))
+
+    def _length(self, value: Formula, kept: bool = True) -> str:
+        return mtext(f"({self.said(length(value, kept)).unescape()})")
+
+    def _pieces(self, value: content.Polynomial) -> list[str]:
+        variable = letter(value.variable) if greek(value.variable) else value.variable
+        return formulas.polynomial_pieces(value.coefficients, variable, self._length)
+
+
+#: Letters for private use, which stand for values in notation.
+_FIRST = 0xE000
+
+
+@cache
+def notation(tex: str) -> str:
+    """Fixed notation as elements of MathML."""
+    from latex2mathml.converter import convert  # few formulas need it
+
+    elements = re.sub(r"</?math[^>]*>", "", convert(re.sub(r"\\penalty\d+ ?", "", tex)))
+    return re.sub(r'(?:<mi mathvariant="normal">\w</mi>){2,}', lambda m: mi(re.sub("<.*?>", "", m[0])), elements)
+
+
+def _untexed(text: str) -> Markup:
+    """Text of a message without what only TeX reads."""
+    plain = text.replace("---", "\u2014").replace("--", "\u2013").replace("~", "\u00a0")
+    return escape(plain.replace("''", "\u201d").replace("``", "\u201c"))

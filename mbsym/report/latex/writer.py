@@ -1,0 +1,397 @@
+"""Content in LaTeX: one method a kind of value."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import singledispatchmethod
+from typing import Any
+
+from mbsym.expressions.tree import Expression
+from mbsym.formulas.formula import Formula
+from mbsym.formulas.latex import LatexNames, latex_matrix, latex_names, latex_symbol
+from mbsym.formulas.straight_line import Dialect, listing
+from mbsym.report import content
+from mbsym.report.content import Inline, Said
+from mbsym.report.language import Language
+from mbsym.report.latex import formulas
+from mbsym.report.latex.description import breakable, call, expression, points, speed_form
+from mbsym.report.latex.displays import loosened
+from mbsym.report.latex.form import Form, heading, subheading
+from mbsym.report.latex.formulas import Measured, measured_matrix
+from mbsym.report.latex.labels import Labels
+from mbsym.report.latex.told import CLOSING, OPENING, PARAGRAPH, packed, paragraphs
+from mbsym.report.latex.words import RELATIONS, escaped, prose
+from mbsym.report.lengths import PAPER_PROGRAM, length, program_not_printed
+from mbsym.report.unit_text import bracketed
+
+_DOTS = ("", "dot", "ddot")
+_LOOKS = {"bar": "bar", "script": "mathcal"}
+
+
+def _exact(value: Fraction) -> str:
+    return str(value) if value.denominator == 1 else f"\\tfrac{{{value.numerator}}}{{{value.denominator}}}"
+
+
+_DIALECT = Dialect(call=call, local=lambda count: f"s_{{{count}}}", number=_exact, times=r"\,")
+
+
+@dataclass(frozen=True)
+class Writer:
+    """``names`` of the system; formulas among the ``long`` ones, by their identity, are counted."""
+
+    names: LatexNames
+    language: Language
+    labels: Labels
+    form: Form
+    long: frozenset[int] = frozenset()
+    measured: Measured = measured_matrix
+
+    def document(self, blocks: Iterable[content.Block]) -> str:
+        """The blocks one after the other."""
+        return "\n".join(map(self.block, blocks))
+
+    # --- text ---
+
+    def said(self, sentence: Said) -> str:
+        """A sentence in the language of the report, with its gaps filled."""
+        text = self.language.sentence(sentence.text)
+        return "$".join(self._filled(piece, sentence, bool(k % 2)) for k, piece in enumerate(text.split("$")))
+
+    def _filled(self, text: str, sentence: Said, inside: bool) -> str:
+        return re.sub(r"\[\[(\w+)\]\]", lambda m: self._gap(sentence.gaps[m[1]], inside), text)
+
+    def _gap(self, value: Inline | Sequence[Inline], inside: bool) -> str:
+        if isinstance(value, Sequence) and not isinstance(value, str):
+            return ", ".join(self._gap(x, inside) for x in value)
+        return self.math(value) if inside and not isinstance(value, str) else self.inline(value)
+
+    @singledispatchmethod
+    def inline(self, value: Any) -> str:
+        """What stands in a line; mathematics between dollars."""
+        return breakable(self.math(value))
+
+    @inline.register
+    def _(self, value: str) -> str:
+        return escaped(value) if value.strip() == value else re.sub(r"\S.*\S|\S", lambda m: escaped(m[0]), value)
+
+    @inline.register
+    def _(self, value: Said) -> str:
+        return self.said(value)
+
+    @inline.register
+    def _(self, value: content.Words) -> str:
+        said = self.language.say(value.text)
+        return prose(said, latex_symbol(value.variable).stem) if value.variable else escaped(said)
+
+    @inline.register
+    def _(self, value: content.Phrase) -> str:
+        return self._joined(value.parts)
+
+    @inline.register
+    def _(self, value: content.Strong) -> str:
+        return f"\\textbf{{{self.inline(value.text)}}}"
+
+    @inline.register
+    def _(self, value: content.Graded) -> str:
+        return self.inline(content.Strong(value.text) if value.grade == "bad" else value.text)
+
+    @inline.register
+    def _(self, value: content.Link) -> str:
+        return self.inline(value.text)
+
+    @inline.register
+    def _(self, value: content.Emphasis) -> str:
+        return f"\\textit{{{escaped(value.text)}}}"
+
+    @inline.register
+    def _(self, value: content.Verbatim) -> str:
+        return f"\\texttt{{{escaped(value.text)}}}"
+
+    @inline.register
+    def _(self, value: content.Unit) -> str:
+        return f"${bracketed(value.text)}$"
+
+    @inline.register
+    def _(self, value: content.Citation) -> str:
+        return f"\\cite{{{value.key}}}" if self.form is Form.REPORT else escaped(value.text)
+
+    # --- mathematics ---
+
+    @singledispatchmethod
+    def math(self, value: Any) -> str:
+        """A value of mathematics, without dollars."""
+        return expression(value, self.names)
+
+    @math.register
+    def _(self, value: int) -> str:
+        return str(value)
+
+    @math.register
+    def _(self, value: str) -> str:
+        return "\\penalty0 +" if value == "+" else RELATIONS.get(value, value)
+
+    @math.register
+    def _(self, value: Formula) -> str:
+        return formulas.formula(value, self.long)
+
+    @math.register
+    def _(self, value: content.Name) -> str:
+        symbol = (self.names if value.ring is None else latex_names(value.ring))[value.name]
+        written = symbol.accented(_DOTS[value.dots]) if value.dots else str(symbol)
+        return f"{written}({value.at})" if value.at else written
+
+    @math.register
+    def _(self, value: content.Symbol) -> str:
+        stem = latex_symbol(value.letter)
+        accent = _DOTS[value.dots] or _LOOKS.get(value.look, "")
+        written = stem.accented(accent) if accent else str(stem)
+        lower = f"_{{{_index(value.lower)}}}" if value.lower else ""
+        return written + lower + (f"^{{{_index(value.upper)}}}" if value.upper else "")
+
+    @math.register
+    def _(self, value: content.Entry) -> str:
+        whole = self.math(value.whole)
+        index = value.index if isinstance(value.index, str) else self.math(value.index)
+        return f"({whole})_{{{index}}}" if value.whole.lower else f"{whole}_{{{index}}}"
+
+    @math.register
+    def _(self, value: content.Notation) -> str:
+        return value.tex
+
+    @math.register
+    def _(self, value: content.Number) -> str:
+        return value.tex
+
+    @math.register
+    def _(self, value: content.Rows) -> str:
+        return latex_matrix([list(map(self.math, row)) for row in value.rows])
+
+    @math.register
+    def _(self, value: content.Raised) -> str:
+        return f"{{{self.math(value.of)}}}^{{({value.index})}}"
+
+    @math.register
+    def _(self, value: content.Power) -> str:
+        return f"{self.math(value.base)}^{{{value.exponent}}}"
+
+    @math.register
+    def _(self, value: content.Text) -> str:
+        return f"\\text{{{self._joined(value.parts)}}}"
+
+    @math.register
+    def _(self, value: content.Readable) -> str:
+        return self.math(value.value) if formulas.is_readable(value.value) else self._length(value.value, value.kept)
+
+    @math.register
+    def _(self, value: content.Listed) -> str:
+        # Of equations each may stand in a line of its own.
+        comma = ",\\, "
+        if any(isinstance(x, content.Relation) for x in value.items):
+            comma = ",\\quad \\penalty0 "
+        elif value.brackets:
+            comma = ",\\; \\allowbreak "
+        written = comma.join(map(self.math, value.items))
+        return f"({written})" if value.brackets else f"\\{{{written}\\}}" if value.braces else written
+
+    @math.register
+    def _(self, value: content.Relation) -> str:
+        written = " ".join(map(self.math, value.parts))
+        return f"-{written[2:]}" if written.startswith("- ") else written
+
+    @math.register
+    def _(self, value: content.Polynomial) -> str:
+        written = formulas.polynomial(value.coefficients, latex_symbol(value.variable).stem, self._length)
+        return written if value.power == 1 else f"\\bigl[{written}\\bigr]^{{{value.power}}}"
+
+    @math.register
+    def _(self, value: content.SpeedForm) -> str:
+        return speed_form(value.form, self.names, value.body)
+
+    @math.register
+    def _(self, value: content.Tensor) -> str:
+        return formulas.tensor(value.rows, self.names, self.form.widest)
+
+    @math.register
+    def _(self, value: content.Points) -> str:
+        return points(value.points, self.names)
+
+    # --- blocks ---
+
+    @singledispatchmethod
+    def block(self, value: Any) -> str:
+        """A block, with the empty lines that it needs around it."""
+        raise TypeError(f"not a block: {value!r}")
+
+    @block.register
+    def _(self, value: content.Heading) -> str:
+        return heading(self.labels, self.form, value.key, self.said(value.title)) + "\n"
+
+    @block.register
+    def _(self, value: content.Subheading) -> str:
+        return subheading(self.form, self._joined(value.parts))
+
+    @block.register
+    def _(self, value: content.Paragraph) -> str:
+        written = self._joined(value.parts)
+        return f"{{\\raggedright {written}\\par}}" if value.ragged else written + "\n"
+
+    @block.register
+    def _(self, value: content.Display) -> str:
+        if isinstance(value.value, tuple):
+            written = "".join(self._beside(x) for x in value.value)
+        else:
+            written = self.math(value.value)
+        if isinstance(value.value, Expression):  # as it was printed, without places where it may be broken
+            written = loosened(written)
+        notes = "".join(f" \\quad\\penalty0 \\text{{({self.inline(note)})}}" for note in value.notes)
+        return self._display(written + notes, value.key)
+
+    @block.register
+    def _(self, value: content.Definitions) -> str:
+        written = "; ".join(f"$\\displaystyle {loosened(self.math(item))}$" for item in value.items)
+        return f"{OPENING}{PARAGRAPH}{self.said(value.words)}: {written}.{CLOSING}}}\n"
+
+    @block.register
+    def _(self, value: content.Matrices) -> str:
+        if value.value.is_zero:
+            return self._display(f"{self.math(value.symbol)} = 0", value.key)
+        if value.packed:
+            entries = formulas.entries(value.value, value.symmetric)
+            return packed(entries, self.math(value.symbol), self.labels.equation(value.key))
+        whole = formulas.matrix(value.value, self.long, self.form.widest, self.measured)
+        if whole:
+            label = self.labels.equation(value.key)
+            return f"\\begin{{equation}}\\label{{{label}}}\n{self.math(value.symbol)} = {whole}\n\\end{{equation}}"
+        return "\n".join(
+            self._display(
+                f"{self.math(content.Entry(value.symbol, index))} = {self.math(entry)}", f"{value.key}:{index}"
+            )
+            for index, entry in formulas.entries(value.value, value.symmetric)
+        )
+
+    @block.register
+    def _(self, value: content.SideBySide) -> str:
+        lines: list[str] = []
+        others: list[str] = []
+        room = 0.0
+        for one in value.matrices:
+            whole = "" if one.value.is_zero else formulas.matrix(one.value, self.long, self.form.widest, self.measured)
+            if not whole:
+                others.append(self.block(one))
+                continue
+            needed = self.measured(one.value)[1] + 6  # the width of the name and what is around it
+            shown = f"{self.math(one.symbol)} = {whole}"
+            if needed <= room:
+                lines[-1] += f",\\quad {shown}"
+            else:
+                lines.append(shown)
+                room = self.form.widest
+            room -= needed
+        labels = [self.labels.equation(f"{value.key}:matrices:{k}") for k in range(1, len(lines) + 1)]
+        together = [
+            f"\\begin{{equation}}\\label{{{label}}}\n{line}\n\\end{{equation}}"
+            for label, line in zip(labels, lines, strict=True)
+        ]
+        return "\n".join([*together, *others])
+
+    @block.register
+    def _(self, value: content.Components) -> str:
+        symbol = self.math(value.symbol)
+        if all(x.is_zero for x in value.value):
+            return self._display(f"{symbol} = 0", value.key)
+        row = formulas.row(value.value, self.long, self.form.widest)
+        if row:
+            return self._display(f"{symbol} = ({row})", value.key)
+        return "\n".join(
+            self._display(f"{self.math(_component(value.symbol, k))} = {self.math(entry)}", f"{value.key}:{k}")
+            for k, entry in enumerate(value.value, start=1)
+        )
+
+    @block.register
+    def _(self, value: content.Itemised) -> str:
+        items = [self.document(item).strip() for item in value.items]
+        if value.numbered:
+            return "\n\n".join(f"{{\\raggedright {k}. {text}\\par}}" for k, text in enumerate(items, start=1)) + "\n"
+        listed = "\n".join(f"\\item {text}" for text in items)
+        return f"\\begin{{itemize}}\\setlength{{\\itemsep}}{{1pt}}\n{listed}\n\\end{{itemize}}"
+
+    @block.register
+    def _(self, value: content.Table) -> str:
+        shown = [k for k, column in enumerate(value.columns) if column.width]
+        rows = [["".join(map(self.inline, row[k])) for k in shown] for row in value.rows]
+        title = "" if value.title is None else self.said(value.title)
+        if self.form is not Form.REPORT and not title:
+            return "\n".join(", ".join(filter(None, row[:-1])) + f": {row[-1]}.\n" for row in rows)
+        if self.form is not Form.REPORT:
+            return f"{title}: " + ";\n".join(", ".join(filter(None, row)) for row in rows) + ".\n"
+        widths = [value.columns[k].width for k in shown]
+        columns = "".join(f">{{\\raggedright\\arraybackslash}}p{{{x:g}cm}}" for x in widths)
+        lines = [f"\\begin{{longtable}}{{@{{}}{columns}@{{}}}}"]
+        if title:
+            lines += [f"\\multicolumn{{{len(shown)}}}{{@{{}}l}}{{\\textbf{{{title}}}}}\\\\"]
+        else:
+            lines += [" & ".join(self.said(value.columns[k].title) for k in shown) + r"\\\hline\endhead"]
+        lines += [" & ".join(row) + "\\\\" for row in rows]
+        return "\n".join([*lines, "\\end{longtable}"])
+
+    @block.register
+    def _(self, value: content.Facts) -> str:
+        items = "".join(f"\\item {self._joined(name)}: {self._joined(said)}.\n" for name, said in value.items)
+        return f"\\begin{{itemize}}\\setlength{{\\itemsep}}{{1pt}}\n{items}\\end{{itemize}}\n"
+
+    @block.register
+    def _(self, value: content.Cited) -> str:
+        if self.form is not Form.REPORT:
+            return ""
+        written = "; ".join(f"{self.inline(words)}~\\cite{{{','.join(keys)}}}" for words, keys in value.items)
+        return f"{self.said(value.words)}: {written}.\n"
+
+    @block.register
+    def _(self, value: content.Beside) -> str:
+        return replace(self, names=self.names.beside(value.names)).document(value.blocks)
+
+    @block.register
+    def _(self, value: content.Folded) -> str:
+        return ""
+
+    @block.register
+    def _(self, value: content.Intermediates) -> str:
+        return paragraphs(value.told, value.passages, lambda words: self.inline(content.Words(words))) + "\n"
+
+    @block.register
+    def _(self, value: content.Steps) -> str:
+        names = {name: self.math(item) for name, item in value.names.items()} | {"pi": r"\pi"}
+        body = listing(value.program, [node for _, node in value.results], names, _DIALECT)
+        if len(body.assignments) > PAPER_PROGRAM:
+            return self._display(f"\\text{{({self.said(program_not_printed(len(body.assignments)))})}}")
+        called = [(self.math(symbol), text) for (symbol, _), text in zip(value.results, body.results, strict=True)]
+        return "\n".join(self._display(f"{left} = {right}") for left, right in [*body.assignments, *called])
+
+    def _joined(self, parts: Iterable[Inline]) -> str:
+        return "".join(map(self.inline, parts))
+
+    def _length(self, value: Formula, kept: bool = True) -> str:
+        return f"\\text{{({self.said(length(value, kept))})}}"
+
+    def _beside(self, value: Inline) -> str:
+        """A part of a displayed line: words stand in it as text."""
+        if isinstance(value, (str, Said, content.Words)):
+            return f"\\text{{{self.inline(value)}}}"
+        return self.math(value)
+
+    def _display(self, written: str, key: str = "") -> str:
+        label = f"[{self.labels.equation(key)}]" if key else ""
+        return f"\\longformula{label}{{{written}}}"
+
+
+def _component(symbol: content.Symbol, k: int) -> content.Symbol:
+    return replace(symbol, lower=f"{symbol.lower},{k}")
+
+
+def _index(text: str) -> str:
+    """12, ij; O1 as O with index 1; commas with room behind."""
+    nested = re.sub(r"([A-Z])(\d+)", r"\1_{\2}", text)
+    return nested.replace(",", ",\\,")

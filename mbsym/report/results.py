@@ -1,0 +1,152 @@
+"""What the builders of reports have before them: results of some problems, each looked up once for all media."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from mbsym.formulas.latex import latex_names, latex_symbol
+from mbsym.model.system import INERTIAL
+from mbsym.report.canonical import forms_of
+from mbsym.report.canonical_denominators import Denominators, with_names
+from mbsym.report.compact import Compact, compact
+from mbsym.report.conditions import provided
+from mbsym.report.content import Block, Heading, Inline, Intermediates, Paragraph, Said, Words, paragraph, say
+from mbsym.report.sections import section_of
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+    from mbsym.analysis.stages import NoResult
+    from mbsym.model.system import System
+
+
+T = TypeVar("T")
+
+_INTERMEDIATES = (
+    "Through intermediate quantities, each defined once, in the order of the recursion. Their first index is the "
+    "number of a body, the numbers at the end are components, in its axes unless others are named; components that "
+    "are not listed are zero, or so short that they are written where they occur. Accelerations, forces and moments "
+    "are those at $\\ddot q = 0$."
+)
+
+
+@dataclass(frozen=True)
+class Results:
+    """The results of ``problems`` of one system."""
+
+    analysis: Analysis
+    problems: tuple[int, ...]
+
+    @property
+    def system(self) -> System:
+        return self.analysis.system
+
+    @cached_property
+    def found(self) -> dict[int, Any]:
+        """By number, the results that there are."""
+        stages = {number: self.analysis.stage(number) for number in self.problems}
+        return {number: stage.value for number, stage in stages.items() if stage.failure is None}
+
+    @cached_property
+    def failures(self) -> dict[int, NoResult]:
+        """By number, why there is no result."""
+        stages = {number: self.analysis.stage(number) for number in self.problems}
+        return {number: stage.failure for number, stage in stages.items() if stage.failure is not None}
+
+    @cached_property
+    def told(self) -> dict[int, Compact]:
+        """By number, the problems whose formulas are told through named intermediates."""
+        return compact(self.analysis, {number: self.found.get(number) for number in self.problems})
+
+    @cached_property
+    def forms(self) -> Denominators:
+        """Routh's and Hamilton's forms, where they were asked for; their long denominators have names."""
+        return with_names(forms_of(self.analysis, self.problems), self.system)
+
+    @property
+    def numbers(self) -> dict[str, int]:
+        """Of the bodies by name, in the order of the description; the inertial frame has 0."""
+        return {INERTIAL: 0} | {body.name: k for k, body in enumerate(self.system.bodies, start=1)}
+
+    @cached_property
+    def variable(self) -> str:
+        """The letter of characteristic polynomials."""
+        return self._free("lambda", "mu", "sigma", "s", "p", "z", "zeta")
+
+    @cached_property
+    def characteristic(self) -> str:
+        """The letter that stands for such a polynomial."""
+        return self._free("Lambda", "Delta", "Phi", "P", "Q")
+
+    def _free(self, *letters: str) -> str:
+        """The first that is the symbol of nothing declared."""
+        system, names = self.system, latex_names(self.analysis.ring)
+        declared = [*system.coordinates, *system.parameter_names]
+        declared += [*(x.name for x in system.prescribed), *(x.name for x in system.notation)]
+        taken = {str(names[name]) for name in declared}
+        return next((x for x in letters if str(latex_symbol(x)) not in taken), letters[0])
+
+    @cached_property
+    def presumed(self) -> tuple[Inline, ...]:
+        """What the verdicts of problem 6 presume, after a comma."""
+        found = self.found.get(6)
+        text = "" if found is None else provided(found.presumed, bool(self.system.inputs))
+        return (", ", Words(text)) if text else ()
+
+    def intermediates(self, number: int) -> Iterator[Block]:
+        """The named quantities through which the formulas of a problem are told."""
+        told = self.told[number]
+        length = say("Written out there are [[count]] terms.", count=str(told.expanded))
+        yield paragraph(Said(_INTERMEDIATES), *((" ", length) if told.expanded else ()))
+        yield Intermediates(told.system.told, told.passages)
+
+    def missing(self, number: int) -> Iterator[Block]:
+        """Why a problem has no result, if it has none."""
+        failure = self.failures.get(number)
+        if failure is not None:
+            yield no_result(failure)
+
+
+def no_result(failure: NoResult) -> Paragraph:
+    """Why there is none."""
+    hint = (" (", Words(failure.hint), ")") if failure.hint else ()
+    return Paragraph((Said("No result"), ": ", Words(failure.reason), *hint, "."), missing=True)
+
+
+#: What stands beside the problems, by the names of its modules in ``sections``.
+BESIDE = ("summary", "system", "conventions", "claims", "checks")
+
+
+@dataclass(frozen=True)
+class Section(Generic[T]):
+    """A section of a report: what is called writes it, ``title`` what its heading says."""
+
+    build: Callable[[Results], Iterator[Block]]
+    known: Results
+    write: Callable[[Iterator[Block]], T]
+
+    def __call__(self) -> T:
+        return self.write(self.build(self.known))
+
+    @property
+    def title(self) -> Said:
+        """Of its heading, which every section begins with."""
+        heading = next(self.build(self.known))
+        assert isinstance(heading, Heading)
+        return heading.title
+
+
+def contents(known: Results, write: Callable[[Iterator[Block]], T]) -> dict[int | str, Section[T]]:
+    """The sections: those of the problems by their numbers, others by their names."""
+    from mbsym.analysis import PROBLEMS
+
+    modules: dict[int | str, Any] = {number: section_of(PROBLEMS[number]) for number in known.problems}
+    modules |= {name: import_module(f"mbsym.report.sections.{name}") for name in BESIDE}
+    return {key: Section(x.content, known, write) for key, x in modules.items() if hasattr(x, "content")}
+
+
+def results(analysis: Analysis, problems: Sequence[int]) -> Results:
+    return Results(analysis, tuple(problems))

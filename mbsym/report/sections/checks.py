@@ -1,0 +1,37 @@
+"""The self-check: results that were derived twice."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from mbsym.problems.checks import Check
+from mbsym.report.content import Block, Graded, Heading, Inline, Said, Table, TableColumn, Words, paragraph
+from mbsym.report.words.verdicts import grade
+
+if TYPE_CHECKING:
+    from mbsym.report.results import Results
+
+
+def content(results: Results) -> Iterator[Block]:
+    """What reports say."""
+    checks = results.analysis.checks
+    if not checks:
+        return
+    yield Heading("checks", Said("Self-check"))
+    yield paragraph(Said("These results were derived a second time by an independent route and compared."))
+    yield Table(
+        title=None,
+        columns=(
+            TableColumn(Said("result"), 2.6),
+            TableColumn(Said("first route"), 4.4),
+            TableColumn(Said("second route"), 4.4),
+            TableColumn(Said("agreement"), 3.4),
+        ),
+        rows=tuple(((Words(one.name),), (Words(one.first),), (Words(one.second),), _outcome(one)) for one in checks),
+    )
+
+
+def _outcome(check: Check) -> tuple[Inline, ...]:
+    detail: tuple[Inline, ...] = (": ", Words(check.detail)) if check.detail else ()
+    return Graded(Words(check.outcome), grade(check.outcome)), *detail

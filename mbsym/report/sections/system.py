@@ -1,0 +1,221 @@
+"""The system as it is described: what reports say before the problems."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from mbsym.expressions.tree import ZERO
+from mbsym.model.speeds import UnitVector
+from mbsym.model.system import INERTIAL, Body, System
+from mbsym.report.code.functions import moving
+from mbsym.report.content import (
+    Block,
+    Citation,
+    Heading,
+    Inline,
+    Itemised,
+    Listed,
+    Name,
+    Notation,
+    Paragraph,
+    Points,
+    Relation,
+    Said,
+    SpeedForm,
+    Strong,
+    Subheading,
+    Symbol,
+    Table,
+    TableColumn,
+    Tensor,
+    Unit,
+    Verbatim,
+    Words,
+    named,
+    paragraph,
+    say,
+)
+from mbsym.report.inertias import accepted_inertias
+from mbsym.report.results import Results
+from mbsym.report.words.description import constraint, load, separated, vector
+
+#: A table of more points is shown by its first and last ones.
+MOST_LISTED = 100
+
+_OUTSIDE = {
+    "zero": "zero outside",
+    "hold": "its end values outside",
+    "extrapolate": "outside as its end pieces go on",
+    "error": "undefined outside",
+}
+
+
+def content(results: Results) -> Iterator[Block]:
+    """What reports say."""
+    system = results.system
+    yield Heading("system", Said("The system"))
+    if system.source:
+        yield paragraph(Said("Source"), ": ", Citation("source", system.source), ".")
+    yield from _variables(system)
+    if system.linear:
+        yield from _linear(system)
+    else:
+        accepted = accepted_inertias(system)
+        yield Subheading((Said("Bodies"),))
+        for number, body in enumerate(system.bodies, start=1):
+            yield Paragraph(tuple(_body(body, number, accepted)))
+        yield Subheading((Said("Loads"),))
+        if system.loads:
+            yield Itemised(tuple(map(load, system.loads)), numbered=True)
+        else:
+            yield paragraph(Said("No loads."))
+    if system.constraints:
+        yield Subheading((Said("Constraints"),))
+        yield Itemised(tuple((paragraph(constraint(x)),) for x in system.constraints), numbered=True)
+    yield from _values(system)
+
+
+def _unit(system: System, name: str) -> tuple[Inline, ...]:
+    unit = system.units.of(name) if system.units else None
+    return (" ", Unit(unit)) if unit else ()
+
+
+def _variables(system: System) -> Iterator[Block]:
+    if system.coordinates:
+        names: list[Inline] = [Relation(Symbol("q"), "=", Listed(named(system.coordinates).items, brackets=True))]
+        if system.units:
+            names = []
+            for k, name in enumerate(system.coordinates):
+                names += [*([", "] if k else []), Name(name), *_unit(system, name)]
+        yield paragraph(Said("Generalised coordinates"), ": ", *names, ".")
+    for item in system.prescribed:
+        law = Relation(Name(item.name), "=", moving(item.initial, item.rate))
+        yield paragraph(Said("Prescribed"), ": ", law, *_unit(system, item.name), *_meaning(item.meaning), ".")
+    if system.inputs:
+        parts: list[Inline] = []
+        for k, one in enumerate(system.inputs):
+            parts += [*(["; "] if k else []), Name(one.name), *_unit(system, one.name), *_meaning(one.meaning)]
+        yield paragraph(Said("Inputs, functions of time that are chosen later"), ": ", *parts, ".")
+    if system.outputs:
+        outputs = tuple(Relation(Name(one.name), "=", one.value) for one in system.outputs)
+        yield paragraph(Said("Outputs"), ": ", Listed(outputs), ".")
+    for table in system.tables:
+        between = "a natural cubic spline" if table.between == "cubic" else "straight lines"
+        points = str(len(table.points))
+        yield paragraph(
+            Said("Table"), " ", Verbatim(table.name), *_unit(system, table.name),
+            ", ", Said(between), ", ", Said(_OUTSIDE[table.outside]),
+            *((", ", say("[[count]] points", count=points)) if len(table.points) > MOST_LISTED else ()),
+            *((", ", Said("from the file"), " ", Verbatim(table.source.file)) if table.source else ()),
+            ": ", Points(table.points), ".",
+        )  # fmt: skip
+    if system.parameters:
+        columns = (TableColumn(Said("name"), 0), TableColumn(Said("value"), 4.4), TableColumn(Said("sign"), 3.0))
+        rows = []
+        for own in system.parameters:
+            value = Name(own.name) if own.value is None else Relation(Name(own.name), "=", own.value)
+            shown = (value, *_unit(system, own.name))
+            rows.append(((Verbatim(own.name),), shown, (Words(own.sign),), (own.meaning,)))
+        yield Table(Said("Parameters"), (*columns, TableColumn(Said("meaning"), 7.4)), tuple(rows))
+
+
+def _meaning(text: str) -> tuple[Inline, ...]:
+    return (", ", text) if text else ()
+
+
+def _linear(system: System) -> Iterator[Block]:
+    assert system.linear is not None
+    text = (
+        "The system is given by the matrices of its linear equations $M \\ddot q + (D + G)\\, \\dot q + (K + N)\\, q = "
+        "[[right]]$; what is said of stability is about these equations, which are exactly linear."
+    )
+    yield paragraph(say(text, right=Notation("B u") if system.inputs else 0))
+    for item in system.linear.matrices:
+        if item.source:
+            text = "The matrix $[[matrix]]$ is read from the file"
+            yield paragraph(say(text, matrix=Notation(item.key)), " ", Verbatim(item.source.file), ".")
+
+
+def _body(body: Body, number: int, accepted: dict[str, str]) -> Iterator[Inline]:
+    yield Strong(f"{number}. {body.name}")
+    yield " "
+    on = body.attached_to
+    yield Said("on the inertial frame") if on == INERTIAL else say("on body [[body]]", body=on)
+    yield ": "
+    if body.rotation.axes:
+        axes = Notation("\\{" + ",\\, ".join(map(str, body.rotation.axes)) + "\\}")
+        angles = Listed(tuple(body.rotation.angles), braces=True)
+        yield say("rotation $[[axes]]$ by $[[angles]]$", axes=axes, angles=angles)
+    else:
+        yield Said("no rotation")
+    yield from ("; ", Said("connection point"), " ", vector(body.connection_point))
+    yield from ("; ", Said("mass centre"), " ", vector(body.mass_centre), "; ", Said("mass"), " ", body.mass)
+    if body.inertia is not None:
+        about = {
+            "mass centre": Said("inertia about the mass centre"),
+            "joint": Said("inertia about the joint"),
+        }[body.inertia.about]
+        yield from ("; ", about, " ", Tensor(body.inertia.tensor))
+        if body.name in accepted:
+            yield from (", ", Said("accepted as given (identified values)"))
+            if accepted[body.name]:
+                yield from (" ", Said("although no body has it"), ": ", accepted[body.name])
+    if body.gyrostatic_moment:
+        text = (
+            "gyrostatic moment $h = [[h]]$, the constant angular momentum of rotors inside it: $T$ contains "
+            "$h \\cdot \\omega$, as Routh's function of the rotors"
+        )
+        yield from ("; ", say(text, h=vector(body.gyrostatic_moment)))
+    if body.speeds:
+        forms = tuple(Relation(Name(x.name), "=", SpeedForm(x.form, number)) for x in body.speeds)
+        yield from ("; ", Said("speeds"), " ", Listed(forms))
+    if body.orientation and body.orientation[0].word == "quaternion":
+        text = (
+            "orientation told by the quaternion $([[names]]) = (\\cos\\frac{\\phi}{2},\\, n \\sin\\frac{\\phi}{2})$ of "
+            "norm 1, scalar part first: its axes are those of the frame that it hangs on turned by $\\phi$ about $n$; "
+            "$v = e \\circ v_b \\circ e^*$ brings components in body axes to that frame"
+        )
+        yield from ("; ", say(text, names=named(body.orientation[0].components)))
+    elif body.orientation:
+        text = "told by unit vectors, in its axes, along the axes of the frame that it hangs on"
+        yield from ("; ", Said(text), ": ")
+        vectors: list[Inline] = []
+        for k, one in enumerate(body.orientation):
+            assert isinstance(one, UnitVector)
+            along = Listed(tuple(map(Name, one.components)), brackets=True)
+            vectors += [*([", "] if k else []), along, " (", Said("axis"), f" {one.axis})"]
+        yield from vectors
+    yield "."
+
+
+def _values(system: System) -> Iterator[Block]:
+    if system.relations:
+        relations = Listed(tuple(Relation(Name(x.name), "=", x.value) for x in system.relations))
+        used = () if system.linear else (" ", Said("(used from problem 4 on)"))
+        yield paragraph(Said("Relations"), ": ", relations, *used, ".")
+    if system.assumptions:
+        assumed = Listed(tuple(Relation(x.left, x.relation, x.right) for x in system.assumptions))
+        yield paragraph(Said("Assumptions"), ": ", assumed, ".")
+    if system.limits:
+        parts: list[Inline] = []
+        for k, limit in enumerate(system.limits):
+            name = limit.coordinate
+            between = Relation(limit.lower, "<=", Name(name), "<=", limit.upper)
+            parts += [*([", "] if k else []), between, *_unit(system, name)]
+        yield paragraph(Said("Limits of the coordinates, which no force keeps"), ": ", *parts, ".")
+    if system.motion:
+        items = [Relation(Name(x.coordinate), "=", moving(x.value, x.rate)) for x in system.motion]
+        held = [Relation(Name(x.name), "=", x.held) for x in system.inputs]
+        yield paragraph(Said("Unperturbed motion"), ": ", Listed((*items, *held)), ".")
+    initial: list[Inline] = []
+    for item in system.initial:
+        if item.position is not None:
+            initial.append(Relation(Name(item.coordinate, at="0"), "=", item.position))
+        if item.velocity is not None or not system.start:
+            initial.append(Relation(Name(item.coordinate, 1, at="0"), "=", item.velocity or ZERO))
+    if initial:
+        yield paragraph(Said("Initial values"), ": ", *separated(initial), ".")
+    if system.start:
+        declared = [Relation(Name(x.coordinate, at="0"), "=", x.position or ZERO) for x in system.start]
+        text = "Initial values of declared variables, from which velocities that are not given follow"
+        yield paragraph(Said(text), ": ", *separated(declared), ".")

@@ -1,0 +1,39 @@
+"""Verdicts and outcomes as reports say them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
+from mbsym.problems.stability import Stability
+from mbsym.problems.stability.verdict import Verdict
+from mbsym.problems.stability.word import Word
+from mbsym.report.content import Inline, Strong, Words
+from mbsym.report.words.claims import HELD, REFUTED
+
+_GOOD = {*(word for word in Word if word.stable), EXACT, NUMERICAL, HELD}
+_BAD = {Word.UNSTABLE, Word.UNSTABLE_BUT_BORDERS, FAILED, REFUTED}
+
+
+def grade(word: str) -> str:
+    """good, bad or open: how a verdict or an outcome is coloured; the word itself says it."""
+    return "good" if word in _GOOD else "bad" if word in _BAD else "open"
+
+
+def concluded(word: Word, theorems: Sequence[str], key: str = "") -> tuple[Inline, ...]:
+    """``stable (Routh)``."""
+    names = [part for name in theorems for part in (", ", Words(name))][1:]
+    return Strong(Words(word), grade(word), key), *((" (", *names, ")") if names else ())
+
+
+def verdict(found: Verdict, key: str = "") -> tuple[Inline, ...]:
+    """Its word, with its theorems."""
+    return concluded(found.word, found.theorems, key)
+
+
+def decided(found: Stability) -> str:
+    """How the verdict at given values was found, if it is one: irrational values have enclosures."""
+    if found.numerical is None or found.numerical.word == Word.UNDECIDED:
+        return ""
+    enclosed = any(part.theory.at_point is None for part in found.subsystems)
+    return ", decided by rigorous enclosures" if enclosed else ", decided exactly"

@@ -1,0 +1,67 @@
+"""Loads and constraints in the editor's plain text: the lines below ``Load description (1)`` as {kind: data}."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping as Map
+from collections.abc import Sequence as Items
+from typing import TYPE_CHECKING
+
+from mbsym.expressions.place import Span
+from mbsym.source.grammar import Ends, Kind, Named
+from mbsym.source.keys import ALIASES
+from mbsym.source.labels import ENDS, EXPRESSION, NUMBERED, VECTORS
+from mbsym.source.placed import Entry, Mapping, Node, Scalar, Sequence
+from mbsym.source.text_lines import key_of, word_of
+from mbsym.source.text_values import items
+
+if TYPE_CHECKING:
+    from mbsym.source.text_reader import TextReader
+
+
+def of_kind(
+    reader: TextReader, what: str, kinds: Map[str, Kind], heading: Scalar, lines: Items[Scalar]
+) -> Mapping | None:
+    """``{kind: data}`` from the lines of a block; None, with a complaint, where its kind is missing or given twice.
+
+    ``what`` is load or constraint.
+    """
+    title = f"type of {what}"
+    found = [(label, value) for label, value in map(reader.load_line, lines) if label is not None]
+    named = [value for label, value in found if word_of(label.text) == title]
+    if len(named) != 1:
+        how = f"no '{title.capitalize()}'" if not named else f"a second '{title.capitalize()}'"
+        place = heading.span if not named else named[1].span
+        reader.error("missing-key" if not named else "repeated-key", f"this {what} has {how}", place)
+        return None
+    data = [(label, value) for label, value in found if word_of(label.text) != title]
+    kind = kinds.get(ALIASES.get(named[0].text, named[0].text))
+    if kind is not None and isinstance(kind.type, Named):
+        value: Node = Mapping(tuple(Entry(label, value) for label, value in data), named[0].span)
+    elif len(data) == 1 and word_of(data[0][0].text) == EXPRESSION:
+        value = data[0][1]
+    else:
+        value = _data(reader, data, named[0].span, kind is not None and isinstance(kind.type, Ends))
+    return Mapping((Entry(named[0], value),), heading.span)
+
+
+def _data(reader: TextReader, data: list[tuple[Scalar, Scalar]], span: Span, alone: bool) -> Node:
+    """Labels to keys; two ends become ``between``, or are all there is (``alone``)."""
+    entries: list[Entry] = []
+    ends: tuple[list[Entry], list[Entry]] = ([], [])
+    for label, value in data:
+        word = word_of(label.text)
+        which, key = ENDS.get(word, (None, word))
+        entry = Entry(key_of(label, key), _value(reader, word, value))
+        (entries if which is None else ends[which]).append(entry)
+    pair = Sequence(tuple(Mapping(tuple(x), x[0].key.span if x else span) for x in ends), span)
+    if any(ends) and alone and not entries:
+        return pair
+    if any(ends):
+        entries.append(Entry(Scalar("between", span, literal=False), pair))
+    return Mapping(tuple(entries), span)
+
+
+def _value(reader: TextReader, word: str, value: Scalar) -> Node:
+    if word in NUMBERED:
+        return reader.body_reference(value)
+    return items(value) if word in VECTORS else value

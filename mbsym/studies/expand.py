@@ -1,0 +1,139 @@
+"""``mbsym expand``: the slow integral manifold of a system with a small parameter."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import KW_ONLY, dataclass, field
+from typing import TYPE_CHECKING, Annotated
+
+from mbsym.studies.request import Number, Numbers, Whole
+from mbsym.studies.study import (
+    FILE,
+    Answer,
+    Asked,
+    Exit,
+    Line,
+    Refusal,
+    Study,
+    Unfit,
+    Watch,
+    failed,
+    heading,
+    line,
+    remedied,
+)
+
+if TYPE_CHECKING:
+    from mbsym.algebra.quotients import Series
+    from mbsym.analysis.expanding import Expansion
+    from mbsym.model.system import System
+    from mbsym.simulation.expanded import Measured
+
+MANIFOLD = "Slow integral manifold up to order [[order]] of [[small]]"
+FLOW = "The flow on it, up to order [[order]]"
+
+
+@dataclass(frozen=True)
+class Request:
+    """Expand the slow integral manifold of FILE in powers of its small parameter, exactly.
+
+    FILE names the parameter ('small parameter: eps') and has its equations in speeds (key 'speeds').  Fast variables
+    are found, or declared under that key.  The functions that express them by the slow ones, and the flow on the
+    manifold, are found by comparing coefficients and put into the equations; about the unperturbed motion it is said
+    whether the manifold attracts, and what the flow on it needs for asymptotic stability.  Where the description gives
+    numbers and an initial state, the flow is compared with a simulation of all equations at eps, eps/2 and eps/4, and
+    the order of its error is measured.
+
+    Exit codes: 0 found and checked; 1 there is none, or none was found within the budget; 2 something is wrong.
+
+    \b
+    Examples:
+      mbsym expand systems/satellite-with-damper-slow.yaml --order 3
+      mbsym expand systems/satellite-with-damper-slow.yaml --set rho=0 --json
+    """
+
+    _: KW_ONLY
+    order: Annotated[int, Whole("N", "Up to this power.", "-n", most=8)] = 2
+    values: Numbers = field(default_factory=dict)
+    time: Annotated[
+        float | None, Number("T", "How long the motions are compared.", most=1e9, usual="found from the flow")
+    ] = None
+
+
+def unfit(request: Request, system: System) -> Iterator[Unfit]:
+    small = system.small
+    if small is None:
+        hint = "add 'small parameter: eps'"
+        yield Unfit(FILE, "missing-key", "the description names no small parameter", hint)
+        return
+    for name in request.values:
+        if name == small.name or name in dict(small.powers):
+            yield Unfit("--set", "bad-assignment", f"{name} belongs to the small parameter: it stays a symbol")
+
+
+@dataclass(frozen=True)
+class Found:
+    """The expansion, and how far it is from a simulation; why it was not compared where it was not."""
+
+    expansion: Expansion
+    measured: Measured | str
+
+
+def derive(asked: Asked, request: Request, watch: Watch) -> Found:
+    from mbsym.analysis import Analysis
+    from mbsym.analysis.expanding import expansion
+    from mbsym.report.words.expansion_measured import measured_or_why
+
+    watch("slow manifold")
+    found = expansion(Analysis(asked.system), request.order, request.values)
+    watch("measuring")
+    return Found(found, measured_or_why(asked.system, found, request.time, request.values))
+
+
+def answer(asked: Asked, request: Request, found: Found) -> Answer:
+    return Answer(_lines(found.expansion, found.measured))
+
+
+def _lines(found: Expansion, measured: Measured | str) -> Iterator[Line]:
+    from mbsym.report.content import say
+    from mbsym.report.plain_writer import Writer
+    from mbsym.report.words.expansion_words import of_measured, sentences
+
+    manifold, write = found.manifold, Writer()
+    small = manifold.field.small
+    for parameter, power in manifold.field.powers:
+        yield line(f"  {parameter} stands for {parameter} {small}^{power}")
+    for title, names, series, mark in (
+        (say(MANIFOLD, order=str(manifold.order), small=small), manifold.fast, manifold.functions, ""),
+        (say(FLOW, order=str(manifold.order)), manifold.slow, manifold.flow, "'"),
+    ):
+        yield heading(write.said(title))
+        for variable, one in zip(names, series, strict=True):
+            yield line(f"    {variable}{mark} =")
+            for text in _terms(found, small, one):
+                yield line(f"      {text}", whole=True)
+    for said in (*sentences(found), *of_measured(small, measured)):
+        yield line(f"    {write.said(said)}")
+
+
+def _terms(found: Expansion, small: str, one: Series) -> list[str]:
+    lines: list[str] = []
+    for k in sorted(one.coefficients):
+        factor = "" if k == 0 else f"{small} " if k == 1 else f"{small}^{k} "
+        lines.append(f"{'+ ' if lines else ''}{factor}({found.formula(one.coefficients[k])})")
+    return lines or ["0"]
+
+
+def as_json(asked: Asked, request: Request, found: Found) -> str:
+    from mbsym.report.expansion_json import expansion_json
+
+    return expansion_json(asked.system, request.values, found.expansion, found.measured)
+
+
+def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+    if isinstance(error, ZeroDivisionError):
+        return Refusal(f"no expansion: {error}", Exit.BAD_INPUT)
+    return failed(error, "no expansion", remedied)
+
+
+STUDY = Study("expand", Request, derive, answer, refusal, unfit, as_json, held=False, out=None)

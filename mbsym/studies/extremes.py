@@ -1,0 +1,165 @@
+"""``mbsym extremes``: how many digits each quantity keeps at the extremes, and where the model breaks down."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import KW_ONLY, dataclass, field
+from typing import TYPE_CHECKING, Annotated
+
+from mbsym.model.constraints import listed
+from mbsym.studies.closing import closed_motion, not_closed
+from mbsym.studies.request import Flag, Number, Values
+from mbsym.studies.study import (
+    Answer,
+    Asked,
+    Column,
+    Folder,
+    Line,
+    Refusal,
+    Rows,
+    Study,
+    Unfit,
+    Watch,
+    failed,
+    line,
+)
+
+if TYPE_CHECKING:
+    from mbsym.model.system import System
+    from mbsym.numerics.extremes.extremes import Extremes
+    from mbsym.numerics.scenario import Scenario
+    from mbsym.numerics.sequences import Ranking
+
+
+@dataclass(frozen=True)
+class Request:
+    """Measure how many digits each quantity of FILE keeps at the extremes, and where the model breaks down.
+
+    Extremes are: states near singular configurations (they are found: factors of det M and their real zeros, and it is
+    told whether the coordinates fail there or the model), rates 1e-8 to 1e8 times the usual, states near the
+    unperturbed motion, every positive parameter times 1e-12 to 1e12, and parameters at a border of stability.  Nothing
+    depends on the units of the description, but for the range of float32.  Mass matrix, forcing, accelerations, pivots,
+    energy, Jacobian, linear matrices and eigenvalues are evaluated in float32, float64 and in rigorous balls; the
+    condition tells what no formula could keep.  Verdicts of stability are exact, or "undecided"; eigenvalues at the
+    given values are enclosed.  With constraints every state is led to them, and positions are sought in which they lose
+    their rank (links in line).
+
+    Written are extremes.csv, extremes.json and extremes.svg/.png.  Exit codes: 0 done, 1 files could not be written,
+    2 something is missing or wrong, 3 no state satisfies the constraints, 130 interrupted.
+
+    \b
+    Examples:
+      mbsym extremes systems/satellite.yaml --set R=7000000 --set omega0=1/1000
+      mbsym extremes systems/heavy-top.yaml --sequences
+    """
+
+    _: KW_ONLY
+    values: Values = field(default_factory=dict)
+    sequences: Annotated[bool, Flag(None, "Rank the 12 rotation sequences of each body instead.")] = False
+    budget: Annotated[float, Number("S", "Counted work, worth some S seconds.")] = 60.0
+
+
+def unfit(request: Request, system: System) -> Iterator[Unfit]:
+    if request.sequences and system.constraints:
+        told = f"sequences are ranked without constraints, and here are some ({listed(system.constraints)})"
+        yield Unfit("--sequences", "constraints", told, "without them this would be another system")
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Digits at the extremes; ``notes``: how the initial state was led to the constraints."""
+
+    extremes: Extremes
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Ranked:
+    """The rotation sequences of each body, by their distance from a singularity."""
+
+    rankings: tuple[Ranking, ...]
+
+
+def derive(asked: Asked, request: Request, watch: Watch) -> Measured | Ranked:
+    """Raises NotClosed, Failure where the equations have no program."""
+    if request.sequences:
+        return _ranked(asked.motion, watch)
+    from mbsym.mechanics.variables import ring_of
+    from mbsym.numerics.extremes.extremes import extremes
+    from mbsym.simulation.request import read_values
+
+    given, notes = closed_motion(asked.motion)
+    values = read_values(asked.system, request.values)
+    return Measured(extremes(given, ring_of(given.system), values, request.budget, watch), notes)
+
+
+def _ranked(given: Scenario, watch: Watch) -> Ranked:
+    from mbsym.numerics.probes import motion_state
+    from mbsym.numerics.sequences import rankings
+
+    states = [[float(x) for x in given.state]]
+    moving = motion_state(given)
+    if moving is not None:
+        states.append([float(x) for x in moving])
+    return Ranked(tuple(rankings(given, states, watch)))
+
+
+def answer(asked: Asked, request: Request, found: Measured | Ranked) -> Answer:
+    if isinstance(found, Ranked):
+        return Answer(_sequences(found.rankings))
+    from mbsym.report.figures.extremes_figure import extremes_figure
+    from mbsym.report.runs.extremes_tables import extremes_csv, extremes_json
+
+    measured = found.extremes
+    files: dict[str, str | bytes] = {"extremes.csv": extremes_csv(measured), "extremes.json": extremes_json(measured)}
+    files |= extremes_figure(measured, ("svg", "png"))
+    return Answer(_lines(measured, asked.file), files, found.notes)
+
+
+def _lines(found: Extremes, file: str) -> Iterator[Line | Rows]:
+    from mbsym.numerics.extremes.extremes_told import sentences
+    from mbsym.report.runs.extremes_tables import tables
+
+    yield line("  fewest digits kept along each ladder, float64 / float32; * lost by the formula, not by the question")
+    for columns, rows in tables(found):
+        yield digits(columns, rows)
+    for sentence in sentences(found, file):
+        yield line(f"- {sentence}", always=True)
+    for reason in found.left_out:
+        yield line((f"- left out: {reason}", "yellow"), always=True)
+
+
+def digits(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> Rows:
+    """Names, verdicts and titles fold where the terminal is narrow; numbers never do."""
+    from mbsym.report.runs.extremes_tables import APPROXIMATION
+
+    names = ("extreme", APPROXIMATION)
+    return Rows([Column(name, right=name not in names, fold=name in names) for name in columns], rows, wide=True)
+
+
+def _sequences(rankings: Sequence[Ranking]) -> Iterator[Line | Rows]:
+    names = ("sequence", "distance from singularity", "smallest / largest pivot", "operations", "M and f", "")
+    for ranking in rankings:
+        if ranking.alternatives:
+            rows = [
+                (
+                    *(a.text, f"{a.distance:.4f}", f"{a.pivot:.2e}", str(a.operations), str(a.equations)),
+                    "in the description" if a.own else "",
+                )
+                for a in ranking.alternatives
+            ]
+            yield Rows([Column(name, right=bool(name)) for name in names], rows)
+        yield line((ranking.sentence, "bold"), always=True)
+    if not rankings:
+        yield line("  no body is oriented by three turns.", always=True)
+
+
+def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+    return not_closed(error, asked.system) or failed(error, "the equations have no program")
+
+
+STUDY = Study(
+    "extremes", Request, derive, answer, refusal, unfit,
+    constraints=True, timed=True, writes=lambda request: not request.sequences,
+    out=Folder(quiet="Print only the sentences.", unwritten=None),
+)  # fmt: skip

@@ -1,0 +1,68 @@
+"""``mbsym floquet``: stability of a motion whose first approximation is periodic in time."""
+
+from __future__ import annotations
+
+from dataclasses import KW_ONLY, dataclass, field
+from typing import TYPE_CHECKING
+
+from mbsym.studies.described import public
+from mbsym.studies.request import Values
+from mbsym.studies.study import Answer, Asked, Refusal, Study, Watch, no_program, titled
+
+if TYPE_CHECKING:
+    from mbsym.numerics.orbits.floquet import Judged
+
+
+@dataclass(frozen=True)
+class Request:
+    """Judge the stability of FILE's unperturbed motion where its first approximation is periodic in time.
+
+    Problem 6 is about constant coefficients; this is for periodic ones (a pendulum whose pivot shakes, Mathieu's
+    equation).  The period is read from the equations, the monodromy matrix is enclosed in balls with proved remainders,
+    and what its multipliers prove is said: unstable, asymptotically stable, stable in the first approximation only, or
+    undecided.
+
+    Written is floquet.json.  Exit codes: 0 judged (undecided, too), 1 there is nothing to judge or it was not written,
+    2 something is missing or wrong, 130 interrupted.
+
+    \b
+    Example:
+      mbsym floquet systems/shaken-pendulum.yaml --set nu=50
+    """
+
+    _: KW_ONLY
+    values: Values = field(default_factory=dict)
+
+
+@public(Request)
+def floquet(asked: Asked, request: Request, watch: Watch) -> Judged:
+    """What the multipliers of a time-periodic first approximation prove: ``mbsym floquet``.
+
+        >>> import mbsym
+        >>> mbsym.floquet("systems/shaken-pendulum.yaml", values={"nu": 40}).word.value
+        'unstable'
+
+    Raises DescriptionError, ValueError, ``mbsym.numerics.orbits.floquet.NotPeriodic``.
+    """
+    from mbsym.numerics.dynamics import Dynamics
+    from mbsym.numerics.orbits.floquet import judged
+
+    watch("enclosing the monodromy matrix")
+    return judged(Dynamics(asked.motion))
+
+
+def answer(asked: Asked, request: Request, found: Judged) -> Answer:
+    from mbsym.report.runs.floquet_files import floquet_json, sentences
+
+    return Answer(titled(sentences(found)), {"floquet.json": floquet_json(asked.system, found)})
+
+
+def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+    from mbsym.numerics.orbits.floquet import NotPeriodic
+
+    if isinstance(error, NotPeriodic):
+        return Refusal(f"there is no periodic first approximation to judge: {error}")
+    return no_program(error, asked, request)
+
+
+STUDY = Study("floquet", Request, floquet.derive, answer, refusal)

@@ -1,0 +1,153 @@
+"""``mbsym groups``: the dimensionless groups of a system, found by themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from mbsym.studies.study import (
+    Answer,
+    Asked,
+    Document,
+    Line,
+    Refusal,
+    Single,
+    Study,
+    Watch,
+    failed,
+    heading,
+    line,
+)
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+    from mbsym.problems.scaling import Groups
+
+
+@dataclass(frozen=True)
+class Request:
+    """Find the dimensionless groups of FILE: what of its parameters matters, whatever the units.
+
+    Scalings of parameters, coordinates and time that leave the equations what they are form a linear space, which is
+    found exactly; no units need be declared.  As many parameters as it has dimensions are set to 1, each other one
+    stands for a group then.  The first approximation of problems 5 and 6 needs fewer groups; it is told in the symbols
+    of the description's notation.  Groups are products of powers: sums of parameters are left to the notation.
+
+    With --out the description is written in its groups (YAML), for 'run', 'map', 'sweep' and all others.
+
+    Exit codes: 0 found, 1 the equations have no closed form, or the file cannot be written, 2 something is wrong.
+
+    \b
+    Examples:
+      mbsym groups systems/double-pendulum.yaml
+      mbsym groups systems/spring-pendulum.yaml --out spring-in-groups.yaml
+    """
+
+
+@dataclass(frozen=True)
+class Found:
+    """The groups of the equations of motion, or of the matrices where those are given."""
+
+    analysis: Analysis
+    groups: Groups
+
+
+def derive(asked: Asked, request: Request, watch: Watch) -> Found:
+    from mbsym.analysis import Analysis
+    from mbsym.problems.scaling import groups
+
+    watch("deriving")
+    analysis = Analysis(asked.system)
+    if asked.system.linear is not None:
+        return Found(analysis, _of_linear(analysis))
+    return Found(analysis, groups(analysis.scene, analysis.equations))
+
+
+def answer(asked: Asked, request: Request, found: Found) -> Answer:
+    return Answer(_lines(found))
+
+
+def _lines(found: Found) -> Iterator[Line]:
+    sections = [("first approximation", _linear(found.analysis))]
+    if found.analysis.system.linear is None:
+        sections.insert(0, ("equations of motion", _told(found.groups)))
+    for title, lines in sections:
+        yield heading(title)
+        for text in lines:
+            yield line(f"    {text}")
+
+
+def _told(found: Groups) -> Iterator[str]:
+    from mbsym.analysis.in_groups import group_of, product
+    from mbsym.expressions.counting import counted
+    from mbsym.expressions.tree import text
+
+    left = counted(len(found.groups), "group", "groups")
+    most = "at most " if found.unused else ""
+    yield f"{counted(len(found.free), 'parameter', 'parameters')}, {len(found.units)} of them set to 1: {most}{left}"
+    if found.unused:
+        more = counted(found.unused, "scaling more is", "scalings more are")
+        yield f"{more} not used: no other parameter is declared positive, and one that may vanish cannot be set to 1"
+    if found.units:
+        yield ", ".join(f"{name} = 1" for name in found.units)
+    for one in found.groups:
+        stands = text(group_of(one.parameter, one.powers))
+        yield one.parameter if stands == one.parameter else f"{one.parameter} stands for {stands}"
+    if found.rate:
+        yield f"time in units of {text(product((name, -power) for name, power in found.rate))}"
+    for one in found.lengths:
+        yield f"{one.parameter} in units of {text(product(one.powers))}"
+    if found.idle:
+        yield f"without effect on the motion: {', '.join(found.idle)}"
+
+
+def _of_linear(analysis: Analysis) -> Groups:
+    """The groups of the first approximation.  Raises Failure where there is none in closed form."""
+    from mbsym.problems.scaling import linear_groups
+    from mbsym.problems.stability.problem import prepared_parts
+
+    motion = analysis.equilibrium
+    parts = prepared_parts(analysis.parameters_scene, analysis.balance, analysis.judgeable, motion, analysis.signs)
+    return linear_groups(analysis.parameters_scene, [(part.ring, part.system) for part in parts])
+
+
+def _linear(analysis: Analysis) -> Iterator[str]:
+    from mbsym.algebra.failures import Failure
+
+    try:
+        found = _of_linear(analysis)
+    except Failure as error:
+        yield f"none: {error.reason}"
+        return
+    for text in _told(found):
+        if not text.startswith("without effect"):
+            yield text
+
+
+def document(asked: Asked, request: Request, found: Found) -> Document:
+    """The description in its groups."""
+    from mbsym.analysis.in_groups import in_groups
+    from mbsym.source import read, to_yaml
+
+    text = to_yaml(in_groups(asked.system, found.groups))
+    system, complaints = read(text)
+    if system is not None:
+        return Document(text)
+    # What the equations do not ask of a body may be asked of its numbers.
+    told = complaints.sorted()[0].message
+    text = to_yaml(in_groups(asked.system, found.groups, values=False))
+    system, complaints = read(text)
+    if system is None:
+        return Document(None, (f"it cannot be written in groups: {complaints.sorted()[0].message}",))
+    return Document(text, (f"values are left out of what is written, where they belong to no bodies: {told}",))
+
+
+def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+    return failed(error, "the groups cannot be found")
+
+
+STUDY = Study(
+    "groups", Request, derive, answer, refusal,
+    matrices=True, held=False, out=Single("Write the description in groups here."), document=document,
+)  # fmt: skip

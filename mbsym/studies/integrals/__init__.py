@@ -1,0 +1,206 @@
+"""``mbsym integrals``: all polynomial first integrals up to a weighted degree.
+
+What is said of special parameters stands in ``cases.py``, of invariant relations in ``relations.py``, of integrals
+where another one has a value in ``levels.py``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import KW_ONLY, dataclass, field
+from typing import TYPE_CHECKING, Annotated
+
+from mbsym.maps.axis import Axis
+from mbsym.studies.request import Flag, Named, Number, Numbers, Range, Whole
+from mbsym.studies.study import Answer, Asked, Exit, Line, NotFit, Refusal, Study, Unfit, Watch, heading, line
+
+if TYPE_CHECKING:
+    from mbsym.analysis.invariant_relations import InvariantRelations
+    from mbsym.analysis.polynomial import Setting
+    from mbsym.model.system import System
+    from mbsym.problems.polynomial_integrals import Along, Cases, DarbouxAlong, PolynomialIntegrals
+
+#: For ``--cases``: counted work, worth about so many seconds.
+BUDGET = 60.0
+
+
+@dataclass(frozen=True)
+class Request:
+    """Find all polynomial first integrals of FILE up to a weighted degree, or prove that there are no others.
+
+    Variables are speeds and unit vectors where FILE declares them (keys 'speeds' and 'orientation'), otherwise rates,
+    sines and cosines of angles, and lengths.  Parameters stay symbols, so
+    that what is said holds for almost all their values; --set puts in exact numbers, where there may be more.
+    A weighted degree counts each variable with its weight: rates, sines, cosines and lengths with 1, speeds and unit
+    vectors with those under which the equations are quasi-homogeneous where there are such, otherwise 1 and 2;
+    --weight gives others.  Positions that the equations do not contain are no variables, which is said.
+
+    --vary finds every value of one parameter in an interval at which there are more, also those that hold only where
+    another integral is zero; other parameters need numbers.  --cases looks for conditions on the parameters: zeros,
+    equalities and a polynomial condition besides, also of gyrostats; families of parameters that the --budget leaves
+    out are counted.  --relations lists polynomials f that divide their derivative, so that a motion which begins on
+    f = 0 stays there: linear forms, each with the parameters at which there is such a form, and those up to the degree
+    for almost all parameters; and integrals that hold only where another one is zero.  --vary and --relations together
+    find the values at which there are more polynomials f.
+
+    Exit codes: 0 found, or proved that there are none; 1 undecided, or the equations are not polynomial; 2 something is
+    wrong.
+
+    \b
+    Examples:
+      mbsym integrals systems/clebsch-poisson.yaml
+      mbsym integrals systems/gyrostat-poisson.yaml --degree 6 --set lx=0 --set epsilon=0
+      mbsym integrals systems/euler-poisson.yaml -s B=2 -s C=1 -s x0=1 -s y0=0 -s z0=0 -s m=1 -s g=1 --vary A=1:5
+      mbsym integrals systems/euler-poisson.yaml --set y0=0 --cases --budget 30
+      mbsym integrals systems/euler-poisson.yaml --set y0=0 --relations
+      mbsym integrals systems/goryachev-chaplygin.yaml --relations
+      mbsym integrals euler-poisson.yaml -d 1 -s A=6 -s C=3 -s x0=1 -s y0=0 -s z0=1 -s m=1 -s g=1 -v B=1:5 --relations
+    """
+
+    _: KW_ONLY
+    degree: Annotated[int, Whole("N", "Up to this weighted degree.", "-d", most=60)] = 4
+    values: Numbers = field(default_factory=dict)
+    weights: Annotated[
+        Mapping[str, int],
+        Named("NAME=N", "Weight of a variable, or unit vector.", "-w", "--weight", most=12, example="gamma1=2"),
+    ] = field(default_factory=dict)
+    vary: Annotated[Axis | None, Range("NAME=LOW:HIGH", "At which values of a parameter are there more?", "-v")] = None
+    cases: Annotated[bool, Flag(None, "Under which conditions on parameters are there more?")] = False
+    budget: Annotated[
+        float | None, Number("S", "Counted work, worth some S seconds, that --cases may take.", usual="60")
+    ] = None
+    relations: Annotated[bool, Flag(None, "Invariant relations f = 0, and integrals where another one is zero.")] = (
+        False
+    )
+
+
+def unfit(request: Request, system: System) -> Iterator[Unfit]:
+    if request.vary is not None and request.cases:
+        told = "with --vary other parameters are numbers"
+        yield Unfit("--cases", "not-together", told, "choose one of them")
+    if request.vary is not None and request.vary.name in request.values:
+        told = f"'{request.vary.name}' has an interval and a number"
+        yield Unfit("--set", "repeated-name", told, "leave one of them out")
+    if request.budget is not None and not request.cases:
+        yield Unfit("--budget", "missing-option", "--budget goes with --cases", "add --cases")
+
+
+@dataclass(frozen=True)
+class Found:
+    """The integrals, and what was asked for besides: None where it was not."""
+
+    there: Setting
+    integrals: PolynomialIntegrals
+    line: Along | None
+    cases: Cases | None
+    relations: InvariantRelations | None
+    at: DarbouxAlong | None
+
+
+def derive(asked: Asked, request: Request, watch: Watch) -> Found:
+    """Raises NotFit where the field has other variables or parameters than the request names."""
+    from mbsym.analysis import Analysis
+    from mbsym.analysis.invariant_relations import invariant_relations, special_relations
+    from mbsym.analysis.polynomial import allowed, integrals_of, setting
+    from mbsym.problems.polynomial_integrals import along_of, cases_of
+
+    watch("polynomial integrals")
+    analysis = Analysis(asked.system)
+    there = setting(analysis, request.values)
+    if wrong := tuple(_unfit(there, request)):
+        raise NotFit(wrong)
+    found, axis = integrals_of(there, request.degree, request.weights), request.vary
+    along = None if axis is None else along_of(found, there.kinds, there.known, axis.low, axis.high)
+    positive = [one.name for one in asked.system.parameters if one.sign == "positive"]
+    special = None
+    if request.cases:
+        budget = BUDGET if request.budget is None else request.budget
+        special = cases_of(found, there.kinds, there.known, positive, budget)
+        special = special and allowed(analysis, there, request.values, special)
+    invariant = invariant_relations(there, found, positive) if request.relations else None
+    at = special_relations(there, found, axis.low, axis.high) if request.relations and axis is not None else None
+    return Found(there, found, along, special, invariant, at)
+
+
+def _unfit(there: Setting, request: Request) -> Iterator[Unfit]:
+    """Of ``--weight``: no such variable.  Of ``--vary``: a parameter that does not occur, or others without numbers."""
+    for name in request.weights:
+        if name not in there.field.variables:
+            known = ", ".join(there.field.variables)
+            yield Unfit("--weight", "unknown-name", f"the field has no variable {name}", f"there are {known}")
+    axis = request.vary
+    if axis is None:
+        return
+    if axis.name not in there.field.parameters:
+        yield Unfit("--vary", "not-there", f"the equations do not depend on {axis.name}", "take another parameter")
+    lacking = [name for name in there.field.parameters if name != axis.name]
+    if lacking:
+        example = " ".join(f"--set {name}=1" for name in lacking[:3]) + (" ..." if len(lacking) > 3 else "")
+        yield Unfit("--set", "missing-value", f"no number for {', '.join(lacking)}", f"for example {example}")
+
+
+def answer(asked: Asked, request: Request, found: Found) -> Answer:
+    return Answer(_lines(found), code=Exit.OK if found.integrals.complete else Exit.FAILED)
+
+
+def _lines(found: Found) -> Iterator[Line]:
+    """The table of integrals, what is known of it as a whole, and what is there besides."""
+    from mbsym.report.content import say
+    from mbsym.report.plain_writer import Writer
+    from mbsym.report.words.integrals_words import HEADING, sentences, title, weights_text
+
+    there, integrals = found.there, found.integrals
+    uniform = "quasi-homogeneous" if integrals.grading.homogeneous else "not quasi-homogeneous"
+    weights = weights_text(integrals.field.variables, integrals.grading.weights)
+    yield line(f"  weights {weights}; the equations are {uniform} under them")
+    yield heading(Writer().said(say(HEADING, degree=str(integrals.degree))))
+    for one in integrals.generators:
+        yield line(f"    weight {one.weight}  ", (title(one), "bold" if one.is_new else ""))
+        yield line(f"      {there.formula(one.polynomial)}", whole=True)
+    for said in map(Writer().said, sentences(integrals)):
+        yield line(f"    {said}")
+    for head, texts in _sections(found):
+        yield heading(head)
+        for text in texts:
+            yield line(f"    {text}", whole=True)
+
+
+def _sections(found: Found) -> Iterator[tuple[str, Iterator[str]]]:
+    from mbsym.studies.integrals.cases import along_lines, cases_lines
+    from mbsym.studies.integrals.levels import other_lines
+    from mbsym.studies.integrals.relations import darboux_lines, darboux_values, level_lines, relation_lines
+
+    there, integrals, relations = found.there, found.integrals, found.relations
+    if found.line is not None:
+        yield "Special values", along_lines(there, integrals, found.line)
+    if found.cases is not None:
+        yield "Special cases", cases_lines(there, found.cases)
+    if relations is not None:
+        yield "Integrals where another one is zero", level_lines(there, integrals, relations.levels)
+        yield "Integrals where another one has a value that is not zero", other_lines(there, relations.others)
+        yield "Linear invariant relations", relation_lines(there, relations.linear)
+        yield "Invariant relations f = 0 with f' = K f", darboux_lines(there, integrals, relations.darboux)
+    if found.at is not None:
+        yield f"Values of {found.at.name} with further f' = K f", darboux_values(there, integrals, found.at)
+
+
+def as_json(asked: Asked, request: Request, found: Found) -> str:
+    from mbsym.report.integrals_json import integrals_json
+
+    further = (found.line, found.cases, found.relations, found.at)
+    return integrals_json(asked.system, request.values, found.there, found.integrals, *further)
+
+
+def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+    from mbsym.algebra.failures import Failure, Limit
+
+    if isinstance(error, ZeroDivisionError):
+        return Refusal(f"no integrals: {error}", Exit.BAD_INPUT)
+    if not isinstance(error, Failure):
+        return None
+    if error.limit is Limit.DEGREE:
+        return Refusal(f"no integrals: {error}; {error.remedy}", Exit.BAD_INPUT)
+    return Refusal(f"no integrals: {error}")
+
+
+STUDY = Study("integrals", Request, derive, answer, refusal, unfit, as_json, held=False, out=None)

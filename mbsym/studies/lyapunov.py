@@ -1,0 +1,89 @@
+"""``mbsym lyapunov``: how fast neighbouring motions part."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import KW_ONLY, dataclass, field
+from typing import TYPE_CHECKING, Annotated
+
+from mbsym.studies.described import public
+from mbsym.studies.request import Number, Values, Whole, duration
+from mbsym.studies.study import Answer, Asked, Exit, Study, Unfit, Watch, no_program, titled
+
+if TYPE_CHECKING:
+    from mbsym.model.system import System
+    from mbsym.numerics.orbits.lyapunov import Exponents
+
+
+@dataclass(frozen=True)
+class Request:
+    """Measure the Lyapunov exponents of FILE's motion over the time T.
+
+    Exponents of a finite time, with the statistical uncertainty of their means; no number proves a motion chaotic or
+    regular.  Where all are asked for their sum is checked against the mean divergence of the equations.
+
+    Written are lyapunov.csv (the exponents up to each time), lyapunov.svg/.png and lyapunov.json.  Exit codes: 0 done,
+    1 not written, 2 something is missing or wrong, 3 ended early, 130 interrupted.
+
+    \b
+    Examples:
+      mbsym lyapunov systems/double-pendulum.yaml --time 500 --set theta1=2 --count 1
+      mbsym lyapunov systems/spring-pendulum.yaml --time 1000
+    """
+
+    time: Annotated[float, duration("Over so long (1000, 200*pi).")]
+    _: KW_ONLY
+    values: Values = field(default_factory=dict)
+    count: Annotated[int | None, Whole("N", "How many exponents.", usual="all, two for each coordinate")] = None
+    every: Annotated[
+        float | None, Number("DT", "Make directions orthogonal so often.", usual="a 400th of the time")
+    ] = None
+    tolerance: Annotated[float, Number("X", "Error of one step.", least=1e-14, most=1e-2)] = 1e-10
+
+
+def unfit(request: Request, system: System) -> Iterator[Unfit]:
+    """More exponents than there are; too many intervals, and too few for the statistics of means."""
+    from mbsym.numerics.orbits.lyapunov import LEAST_INTERVALS
+
+    count, every, time = request.count, request.every, request.time
+    there = 2 * len(system.coordinates)
+    if count is not None and count > there:
+        yield Unfit("--count", "bad-number", f"{count} is out of bounds: at most {there}")
+    if every is None or time is None:
+        return
+    if time / every > 1e6:
+        yield Unfit("--every", "too-large", f"{time / every:.3g} intervals are too many", "at most a million")
+    if time / every < LEAST_INTERVALS * (1 - 1e-12):
+        needed = f"a --time of {LEAST_INTERVALS * every:g} and more: {LEAST_INTERVALS} intervals"
+        hint = f"at most {time / LEAST_INTERVALS:.3g} here; with fewer nothing can be said of the uncertainty"
+        yield Unfit("--every", "too-large", f"--every {every:g} goes with {needed}", hint)
+
+
+@public(Request)
+def lyapunov(asked: Asked, request: Request, watch: Watch) -> Exponents:
+    """Lyapunov exponents over ``time``, the largest first, with their uncertainty: ``mbsym lyapunov``.
+
+    Raises DescriptionError, ValueError, ``mbsym.numerics.scenario.Incomplete``.
+    """
+    from mbsym.simulation.motions import lyapunov_exponents
+
+    def at(t: float) -> None:
+        watch("", t, request.time)
+
+    return lyapunov_exponents(asked.motion, request.time, request.every, request.count, request.tolerance, at)
+
+
+def answer(asked: Asked, request: Request, found: Exponents) -> Answer:
+    from mbsym.report.runs.lyapunov_files import lyapunov_csv, lyapunov_figure, lyapunov_json, sentences
+
+    files: dict[str, str | bytes] = {"lyapunov.csv": lyapunov_csv(found)}
+    files |= lyapunov_figure(asked.system, found, ("svg", "png")) if len(found.times) > 1 else {}
+    files["lyapunov.json"] = lyapunov_json(asked.system, found)
+    lines = titled(sentences(found))
+    if found.ended is None:
+        return Answer(lines, files)
+    code = Exit.INTERRUPTED if found.ended.kind == "interrupted" else Exit.BROKEN_DOWN
+    return Answer(lines, files, (f"ended early: {found.ended}",), code)
+
+
+STUDY = Study("lyapunov", Request, lyapunov.derive, answer, no_program, unfit)

@@ -1,0 +1,185 @@
+"""``mbsym nonlinear``: what terms of higher order decide, at values or along one parameter."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import KW_ONLY, dataclass, field, replace
+from fractions import Fraction
+from typing import TYPE_CHECKING, Annotated
+
+from mbsym.maps.axis import Axis
+from mbsym.studies.request import ExactSettings, Range
+from mbsym.studies.study import (
+    Answer,
+    Asked,
+    Line,
+    NotFit,
+    Refusal,
+    Study,
+    Unfit,
+    Watch,
+    failed,
+    line,
+    missing,
+    remedied,
+)
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+    from mbsym.model.system import System
+    from mbsym.problems.normal_forms import NormalForms
+    from mbsym.problems.normal_forms.along import Along
+
+
+@dataclass(frozen=True)
+class Request:
+    """List the values of a parameter at which terms of higher order of FILE decide otherwise than beside them.
+
+    Without --vary: what they decide at the values, and in parameters where there are formulas.
+
+    Between two of them one verdict holds.  Each is the root of a polynomial: a resonance of order 3 or 4 of two
+    frequencies, a zero of Arnold's determinant D4, a border of the first approximation; with applied forces a border at
+    which a pair of roots becomes imaginary (soft or hard, by Lyapunov's coefficient) or a root zero.  The theorems are
+    those of problem 11 ('mbsym explain 11'), which 'mbsym run --problems 11' tells at the values of the description.
+
+    Along a parameter every other one needs a rational number, from the description (values:) or from --set.
+
+    Exit codes: 0 listed, 1 they cannot be listed (the reason is given), 2 something is missing or wrong,
+    130 interrupted.
+
+    \b
+    Examples:
+      mbsym nonlinear systems/three-bodies.yaml --set mu=1/50 --json
+      mbsym nonlinear systems/three-bodies.yaml --vary mu=0:1/2
+      mbsym nonlinear systems/ziegler-damped.yaml --vary P=0:10 --set b2=1/5 --json
+    """
+
+    _: KW_ONLY
+    values: Annotated[
+        Mapping[str, Fraction], ExactSettings("NAME=VALUE", "Replace a value; repeatable.", "-s", "--set")
+    ] = field(default_factory=dict)
+    vary: Annotated[Axis | None, Range("NAME=LOW:HIGH", "The parameter, and its open interval.", "-v")] = None
+
+
+def unfit(request: Request, system: System) -> Iterator[Unfit]:
+    """Numbers are of parameters that follow from nothing else, and have their declared signs; along a parameter all
+    others have one."""
+    from mbsym.model.comparison import has_sign
+
+    signs = {one.name: one.sign for one in system.parameters}
+    related = {one.name for one in system.relations}
+    for name, value in request.values.items():
+        if name not in signs:
+            yield Unfit("--set", "unknown-name", f"{name} is a symbol of the notation", "set the parameters in it")
+        elif name in related:
+            yield Unfit("--set", "wrong-use", f"{name} follows from a relation", "set the parameters in it")
+        elif not has_sign(value, signs[name]):
+            yield Unfit("--set", "sign-contradiction", f"{name} is declared {signs[name]}, {value} is not")
+    if request.vary is not None:
+        varied = request.vary.name
+        if varied in request.values:
+            told = f"'{varied}' has an interval and a number"
+            yield Unfit("--set", "repeated-name", told, "leave one of them out")
+        names = [name for name in _lacking(system, request.values) if name != varied]
+        if names:
+            yield missing(names, "rational number")
+
+
+def _known(system: System, values: Mapping[str, Fraction]) -> Mapping[str, Fraction]:
+    from mbsym.mechanics.rest import given_values, rational_values
+
+    return rational_values(given_values(system, values))
+
+
+def _lacking(system: System, values: Mapping[str, Fraction]) -> Iterator[str]:
+    from mbsym.mechanics.rest import missing_values
+
+    yield from missing_values(system, _known(system, values))
+
+
+@dataclass(frozen=True)
+class AtValues:
+    """What problem 11 says, at numbers where there are all, in parameters where it can; ``lacking`` have none."""
+
+    analysis: Analysis
+    forms: NormalForms
+    lacking: tuple[str, ...]
+
+
+def derive(asked: Asked, request: Request, watch: Watch) -> AtValues | Along:
+    if request.vary is None:
+        watch("normal forms")
+        return _at_values(asked.system, request.values)
+    from mbsym.analysis import Analysis
+    from mbsym.analysis.exceptional import exceptional
+
+    axis = request.vary
+    watch(f"normal forms along {axis.name}")
+    numbers = {name: x for name, x in _known(asked.system, request.values).items() if name != axis.name}
+    return exceptional(Analysis(asked.system), axis.name, (axis.low, axis.high), numbers)
+
+
+def _at_values(system: System, numbers: Mapping[str, Fraction]) -> AtValues:
+    """Raises NotFit where there are neither all numbers nor formulas."""
+    from mbsym.analysis import Analysis
+    from mbsym.expressions.tree import number
+
+    parameters = (
+        replace(one, value=number(numbers[one.name])) if one.name in numbers else one for one in system.parameters
+    )
+    analysis = Analysis(replace(system, parameters=tuple(parameters)))
+    with analysis.strictly():
+        found = analysis.normal_forms
+        solved = {name for name, _ in analysis.equilibrium.solved}
+    lacking = tuple(name for name in _lacking(system, numbers) if name not in solved)
+    if found.at_values is None and lacking and found.in_symbols is None:
+        raise NotFit([missing(lacking, "rational number")])
+    return AtValues(analysis, found, lacking if found.at_values is None else ())
+
+
+def answer(asked: Asked, request: Request, found: AtValues | Along) -> Answer:
+    return Answer(_of_values(asked, found) if isinstance(found, AtValues) else _along(found))
+
+
+def _of_values(asked: Asked, found: AtValues) -> Iterator[Line]:
+    from mbsym.report.sections.normal_forms import lines
+
+    for text in lines(found.forms, found.analysis):
+        yield line(f"  {text}")
+    if found.lacking:
+        words = " ".join(f"--set {name}=NUMBER" for name in found.lacking)
+        yield line(f"  At numbers nothing is said: {', '.join(found.lacking)} have none.  Give them:")
+        yield line(f"    mbsym nonlinear {asked.file} {words}", whole=True)
+
+
+def _along(found: Along) -> Iterator[Line]:
+    from mbsym.report.words.exceptional_values import lines
+
+    for text in lines(found):
+        yield line(f"  {text}")
+
+
+def as_json(asked: Asked, request: Request, found: AtValues | Along) -> str:
+    """Along a parameter a document of its own, at values that of problem 11 in results.json."""
+    if isinstance(found, AtValues):
+        from mbsym.report.results_json import render
+
+        return render(found.analysis, (11,))
+    from mbsym.report.words.exceptional_values import as_text
+
+    return as_text(asked.system, found)
+
+
+def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+    from mbsym.analysis.stages import Unavailable
+
+    if isinstance(error, Unavailable) and request.vary is None:
+        return Refusal(f"nothing decided: {error.reason}" + (f"; {error.remedy}" if error.remedy else ""))
+    return failed(error, "nothing decided", remedied) if request.vary is None else failed(error, "no values listed")
+
+
+STUDY = Study(
+    "nonlinear", Request, derive, answer, refusal, unfit, as_json,
+    json_help="Print JSON; without --vary that of problem 11.",
+    matrices=True, held=False, out=None, timed=True,
+)  # fmt: skip

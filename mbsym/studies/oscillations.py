@@ -1,0 +1,170 @@
+"""``mbsym oscillations``: periodic solutions in powers of a small parameter, by Lindstedt and Poincare."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import KW_ONLY, dataclass, field
+from fractions import Fraction
+from typing import TYPE_CHECKING, Annotated
+
+from mbsym.studies.request import ExactSettings, Text, Whole, formats, language
+from mbsym.studies.study import (
+    FILE,
+    Answer,
+    Asked,
+    Exit,
+    Folder,
+    Line,
+    Refusal,
+    Study,
+    Unfit,
+    Watch,
+    failed,
+    line,
+    remedied,
+)
+
+if TYPE_CHECKING:
+    from mbsym.analysis.oscillating import Oscillating
+    from mbsym.model.system import System
+    from mbsym.simulation.oscillating import MeasuredOrders
+
+FORMATS = ("svg", "pdf", "png")
+
+#: Said of options of figures where there are none.
+UNWRITTEN = ("wrong-use", "nothing is written without --format", "add --format png")
+
+
+def symbols(system: System) -> tuple[str, ...]:
+    """Names that a result may have beside the parameters."""
+    from mbsym.model.oscillation_names import AMPLITUDE
+
+    variables = (*system.coordinates, *system.velocities, *system.variables)
+    return (AMPLITUDE, *(f"{name}_0" for name in variables))
+
+
+@dataclass(frozen=True)
+class Request:
+    """Find periodic motions of FILE near those of its linear part, in powers of a small parameter, exactly.
+
+    The method of Poincare and Lindstedt: frequencies are corrected so that no secular terms remain; where that is
+    possible for some amplitudes only, or not at all, that is told.  FILE names the small parameter ('small parameter:
+    eps', or powers of it in parameters and variables); without it, the deviations from the unperturbed motion are
+    small, of order eps.  Coefficients hold the parameters, the amplitude and the values that stay constant without
+    eps; resonances that were divided by are listed, and what is left out.
+
+    The series are put into the equations exactly.  Where FILE has numbers, their error is measured against runs at
+    parts of eps.  Figures show the series and a simulation from the same state over three periods: oscillation (over
+    time), oscillation-planes (each variable and its rate), and oscillation-angles where FILE has speeds.
+
+    Exit codes: 0 found and checked; 1 there is no such solution, or none was found within the budget; 2 something is
+    wrong.
+
+    \b
+    Examples:
+      mbsym oscillations systems/spring-pendulum.yaml --of theta
+      mbsym oscillations systems/double-pendulum.yaml --of theta1 --frequency 2
+      mbsym oscillations systems/gyrostat-fast.yaml --order 2
+      mbsym oscillations systems/gyrostat-fast.yaml --set lx=0 --json
+      mbsym oscillations systems/gyrostat-fast.yaml --format png --out figures
+    """
+
+    _: KW_ONLY
+    order: Annotated[int, Whole("N", "Up to this power.", "-n", most=6)] = 2
+    of: Annotated[str | None, Text("NAME", "The variable whose oscillation leads, where there are several.")] = None
+    frequency: Annotated[int, Whole("K", "Of several that it shares with others, the K-th.", most=99, shown=False)] = 1
+    values: Annotated[
+        Mapping[str, Fraction],
+        ExactSettings("NAME=VALUE", "Put in a number; repeatable.", "-s", "--set", more=symbols),
+    ] = field(default_factory=dict)
+    format: Annotated[tuple[str, ...], formats("Draw figures: svg, pdf, png.", FORMATS)] = ()
+    language: Annotated[str | None, language("Of figures: en, ru, es.")] = None
+
+
+def unfit(request: Request, system: System) -> Iterator[Unfit]:
+    small, leading = system.small, request.of
+    if small is None and (not system.motion or system.speeds):
+        hint = "add 'small parameter: eps'"
+        yield Unfit(FILE, "missing-key", "the description names no small parameter", hint)
+    known = (*system.coordinates, *system.velocities, *system.variables)
+    if leading and leading not in known:
+        told = f"there is no variable called {leading[:60]!r}"
+        yield Unfit("--of", "unknown-name", told, f"one of: {', '.join(known)}")
+    for name, value in request.values.items():
+        if small is None:
+            break
+        if name == small.name or (name in dict(small.powers) and value != 0):  # zero has no power
+            yield Unfit("--set", "bad-assignment", f"{name} belongs to the small parameter: it stays a symbol")
+    if request.language is not None and not request.format:
+        yield Unfit("--language", *UNWRITTEN)
+
+
+@dataclass(frozen=True)
+class Found:
+    """The solution, and the order of its error; why that was not measured where it was not."""
+
+    solution: Oscillating
+    measured: MeasuredOrders | str
+
+
+def derive(asked: Asked, request: Request, watch: Watch) -> Found:
+    from mbsym.analysis import Analysis
+    from mbsym.analysis.oscillating import oscillating
+    from mbsym.report.words.expansion_measured import orders_or_why
+
+    watch("oscillations")
+    found = oscillating(Analysis(asked.system), request.order, request.values, request.of or "", request.frequency)
+    watch("measuring")
+    return Found(found, orders_or_why(asked.system, found, request.values))
+
+
+def answer(asked: Asked, request: Request, found: Found) -> Answer:
+    files, reason = _figures(asked.system, request, found.solution) if request.format else ({}, "")
+    complaints = (f"no figures: {reason}",) if reason else ()
+    return Answer(_lines(found), files, complaints, Exit.FAILED if reason else Exit.OK)
+
+
+def _lines(found: Found) -> Iterator[Line]:
+    from mbsym.report.words.oscillation_lines import lines
+
+    for text, heading in lines(found.solution, found.measured):
+        yield line((text, "bold cyan" if heading else ""), whole=text.startswith("      "))
+
+
+def _figures(system: System, request: Request, found: Oscillating) -> tuple[dict[str, str | bytes], str]:
+    """Files by their names, or why there are none."""
+    from mbsym.algebra.failures import Failure
+    from mbsym.numerics.scenario import Incomplete
+    from mbsym.report.figures.oscillation_figure import oscillation_figures
+    from mbsym.report.language import Language
+    from mbsym.report.words.expansion_measured import DIVIDED, NO_NUMBERS
+    from mbsym.simulation.oscillation_paths import oscillation_paths
+
+    try:
+        paths = oscillation_paths(system, found, request.values)
+        drawn = oscillation_figures(system, paths, found.found, request.format, Language(request.language or "en"))
+    except Incomplete:
+        return {}, NO_NUMBERS
+    except ZeroDivisionError:
+        return {}, DIVIDED
+    except (Failure, ValueError, OverflowError) as error:
+        return {}, str(error)
+    return dict(sorted(drawn.items())), ""
+
+
+def as_json(asked: Asked, request: Request, found: Found) -> str:
+    from mbsym.report.oscillation_json import oscillations_json
+
+    return oscillations_json(asked.system, request.values, found.solution, found.measured)
+
+
+def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+    if isinstance(error, ZeroDivisionError):
+        return Refusal(f"no periodic solution: {error}", Exit.BAD_INPUT)
+    return failed(error, "no expansion", remedied)
+
+
+STUDY = Study(
+    "oscillations", Request, derive, answer, refusal, unfit, as_json, "Print JSON instead of text.",
+    held=False, out=Folder(quiet=None, unwritten=UNWRITTEN), writes=lambda request: bool(request.format),
+)  # fmt: skip

@@ -1,0 +1,230 @@
+"""What the fields of a request are: kinds that stand in the annotations of a dataclass.
+
+    time: Annotated[float, Number("T", "Over so long (1000, 200*pi).", short="-t")]
+
+A kind knows how its option is called and what values it takes.  The command line reads texts (``mbsym_cli.requests``),
+Python passes values (``wrong``); both have the same bounds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import MISSING, dataclass, fields
+from fractions import Fraction
+from math import isfinite
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, get_args, get_type_hints
+
+from mbsym.report.language import LANGUAGES
+
+if TYPE_CHECKING:
+    from mbsym.model.system import System
+
+#: What Python takes for a parameter, an initial position or an initial velocity: ``Fraction(1, 3)``, ``0.5``,
+#: ``"pi/6"``.
+Value: TypeAlias = Fraction | float | str
+
+
+@dataclass(frozen=True)
+class Kind:
+    """``metavar`` stands for the value in the help of the option, which is called as its field unless it has a name.
+
+    ``usual``: what is taken where the option is left out, in words; without it the default of the field is shown.
+    """
+
+    metavar: str | None
+    help: str
+    short: str = ""
+    name: str = ""
+    usual: str = ""
+
+
+@dataclass(frozen=True)
+class Number(Kind):
+    """A positive number between bounds; ``absent``: what is said, with a hint, where one that has no default is not
+    given."""
+
+    least: float = 0.0
+    most: float | None = None
+    absent: tuple[str, str] = ("", "")
+
+    def wrong(self, name: str, value: float) -> str:
+        if not (isfinite(value) and value > 0):
+            return f"{name} must be positive, not {value}"
+        if value < self.least or (self.most is not None and value > self.most):
+            return f"{name} must be between {self.least:g} and {self.most:g}, not {value}"
+        return ""
+
+
+@dataclass(frozen=True)
+class Whole(Kind):
+    """A whole number between bounds; ``why`` the lower one, ``shown``: whether the help tells the default."""
+
+    least: int = 1
+    most: int = 10**6
+    why: str = ""
+    shown: bool = True
+
+    def wrong(self, name: str, value: int) -> str:
+        if self.least <= value <= self.most:
+            return ""
+        bound = f"{self.least} at least" if value < self.least else f"{self.most} at most"
+        return f"{name} must be {bound}, not {value}"
+
+
+@dataclass(frozen=True)
+class Word(Kind):
+    """One of a few words; ``what`` they are."""
+
+    choices: tuple[str, ...] = ()
+    what: str = "choice"
+
+    def wrong(self, name: str, value: str) -> str:
+        return (
+            "" if value in self.choices else f"there is no {self.what} {value}: choose from {', '.join(self.choices)}"
+        )
+
+
+@dataclass(frozen=True)
+class Words(Kind):
+    """Some of a few words, separated by commas; ``every`` stands for all of them.
+
+    ``choices`` are a function where much would have to be imported to know them.
+    """
+
+    choices: tuple[str, ...] | Callable[[], tuple[str, ...]] = ()
+    what: str = "choice"
+    every: str = ""
+
+    def wrong(self, name: str, value: Sequence[str]) -> str:
+        others = ", ".join(one for one in value if one not in (*self.known, self.every))
+        return f"there is no {self.what} {others}: choose from {', '.join(self.known)}" if others else ""
+
+    @property
+    def known(self) -> tuple[str, ...]:
+        return self.choices() if callable(self.choices) else self.choices
+
+
+@dataclass(frozen=True)
+class Text(Kind):
+    """Whatever it says; the study looks at it."""
+
+
+@dataclass(frozen=True)
+class Names(Kind):
+    """Names, one each time the option is given; the study looks at them."""
+
+
+@dataclass(frozen=True)
+class Flag(Kind):
+    """Said or not; ``both``: ``--name`` or ``--no-name``."""
+
+    both: bool = False
+
+
+@dataclass(frozen=True)
+class Named(Kind):
+    """``NAME=N``, whole numbers of names between bounds; repeatable."""
+
+    least: int = 1
+    most: int = 10**6
+    example: str = ""
+
+    def wrong(self, name: str, value: Mapping[str, int]) -> str:
+        outside = ", ".join(key for key, one in value.items() if not self.least <= one <= self.most)
+        return f"{name} must be from {self.least} to {self.most} for {outside}" if outside else ""
+
+
+@dataclass(frozen=True)
+class Settings(Kind):
+    """Values by name that replace those of the description: of parameters, initial positions and velocities.
+
+    ``state``: whether an initial state is needed.
+    """
+
+    state: bool = True
+
+
+@dataclass(frozen=True)
+class Formulas(Kind):
+    """``NAME=FORMULA``, of coordinates, smooth in t, the parameters and prescribed motions; repeatable."""
+
+
+@dataclass(frozen=True)
+class Assignments(Kind):
+    """Expressions in parameters by name, each as it is written; one that cannot be read is None."""
+
+
+@dataclass(frozen=True)
+class Place(Kind):
+    """A file to be read."""
+
+
+@dataclass(frozen=True)
+class ExactSettings(Kind):
+    """Rational numbers that are put in for parameters and symbols of the notation, and for ``more`` of a system."""
+
+    more: Callable[[System], Sequence[str]] = lambda system: ()
+
+
+@dataclass(frozen=True)
+class Range(Kind):
+    """``NAME=LOW:HIGH``, an interval of a parameter or symbol (``mbsym.maps.axis.Axis``)."""
+
+
+#: ``--set`` of studies of one motion, and of exact ones.
+Values = Annotated[Mapping[str, Value], Settings("NAME=VALUE", "Replace a value; repeatable.", "-s", "--set")]
+Numbers = Annotated[Mapping[str, Fraction], ExactSettings("NAME=VALUE", "Put in a number; repeatable.", "-s", "--set")]
+
+#: The same as signatures show them.
+PLAIN = {"Values": "Mapping[str, Fraction | float | str]", "Numbers": "Mapping[str, Fraction]"}
+
+
+def duration(help: str, usual: str = "") -> Number:
+    """``--time``, without which nothing can be simulated."""
+    absent = ("how long to simulate is not said", "for example --time 60")
+    return Number("T", help, "-t", usual=usual, absent=absent)
+
+
+def formats(help: str, choices: tuple[str, ...], usual: str = "") -> Words:
+    """``--format``: which files."""
+    return Words("LIST", help, usual=usual, choices=choices, what="format")
+
+
+def language(help: str) -> Word:
+    """``--language``, of figures and texts."""
+    return Word("NAME", help, choices=tuple(LANGUAGES), what="language")
+
+
+@dataclass(frozen=True)
+class Field:
+    """A field of a request: its ``name`` there, its ``kind``, the value it has if it is left out."""
+
+    name: str
+    kind: Kind
+    default: Any
+    required: bool
+
+    @property
+    def option(self) -> str:
+        return self.kind.name or f"--{self.name.replace('_', '-')}"
+
+
+def fields_of(request: type) -> tuple[Field, ...]:
+    """The fields that have a kind, in their order."""
+    hints = get_type_hints(request, include_extras=True)
+    found = []
+    for one in fields(request):
+        kind = next((item for item in get_args(hints[one.name]) if isinstance(item, Kind)), None)
+        if kind is not None:
+            made = one.default_factory() if one.default_factory is not MISSING else one.default
+            required = made is MISSING
+            found.append(Field(one.name, kind, None if required else made, required))
+    return tuple(found)
+
+
+def wrong(request: Any) -> Iterator[str]:
+    """What of a request is out of its bounds, a sentence each."""
+    for field in fields_of(type(request)):
+        value, check = getattr(request, field.name), getattr(field.kind, "wrong", None)
+        if value is not None and check is not None and (said := check(field.name, value)):
+            yield said

@@ -1,0 +1,241 @@
+"""A study as a value: a request, what derives, and what of the result is said and written."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import IntEnum
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
+
+if TYPE_CHECKING:
+    from mbsym.algebra.failures import Failure
+    from mbsym.model.system import System
+    from mbsym.numerics.scenario import Scenario
+
+
+class Exit(IntEnum):
+    """Exit codes of commands: everything held; a result is missing or failed its check; the input is wrong; what was
+    done ended early; the user stopped it (as shells count the signal)."""
+
+    OK = 0
+    FAILED = 1
+    BAD_INPUT = 2
+    BROKEN_DOWN = 3
+    INTERRUPTED = 130
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line of the terminal: parts, some with a style.
+
+    One that is ``whole`` is never broken into several; ``always``: it is what ``--quiet`` leaves.
+    """
+
+    parts: tuple[str | tuple[str, str], ...]
+    whole: bool = False
+    always: bool = False
+
+
+@dataclass(frozen=True)
+class Column:
+    """Of a table: numbers stand to the ``right``, what is ``folded`` may take several lines where it is narrow."""
+
+    name: str
+    right: bool = False
+    style: str = ""
+    fold: bool = False
+
+
+@dataclass(frozen=True)
+class Rows:
+    """A table: a cell is a text, or one with a style; one that is ``wide`` is broken nowhere but by a terminal."""
+
+    columns: Sequence[Column]
+    rows: Sequence[Sequence[str | tuple[str, str]]]
+    wide: bool = False
+
+
+def line(*parts: str | tuple[str, str], whole: bool = False, always: bool = False) -> Line:
+    return Line(parts, whole, always)
+
+
+def titled(pairs: Iterable[tuple[str, str]]) -> Iterator[Line]:
+    """Lines with titles; one whose title is ``warning`` stands out."""
+    for title, text in pairs:
+        yield line("  ", (f"{title:<9} ", "yellow" if title == "warning" else "bold cyan"), text)
+
+
+def heading(text: str) -> Line:
+    return line("  ", (text, "bold cyan"))
+
+
+class Watch(Protocol):
+    """Is told what is being done and, where that is counted, how much of the ``whole``."""
+
+    def __call__(self, text: str, done: float = 0.0, whole: float = 0.0) -> None: ...
+
+
+def unwatched(text: str, done: float = 0.0, whole: float = 0.0) -> None:
+    """Nobody looks on."""
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What a study is about: the description, with the values of the request where it is of one motion.
+
+    ``file``: its name, for commands to be pasted.
+    """
+
+    system: System
+    scenario: Scenario | None = None
+    file: str = ""
+
+    @property
+    def motion(self) -> Scenario:
+        assert self.scenario is not None, "a study with Settings is of one motion"
+        return self.scenario
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What is said of a result: ``lines`` beneath the system's name, ``files``, and ``complaints`` after them.
+
+    ``after``: what stands behind the name of the description.
+    """
+
+    lines: Iterable[Line | Rows] = ()
+    files: Mapping[str, str | bytes] = field(default_factory=dict)
+    complaints: Sequence[str] = ()
+    code: Exit = Exit.OK
+    after: str = ""
+
+
+@dataclass(frozen=True)
+class Document:
+    """The text of a single file, None where there is none, and complaints about it."""
+
+    text: str | None
+    complaints: Sequence[str] = ()
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """What is said of an exception that ends a study, in a line and ``more`` of them."""
+
+    text: str
+    code: Exit = Exit.FAILED
+    more: Sequence[str] = ()
+
+
+#: In place of an option where the description is at fault, or what was given for it.
+FILE, DESCRIPTION = "FILE", ""
+
+
+@dataclass(frozen=True)
+class Unfit:
+    """An option that does not go with the others, or with the system; of several values, that of a ``name``."""
+
+    option: str
+    code: str
+    message: str
+    hint: str | None = None
+    name: str = ""
+
+
+class NotFit(Exception):
+    """A request that does not go with what was derived first."""
+
+    def __init__(self, reasons: Sequence[Unfit]) -> None:
+        super().__init__("; ".join(one.message for one in reasons))
+        self.reasons = tuple(reasons)
+
+
+@dataclass(frozen=True)
+class Folder:
+    """Files go into a folder; ``quiet``: whether there is an option to print nothing else, and what of.
+
+    ``unwritten``: what is said of these options where nothing is written, ``alone``: of ``--json`` where something is;
+    ``help`` of ``--out``.
+    """
+
+    quiet: str | None = "Print only what went wrong."
+    unwritten: tuple[str, str, str] | None = None
+    help: str = "Folder.  [default: reports/NAME]"
+    alone: tuple[str, str, str] | None = None
+
+
+@dataclass(frozen=True)
+class Single:
+    """One file, a description, is written where ``--out`` says so; ``help`` of that option."""
+
+    help: str
+
+
+R = TypeVar("R")
+F = TypeVar("F")
+
+
+def _nothing(*_: Any) -> Iterator[Unfit]:
+    return iter(())
+
+
+@dataclass(frozen=True)
+class Study(Generic[R, F]):
+    """One command.
+
+    ``derive(asked, request, watch)`` finds the result; ``answer(asked, request, result)`` tells it, ``json`` as the
+    text that ``--json`` prints.  ``refusal`` tells of the exceptions that are answers.  ``unfit`` says
+    what of a request does not go together; fields that could not be read are None there.
+
+    ``constraints``, ``matrices``: whether descriptions with these are understood; ``held``: whether inputs are held at
+    their constant values.  ``out``: where files go; ``writes``: whether there are any; ``document`` makes the single
+    one.  ``timed``: whether the seconds are told.
+    """
+
+    name: str
+    request: type[R]
+    derive: Callable[[Asked, R, Watch], F]
+    answer: Callable[[Asked, R, F], Answer]
+    refusal: Callable[[Exception, Asked, R], Refusal | None]
+    unfit: Callable[[R, System], Iterator[Unfit]] = _nothing
+    json: Callable[[Asked, R, F], str] | None = None
+    json_help: str = "Print JSON instead of a table."
+    constraints: bool = False
+    matrices: bool = False
+    held: bool = True
+    out: Folder | Single | None = Folder()
+    writes: Callable[[R], bool] = lambda request: True
+    document: Callable[[Asked, R, F], Document] | None = None
+    timed: bool = False
+
+
+def failed(error: Exception, before: str, said: Callable[[Failure], str] = str) -> Refusal | None:
+    """Of exact studies: what could not be derived, and why."""
+    from mbsym.algebra.failures import Failure
+
+    return Refusal(f"{before}: {said(error)}") if isinstance(error, Failure) else None
+
+
+def remedied(error: Failure) -> str:
+    """With what to try next."""
+    return f"{error}; {error.remedy}" if error.remedy else str(error)
+
+
+def no_program(error: Exception, asked: Asked, request: object) -> Refusal | None:
+    """Of studies that compile equations: where these have no program."""
+    return failed(error, "error[no-program]: there is no program for these equations")
+
+
+def missing(shown: Sequence[str], what: str = "value") -> Unfit:
+    """One complaint about all names without a value; a coordinate is shown as ``x (its initial position)``."""
+    names = [name.split(" ")[0] for name in shown]
+    positions = [name for name, one in zip(names, shown, strict=True) if " " in one]
+    example = " ".join(f"--set {name}=1" for name in names[:3]) + (" ..." if len(names) > 3 else "")
+    places = []
+    if len(positions) < len(names):
+        first = next(name for name in names if name not in positions)
+        places.append(f"values: {{{first}: 1, ...}}")
+    if positions:
+        places.append(f"initial: {{{positions[0]}: 1, ...}}")
+    hint = f"{example}, or in the file  {'  and  '.join(places)}"
+    return Unfit(DESCRIPTION, "missing-value", f"no {what} for {', '.join(shown)}", hint)

@@ -1,0 +1,82 @@
+"""``mbsym symmetries``: hidden cyclic coordinates and rotations, and their integrals."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import KW_ONLY, dataclass, field
+from typing import TYPE_CHECKING
+
+from mbsym.studies.request import Numbers
+from mbsym.studies.study import Answer, Asked, Exit, Line, Refusal, Study, Watch, failed, heading, line
+
+if TYPE_CHECKING:
+    from mbsym.problems.symmetries import Symmetries
+
+
+@dataclass(frozen=True)
+class Request:
+    """Find the symmetries of FILE that its coordinates hide, and their first integrals (Noether).
+
+    Looked for are all fields of degree one in the positions, with a shift of time, that leave the Lagrangian unchanged
+    but for the time derivative of a polynomial of degree two in the positions, fields and polynomial free of the time:
+    directions are generalised coordinates, or the speeds that FILE declares (then a
+    body turning about an axis in itself is one).  Forces without a force function take part.  Parameters stay symbols,
+    so that what is said holds for almost all their values; --set puts in exact numbers, where there may be more.
+
+    Each integral is told apart from those of problem 7; dI/dt is formed by substitution once more.
+
+    Exit codes: 0 all of this kind were found, proved; 1 not proved that these are all; 2 something is wrong.
+
+    \b
+    Examples:
+      mbsym symmetries systems/spherical-pendulum.yaml
+      mbsym symmetries systems/euler-poisson.yaml --set A=2 --set B=2 --set x0=0 --set y0=0
+      mbsym symmetries systems/cart-pendulum.yaml --json
+    """
+
+    _: KW_ONLY
+    values: Numbers = field(default_factory=dict)
+
+
+def derive(asked: Asked, request: Request, watch: Watch) -> Symmetries:
+    from mbsym.analysis import Analysis
+    from mbsym.analysis.symmetric import symmetries_of
+
+    watch("symmetries")
+    return symmetries_of(Analysis(asked.system), request.values)
+
+
+def answer(asked: Asked, request: Request, found: Symmetries) -> Answer:
+    return Answer(_lines(found), code=Exit.OK if found.complete else Exit.FAILED)
+
+
+def _lines(found: Symmetries) -> Iterator[Line]:
+    from mbsym.report.content import Said
+    from mbsym.report.plain_writer import Writer
+    from mbsym.report.words.symmetry_words import HEADING, field_text, second_route, sentences, title
+
+    yield heading(Writer().said(Said(HEADING)))
+    for one in found.symmetries:
+        yield line("    field  ", (field_text(one), "bold" if one.is_new else ""), whole=True)
+        yield line(f"      {one.integral}", whole=True)
+        yield line(f"      {title(one)}")
+        yield line(f"      {second_route(one)}")
+    for said in map(Writer().said, sentences(found)):
+        yield line(f"    {said}")
+
+
+def as_json(asked: Asked, request: Request, found: Symmetries) -> str:
+    from mbsym.report.symmetries_json import symmetries_json
+
+    return symmetries_json(asked.system, request.values, found)
+
+
+def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+    from mbsym.algebra.failures import SingularPoint
+
+    if isinstance(error, SingularPoint):
+        return Refusal(f"no symmetries: {error}", Exit.BAD_INPUT)
+    return failed(error, "no symmetries")
+
+
+STUDY = Study("symmetries", Request, derive, answer, refusal, json=as_json, matrices=True, held=False, out=None)

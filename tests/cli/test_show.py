@@ -1,0 +1,105 @@
+"""``mbsym show``: formulas by their names, as people write them and as programs read them."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+from conftest import SHIPPED, derived
+
+import mbsym
+from mbsym.report.formulas_by_name import LANGUAGES, NAMES, accelerations
+from mbsym_cli.main import main
+
+
+def show(name: str, *words: str) -> Result:
+    return CliRunner().invoke(main, ["show", str(SHIPPED / f"{name}.yaml"), *words])
+
+
+@pytest.mark.parametrize(
+    ("name", "words", "expected"),
+    [
+        # J + m l^2 about the joint, by Steiner; the weight's moment; the damper.
+        ("simple-pendulum", (), "(m l^2 + J) theta'' + b theta' + m l g sin(theta) = 0\n"),
+        ("simple-pendulum", ("T", "U"), "T = (m l^2 + J) theta'^2/2\nU = m l g cos(theta)\n"),
+        ("simple-pendulum", ("accelerations",), "theta'' = -(b theta' + m l g sin(theta))/(m l^2 + J)\n"),
+        ("simple-pendulum", ("K", "--latex"), "K = m l g\n"),
+        ("simple-pendulum", ("D", "--python"), "D = [[b]]\n"),
+        ("simple-pendulum", ("D", "--wolfram"), "DPar = {{b}}\n"),  # D is a function there
+        (
+            "simple-pendulum",
+            ("equations", "--latex"),
+            "(m l^{2} + J) \\ddot{\\theta} + b \\dot{\\theta} + m l g \\sin \\theta = 0\n",
+        ),
+        # x^2 + y^2 = l^2, differentiated and halved.
+        ("cartesian-pendulum", ("constraints",), "# constraint 1 (distance)\nx' x + y' y = 0\n"),
+    ],
+)
+def test_formulas_are_those_of_the_book(name: str, words: tuple[str, ...], expected: str) -> None:
+    result = show(name, *words)
+    assert (result.exit_code, result.stdout) == (0, expected)
+
+
+def test_under_constraints_the_right_side_has_the_multipliers() -> None:
+    """m x'' = lambda x, m y'' + m g = lambda y: the tension of a rod of length l along (x, y)."""
+    lines = show("cartesian-pendulum").stdout.splitlines()
+    assert lines[:2] == ["m x'' = x lambda1", "m (y'' + g) = y lambda1"]
+
+
+def test_equalities_vanish_along_motions_and_feel_what_is_none() -> None:
+    """At q'' = M^-1 f, solved by numbers here, and nowhere else."""
+    analysis = derived(SHIPPED / "cart-pole.yaml")
+    found, names = analysis.equations, analysis.system.coordinates
+    values = {x: Fraction(k + 2, 7) for k, x in enumerate(analysis.system.parameter_names)}
+    values |= {"p": Fraction(1, 3), "theta": Fraction(0), "p_dot": Fraction(2, 5), "theta_dot": Fraction(3, 4), "F": 1}
+    at: dict[str, Fraction | int] = dict(values)
+    (a, b), (_, d) = [[_number(x, at) for x in row] for row in found.mass_matrix]
+    f, g = (_number(x, at) for x in found.forcing)
+    bottom = a * d - b * b
+    moving = {"p_ddot": (d * f - b * g) / bottom, "theta_ddot": (a * g - b * f) / bottom}
+    assert [_number(x, at | moving) for x in found.equalities(names)] == [0, 0]
+    assert [_number(x, at) for x in accelerations(analysis)] == list(moving.values())
+    other = moving | {"p_ddot": moving["p_ddot"] + 1}
+    assert any(_number(x, at | other) for x in found.equalities(names))
+
+
+def _number(formula: object, at: dict[str, Fraction | int]) -> Fraction:
+    from mbsym.formulas.formula import Formula
+
+    assert isinstance(formula, Formula)
+    value = formula.subs(at)
+    return Fraction(str(value))
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_everything_is_written_in_every_language(language: str) -> None:
+    words = [] if language == "text" else [f"--{language}"]
+    result = show("simple-pendulum", *(name for name in NAMES if name not in ("B", "constraints")), "pendulum", *words)
+    assert result.exit_code == 0, result.output
+    if language == "python":  # comments, or what Python reads
+        for line in result.stdout.splitlines():
+            compile(line, "shown", "exec")
+
+
+def test_help_names_everything_that_may_be_asked_for() -> None:
+    text = CliRunner().invoke(main, ["show", "--help"]).output
+    assert all(f" {name} " in text.replace("\n", " ") for name in NAMES)
+
+
+def test_unknown_names_and_missing_results(tmp_path: Path) -> None:
+    result = show("simple-pendulum", "equatons")
+    assert result.exit_code == 2
+    assert "did you mean 'equations'?" in result.stderr
+    result = show("simple-pendulum", "B", "T")
+    assert result.exit_code == 1
+    assert "B: the system has no inputs" in result.stderr
+    assert result.stdout.startswith("T = ")
+    assert show("cartesian-pendulum", "accelerations").exit_code == 1
+
+
+def test_python_has_them_too() -> None:
+    pendulum = mbsym.load(SHIPPED / "simple-pendulum.yaml")
+    (equation,) = pendulum.equations.equalities(pendulum.system.coordinates)
+    assert equation.readable() == "(m l^2 + J) theta'' + b theta' + m l g sin(theta)"

@@ -1,0 +1,532 @@
+"""Rows that follow from others: accelerations, ranks and exports at regular states, wherever a fixed choice would fail.
+
+Expected values come from places alone, which are written down here in a dozen lines (``Chain``): velocities by central
+differences, M, f and J' q' from them, and the accelerations as d'Alembert's principle has them with the singular values
+of *all* rows,
+
+    q'' = a0 + Z (Z^T M Z)^-1 Z^T (f - M a0),        J a0 = -J' q' (least squares),  Z the null space of J.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import subprocess
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cache
+from math import atan, cos, pi, sin
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import mbsym
+from mbsym.mechanics.constraints import dependence
+from mbsym.model.system import System
+from mbsym.numerics.closing import closed
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels import arrays
+from mbsym.numerics.scenario import Scenario, scenario
+from mbsym.report.code import c_source
+from mbsym.report.code.identifiers import prefix_of
+from mbsym.report.exports import fmu
+from mbsym.report.targets import FORMATS
+from mbsym.simulation import Request, simulate
+from mbsym.source import read
+from mbsym_cli.main import main
+
+CASES = Path(__file__).parents[1] / "cases" / "constraints"
+GRAVITY = 9.81
+
+
+# --- places, and d'Alembert's principle with all rows ---
+
+
+def turned(axis: int, angle: float) -> Any:
+    i, j = (axis % 3, (axis + 1) % 3)  # axes 1, 2, 3: the plane of the other two
+    found = np.eye(3)
+    found[i, i] = found[j, j] = cos(angle)
+    found[j, i] = sin(angle)
+    found[i, j] = -sin(angle)
+    return found
+
+
+@dataclass
+class Link:
+    """A body: where it is attached, its axis and angle (the number of a coordinate, or a value), mass and inertia."""
+
+    parent: int
+    point: tuple[float, float, float]
+    axis: int
+    angle: int | float
+    mass: float = 0.0
+    centre: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    inertia: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+@dataclass
+class Chain:
+    """Links; rows f(places) = 0, or g(places, rates) = 0; gravity along an axis."""
+
+    names: tuple[str, ...]
+    links: list[Link]
+    gravity: tuple[float, float, float]
+    positions: Callable[[Any], Any] | None = None
+    velocities: Callable[[Any, Any], Any] | None = None
+    base: Callable[[Any], Any] = field(default=lambda q: np.zeros(3))
+
+    def places(self, q: Any) -> list[tuple[Any, Any]]:
+        """(origin, axes) of every link; link -1 is the ground."""
+        found: list[tuple[Any, Any]] = []
+        for link in self.links:
+            origin, axes = (self.base(q), np.eye(3)) if link.parent < 0 else found[link.parent]
+            angle = q[link.angle] if isinstance(link.angle, int) else link.angle
+            found.append((origin + axes @ np.array(link.point), axes @ turned(link.axis, angle)))
+        return found
+
+    def moving(self, q: Any) -> Any:
+        """Mass centres and axes, weighed so that T is half the sum of squares of the rates; for bodies with mass."""
+        parts = []
+        for link, (origin, axes) in zip(self.links, self.places(q), strict=True):
+            if link.mass:
+                parts.append(np.sqrt(link.mass) * (origin + axes @ np.array(link.centre)))
+            a, b, c = link.inertia  # T = sum |e_i'|^2 (second moments)/2: those of the three axes
+            for k, second in enumerate(((b + c - a) / 2, (c + a - b) / 2, (a + b - c) / 2)):
+                parts.append(np.sqrt(max(second, 0.0)) * axes[:, k])
+        return np.concatenate(parts)
+
+    def accelerations(self, q: Any, qd: Any, forces: Any = 0.0) -> tuple[Any, int]:
+        """(q'', rank of J)."""
+        n = len(q)
+        slopes = slope(self.moving, q)
+        mass = slopes.T @ slopes
+        potential = lambda x: np.array([-sum(  # noqa: E731
+            link.mass * np.dot(self.gravity, origin + axes @ np.array(link.centre))
+            for link, (origin, axes) in zip(self.links, self.places(x), strict=True)
+        )])  # fmt: skip
+        bent = second(lambda s: self.moving(q + s * qd))
+        right = forces - slopes.T @ bent - slope(potential, q)[0]
+        rows, gamma = [np.zeros((0, n))], [np.zeros(0)]
+        if self.positions is not None:
+            rows.append(slope(self.positions, q))
+            gamma.append(second(lambda s: self.positions(q + s * qd)))
+        if self.velocities is not None:
+            rows.append(np.array([self.velocities(q, x) for x in np.eye(n)]).T)
+            gamma.append((self.velocities(q + STEP * qd, qd) - self.velocities(q - STEP * qd, qd)) / (2 * STEP))
+        whole, bias = np.vstack(rows), np.concatenate(gamma)
+        sizes, turned_ = np.linalg.svd(whole)[1:]
+        rank = int(np.sum(sizes > 1e-6 * sizes[0]))
+        free = turned_[rank:].T
+        first = np.linalg.lstsq(whole, -bias, rcond=1e-6)[0]
+        if not free.size:
+            return first, rank
+        return first + free @ np.linalg.solve(free.T @ mass @ free, free.T @ (right - mass @ first)), rank
+
+
+STEP = 1e-3
+
+
+def slope(f: Callable[[Any], Any], q: Any) -> Any:
+    """Central differences, extrapolated twice."""
+    columns = []
+    for k in range(len(q)):
+        d = np.eye(len(q))[k]
+        one, two, four = ((f(q + h * d) - f(q - h * d)) / (2 * h) for h in (STEP, 2 * STEP, 4 * STEP))
+        a, b = (4 * one - two) / 3, (4 * two - four) / 3
+        columns.append((16 * a - b) / 15)
+    return np.array(columns).T
+
+
+def second(f: Callable[[float], Any]) -> Any:
+    one, two, four = ((f(h) - 2 * f(0.0) + f(-h)) / h**2 for h in (4 * STEP, 8 * STEP, 16 * STEP))
+    a, b = (4 * one - two) / 3, (4 * two - four) / 3
+    return (16 * a - b) / 15
+
+
+# --- systems, as a description and as a chain ---
+
+
+@cache
+def segway() -> Chain:
+    """Two wheels on an axle: x, y, yaw, tilt, pl, pr.  Contacts at -r below the centres, in the axle's axes."""
+    r, d, length, mw = 0.2, 0.3, 0.7, 1.0
+    wheel = (mw * r**2 / 4, mw * r**2 / 2, mw * r**2 / 4)
+    links = [
+        Link(-1, (0, 0, r), 3, 2),
+        Link(0, (0, 0, 0), 2, 3, 10.0, (0, 0, length), (0.4, 0.4, 0.1)),
+        Link(0, (0, d, 0), 2, 4, mw, (0, 0, 0), wheel),
+        Link(0, (0, -d, 0), 2, 5, mw, (0, 0, 0), wheel),
+    ]
+
+    def rolling(q: Any, qd: Any) -> Any:
+        # The axle turns by yaw' and carries a centre at side s d; the wheel turns by p' about the axle: r p' forward.
+        forward, aside = np.array([cos(q[2]), sin(q[2])]), np.array([-sin(q[2]), cos(q[2])])
+        found = []
+        for side, p in ((1, 4), (-1, 5)):
+            velocity = np.array([qd[0], qd[1]]) - side * d * qd[2] * forward - r * qd[p] * forward
+            found += [velocity @ forward, velocity @ aside]
+        return np.array(found)
+
+    return Chain(
+        ("x", "y", "yaw", "tilt", "pl", "pr"), links, (0, 0, -GRAVITY), None, rolling, lambda q: np.array([*q[:2], 0])
+    )
+
+
+def parallelogram(seed: int) -> tuple[str, Chain]:
+    """Bars of one length that carry a coupler, on a plane that is tilted; some with a pendulum at the coupler."""
+    source = Random(f"bars {seed}")
+    bars, pendulum = source.randint(3, 5), source.random() < 0.5
+    feet = [0.0, *sorted(round(source.uniform(0.5, 4), 2) for _ in range(bars - 1))]
+    length, tilt = round(source.uniform(0.5, 2), 2), source.choice((0.0, atan(0.75)))
+    masses = [round(source.uniform(0.5, 2), 2) for _ in range(bars + 2)]
+    links = [Link(-1, (0, 0, 0), 1, tilt)]
+    lines = [
+        f"  - {{name: plane, attached to: 0, rotation: {{axes: [1], angles: [{'atan(3/4)' if tilt else 0}]}}, mass: 0}}"
+    ]
+
+    def add(name: str, on: tuple[str, int], at: float, angle: int, own: str, mass: float, size: float) -> int:
+        links.append(
+            Link(on[1], (at, 0, 0), 3, angle, mass, (size / 2, 0, 0), (0, mass * size**2 / 12, mass * size**2 / 12))
+        )
+        lines.append(
+            f"  - {{name: {name}, attached to: {on[0]}, connection point: [{at}, 0, 0], "
+            f"rotation: {{axes: [3], angles: [{own}]}}, mass: {mass}, mass centre: [{size / 2}, 0, 0], "
+            f"inertia about: mass centre, inertia: [0, {mass * size**2 / 12}, {mass * size**2 / 12}]}}"
+        )
+        return len(links) - 1
+
+    names = [f"a{k}" for k in range(bars)]
+    arms = [add(f"bar{k}", ("plane", 0), feet[k], k, f"a{k}", masses[k], length) for k in range(bars)]
+    names.append("b")
+    coupler = add("coupler", ("bar0", arms[0]), length, bars, "b", masses[bars], feet[-1])
+    if pendulum:
+        names.append("c")
+        add("pendulum", ("coupler", coupler), feet[-1], bars + 1, "c", masses[bars + 1], 0.7)
+    ties = [
+        f"  - coincide: [{{body: coupler, point: [{feet[k]}, 0, 0]}}, {{body: bar{k}, point: [{length}, 0, 0]}}]"
+        for k in range(1, bars)
+    ]
+    initial = ", ".join(f"{name}: {-0.4 if name == 'b' else -1 if name == 'c' else 0.4}" for name in names)
+    text = "\n".join(
+        [
+            "mbsym: 1",
+            f"name: bars {seed}",
+            "bodies:",
+            *lines,
+            f"loads: [{{uniform gravity: {{vector: [0, -{GRAVITY}, 0]}}}}]",
+            "constraints:",
+            *ties,
+            f"initial: {{{initial}}}",
+        ]
+    )
+    chain = Chain(tuple(names), links, (0, -GRAVITY, 0))
+
+    def apart(q: Any) -> Any:
+        places = chain.places(q)
+        return np.concatenate([
+            places[coupler][0] + places[coupler][1] @ np.array([feet[k], 0, 0])
+            - places[arms[k]][0] - places[arms[k]][1] @ np.array([length, 0, 0])
+            for k in range(1, bars)
+        ])  # fmt: skip
+
+    chain.positions = apart
+    return text, chain
+
+
+def system_of(text: str) -> System:
+    system, complaints = read(text)
+    assert system is not None, list(complaints)
+    return system
+
+
+def begun(text: str) -> Scenario:
+    return closed(scenario(system_of(text))).scenario
+
+
+def case(name: str) -> str:
+    return (CASES / f"{name}.yaml").read_text(encoding="utf-8")
+
+
+def kept_velocities(chain: Chain, q: Any, source: Any) -> Any:
+    """Random velocities that keep the rows."""
+    qd = source.normal(size=len(q))
+    rows = [slope(chain.positions, q)] if chain.positions else []
+    rows += [np.array([chain.velocities(q, x) for x in np.eye(len(q))]).T] if chain.velocities else []
+    whole = np.vstack(rows)
+    return qd - np.linalg.lstsq(whole, whole @ qd, rcond=1e-6)[0]
+
+
+def yaws() -> list[Any]:
+    return [np.array([0.3, -0.2, yaw, 0.2, 1.0, 2.0]) for yaw in (0.0, pi / 2, pi, -pi / 2, 0.77)]
+
+
+# --- kernels ---
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_accelerations_of_bars_are_those_of_all_rows(seed: int) -> None:
+    """At random angles of the bars, which are all alike, and at random angles of a pendulum."""
+    text, chain = parallelogram(seed)
+    dynamics = Dynamics(begun(text))
+    constraints = dynamics.constraints
+    assert constraints is not None
+    rates = arrays.kernel(dynamics.right_hand_side)
+    source = np.random.default_rng(seed)
+    for _ in range(3):
+        q = np.array([source.uniform(0.3, 2.8)] * len(chain.names))
+        q[chain.names.index("b")] *= -1
+        if "c" in chain.names:
+            q[-1] = source.uniform(-3, 3)
+        qd = kept_velocities(chain, q, source)
+        wanted, rank = chain.accelerations(q, qd)
+        found = rates(np.concatenate([[0.0], q, qd]))[len(q) :]
+        assert rank == constraints.rank == len(chain.names) - constraints.freedom
+        assert found == pytest.approx(wanted, abs=1e-6 * (1 + np.max(np.abs(wanted))))
+
+
+def test_a_segway_at_any_yaw() -> None:
+    """Of four rows three are independent at every yaw, but not the same three."""
+    chain, dynamics = segway(), Dynamics(begun(case("segway")))
+    assert dynamics.constraints is not None
+    assert dynamics.constraints.rank == 3
+    rates, correction = arrays.kernel(dynamics.right_hand_side), arrays.kernel(dynamics.correction)
+    source = np.random.default_rng(1)
+    for q in yaws():
+        qd = kept_velocities(chain, q, source)
+        wanted, rank = chain.accelerations(q, qd)
+        assert rank == 3
+        point = np.concatenate([[0.0], q, qd])
+        assert rates(point)[6:] == pytest.approx(wanted, abs=1e-6 * (1 + np.max(np.abs(wanted))))
+        assert correction(point)[-1] < 1e-3  # far from singular
+        beside = qd + 0.1 * source.normal(size=6)
+        led = beside + correction(np.concatenate([[0.0], q, beside]))[6:12]
+        assert chain.velocities is not None
+        assert chain.velocities(q, led) == pytest.approx(0, abs=1e-12)
+
+
+def test_a_choice_that_is_not_made_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without exchanges the first three rows of the segway would be used everywhere: at yaw 90 degrees they are two."""
+    monkeypatch.setattr(dependence._Chosen, "_exchange", lambda *_: None)
+    chain, dynamics = segway(), Dynamics(begun(case("segway")))
+    q = yaws()[1]
+    qd = kept_velocities(chain, q, np.random.default_rng(1))
+    found = arrays.kernel(dynamics.right_hand_side)(np.concatenate([[0.0], q, qd]))[6:]
+    assert not np.allclose(found, chain.accelerations(q, qd)[0], atol=1e-3)
+
+
+def test_nothing_jumps_where_the_choice_changes() -> None:
+    """A choice is no switch of the equations: nothing is looked for along the motion."""
+    assert Dynamics(begun(case("segway"))).features.none
+
+
+# --- ranks that are told ---
+
+
+@pytest.mark.parametrize(("name", "rank"), [("par3", 3), ("segway", 3), ("bricard", 4)])
+def test_ranks_are_those_of_the_branch(name: str, rank: int) -> None:
+    """Three bars: four rows, one freedom.  Bricard's linkage: five angles, one freedom (IFToMM benchmark A04)."""
+    dynamics = Dynamics(begun(case(name)))
+    assert dynamics.constraints is not None
+    assert dynamics.constraints.rank == rank
+    found = mbsym.loads(case(name)).constraints
+    assert (found.velocity_rank, found.demanded.count) == (rank, 0)
+    assert [len(one.rows) - one.rank for one in found.dependent_sets] == [1]
+
+
+def test_a_mechanism_that_moves_at_its_values_only() -> None:
+    """Three bars whose lengths are parameters, all 1: four rows of four angles, three of them independent.
+
+    With other lengths the rank is 4 and nothing moves; at these values one velocity is free, which is what is said.
+    """
+    text = case("par3").replace(
+        "parameters: {", "parameters: {k: {value: 1, sign: positive}, l: {value: 1, sign: positive}, "
+    )
+    for bar, length in (("v1", "k"), ("v2", "l")):
+        text = text.replace(f"{{body: {bar}, point: [1, 0, 0]}}", f"{{body: {bar}, point: [{length}, 0, 0]}}")
+    found = mbsym.loads(text).constraints
+    assert (found.velocity_rank, found.rank_beside, found.demanded.count) == (3, 4, 0)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.3])
+@pytest.mark.parametrize("speed", [0.0, 2.0])
+def test_wheels_with_a_coupling_rod(angle: float, speed: float) -> None:
+    """A rod between two wheels that roll moves alike with both: one velocity is free, also where crank and rod are in
+    line, where the rod alone could turn the wheels against each other.
+
+    With x' = r p' the frame and two discs have (3 m r^2 + 2 m r^2/2) p'^2/2, the rod, at (x + e cos p, -e sin p) but
+    for a constant, the rest.
+    """
+    text = case("coupling-rod").replace("velocity: 1", f"velocity: {speed / 2}")
+    text = text.replace("p: 0.3, s: 0.3, b: -0.3", f"p: {angle}, s: {angle}, b: {-angle}")
+    assert mbsym.loads(text).constraints.velocity_rank == 3
+    given = begun(text)
+    constraints = Dynamics(given).constraints
+    assert constraints is not None
+    assert constraints.freedom == 1
+    run = simulate(given, Request(time=2.0, samples=21, estimate=False))
+    assert run.trajectory.whole
+    m, r, e, p, rate = 1.0, 0.5, 0.2, run["p"], run["p_dot"]
+    assert run["s"] == pytest.approx(p, abs=1e-9)
+    forward, up = r * rate - e * np.sin(p) * rate, -e * np.cos(p) * rate
+    energy = 4 * m * r**2 * rate**2 / 2 + m / 20 * (forward**2 + up**2) - m / 10 * GRAVITY * e * np.sin(p)
+    assert energy == pytest.approx(np.full(21, energy[0]), abs=1e-8)
+    assert np.ptp(p) > 0.1
+
+
+@pytest.mark.parametrize(("b", "satisfied"), [(5, False), (4, True)])
+def test_bennett_s_condition_is_told_and_tried(b: int, satisfied: bool) -> None:
+    """Bennett (1903): sin(alpha)/a = sin(beta)/b, here 3/5 and 4/5, so that 4 a = 3 b; given are a = 3 and b."""
+    text = case("bennett-no").replace("b: {value: 5", f"b: {{value: {b}").replace("q2: 1, q3: -1", "q2: 2.9, q3: -1")
+    analysis = mbsym.loads(text)
+    demanded = analysis.constraints.demanded
+    (relation,) = demanded.relations
+    assert demanded.count == 1
+    assert str(relation) in ("4*a - 3*b", "-4*a + 3*b")
+    assert demanded.satisfied is satisfied
+
+
+def test_what_cannot_move_is_not_run(tmp_path: Path) -> None:
+    """a = 3, b = 5: no Bennett linkage.  It was led to a rigid place and its energy called conserved."""
+    path = tmp_path / "bennett-no.yaml"
+    path.write_text(case("bennett-no"), encoding="utf-8")
+    done = CliRunner().invoke(main, ["simulate", str(path), "--time", "1", "--out", str(tmp_path / "out")])
+    assert done.exit_code == 3
+    assert "error[no-freedom]" in done.output
+    assert "nothing can move from q1 = 0" in done.output
+
+
+def test_runs_of_regular_positions_end_whole() -> None:
+    """From a = -0.1, where 4 rows seemed independent beside the start; the energy is kept."""
+    run = simulate(begun(case("par3")), Request(time=2.0, samples=21, estimate=False))
+    assert run.trajectory.whole
+    # One freedom: three bars (1/3) and the coupler, whose points all move alike (1): J a'' = -m l g cos a, by hand.
+    inertia, weight = 3 / 3 + 1, 3 * 0.5 + 1
+    a = run["a0"]
+    energy = inertia * run["a0_dot"] ** 2 / 2 + weight * GRAVITY * np.sin(a)
+    assert energy == pytest.approx(np.full(21, energy[0]), abs=1e-7)
+
+
+def test_extremes_list_what_is_singular_only() -> None:
+    """Three bars lose a rank where they are in line with the coupler, at 0 and pi, and nowhere else."""
+    from mbsym.numerics.extremes.singular_positions import singular_positions
+
+    given = begun(case("par3"))
+    found = singular_positions(given, [1.0] * 4, 10.0)
+    assert found is not None
+    assert {tuple(one.labels.values()) for one in found.found} <= {("0",) * 4, ("pi",) * 4}
+    assert all((one.rank, one.usual, one.proved) == (2, 3, True) for one in found.found)
+
+
+# --- exports ---
+
+
+@cache
+def analysis_of_segway() -> Any:
+    return mbsym.loads(case("segway"), (3, 5, 7))
+
+
+def rendered(kind: str) -> str:
+    text = FORMATS[kind].render(analysis_of_segway(), (5, 7))
+    assert isinstance(text, str)
+    return text
+
+
+def at_all_yaws(rates: Callable[[Any], Any], tolerance: float = 1e-6) -> None:
+    """q'' without inputs at the yaws at which a fixed choice of rows fails, and at another."""
+    chain, source = segway(), np.random.default_rng(2)
+    for q in yaws():
+        qd = kept_velocities(chain, q, source)
+        wanted, _ = chain.accelerations(q, qd)
+        found = rates(np.concatenate([q, qd]))
+        assert found == pytest.approx(wanted, abs=tolerance * (1 + np.max(np.abs(wanted))))
+
+
+@cache
+def module() -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    exec(compile(rendered("python"), "segway", "exec"), found)
+    return found
+
+
+def test_python() -> None:
+    model = module()
+    p = model["complete"]()
+    at_all_yaws(lambda x: model["rhs"](0.0, x, p, [0.0, 0.0])[6:])
+    start = model["consistent"](model["initial_state"](p), p, held=model["GIVEN"])
+    assert np.all(np.isfinite(model["rhs"](0.0, start, p, [0.0, 0.0])))
+    several = np.array([yaws()[0], yaws()[1]]).T
+    both = model["rhs"](0.0, np.vstack([several, 0 * several]), p, [0.0, 0.0])
+    assert both[:, 1] == pytest.approx(model["rhs"](0.0, np.r_[yaws()[1], np.zeros(6)], p, [0.0, 0.0]), abs=1e-12)
+
+
+def test_forces_of_constraints_are_those_of_the_equations() -> None:
+    """J^T lambda = M q'' - f, which is unique although lambda is not."""
+    model, chain = module(), segway()
+    p, source = model["complete"](), np.random.default_rng(3)
+    for q in yaws():
+        x = np.concatenate([q, kept_velocities(chain, q, source)])
+        force = model["constraint_jacobian"](q, p).T @ model["multipliers"](0.0, x, p, [0.0, 0.0])
+        needed = model["mass_matrix"](q, p) @ model["rhs"](0.0, x, p, [0.0, 0.0])[6:]
+        needed = needed - model["forcing"](q, x[6:], p, 0.0, [0.0, 0.0])
+        assert force == pytest.approx(needed, abs=1e-9 * (1 + np.max(np.abs(needed))))
+
+
+def test_c(tmp_path: Path) -> None:
+    (tmp_path / "model.c").write_text(rendered("c"), encoding="utf-8")
+    (tmp_path / "model.h").write_text(c_source.header(analysis_of_segway(), ()), encoding="utf-8")
+    library = tmp_path / "model.so"
+    options = ["-std=c99", "-O1", "-Wall", "-Wextra", "-pedantic", "-Werror", "-shared", "-fPIC"]
+    subprocess.run(["cc", *options, "-o", str(library), str(tmp_path / "model.c"), "-lm"], check=True)
+    functions, prefix = ctypes.CDLL(str(library)), prefix_of(analysis_of_segway().system.name)
+    array = lambda values: (ctypes.c_double * len(values))(*values)  # noqa: E731
+    values = list(module()["complete"]().values())
+
+    def rates(x: Any) -> Any:
+        out = (ctypes.c_double * 12)()
+        told = getattr(functions, f"{prefix}_right_hand_side")(
+            ctypes.c_double(0), array(x), array(values), array([0.0, 0.0]), out
+        )
+        assert told == 0
+        return np.array(out)[6:]
+
+    at_all_yaws(rates)
+    start = array(module()["initial_state"](module()["complete"]()))
+    assert getattr(functions, f"{prefix}_consistent")(ctypes.c_double(0), start, array(values), None) == 0
+
+
+def test_casadi_and_jax() -> None:
+    pytest.importorskip("casadi")
+    model: dict[str, Any] = {}
+    exec(compile(rendered("casadi"), "casadi", "exec"), model)
+    values = list(module()["complete"]().values())
+    casadi = model["functions"]()["accelerations"]
+    at_all_yaws(lambda x: np.array(casadi(0.0, list(x), values, [0.0, 0.0])).ravel())
+    jax = pytest.importorskip("jax")
+    jax.config.update("jax_enable_x64", True)
+    other: dict[str, Any] = {}
+    exec(compile(rendered("jax"), "jax", "exec"), other)
+    at_all_yaws(lambda x: np.array(other["accelerations"](0.0, x, np.array(values), np.zeros(2))))
+    # The derivative is that of the solution, also where the choice of rows changes: J'' by differences of the truth.
+    x = np.concatenate([yaws()[0], kept_velocities(segway(), yaws()[0], np.random.default_rng(5))])
+    slopes = np.array(jax.jacfwd(lambda y: other["accelerations"](0.0, y, np.array(values), np.zeros(2)))(x))
+    assert np.all(np.isfinite(slopes))
+    around = [segway().accelerations((x + d)[:6], (x + d)[6:])[0] for d in 1e-4 * np.eye(12)]
+    before = [segway().accelerations((x - d)[:6], (x - d)[6:])[0] for d in 1e-4 * np.eye(12)]
+    tangent = np.eye(12)[3]  # the tilt moves freely: the constraints stay kept
+    assert slopes @ tangent == pytest.approx((around[3] - before[3]) / 2e-4, abs=1e-4)
+
+
+def test_an_fmu_begins_where_its_description_does(tmp_path: Path) -> None:
+    """At yaw 0, where the rows that were used were two; it ends where the simulation does."""
+    fmpy = pytest.importorskip("fmpy")
+    path = tmp_path / "segway.fmu"
+    path.write_bytes(fmu.render(analysis_of_segway(), (), 2))
+    names = [*segway().names]
+    run = fmpy.simulate_fmu(
+        str(path), stop_time=0.5, solver="CVode", relative_tolerance=1e-9, output=names, output_interval=0.1
+    )
+    own = simulate(begun(case("segway")), Request(time=0.5, samples=2, estimate=False))
+    assert [run[name][-1] for name in names] == pytest.approx([own[name][-1] for name in names], abs=1e-6)

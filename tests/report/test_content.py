@@ -1,0 +1,181 @@
+"""Content: every kind of value is written by every medium; a message without its gap or its translation is found."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import get_args
+
+import pytest
+from conftest import SHIPPED, derived
+
+import mbsym
+from mbsym.algebra.program import Program
+from mbsym.expressions import tree
+from mbsym.formulas.formula import Column, Formula, Matrix
+from mbsym.formulas.latex import latex_names
+from mbsym.formulas.mathml import mathml_names
+from mbsym.report import content, plain_writer
+from mbsym.report.content import Name, Notation, Relation, Said, Strong, Symbol, Words, paragraph, say
+from mbsym.report.html import writer as html
+from mbsym.report.language import Language
+from mbsym.report.latex import writer as latex
+from mbsym.report.latex.form import Form
+from mbsym.report.latex.labels import Labels
+
+
+@pytest.fixture(scope="module")
+def analysis() -> mbsym.Analysis:
+    return derived(SHIPPED / "simple-pendulum.yaml")
+
+
+#: What stands in descriptions alone, which the terminal does not repeat.
+ON_PAPER_AND_SCREENS = (content.SpeedForm, content.Tensor, content.Points)
+
+
+def in_latex(analysis: mbsym.Analysis, language: str = "", form: Form = Form.REPORT) -> latex.Writer:
+    return latex.Writer(latex_names(analysis.ring), Language(language), Labels("mbsym:pendulum:"), form)
+
+
+def in_html(analysis: mbsym.Analysis, language: str = "") -> html.Writer:
+    return html.Writer(mathml_names(analysis.ring), Language(language))
+
+
+def kinds(union: object) -> Iterator[type]:
+    for one in get_args(union):
+        yield from kinds(one) if get_args(one) else [one]
+
+
+@pytest.mark.parametrize("union", ["Math", "Inline", "Block"])
+def test_every_kind_is_written_by_every_medium(analysis: mbsym.Analysis, union: str) -> None:
+    """A kind that a medium does not know would be taken for an expression, or raise in somebody's report."""
+    expressions = set(kinds(tree.Expression))
+    for one in kinds(getattr(content, union)):
+        if one in expressions:  # what is left: printers of expressions raise TypeError for what is none
+            continue
+        for medium in (latex.Writer, html.Writer):
+            mathematics = one in set(kinds(content.Math))
+            method = "block" if union == "Block" else "math" if mathematics else "inline"
+            known = vars(medium)[method].dispatcher
+            assert known.dispatch(one) is not known.dispatch(object), (medium, one)
+        if union != "Block" and one not in ON_PAPER_AND_SCREENS:
+            known = vars(plain_writer.Writer)["inline"].dispatcher
+            assert known.dispatch(one) is not known.dispatch(object), one
+
+
+def test_notation_and_gaps_are_the_same_in_all_media(analysis: mbsym.Analysis) -> None:
+    energy = analysis.energy.kinetic_energy
+    said = say("$L$ does not contain $[[names]]$: cyclic.", names=content.named(["theta"]))
+    assert in_latex(analysis).said(said) == r"$L$ does not contain $\theta$: cyclic."
+    assert in_html(analysis).said(said) == (
+        "<math><mrow><mi>L</mi></mrow></math> does not contain <math><mrow><mi>θ</mi></mrow></math>: cyclic."
+    )
+    assert plain_writer.Writer().said(said) == "L does not contain theta: cyclic."
+    outside = say("with [[value]] and [[words]]", value=Relation(Symbol("T"), "=", energy), words=Words("stable"))
+    assert in_latex(analysis).said(outside).startswith("with $T = ")
+    assert "<math><mi>T</mi><mo>=</mo>" in in_html(analysis).said(outside)
+    assert plain_writer.Writer().said(outside) == f"with T = {energy} and stable"
+
+
+def test_what_a_description_says_is_escaped(analysis: mbsym.Analysis) -> None:
+    words = paragraph(Strong("<b> & 100 % _"), " ", content.Emphasis("</p>"), say("[[x]]", x="$\\input{y}$ <i>"))
+    assert "&lt;b&gt; &amp; 100 % _" in in_html(analysis).block(words)
+    assert not re.search(r"</p>.", in_html(analysis).block(words))
+    assert "<i> " not in in_html(analysis).block(words).replace("<i>&lt;", "")
+    assert r"\input" not in in_latex(analysis).block(words)
+
+
+def test_a_gap_that_nothing_fills_is_an_error(analysis: mbsym.Analysis) -> None:
+    for write in (in_latex(analysis).said, in_html(analysis).said, plain_writer.Writer().said):
+        with pytest.raises(KeyError):
+            write(Said("No result: [[why]]."))
+
+
+def test_a_label_is_given_once(analysis: mbsym.Analysis) -> None:
+    write = in_latex(analysis)
+    text = write.document([content.Display(Symbol("T"), "T"), content.Display(Symbol("U"), "T")])
+    labels = re.findall(r"\\longformula\[(.*?)\]", text)
+    assert len(labels) == len(set(labels)) == 2
+
+
+@pytest.mark.parametrize("language", ["ru", "es"])
+def test_all_media_speak_the_language(analysis: mbsym.Analysis, language: str) -> None:
+    said = Said("Generalised coordinates")
+    other = Language(language).sentence(said.text)
+    assert other != said.text
+    assert in_latex(analysis, language).said(said) == in_html(analysis, language).said(said) == other
+    assert plain_writer.Writer(Language(language)).said(said) == other
+
+
+def test_vectors_and_matrices_are_whole_where_they_fit_and_zero_where_they_are(analysis: mbsym.Analysis) -> None:
+    ring = analysis.ring
+    energy = analysis.energy.kinetic_energy
+    nothing = Formula(ring, ring.zero)
+    for value, whole in ((Matrix.of(ring, [[ring.zero]]), "= 0"), (Matrix.of(ring, [[energy.polynomial]]), "pmatrix")):
+        assert whole in in_latex(analysis).block(content.Matrices(Symbol("M"), value, True, "M"))
+    vector: Column = (energy, nothing, nothing)
+    text = in_latex(analysis).block(content.Components(Symbol("V", "O1"), vector, "V"))
+    assert text.startswith("\\longformula[mbsym:pendulum:eq:V]{V_{O_{1}} = (")
+    assert "<msub>" in in_html(analysis).block(content.Components(Symbol("V", "O1"), vector, "V"))
+
+
+def test_a_table_is_a_table_on_wide_pages_and_a_sentence_in_narrow_columns(analysis: mbsym.Analysis) -> None:
+    columns = (content.TableColumn(Said("name"), 0), content.TableColumn(Said("value"), 3.0))
+    table = content.Table(Said("Parameters"), columns, (((content.Verbatim("m"),), (Name("m"),)),))
+    assert "\\begin{longtable}" in in_latex(analysis).block(table)
+    assert in_latex(analysis, form=Form.APPENDIX).block(table) == "Parameters: $m$.\n"
+    assert "<td><code>m</code></td><td><math><mi>m</mi></math></td>" in in_html(analysis).block(table)
+
+
+def test_screens_unfold_and_paper_is_without(analysis: mbsym.Analysis) -> None:
+    folded = content.Folded(Said("The same, written out"), (paragraph("aside"),))
+    assert "<details>" in in_html(analysis).block(folded)
+    assert not in_latex(analysis).block(folded)
+
+
+def test_notation_knows_no_breaks_on_screens() -> None:
+    assert "penalty" not in html.notation(r"U = \sum \Bigl[ a \penalty0 - b \Bigr]")
+    assert Notation(r"\dot x").tex == r"\dot x"
+
+
+def test_matrices_stand_side_by_side_where_they_fit(analysis: mbsym.Analysis) -> None:
+    """Two of one symbol share a line of paper, the empty one has its own; a packed one is written entry by entry."""
+    ring = analysis.ring
+    m, nothing = Matrix.of(ring, [[ring.generator("parameter", "m")]]), Matrix.of(ring, [[ring.zero]])
+    three = tuple(
+        content.Matrices(Symbol(letter, "1"), value, True, letter)
+        for letter, value in (("M", m), ("D", nothing), ("K", m))
+    )
+    written = in_latex(analysis).block(content.SideBySide(three, "part"))
+    assert r"M_{1} = \begin{pmatrix} m \end{pmatrix},\quad K_{1} = \begin{pmatrix} m \end{pmatrix}" in written
+    assert written.count("\\label{mbsym:pendulum:eq:part:matrices:1}") == 1
+    assert "\\longformula[mbsym:pendulum:eq:D]{D_{1} = 0}" in written
+    assert in_html(analysis).block(content.SideBySide(three, "part")).count('class="formula"') == 3
+    packed = content.Matrices(Symbol("M"), m, True, "M", packed=True)
+    assert "M_{11} = m" in in_latex(analysis).block(packed)
+    assert "table" not in in_html(analysis).block(packed)
+
+
+def test_notes_bars_and_script_letters(analysis: mbsym.Analysis) -> None:
+    line = content.Display(Relation(Symbol("M", look="bar"), "=", 0), "", (Words("stable"),))
+    assert in_latex(analysis).block(line) == r"\longformula{\bar{M} = 0 \quad\penalty0 \text{(stable)}}"
+    assert "\u00af" in in_html(analysis).block(line)
+    assert in_html(analysis).block(line).endswith('<p class="note soft">(stable)</p>')
+    assert in_latex(analysis).math(Symbol("A", look="script")) == r"\mathcal{A}"
+    assert in_html(analysis).math(Symbol("A", look="script")) == "<mi>\U0001d49c</mi>"
+    assert plain_writer.Writer().inline(content.joined(("a", "b", "c"), "; ")) == "a; b; c"
+
+
+def test_a_program_is_a_listing_in_names_of_its_medium() -> None:
+    """Of (theta + theta)^2: what occurs twice has a number; in the listing of a screen names are as declared."""
+    program = Program()
+    angle = program.input("theta_dot")
+    double = angle + angle
+    steps = content.Steps(
+        program, ((Symbol("M", "11"), double * double),), {"theta_dot": Name("theta", 1)}, Said("The program")
+    )
+    analysis = derived(SHIPPED / "simple-pendulum.yaml")
+    assert "s_{1} = \\dot{\\theta} + \\dot{\\theta}" in in_latex(analysis).block(steps)
+    assert "M_{11} = s_{1}\\,s_{1}" in in_latex(analysis).block(steps)
+    assert "<pre>s1 = theta_dot + theta_dot\nM_11 = s1*s1</pre>" in in_html(analysis).block(steps)
+    assert "<summary>Программа</summary>" in in_html(analysis, "ru").block(steps)
