@@ -14,6 +14,7 @@ from mbsym_cli.console import BAD_INPUT, asked_width, wrapped
 TOPICS = {
     "description": "the keys of a description",
     "loads": "the kinds of load and their keys",
+    "constraints": "the kinds of constraint and their keys",
     "expressions": "what a formula may hold",
     "claims": "how printed formulas are checked, and the kinds of claim",
 }
@@ -24,7 +25,7 @@ TOPICS = {
 def command(topic: str | None) -> None:
     """Print what problem TOPIC (a number) does and the formula it uses; without TOPIC, the list of problems and topics.
 
-    The topics description, loads, expressions and claims tell what may stand in a description.
+    The topics description, loads, constraints, expressions and claims tell what may stand in a description.
 
     \b
     Examples:

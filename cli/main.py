@@ -37,7 +37,7 @@ COMMANDS = {
     "orbit": Listed("mbsym.studies.orbit", "Find a periodic motion near a guess, with its multipliers."),
     "lyapunov": Listed("mbsym.studies.lyapunov", "Measure how fast neighbouring motions part."),
     "floquet": Listed("mbsym.studies.floquet", "Judge stability where coefficients are periodic in time."),
-    "tradeoff": Listed("tradeoff", "Measure what accuracy of a simulation costs."),
+    "tradeoff": Listed("mbsym.studies.tradeoff", "Measure what accuracy of a simulation costs."),
     "extremes": Listed("mbsym.studies.extremes", "Measure how many digits are kept at extreme values."),
     "map": Listed("mbsym.studies.map", "Divide a plane of parameters into regions of one verdict."),
     "groups": Listed("mbsym.studies.groups", "Find the dimensionless groups of a system."),

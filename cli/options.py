@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
 
 from mbsym.expressions.counting import counted
@@ -41,6 +41,15 @@ class Options:
         """Of a text as a whole, which is shown."""
         span = Span(1, 1, max(1, len(text)))
         self.complaints.append(render_option(Complaint(code, message, span, hint), text, option))
+
+    def sort(self, options: Sequence[str]) -> None:
+        """Complaints in the order of these options, what is not about one of them behind."""
+
+        def place(complaint: str) -> int:
+            option = complaint.split(":")[0].split(" ")[0]
+            return options.index(option) if option in options else len(options)
+
+        self.complaints.sort(key=place)
 
     def refused(self, file: Path | None = None) -> bool:
         """Whether there is anything to complain about; then it is printed (of no ``file``: of the options alone)."""

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mbsym.report.language import Language
 from mbsym.report.whole_run import derive_all, lost, rendered_all
 from mbsym_cli.beside import beside
 from mbsym_cli.console import (
@@ -53,6 +54,7 @@ class Request:
     language: str = ""  # "": that of the description
     forms: tuple[str, ...] = ()  # of problem 3, beside Lagrange's
     named: bool = False  # whether the problems were named, or follow from the formats
+    verbose: bool = False
 
 
 def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> int:
@@ -146,7 +148,7 @@ def _show(
     """The run on the terminal."""
     if request.quiet:
         return
-    from mbsym_cli.show import show, show_brief
+    from mbsym_cli.show import show, show_brief, show_finding
 
     if request.brief:
         from mbsym.report.brief import brief
@@ -154,10 +156,18 @@ def _show(
         show_brief(brief(analysis, seconds), path.name, request.width)
         return
     from mbsym.formulas.tree import angles_as
+    from mbsym.report.results import results
+    from mbsym.report.sections.summary import finding
     from mbsym.report.summary import summary
 
     with angles_as(request.angles or "shorter"):
-        show(summary(analysis, analysis.problems, written), path, seconds)
+        if request.verbose:
+            show(summary(analysis, analysis.problems, written), path, seconds)
+        else:
+            language = Language(analysis.language or analysis.system.language)
+            show_finding(
+                finding(results(analysis, analysis.problems)), analysis.system.name, path, seconds, written, language
+            )
     if found is not None:
         from mbsym.report.runs.ledger import ledger_lines
         from mbsym_cli.ledger import show_ledger

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -41,6 +41,10 @@ def option_of(field: Field) -> click.Option:
     beside = f"  [{f'default: {kind.usual}' if kind.usual else 'required'}]" if kind.usual or needed else ""
     told = kind.help + beside or None
     if isinstance(kind, Flag):
+        if kind.both:
+            words = f"{field.option}/--no-{field.option.removeprefix('--')}"
+            shown = field.default is not None
+            return click.Option([words, field.name], default=field.default, show_default=shown, help=told)
         return click.Option([*names, field.name], is_flag=True, help=told)
     if isinstance(kind, Place):
         return click.Option([*names, field.name], metavar=kind.metavar, type=click.Path(path_type=Path), help=told)
@@ -52,10 +56,32 @@ def option_of(field: Field) -> click.Option:
     )  # fmt: skip
 
 
+def decorators(request: type, *names: str) -> list[Callable[[Any], Any]]:
+    """The options of some fields as decorators of a command that is written out."""
+    by_name = {field.name: field for field in fields_of(request)}
+
+    def decorator(option: click.Option) -> Callable[[Any], Any]:
+        def decorate(command: Any) -> Any:
+            if not hasattr(command, "__click_params__"):
+                command.__click_params__ = []
+            command.__click_params__.append(option)
+            return command
+
+        return decorate
+
+    return [decorator(option_of(by_name[name])) for name in names]
+
+
+def read_some(request: type, names: Sequence[str], texts: Mapping[str, Any], options: Options) -> dict[str, Any]:
+    """The values of some fields that do not ask for a system."""
+    by_name = {field.name: field for field in fields_of(request)}
+    return {name: _read(by_name[name], texts[name], None, options) for name in names}
+
+
 def _text(default: Any) -> str:
     if isinstance(default, tuple):
         return ",".join(default)
-    return f"{default:g}" if isinstance(default, float) else str(default)
+    return f"{default:g}".replace("e-0", "e-") if isinstance(default, float) else str(default)
 
 
 def read_fields(
@@ -89,11 +115,11 @@ def _read(field: Field, given: Any, system: System | None, options: Options) -> 
                 options.complain(field.option, "missing-option", *kind.absent)
             return options.number(field.option, given, kind.least, kind.most)
         case Whole() as kind:
-            return options.whole(field.option, given, kind.least, kind.most)
+            return options.whole(field.option, given, kind.least, kind.most, kind.why)
         case Word() as kind:
             return None if given is None else options.word(field.option, given, kind.choices, kind.what)
         case Words() as kind:
-            return options.words(field.option, given, kind.choices, kind.what, kind.every) if given is not None else ()
+            return options.words(field.option, given, kind.known, kind.what, kind.every) if given is not None else ()
         case Range():
             from mbsym_cli.section_options import read_axis
 

@@ -43,6 +43,7 @@ if TYPE_CHECKING:
 @click.option("--strict-claims", is_flag=True, help="Exit code 1 unless every claim holds.")
 @click.option("--brief", "-b", is_flag=True, help="Print one line a file.")
 @ledger_options
+@click.option("--verbose", "-v", is_flag=True, help="Print what each problem gave, every claim and every check.")
 @click.option("--quiet", "-q", is_flag=True, help="Print only what went wrong.")
 def command(
     files: tuple[Path, ...],
@@ -58,6 +59,7 @@ def command(
     strict_claims: bool,
     brief: bool,
     ledger: Asked,
+    verbose: bool,
     quiet: bool,
 ) -> None:
     """Derive the numbered problems of each FILE (or of every description in a folder) and write reports.
@@ -152,6 +154,7 @@ def command(
         tongue,
         tuple(name for name in FORMS if name in shown),
         chosen is not None,
+        verbose,
     )
     worst = OK
     base = None if out is not None and len(paths) == 1 else out or REPORTS

@@ -12,6 +12,8 @@ from mbsym_cli.console import printable, tell
 if TYPE_CHECKING:
     from mbsym.problems.checks import Check
     from mbsym.report.brief import Brief
+    from mbsym.report.content import Facts
+    from mbsym.report.language import Language
     from mbsym.report.summary import Line, Summary
     from mbsym.report.words.claims import ClaimLine
 
@@ -30,6 +32,35 @@ def show(found: Summary, path: Path, seconds: float) -> None:
     if found.files:
         folder = found.files[0].parent
         tell("  files in ", (printable(folder), "bold"), f": {', '.join(_listed(found.files, folder))}")
+
+
+def show_finding(
+    found: Facts, title: str, path: Path, seconds: float, files: Sequence[Path], language: Language
+) -> None:
+    """What was found, in a line each; where all of it is."""
+    from mbsym.report.content import say
+    from mbsym.report.plain_writer import Writer
+
+    writer = Writer(language, readable=True)
+    tell((title, "bold"), (f"  {printable(path)}, {seconds:.2f} s", "dim"))
+    for name, said in found.items:
+        label = "".join(map(writer.inline, name))
+        tell((f"{label}: ", "bold cyan"), *((writer.inline(x), _style(x)) for x in said), indent=2)
+    if files:
+        folder = files[0].parent
+        page = next((x for x in files if x.name == "report.html"), files[0])
+        text = "[[file]], [[count]] files in all, in [[folder]]; with -v all of it is told here"
+        tell(writer.said(say(text, file=page.name, count=str(len(files)), folder=printable(folder))), indent=2)
+
+
+def _style(value: object) -> str:
+    """The colour of a verdict or an outcome."""
+    from mbsym.report.content import Graded, Link, Strong
+
+    while isinstance(value, Link):
+        value = value.text
+    grade = value.grade if isinstance(value, Strong | Graded) else ""
+    return {"good": "green", "bad": "bold red", "open": "yellow"}.get(grade, "")
 
 
 def _listed(files: Sequence[Path], folder: Path) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -17,8 +18,7 @@ from mbsym_cli.simulation_continue import continue_options
 from mbsym_cli.simulation_events import watch_options
 from mbsym_cli.simulation_inputs import input_options
 from mbsym_cli.simulation_many import Many, many_options
-from mbsym_cli.simulation_options import Group, Output, Span, Way, output_options, span_options, typed, way_options
-from mbsym_cli.simulation_request import Flags
+from mbsym_cli.simulation_options import Group, Output, output_options, span_options, way_options
 from mbsym_cli.simulation_variables import variables_options
 
 
@@ -35,7 +35,9 @@ from mbsym_cli.simulation_variables import variables_options
 @closing_options
 @variables_options
 @output_options
-def command(file: Path, span: Span, way: Way, many: Many, output: Output, **further: Group) -> None:
+def command(
+    file: Path, span: dict[str, Any], way: dict[str, Any], many: Many, output: Output, **further: Group
+) -> None:
     """Integrate the equations of motion of FILE from 0 to T; write a table and figures.
 
     Parameters and the initial state come from the description (values:, initial:); --set replaces them, a coordinate's
@@ -99,10 +101,8 @@ def command(file: Path, span: Span, way: Way, many: Many, output: Output, **furt
       mbsym simulate systems/double-pendulum.yaml --time 120 --continue reports/double-pendulum/simulation.json
     """
     folder = folder_for(file, output.out)
-    flags = Flags(way.invariants, way.estimate, output.quiet, way.whole)
     try:
-        texts = typed(span, way, output)
-        sys.exit(simulated(file, folder, span.settings, texts, flags, many, further))
+        sys.exit(simulated(file, folder, span | way, output, many, further))
     except KeyboardInterrupt:
         complain(file, "interrupted; what has been written is whole")
         sys.exit(INTERRUPTED)

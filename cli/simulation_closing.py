@@ -110,25 +110,6 @@ def not_closed(file: Path, found: NotClosed, system: System) -> int:
     return BAD_INPUT if found.fixed else BROKEN_DOWN
 
 
-def begun_from(file: Path, given: Scenario, with_models: bool) -> Scenario | int:
-    """The scenario with an initial state on its constraints, which is said; the exit code where there is none."""
-    if not given.system.constraints:
-        return given
-    from mbsym.numerics.closing import NotClosed, closed
-    from mbsym.report.runs.constrained_run_words import start_lines
-
-    try:
-        found = closed(given)
-    except NotClosed as error:
-        return not_closed(file, error, given.system)
-    if found.moves:
-        for text in start_lines(found, given.system):
-            complain(file, f"note: {text}")
-    if with_models:
-        complain(file, "note: simpler models are not compared: with constraints they would begin elsewhere")
-    return found.scenario
-
-
 def begun_at(given: Scenario | None, request: Request) -> Scenario | None:
     """With the initial state that a run takes; what was given where there is an answer to that question only later."""
     if given is None or not given.system.constraints or request.earlier is None:

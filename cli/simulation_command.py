@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -18,8 +19,8 @@ from mbsym_cli.simulation_closing import begun_at, check_constrained
 from mbsym_cli.simulation_continue import going_on
 from mbsym_cli.simulation_inputs import read_laws
 from mbsym_cli.simulation_many import Many, read_many
-from mbsym_cli.simulation_options import Group
-from mbsym_cli.simulation_request import Flags, check_held, read_request
+from mbsym_cli.simulation_options import Group, Output
+from mbsym_cli.simulation_request import check_held, read_request
 from mbsym_cli.simulation_run import run
 from mbsym_cli.simulation_together import carried, complain_of_names, complain_of_pairs, typed_options
 from mbsym_cli.simulation_variables import Variables, check_states
@@ -28,13 +29,13 @@ from mbsym_cli.simulation_variables import Variables, check_states
 def simulated(
     file: Path,
     folder: Path,
-    settings: Sequence[str],
-    texts: Mapping[str, str | None],
-    flags: Flags,
+    texts: Mapping[str, Any],
+    output: Output,
     many: Many,
     further: Mapping[str, Group],
 ) -> int:
-    """The exit code of one command."""
+    """The exit code of one command; ``texts`` by the names of the request's fields."""
+    settings = texts["values"]
     system = read_description(file, moving="simulate")
     asked = Options()
     context = click.get_current_context()
@@ -48,7 +49,7 @@ def simulated(
     given, overrides = (None, {}) if system is None else given_numbers(file, system, settings, asked, laws, own)
     system = system if given is None else given.system
     seen = variables.seen(system)
-    wanted = read_request(system, texts, flags, asked)
+    wanted = read_request(system, texts, output.wanted, output.quiet, asked)
     for group in further.values():
         wanted = replace(wanted, request=group.added(wanted.request, seen, asked))
     wanted = replace(wanted, request=going_on(wanted.request, begun_at(given, wanted.request), typed, asked))

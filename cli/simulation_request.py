@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import ceil
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from mbsym.studies.simulate import Request as Fields
 from mbsym_cli.options import Options
+from mbsym_cli.requests import read_some
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
@@ -18,10 +20,6 @@ FORMATS = ("csv", "svg", "png", "pdf", "bodies-csv", "html", "gif")
 
 #: Those that are figures.
 FIGURES = ("svg", "png", "pdf")
-ARITHMETIC = ("float64", "float32", "extended")
-
-#: No arithmetic here is finer, and nothing coarser is a solution.
-FINEST, COARSEST = 1e-19, 0.1
 
 #: A first try of a fixed step is the whole time divided by this.
 TRIAL_STEPS = 10_000
@@ -37,53 +35,35 @@ class Asked:
     goal: Wanted | None = None
 
 
-@dataclass(frozen=True)
-class Flags:
-    """The options without a value."""
-
-    invariants: bool
-    estimate: bool | None
-    quiet: bool
-    whole: bool
+#: Read from their texts alone.
+READ = ("time", "every", "tolerance", "step", "max_step", "samples", "arithmetic", "step_limit")
 
 
-def read_request(system: System | None, texts: Mapping[str, str | None], flags: Flags, asked: Options) -> Asked:
-    """What the options say; whatever is wrong with them joins the complaints of ``asked``."""
+def read_request(system: System | None, texts: Mapping[str, Any], formats: str, quiet: bool, options: Options) -> Asked:
+    """What the options say, by the names of their fields; whatever is wrong with them joins the complaints."""
     from mbsym.numerics.methods.table import METHODS
     from mbsym.simulation import Request
 
-    end = asked.time(texts["--time"])
-    every = asked.number("--every", texts["--every"])
-    tolerance = asked.number("--tolerance", texts["--tolerance"], FINEST, COARSEST)
-    step = asked.number("--step", texts["--step"])
-    longest = asked.number("--max-step", texts["--max-step"])
-    why = ", the start and the end of a trajectory"
-    samples = asked.whole("--samples", texts["--samples"], 2, 10**18, why)
-    method = asked.word("--method", (texts["--method"] or "").lower(), ("auto", *METHODS), "method")
-    arithmetic = asked.word("--arithmetic", texts["--arithmetic"] or "", ARITHMETIC, "arithmetic")
-    step_limit = asked.whole("--step-limit", texts["--step-limit"], 1, 10**12)
-    formats = asked.words("--format", texts["--format"] or "", FORMATS, "format")
-    if system is not None and (texts["--samples"] is None or texts["--every"] is None):
-        _check_rows(system, end, every, samples, asked)
+    read = read_some(Fields, READ, texts, options)
+    method = options.word("--method", texts["method"].lower(), ("auto", *METHODS), "method")
+    written = options.words("--format", formats, FORMATS, "format")
+    end, step = read["time"], read["step"]
+    if system is not None and (texts["samples"] is None or texts["every"] is None):
+        _check_rows(system, end, read["every"], read["samples"], options)
     if step is not None and end is not None and step > end:
-        asked.complain("--step", "bad-number", f"{step:g} is longer than the whole time {end:g}")
+        options.complain("--step", "bad-number", f"{step:g} is longer than the whole time {end:g}")
     request = Request(
         time=end or 0.0,
-        samples=samples,
-        every=every,
         method=method or "auto",
-        tolerance=tolerance,
-        step=step,
-        arithmetic=arithmetic or "float64",
-        step_limit=step_limit or 1,
-        invariants=flags.invariants,
-        estimate=flags.estimate,
-        whole=flags.whole,
-        longest=longest,
+        arithmetic=read["arithmetic"] or "float64",
+        step_limit=read["step_limit"] or 1,
+        longest=read["max_step"],
+        **{name: read[name] for name in ("samples", "every", "tolerance", "step")},
+        **{name: texts[name] for name in ("invariants", "estimate", "whole")},
     )
     if method is not None:
-        _check_method(system, request, texts, asked)
-    return Asked(request, formats, flags.quiet)
+        _check_method(system, request, texts, options)
+    return Asked(request, written, quiet)
 
 
 def _check_rows(system: System, end: float | None, every: float | None, samples: int | None, asked: Options) -> None:
@@ -118,13 +98,13 @@ def check_held(request: Request, system: System | None, many: bool, asked: Optio
     asked.complain(option, "too-large", f"{rows} rows are too many to be held in memory, as they have to be here", hint)
 
 
-def _check_method(system: System | None, request: Request, texts: Mapping[str, str | None], asked: Options) -> None:
+def _check_method(system: System | None, request: Request, texts: Mapping[str, Any], asked: Options) -> None:
     """Whether the method goes with arithmetic, step or tolerance, and loads; before anything is compiled."""
     from mbsym.numerics.methods.symplectic import without_potential
     from mbsym.numerics.methods.table import METHODS
 
     name = request.method
-    has_step, has_tolerance = texts["--step"] is not None, texts["--tolerance"] is not None
+    has_step, has_tolerance = texts["step"] is not None, texts["tolerance"] is not None
     given = METHODS.get(name)
     if has_step and has_tolerance and not (given is not None and given.traits.fixed):
         hint = "a method takes one or the other"
@@ -148,7 +128,7 @@ def _check_method(system: System | None, request: Request, texts: Mapping[str, s
         many = f"--step {request.time / TRIAL_STEPS:.2g}" if request.time else "--step H"
         hint = f"for example {many}, a {TRIAL_STEPS}th of the time; then halve it until the results no longer change"
         asked.complain("--method", "missing-option", f"{name} takes steps of one length, and there is no --step", hint)
-    if traits.fixed and texts["--max-step"] is not None:
+    if traits.fixed and texts["max_step"] is not None:
         hint = f"give a shorter --step in its place, for example --step {request.longest or 0.01:g}"
         asked.complain("--max-step", "conflicting-options", f"{name} takes steps of one length", hint)
     if not traits.fixed and has_step and not has_tolerance:

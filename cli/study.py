@@ -119,6 +119,8 @@ class _Run:
                     self.options.complain(option, *self.study.out.unwritten)
             if self.writes and self.as_json and self.study.out.alone is not None:
                 self.options.complain("--json", *self.study.out.alone)
+        order = [field.option for field in fields_of(self.study.request)]
+        self.options.sort(order)
 
     def _unfit(self, one: Unfit) -> None:
         if one.name:
@@ -170,7 +172,7 @@ class _Run:
         loud = not self.quiet
         if loud:
             seconds = f", {time.perf_counter() - self.started:.2f} s" if self.study.timed else ""
-            tell((asked.system.name, "bold"), (f"  {printable(self.file)}{seconds}", "dim"))
+            tell((asked.system.name, "bold"), (f"  {printable(self.file)}{answer.after}{seconds}", "dim"))
         for one in answer.lines:
             if isinstance(one, Line) and (loud or one.always):
                 tell(*one.parts, whole=one.whole)

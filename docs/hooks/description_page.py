@@ -2,58 +2,49 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 from in_markdown import code, escaped, fenced, table
 
 from mbsym.source import keys, topics
-from mbsym.source.grammar import Key
+from mbsym.source.grammar import Key, Kind, Record
 
 _HEAD = """\
 # Description
 
-What may stand in a description. This page is made of the tables that the reader itself goes by; `mbsym explain
-description`, `loads`, `expressions` and `claims` print the same. The [tutorial](../tutorial.md) builds a description
-step by step.
+What may stand in a description. This page is made of the table that the reader itself goes by; `mbsym explain
+description`, `loads`, `constraints`, `expressions` and `claims` print the same. The [tutorial](../tutorial.md) builds a
+description step by step.
 
 Descriptions are YAML, or the plain text of the description editor; `mbsym convert` goes both ways. Nothing in a
 description is executed.
 """
 
-_PARTS = (
-    ("The whole", keys.SYSTEM, ""),
-    (
-        "A parameter",
-        keys.PARAMETER,
-        "`parameters: {m: positive}` is the short form of a sign word, `{m: 2}` of a value.",
-    ),
-    ("A prescribed quantity", keys.PRESCRIBED, ""),
-    ("A body", keys.BODY, ""),
-    ("Its rotation", keys.ROTATION, ""),
-    ("Its inertia, where identified values are to be taken as given", keys.INERTIA, ""),
-    ("Its shapes, for drawing", keys.SHAPE, "Each shape has one of the kinds as its key."),
-    ("The motion of a coordinate", keys.MOTION, ""),
-    ("The initial state of a coordinate", keys.INITIAL, ""),
-)
+_REMARKS = {
+    "A parameter": "`parameters: {m: positive}` is the short form of a sign word, `{m: 2}` of a value.",
+}
 
 
 def page() -> str:
     """The page in Markdown."""
-    parts = [
-        _HEAD,
-        *(_section(*part) for part in _PARTS),
-        "## Loads\n",
-        "A list; each load is `- kind: {key: value, ...}`, or `- kind: expression`.\n",
-    ]
-    for name, kind in keys.LOADS.items():
-        parts += [f"### {name}\n", f"{escaped(kind.meaning)}.\n", _keys(kind.keys) if kind.keys else ""]
-    parts += ["### Points\n", "For `between`.\n", _keys(keys.POINT)]
+    parts = [_HEAD, *map(_section, topics.records(keys.DESCRIPTION))]
+    loads = "A list; each load is `- kind: {key: value, ...}`, or `- kind: expression`.\n"
+    parts += ["## Loads\n", loads, *_kinds(keys.LOADS)]
+    constraints = "A list; each is `- kind: {key: value, ...}`, or `- kind: equation`, or two ends.\n"
+    parts += ["## Constraints\n", constraints, *_kinds(keys.CONSTRAINTS)]
     parts += ["## Formulas\n", fenced(topics.expressions()), "## Claims\n", _claims()]
     return "\n".join(parts)
 
 
-def _section(title: str, members: Mapping[str, Key], remark: str) -> str:
-    return f"## {title}\n\n{remark}\n\n{_keys(members)}"
+def _section(record: Record) -> str:
+    return f"## {record.title}\n\n{_REMARKS.get(record.title, '')}\n\n{_keys(topics.keys_of(record))}"
+
+
+def _kinds(kinds: Mapping[str, Kind]) -> Iterator[str]:
+    for name, kind in kinds.items():
+        yield f"### {name}\n\n{escaped(kind.meaning)}.\n\n" + (_keys(kind.keys) if kind.keys else "")
+    for end in topics.ends(kinds):
+        yield f"### {end.title}\n\n{_keys(end.keys)}"
 
 
 def _keys(members: Mapping[str, Key]) -> str:

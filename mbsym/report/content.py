@@ -7,6 +7,7 @@ content and nothing of results.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -64,6 +65,40 @@ class Notation:
     """Fixed notation in the common part of TeX: ``Notation(r"\\dot x = A x")``."""
 
     tex: str
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number as it is printed: ``-1.5e-3``, ``3/7``; ``0 within 2e-9`` is one that is not told from zero."""
+
+    text: str
+
+    @property
+    def tex(self) -> str:
+        """In the common part of TeX."""
+        text = re.sub(r"(\d+)/(\d+)", r"\\tfrac{\1}{\2}", self.text.replace(" within ", " \\pm "))
+        return re.sub(r"e([-+]?\d+)", lambda m: f" \\cdot 10^{{{int(m[1])}}}", text)
+
+
+def exact(value: Fraction) -> Number:
+    """A decimal where it is exact, else a fraction."""
+    text = f"{float(value):.15g}"
+    return Number(text if Fraction(text) == value else str(value))
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Values in rows, in brackets."""
+
+    rows: tuple[tuple[Math, ...], ...]
+
+
+@dataclass(frozen=True)
+class Raised:
+    """A value with an index in brackets above: ``Raised(Name("x"), 2)`` is x^(2), a coefficient of a series."""
+
+    of: Math
+    index: int
 
 
 @dataclass(frozen=True)
@@ -147,6 +182,9 @@ Math = (
     | Entry
     | Name
     | Notation
+    | Number
+    | Rows
+    | Raised
     | Power
     | Text
     | Readable
@@ -254,6 +292,8 @@ class Citation:
     text: str
 
 
+#: What stands in the gaps of a sentence, where it is made piece by piece.
+Gaps = dict[str, "Inline | Sequence[Inline]"]
 #: What stands in a line; a ``str`` is as it is in every language: a name of a body, a number, punctuation.
 Inline = Said | Words | Strong | Graded | Link | Phrase | Emphasis | Verbatim | Unit | Citation | Math | str
 
@@ -276,10 +316,14 @@ class Subheading:
 
 @dataclass(frozen=True)
 class Paragraph:
-    """Sentences, formulas and punctuation one after the other.  ``missing``: it says why there is no result."""
+    """Sentences, formulas and punctuation one after the other.
+
+    ``missing``: it says why there is no result; ``ragged``: for the formulas in it lines end where they do.
+    """
 
     parts: tuple[Inline, ...]
     missing: bool = False
+    ragged: bool = False
 
 
 @dataclass(frozen=True)
@@ -438,6 +482,11 @@ def paragraph(*parts: Inline) -> Paragraph:
     return Paragraph(parts)
 
 
+def ragged(*sentences: Inline) -> Paragraph:
+    """A paragraph of these sentences, with spaces between them, around long formulas."""
+    return Paragraph(joined(sentences, " ").parts, ragged=True)
+
+
 def joined(items: Iterable[Inline], *between: Inline) -> Phrase:
     """The items with ``between`` from one to the next."""
     parts = [part for item in items for part in (*between, item)]
@@ -455,9 +504,9 @@ def numbered(symbol: Symbol, values: Iterable[Formula]) -> Iterator[tuple[Symbol
     return ((replace(symbol, lower=str(k)), value) for k, value in enumerate(values, start=1))
 
 
-def named(names: Iterable[str]) -> Listed:
+def named(names: Iterable[str], ring: Ring | None = None) -> Listed:
     """Declared names side by side."""
-    return Listed(tuple(map(Name, names)))
+    return Listed(tuple(Name(name, ring=ring) for name in names))
 
 
 def speed(name: str) -> Name:

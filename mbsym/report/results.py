@@ -85,7 +85,7 @@ class Results:
         """The first that is the symbol of nothing declared."""
         system, names = self.system, latex_names(self.analysis.ring)
         declared = [*system.coordinates, *system.parameter_names]
-        declared += [item.name for item in (*system.prescribed, *system.notation)]
+        declared += [*(x.name for x in system.prescribed), *(x.name for x in system.notation)]
         taken = {str(names[name]) for name in declared}
         return next((x for x in letters if str(latex_symbol(x)) not in taken), letters[0])
 

@@ -28,15 +28,11 @@ from mbsym.report.conditions import Statement, provided, statements
 from mbsym.report.environment import rendered
 from mbsym.report.first_order import first_order
 from mbsym.report.lengths import COUNTED, FILE, FILE_PROGRAM, formulas, not_printed, program_not_printed, withheld
-from mbsym.report.plain_writer import Writer
-from mbsym.report.sections import invariant_sets, polynomial_integrals, small_parameters
-from mbsym.report.sections.normal_forms import PLAIN as HIGHER
-from mbsym.report.sections.stabilisation import PLAIN
+from mbsym.report.plain_writer import TERMINAL, Writer
+from mbsym.report.sections import section_of
 from mbsym.report.words import oscillation_words
 from mbsym.report.words.expansion_measured import averages
 from mbsym.report.words.expansion_words import coefficients
-from mbsym.report.words.normal_form_words import sentences as higher_sentences
-from mbsym.report.words.said import filled
 from mbsym.report.words.stabilisation_words import sentences
 
 if TYPE_CHECKING:
@@ -86,12 +82,9 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         system=analysis.system,
         names=names,
         found=found,
-        stabilisation_sentences=[filled(said) for said in sentences(found[8], PLAIN)] if 8 in found else [],
-        polynomial_lines=list(polynomial_integrals.lines(found[9], analysis)) if 9 in found else [],
+        stabilisation_sentences=[TERMINAL.said(said) for said in sentences(found[8])] if 8 in found else [],
+        lines={n: list(section_of(PROBLEMS[n]).lines(found[n], analysis)) for n in (9, 10, 11, 12) if n in found},
         polynomial_formulas=[x.wolfram() for x in found[9].formulas] if 9 in found else [],
-        normal_form_sentences=[filled(said) for said in higher_sentences(found[11], HIGHER)] if 11 in found else [],
-        invariant_lines=list(invariant_sets.lines(found[10], analysis)) if 10 in found else [],
-        small_parameter_lines=list(small_parameters.lines(found[12], analysis)) if 12 in found else [],
         small_parameter_formulas=list(_of_small_parameters(found[12], analysis.system)) if 12 in found else [],
         forms=forms,
         reactions=(analysis.optional("reactions") or ()) if analysis.system.reactions and 3 in problems else (),

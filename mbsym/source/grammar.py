@@ -189,11 +189,12 @@ class Way:
 class Record(Type):
     """A mapping with a fixed set of keys.
 
-    ``called`` is its name in the schema, ``alone`` the key of a value that stands alone, ``one_of`` are keys of which
-    one is there, ``made`` what is made of its values.
+    ``title`` is what it is called where it is explained, ``called`` its name in the schema, ``alone`` the key of a
+    value that stands alone, ``one_of`` are keys of which one is there, ``made`` is what is made of its values.
     """
 
     keys: Mapping[str, Key]
+    title: str = ""
     called: str = ""
     alone: str | None = None
     one_of: tuple[str, ...] = ()

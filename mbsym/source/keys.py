@@ -134,7 +134,7 @@ MATRIX_FILE = {
     "sha256": _DIGEST,
 }
 
-_MATRIX = Either((_ROWS, Record(MATRIX_FILE, alone="file")))
+_MATRIX = Either((_ROWS, Record(MATRIX_FILE, "A matrix in a file", alone="file")))
 
 LINEAR_SYSTEM = {
     "coordinates": Key(
@@ -184,7 +184,7 @@ ROTATION = {
     ),
     "angles": Key("the angle about each axis", Listed(_FORMULA, most=3), required=True, label="rotation angles"),
 }
-_ROTATION = Record(ROTATION)
+_ROTATION = Record(ROTATION, "Its rotation")
 
 _TENSOR: tuple[Type, ...] = (_VECTOR, Listed(_VECTOR, 3, 3))
 
@@ -247,7 +247,7 @@ BODY = {
     "inertia": Key(
         "three principal moments, or three rows of the tensor J of T = w.J w/2 (J13 = -integral of x z dm); or "
         "{tensor, accept: true} for identified values that no body has",
-        Either((*_TENSOR, Record(INERTIA))),
+        Either((*_TENSOR, Record(INERTIA, "Its inertia, where identified values are to be taken as given"))),
         label="tensor of inertia",
     ),
     "gyrostatic moment": Key(
@@ -260,7 +260,7 @@ BODY = {
     ),
     "shapes": Key(
         "what the body looks like, for drawing: [{box: [a, b, c], at: [0, 0, 0]}, ...]",
-        Listed(Record(SHAPE)),
+        Listed(Record(SHAPE, "One of its shapes: a kind and its sizes, and where it is")),
         label="shape",
     ),
     "speeds": Key(
@@ -286,7 +286,7 @@ POINT = {
         required=True,
     ),
 }
-_POINTS = Ends(Record(POINT, "point", made=Point))
+_POINTS = Ends(Record(POINT, "A point of a body", "point", made=Point))
 
 _BETWEEN = Key("two points {body, point}", _POINTS, required=True)
 _OF_TWO = Key("instead of a coordinate: two points {body, point}", _POINTS, required=True)
@@ -469,7 +469,7 @@ CONSTRAINTS: dict[str, Kind] = {
     ),
     "parallel": Kind(
         "two axes {body, axis} that stay parallel; with 'coincide' they make a hinge",
-        Ends(Record(AXIS, "axis", made=Axis)),
+        Ends(Record(AXIS, "An axis of a body", "axis", made=Axis)),
         ways=(Way(Parallel),),
     ),
     "distance": Kind(
@@ -580,7 +580,10 @@ SYSTEM = {
         Either(
             (
                 Named(
-                    Either((Word(SIGNS), _FORMULA, Record({**PARAMETER, **SIGN_WORDS}, alone="sign")), "parameter"),
+                    Either(
+                        (Word(SIGNS), _FORMULA, Record({**PARAMETER, **SIGN_WORDS}, "A parameter", alone="sign")),
+                        "parameter",
+                    ),
                 ),
                 _NAMES,
             )
@@ -589,25 +592,25 @@ SYSTEM = {
     "prescribed": Key(
         "known functions of time with a constant rate: {name: {rate, initial, meaning}} or {name: rate}; "
         "other functions of t may stand in joints",
-        Named(Either((_FORMULA, Record(PRESCRIBED, alone="rate")))),
+        Named(Either((_FORMULA, Record(PRESCRIBED, "A prescribed quantity", alone="rate")))),
         label="prescribed motions",
     ),
     "inputs": Key(
         "known functions of time that are chosen later, for forces and torques: {u: {meaning, unit}}",
-        Either((Named(Either((_TEXT, Nothing(), Record(INPUT, alone="meaning")))), _NAMES)),
+        Either((Named(Either((_TEXT, Nothing(), Record(INPUT, "An input", alone="meaning")))), _NAMES)),
     ),
     "outputs": Key("what is measured: {y: theta}, in coordinates, velocities, parameters and inputs", Named(_FORMULA)),
     "tables": Key(
         "inputs given by points: {torque: {points: [[0, 0], [1, 2.5]]}}, in loads torque(t) or torque(theta)",
-        Named(Record(TABLE, alone="points", one_of=("points", "file"))),
+        Named(Record(TABLE, "A table", alone="points", one_of=("points", "file"))),
     ),
     "bodies": Key(
         "the bodies and massless frames, each attached to the inertial frame 0 or to an earlier one",
-        Listed(Record(BODY, "body"), 1),
+        Listed(Record(BODY, "A body", "body"), 1),
     ),
     "linear system": Key(
         "in place of bodies and loads: the matrices of M x'' + (D + G) x' + (K + N) x = B u",
-        Record(LINEAR_SYSTEM),
+        Record(LINEAR_SYSTEM, "A linear system"),
     ),
     "loads": Key("gravity, springs, dampers, forces: a list of {kind of load: {...}}", Listed(Kinds(LOADS, "load"))),
     "constraints": Key(
@@ -625,7 +628,9 @@ SYSTEM = {
     "motion": Key(
         "the unperturbed motion: {coordinate: value} or {coordinate: {value, rate}}; others are 0 at rest, {} is "
         "the rest of all at 0",
-        Named(Either((_FORMULA, Record(MOTION, alone="value"))), "coordinate"),
+        Named(
+            Either((_FORMULA, Record(MOTION, "The unperturbed motion of a coordinate", alone="value"))), "coordinate"
+        ),
         label="unperturbed motion",
     ),
     "notation": Key("own symbols for groups of parameters, in order: later ones may use earlier ones", Named(_FORMULA)),
@@ -633,13 +638,13 @@ SYSTEM = {
     "small parameter": Key(
         "a parameter in whose powers 'mbsym expand' expands, or {eps: {powers: {e: 1, p2: -1}}}: "
         "e eps and p2/eps stand for e and p2",
-        Either((_NAME, Named(Record(SMALL_PARAMETER), one=True))),
+        Either((_NAME, Named(Record(SMALL_PARAMETER, "A small parameter"), one=True))),
     ),
     "values": Key("numerical values of parameters: {l: 2}", Named(_FORMULA)),
     "initial": Key(
         "the initial state: {coordinate: position} or {coordinate: {position, velocity}} (velocity 0); "
         "declared variables have values, {p: 0.1, e0: 1}",
-        Named(Either((_FORMULA, Record(INITIAL, alone="position"))), "coordinate"),
+        Named(Either((_FORMULA, Record(INITIAL, "The initial state of a coordinate", alone="position"))), "coordinate"),
         label="initial state",
     ),
     "abbreviations": Key(
@@ -663,12 +668,12 @@ SYSTEM = {
     ),
     "claims": Key(
         "formulas and numbers that were printed, to be checked: [{claim: kinetic energy, equals: ...}, ...]",
-        Listed(Record(CLAIM, "claim")),
+        Listed(Record(CLAIM, called="claim")),
     ),
 }
 
 #: A whole description: bodies with loads, or matrices.
-DESCRIPTION = Record(SYSTEM, one_of=("bodies", "linear system"))
+DESCRIPTION = Record(SYSTEM, "A description", one_of=("bodies", "linear system"))
 
 #: Other spellings of keys, and of words.
 ALIASES = {

@@ -1,6 +1,6 @@
-"""What may stand in a description, in words: ``mbsym explain description``, ``loads``, ``expressions``.
+"""What may stand in a description, in words: ``mbsym explain description``, ``loads``, ``claims`` and the like.
 
-Everything comes from the tables that the reader itself goes by, so that nothing is described that is not read.
+Everything comes from the table that the reader itself goes by, so that nothing is described that is not read.
 """
 
 from __future__ import annotations
@@ -10,46 +10,62 @@ from textwrap import wrap
 
 from mbsym.expressions.tree import SMOOTH
 from mbsym.model.claims import CLAIMS, EXPRESSION, ClaimKind
-from mbsym.source.grammar import Key
-from mbsym.source.keys import (
-    BODY,
-    CLAIM,
-    INERTIA,
-    INPUT,
-    LOADS,
-    PARAMETER,
-    POINT,
-    PRESCRIBED,
-    ROTATION,
-    SHAPE,
-    SYSTEM,
-)
+from mbsym.source.grammar import Ends, Flag, Key, Kind, Named, Record, Type, plain
+from mbsym.source.keys import CLAIM, CONSTRAINTS, DESCRIPTION, LOADS
 
 WIDTH = 110
 
 
 def description() -> str:
-    """Every key of a description, of its bodies, parameters and prescribed quantities."""
-    parts = [
-        ("A description", SYSTEM),
-        ("A parameter", PARAMETER),
-        ("A prescribed quantity", PRESCRIBED),
-        ("An input", INPUT),
-        ("A body", BODY),
-        ("Its rotation", ROTATION),
-        ("Its inertia, where identified values are to be taken as given", INERTIA),
-        ("One of its shapes: a kind and its sizes, and where it is", SHAPE),
-    ]
-    return "\n\n".join(f"{title}\n\n{_listed(table)}" for title, table in parts) + "\n\n" + _SEE
+    """Every key of a description, loads, constraints and claims apart."""
+    return "\n\n".join([*(_titled(one) for one in records(DESCRIPTION)), _SEE])
 
 
 def loads() -> str:
     """Every kind of load with its keys."""
-    parts = []
-    for name, kind in LOADS.items():
+    return _kinds("load", LOADS)
+
+
+def constraints() -> str:
+    """Every kind of constraint with its keys."""
+    return _kinds("constraint", CONSTRAINTS)
+
+
+def _kinds(what: str, kinds: Mapping[str, Kind]) -> str:
+    parts = [f"{what}s:  a list; each {what} is  - kind: {{key: value, ...}}  or  - kind: {_BARE[what]}"]
+    for name, kind in kinds.items():
         parts.append(f"{name}: {kind.meaning}" + (f"\n\n{_listed(kind.keys)}" if kind.keys else ""))
-    parts.append(f"A point, for 'between'\n\n{_listed(POINT)}")
-    return "loads:  a list; each load is  - kind: {key: value, ...}  or  - kind: expression\n\n" + "\n\n".join(parts)
+    return "\n\n".join([*parts, *(_titled(one) for one in ends(kinds))])
+
+
+#: What the value of a kind without keys is.
+_BARE = {"load": "expression", "constraint": "equation, or two ends"}
+
+
+def records(one: Type) -> list[Record]:
+    """The records of a description with their keys, from the whole inwards, each once; those of kinds are apart."""
+    found: list[Record] = []
+    for inner in plain(one):
+        if isinstance(inner, Record) and inner.title:
+            found += [inner, *(x for key in inner.keys.values() for x in records(key.type))]
+        elif isinstance(inner, Named):
+            found += records(inner.value)
+    return list(dict.fromkeys(found))
+
+
+def ends(kinds: Mapping[str, Kind]) -> list[Record]:
+    """What the ends of these kinds are given by."""
+    types = (one for kind in kinds.values() for one in (kind.type, *(key.type for key in kind.keys.values())))
+    return list(dict.fromkeys(one.record for one in types if isinstance(one, Ends)))
+
+
+def keys_of(record: Record) -> dict[str, Key]:
+    """Its keys, but for words that are short for another one (``positive: true``), which that one tells."""
+    return {name: key for name, key in record.keys.items() if not (isinstance(key.type, Flag) and not key.type.false)}
+
+
+def _titled(record: Record) -> str:
+    return f"{record.title}\n\n{_listed(keys_of(record))}"
 
 
 def expressions() -> str:
@@ -85,7 +101,10 @@ def _listed(table: Mapping[str, Key]) -> str:
     return "\n".join(lines)
 
 
-_SEE = "Kinds of load: mbsym explain loads.  Formulas: mbsym explain expressions.  Claims: mbsym explain claims."
+_SEE = (
+    "Kinds of load: mbsym explain loads.  Of constraint: mbsym explain constraints.  Formulas: mbsym explain "
+    "expressions.  Claims: mbsym explain claims."
+)
 
 _KINKED = """\
 sign(x) = -1, 0, 1 for x < 0, x = 0, x > 0;  abs(x) = x*sign(x);  step(x) = (1 + sign(x))/2, 1/2 at 0;

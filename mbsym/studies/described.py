@@ -104,10 +104,13 @@ class Public(Protocol, Generic[P, R, T]):
     def __call__(self, source: Source, *arguments: P.args, **named: P.kwargs) -> T: ...
 
 
-def public(request: Callable[P, R]) -> Callable[[Callable[[Asked, R, Watch], T]], Public[P, R, T]]:
+def public(
+    request: Callable[P, R], asked: Callable[[Any, Any], Asked] | None = None
+) -> Callable[[Callable[[Asked, R, Watch], T]], Public[P, R, T]]:
     """A decorator: what derives becomes a function of a source and a request, or its fields.
 
-    It raises ValueError for a request that is out of its bounds.
+    ``asked(source, request)`` is what it is about (``asked_of``).  It raises ValueError for a request that is out of
+    its bounds.
     """
 
     def decorate(derive: Callable[[Asked, R, Watch], T]) -> Public[P, R, T]:
@@ -118,7 +121,7 @@ def public(request: Callable[P, R]) -> Callable[[Callable[[Asked, R, Watch], T]]
             said = list(wrong(wanted))
             if said:
                 raise ValueError("; ".join(said))
-            return derive(asked_of(source, wanted), wanted, unwatched)
+            return derive((asked or asked_of)(source, wanted), wanted, unwatched)
 
         taken = (
             one.replace(annotation=_plain(str(one.annotation)), default=_shown(one.default))

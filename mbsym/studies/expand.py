@@ -95,26 +95,25 @@ def answer(asked: Asked, request: Request, found: Found) -> Answer:
 
 
 def _lines(found: Expansion, measured: Measured | str) -> Iterator[Line]:
-    from mbsym.report.sections.small_parameters import PLAIN
+    from mbsym.report.content import say
+    from mbsym.report.plain_writer import Writer
     from mbsym.report.words.expansion_words import of_measured, sentences
-    from mbsym.report.words.said import filled
 
-    manifold = found.manifold
+    manifold, write = found.manifold, Writer()
     small = manifold.field.small
     for parameter, power in manifold.field.powers:
         yield line(f"  {parameter} stands for {parameter} {small}^{power}")
-    gaps = {"order": manifold.order, "small": small}
     for title, names, series, mark in (
-        (MANIFOLD, manifold.fast, manifold.functions, ""),
-        (FLOW, manifold.slow, manifold.flow, "'"),
+        (say(MANIFOLD, order=str(manifold.order), small=small), manifold.fast, manifold.functions, ""),
+        (say(FLOW, order=str(manifold.order)), manifold.slow, manifold.flow, "'"),
     ):
-        yield heading(filled((title, gaps)))
+        yield heading(write.said(title))
         for variable, one in zip(names, series, strict=True):
             yield line(f"    {variable}{mark} =")
             for text in _terms(found, small, one):
                 yield line(f"      {text}", whole=True)
-    for said in (*sentences(found, PLAIN), *of_measured(small, measured, PLAIN)):
-        yield line(f"    {filled(said)}")
+    for said in (*sentences(found), *of_measured(small, measured)):
+        yield line(f"    {write.said(said)}")
 
 
 def _terms(found: Expansion, small: str, one: Series) -> list[str]:

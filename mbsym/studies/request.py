@@ -47,24 +47,28 @@ class Number(Kind):
     most: float | None = None
     absent: tuple[str, str] = ("", "")
 
-    def wrong(self, value: float) -> str:
+    def wrong(self, name: str, value: float) -> str:
         if not (isfinite(value) and value > 0):
-            return f"must be positive, not {value}"
+            return f"{name} must be positive, not {value}"
         if value < self.least or (self.most is not None and value > self.most):
-            return f"must be between {self.least:g} and {self.most:g}, not {value}"
+            return f"{name} must be between {self.least:g} and {self.most:g}, not {value}"
         return ""
 
 
 @dataclass(frozen=True)
 class Whole(Kind):
-    """A whole number between bounds; ``shown``: whether the help tells the default."""
+    """A whole number between bounds; ``why`` the lower one, ``shown``: whether the help tells the default."""
 
     least: int = 1
     most: int = 10**6
+    why: str = ""
     shown: bool = True
 
-    def wrong(self, value: int) -> str:
-        return "" if self.least <= value <= self.most else f"must be from {self.least} to {self.most}, not {value}"
+    def wrong(self, name: str, value: int) -> str:
+        if self.least <= value <= self.most:
+            return ""
+        bound = f"{self.least} at least" if value < self.least else f"{self.most} at most"
+        return f"{name} must be {bound}, not {value}"
 
 
 @dataclass(frozen=True)
@@ -74,21 +78,30 @@ class Word(Kind):
     choices: tuple[str, ...] = ()
     what: str = "choice"
 
-    def wrong(self, value: str) -> str:
-        return "" if value in self.choices else f"must be one of {', '.join(self.choices)}, not {value!r}"
+    def wrong(self, name: str, value: str) -> str:
+        return (
+            "" if value in self.choices else f"there is no {self.what} {value}: choose from {', '.join(self.choices)}"
+        )
 
 
 @dataclass(frozen=True)
 class Words(Kind):
-    """Some of a few words, separated by commas; ``every`` stands for all of them."""
+    """Some of a few words, separated by commas; ``every`` stands for all of them.
 
-    choices: tuple[str, ...] = ()
+    ``choices`` are a function where much would have to be imported to know them.
+    """
+
+    choices: tuple[str, ...] | Callable[[], tuple[str, ...]] = ()
     what: str = "choice"
     every: str = ""
 
-    def wrong(self, value: Sequence[str]) -> str:
-        others = [one for one in value if one not in self.choices]
-        return f"must be some of {', '.join(self.choices)}, not {', '.join(others)}" if others else ""
+    def wrong(self, name: str, value: Sequence[str]) -> str:
+        others = ", ".join(one for one in value if one not in (*self.known, self.every))
+        return f"there is no {self.what} {others}: choose from {', '.join(self.known)}" if others else ""
+
+    @property
+    def known(self) -> tuple[str, ...]:
+        return self.choices() if callable(self.choices) else self.choices
 
 
 @dataclass(frozen=True)
@@ -103,7 +116,9 @@ class Names(Kind):
 
 @dataclass(frozen=True)
 class Flag(Kind):
-    """Said or not."""
+    """Said or not; ``both``: ``--name`` or ``--no-name``."""
+
+    both: bool = False
 
 
 @dataclass(frozen=True)
@@ -114,9 +129,9 @@ class Named(Kind):
     most: int = 10**6
     example: str = ""
 
-    def wrong(self, value: Mapping[str, int]) -> str:
-        outside = [name for name, one in value.items() if not self.least <= one <= self.most]
-        return f"must be from {self.least} to {self.most} for {', '.join(outside)}" if outside else ""
+    def wrong(self, name: str, value: Mapping[str, int]) -> str:
+        outside = ", ".join(key for key, one in value.items() if not self.least <= one <= self.most)
+        return f"{name} must be from {self.least} to {self.most} for {outside}" if outside else ""
 
 
 @dataclass(frozen=True)
@@ -211,5 +226,5 @@ def wrong(request: Any) -> Iterator[str]:
     """What of a request is out of its bounds, a sentence each."""
     for field in fields_of(type(request)):
         value, check = getattr(request, field.name), getattr(field.kind, "wrong", None)
-        if value is not None and check is not None and (said := check(value)):
-            yield f"{field.name} {said}"
+        if value is not None and check is not None and (said := check(field.name, value)):
+            yield said

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import KW_ONLY, dataclass, field
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
-from mbsym.studies.described import analysis_of, laws_of, moving_system
+from mbsym.studies.described import Source, analysis_of, laws_of, moving_system, public
+from mbsym.studies.request import Flag, Number, Text, Value, Values, Whole, Word, duration
+from mbsym.studies.study import Asked, Watch
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -18,31 +21,72 @@ if TYPE_CHECKING:
     from mbsym.simulation.sensitivities import Sensitivities
 
 
-def simulate(
-    source: str | Path | Analysis,
-    time: float,
-    *,
-    values: Mapping[str, Fraction | float | str] | None = None,
-    samples: int | None = None,
-    every: float | None = None,
-    method: str = "auto",
-    tolerance: float | None = None,
-    step: float | None = None,
-    arithmetic: str = "float64",
-    step_limit: int = 10_000_000,
-    max_step: float | None = None,
-    invariants: bool = False,
-    estimate: bool | None = None,
-    whole: bool = False,
-    certify: float | None = None,
-    events: str | Iterable[str] = (),
-    stop: str | Iterable[str] = (),
-    section: str | None = None,
-    axes: str = "",
-    accuracy: float | Mapping[str, float] | None = None,
-    inputs: Mapping[str, Fraction | float | str] | None = None,
-    variables: str = "declared",
-) -> Simulation:
+ARITHMETIC = ("float64", "float32", "extended")
+
+#: No arithmetic here is finer, and nothing coarser is a solution.
+FINEST, COARSEST = 1e-19, 0.1
+
+#: Why there are two rows at least.
+ENDS = ", the start and the end of a trajectory"
+
+INVARIANTS = "Add first integrals as columns: those of problem 7; of small systems others found at these numbers, too."
+WHOLE = (
+    "Integrate the coordinates that provably rest as well, all parts with the same steps, and keep welded bodies apart."
+)
+
+
+@dataclass(frozen=True)
+class Request:
+    """What a simulation is asked for; ``mbsym.simulate`` tells what each field means."""
+
+    time: Annotated[float, duration("Simulate from 0 to T (60, 2*pi, 1e3).")]
+    _: KW_ONLY
+    values: Values = field(default_factory=dict)
+    samples: Annotated[
+        int | None,
+        Whole("N", "Rows of the table.", usual="2001, more for fast motion", least=2, most=10**18, why=ENDS),
+    ] = None
+    every: Annotated[float | None, Number("DT", "A row every DT instead.")] = None
+    method: Annotated[str, Text(None, "auto or one of those above.", "-m")] = "auto"
+    tolerance: Annotated[
+        float | None,
+        Number("X", "Error of one step, relative and absolute.", least=FINEST, most=COARSEST, usual="1e-10 in float64"),
+    ] = None
+    step: Annotated[float | None, Number("H", "Length of a step, for methods of fixed step.")] = None
+    max_step: Annotated[
+        float | None, Number("H", "No step is longer (0.01), so that nothing short is stepped over.")
+    ] = None
+    arithmetic: Annotated[str, Word(f"[{'|'.join(ARITHMETIC)}]", "", choices=ARITHMETIC, what="arithmetic")] = "float64"
+    step_limit: Annotated[int, Whole("N", "", most=10**12)] = 10_000_000
+    invariants: Annotated[bool, Flag(None, INVARIANTS)] = False
+    estimate: Annotated[
+        bool | None,
+        Flag(None, "Estimate the error by a better run.", usual="of short runs, as far as little work goes", both=True),
+    ] = None
+    whole: Annotated[bool, Flag(None, WHOLE)] = False
+    certify: float | None = None
+    events: str | Iterable[str] = ()
+    stop: str | Iterable[str] = ()
+    section: str | None = None
+    axes: str = ""
+    accuracy: float | Mapping[str, float] | None = None
+    inputs: Mapping[str, Value] | None = None
+    variables: str = "declared"
+
+
+def _asked(source: Source, request: Request) -> Asked:
+    """With laws for its inputs; declared variables where these are integrated."""
+    from mbsym.numerics.scenario import scenario
+    from mbsym.simulation.request import read_values
+
+    system = analysis_of(source).system
+    own = request.variables == "declared" and request.accuracy is None
+    laws = laws_of(system, request.inputs)
+    return Asked(system, scenario(system, read_values(system, request.values or {}), laws=laws, declared=own))
+
+
+@public(Request, _asked)
+def simulate(asked: Asked, request: Request, watch: Watch) -> Simulation:
     """The motion of a description (a file, or what ``load`` returned) from 0 to ``time``.
 
         >>> import mbsym
@@ -54,9 +98,11 @@ def simulate(
         >>> run.at([0.1234, 7.5]).shape  # between the rows: (q, q') at any times, from the method's dense output
         (4, 2)
 
+    Its arguments are the fields of ``mbsym.studies.simulate.Request``, which may be given in their place.
+
     ``values`` replace those of the description: parameters, initial positions by the coordinates' names, initial
     velocities by ``<name>_dot``; numbers, or text such as ``"pi/6"``.  The rest is what ``mbsym simulate`` calls by the
-    same names (``mbsym.simulation.Request``).  A run that ends early is a result too: ``run.whole``, ``run.ended``.
+    same names.  A run that ends early is a result too: ``run.whole``, ``run.ended``.
 
     ``events`` are conditions such as ``"theta = 0 rising"``; every time at which one is met is in ``run.events``
     (``times``, ``which``, ``turns``, ``states``; ``run.events.of("theta = 0 rising")``).  ``stop`` are conditions that
@@ -78,25 +124,25 @@ def simulate(
     ``mbsym.numerics.scenario.Incomplete`` with every number that is missing, Unusable where the method does not apply.
     """
     from mbsym import simulation
-    from mbsym.numerics.scenario import scenario
 
-    system = analysis_of(source).system
-    if accuracy is not None:
-        variables = "coordinates"
-    seen = simulation.integrated_system(system, variables)
-    request = simulation.Request(
-        *(time, samples, every, method, tolerance, step, arithmetic, step_limit, invariants, estimate, whole, certify),
-        events=simulation.read_watch(seen, _several(events), _several(stop), section, axes),
-        longest=max_step,
-        variables=variables,
+    seen = simulation.integrated_system(
+        asked.system, "coordinates" if request.accuracy is not None else request.variables
     )
-    read, own = simulation.read_values(system, values or {}), variables == "declared"
-    given = scenario(system, read, laws=laws_of(system, inputs), declared=own)
-    if accuracy is None:
-        return simulation.simulate(given, request)
+    wanted = simulation.Request(
+        *(request.time, request.samples, request.every, request.method, request.tolerance, request.step),
+        *(request.arithmetic, request.step_limit, request.invariants, request.estimate, request.whole, request.certify),
+        events=simulation.read_watch(
+            seen, _several(request.events), _several(request.stop), request.section, request.axes
+        ),
+        longest=request.max_step,
+        variables="coordinates" if request.accuracy is not None else request.variables,
+    )
+    if request.accuracy is None:
+        return simulation.simulate(asked.motion, wanted)
     from mbsym.simulation.accurate import read_accuracy, settled_by, simulate_accurately
 
-    return simulate_accurately(given, request, read_accuracy(system, accuracy), settled_by(request))
+    accuracy = read_accuracy(asked.system, request.accuracy)
+    return simulate_accurately(asked.motion, wanted, accuracy, settled_by(wanted))
 
 
 def plan(

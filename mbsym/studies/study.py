@@ -98,12 +98,16 @@ class Asked:
 
 @dataclass(frozen=True)
 class Answer:
-    """What is said of a result: ``lines`` beneath the system's name, ``files``, and ``complaints`` after them."""
+    """What is said of a result: ``lines`` beneath the system's name, ``files``, and ``complaints`` after them.
+
+    ``after``: what stands behind the name of the description.
+    """
 
     lines: Iterable[Line | Rows] = ()
     files: Mapping[str, str | bytes] = field(default_factory=dict)
     complaints: Sequence[str] = ()
     code: Exit = Exit.OK
+    after: str = ""
 
 
 @dataclass(frozen=True)

@@ -51,17 +51,18 @@ def answer(asked: Asked, request: Request, found: Symmetries) -> Answer:
 
 
 def _lines(found: Symmetries) -> Iterator[Line]:
-    from mbsym.report.words.said import filled
+    from mbsym.report.content import Said
+    from mbsym.report.plain_writer import Writer
     from mbsym.report.words.symmetry_words import HEADING, field_text, second_route, sentences, title
 
-    yield heading(HEADING)
+    yield heading(Writer().said(Said(HEADING)))
     for one in found.symmetries:
         yield line("    field  ", (field_text(one), "bold" if one.is_new else ""), whole=True)
         yield line(f"      {one.integral}", whole=True)
         yield line(f"      {title(one)}")
         yield line(f"      {second_route(one)}")
-    for said in sentences(found):
-        yield line(f"    {filled(said)}")
+    for said in map(Writer().said, sentences(found)):
+        yield line(f"    {said}")
 
 
 def as_json(asked: Asked, request: Request, found: Symmetries) -> str:

@@ -15,7 +15,7 @@ from mbsym import loads
 from mbsym.analysis import PROBLEMS, Analysis, Derived
 from mbsym.expressions.tree import FUNCTIONS
 from mbsym.model.claims import CLAIMS
-from mbsym.source.keys import BODY, LOADS, SYSTEM
+from mbsym.source.keys import BODY, CONSTRAINTS, LOADS, SYSTEM
 from mbsym.source.topics import EXAMPLES
 from mbsym_cli import files
 from mbsym_cli.explain import TOPICS
@@ -32,7 +32,7 @@ def mbsym(*words: object) -> Result:
 
 
 def test_run_writes_all_reports(tmp_path: Path) -> None:
-    done = mbsym("run", PENDULUM, "--out", tmp_path / "out")
+    done = mbsym("run", PENDULUM, "--verbose", "--out", tmp_path / "out")
     assert done.exit_code == 0, done.output
     names = {path.name for path in (tmp_path / "out").iterdir()}
     assert names == {
@@ -81,7 +81,7 @@ def test_only_what_the_formats_show_is_derived(
         return original(self, pipeline, owner)
 
     monkeypatch.setattr(Derived, "__get__", watched)
-    done = mbsym("run", SYSTEMS / "double-pendulum.yaml", "--format", kinds, "--out", tmp_path)
+    done = mbsym("run", SYSTEMS / "double-pendulum.yaml", "--format", kinds, "--out", tmp_path, "-v")
     assert done.exit_code == 0, done.output
     closed = {"kinematics", "energy", "equations", "stability", "integrals", "linearisation"}
     assert closed & set(made) == closed & derived
@@ -129,7 +129,7 @@ def test_a_folder_stands_for_its_descriptions(tmp_path: Path) -> None:
 
 def test_a_file_that_is_named_twice_is_run_once(tmp_path: Path) -> None:
     (tmp_path / "a.yaml").write_text(PENDULUM.read_text())
-    done = mbsym("run", tmp_path / "a.yaml", tmp_path, "--out", tmp_path / "out", "-f", "json", "-p", "1")
+    done = mbsym("run", tmp_path / "a.yaml", tmp_path, "--out", tmp_path / "out", "-f", "json", "-p", "1", "-v")
     assert done.exit_code == 0, done.output
     assert done.stdout.count("1 kinematics") == 1
     assert mbsym("check", tmp_path).stdout.count(": ok: ") == 1
@@ -220,7 +220,7 @@ def test_a_result_that_cannot_be_had_is_said_not_raised(tmp_path: Path) -> None:
     )
     arm = tmp_path / "arm.yaml"
     arm.write_text(text)
-    done = mbsym("run", arm, "--out", tmp_path / "out", "--terms", 200)
+    done = mbsym("run", arm, "--out", tmp_path / "out", "--terms", 200, "-v")
     assert done.exit_code == 0, done.output
     assert "no unperturbed motion" in done.stdout
     assert "budget" in done.stdout
@@ -262,7 +262,8 @@ def test_explain_lists_and_refuses() -> None:
 
 @pytest.mark.parametrize("topic", TOPICS)
 def test_topics_name_everything_that_is_read(topic: str) -> None:
-    wanted = {"description": {**SYSTEM, **BODY}, "loads": LOADS, "expressions": FUNCTIONS, "claims": CLAIMS}[topic]
+    known = {"description": {**SYSTEM, **BODY}, "loads": LOADS, "constraints": CONSTRAINTS}
+    wanted = {**known, "expressions": FUNCTIONS, "claims": CLAIMS}[topic]
     done = mbsym("explain", topic)
     assert done.exit_code == 0
     assert not [word for word in wanted if word not in done.stdout]

@@ -436,10 +436,11 @@ def test_a_look_is_quick() -> None:
 def test_a_renaming_that_forgets_a_place_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     """Planted: claims, or loads, are not looked at; the system that comes out is no longer the same by other names."""
     from mbsym.editing.document import words
+    from mbsym.source.grammar import Key, Text
 
     for section in ("claims", "loads", "bodies"):
         with monkeypatch.context() as planted:
-            planted.setitem(words._LISTS, section, lambda _node, _path: iter(()))
+            planted.setitem(words.SYSTEM, section, Key("text for people", Text()))
             assert refused(PENDULUM, {"op": "rename", "kind": "parameter", "name": "m", "to": "mass1"}) == "not-so"
 
 

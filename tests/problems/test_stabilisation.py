@@ -20,9 +20,10 @@ from mbsym.problems.stabilisation import Locus, Stabilisation, numbers
 from mbsym.problems.stabilisation.checks import check_stabilisation
 from mbsym.problems.stabilisation.numbers import AtValues
 from mbsym.report.language import Language
+from mbsym.report.plain_writer import Writer
 from mbsym.report.results_json import results
 from mbsym.report.schemas import schema
-from mbsym.report.sections.stabilisation import PLAIN, lines
+from mbsym.report.sections.stabilisation import lines
 from mbsym.report.words.stabilisation_words import FEEDBACK, LYAPUNOV, sentences
 from mbsym.source import read
 
@@ -70,7 +71,7 @@ def test_the_degree_of_instability_by_regions() -> None:
 def test_an_odd_degree_is_beyond_gyroscopic_forces() -> None:
     odd = found("{coordinates: [x, y], G: [[0, 9], [-9, 0]], K: [[-1, 0], [0, 1]]}")
     assert odd.gyroscopic[0].degree == 1
-    said = [text for text, _ in sentences(odd, PLAIN)]
+    said = [one.text for one in sentences(odd)]
     assert "It is odd: no gyroscopic forces among [[names]] make the motion stable (Kelvin-Chetaev)." in said
 
 
@@ -78,9 +79,8 @@ def test_a_free_coordinate_leaves_the_parity_unsaid() -> None:
     """K = diag(0, -1): the theorem asks for det K != 0."""
     free = found("{coordinates: [x, y], G: [[0, 1], [-1, 0]], K: [[0, 0], [0, -1]]}").gyroscopic[0]
     assert (free.degree, free.free) == (1, 1)
-    said = " ".join(
-        text for text, _ in sentences(found("{coordinates: [x, y], G: [[0, 1], [-1, 0]], K: [[0, 0], [0, -1]]}"), PLAIN)
-    )
+    told = sentences(found("{coordinates: [x, y], G: [[0, 1], [-1, 0]], K: [[0, 0], [0, -1]]}"))
+    said = " ".join(one.text for one in told)
     assert "Kelvin" not in said
 
 
@@ -198,7 +198,7 @@ def test_a_drift_that_leans_on_a_spring_is_told_with_its_condition() -> None:
     (part,) = result.dissipation
     assert not part.rank.full
     assert [[str(x) for x in factor] for factor in part.rank.factors] == [["0", "1"]]
-    said = [text for text, _ in sentences(result, PLAIN)]
+    said = [one.text for one in sentences(result)]
     assert "This is about parameters with [[where]]." in said
 
 
@@ -212,13 +212,9 @@ def test_where_springs_vanish_what_is_not_felt_drifts() -> None:
 
 
 def test_damping_that_may_feed_is_not_called_dissipation() -> None:
-    said = [
-        text
-        for text, _ in sentences(
-            found("{coordinates: [x, y], K: [[1, 2], [2, 5]], D: [[a, 0], [0, 0]]}", "{a: real}"), PLAIN
-        )
-    ]
-    assert "That D is positive semidefinite for [[names]] is not known." in said
+    told = sentences(found("{coordinates: [x, y], K: [[1, 2], [2, 5]], D: [[a, 0], [0, 0]]}", "{a: real}"))
+    said = [one.text for one in told]
+    assert "That $D$ is positive semidefinite for [[names]] is not known." in said
     assert not any(text.startswith("Where it is felt") for text in said)
 
 
@@ -382,7 +378,7 @@ def test_results_follow_the_schema(pole: Analysis) -> None:
 
 
 def test_every_sentence_has_its_translations(pole: Analysis) -> None:
-    said = {text for text, _ in sentences(pole.stabilisation, PLAIN)} | {FEEDBACK, LYAPUNOV}
+    said = {one.text for one in sentences(pole.stabilisation)} | {FEEDBACK, LYAPUNOV}
     loose = TWO.replace("k: positive", "k: real").replace("c: positive, ", "")
     together = "{coordinates: [x, y], M: [[m, 0], [0, m]], K: [[k, 0], [0, k]], D: [[1, -1], [-1, 1]]}"
     for more in (
@@ -390,7 +386,7 @@ def test_every_sentence_has_its_translations(pole: Analysis) -> None:
         found(together, "{m: positive, k: positive}"),
         found("{" + PAIR + ", B: [[1], [0]]}", loose, "inputs: [u]"),
     ):
-        said |= {text for text, _ in sentences(more, PLAIN)}
+        said |= {one.text for one in sentences(more)}
     for name in ("ru", "es"):
         language = Language(name)
         for english in said:
@@ -449,19 +445,19 @@ values: {a: 1, g: 1, s: 1}
 
 def test_what_is_said_of_a_part_names_it() -> None:
     """D is felt by x and y, and w is not damped at all; gyroscopic forces between y and w could hold up what falls."""
-    said = list(sentences(mbsym.loads(PARTS, (5, 6, 8)).stabilisation, PLAIN))
+    said = sentences(mbsym.loads(PARTS, (5, 6, 8)).stabilisation)
     about_parts = (
         "It is odd",
         "It is even",
         "Where it is felt",
-        "At the given values D",
-        "That D",
-        "D is",
+        "At the given values $D$",
+        "That $D$",
+        "$D$ is",
         "Every motion",
     )
-    told = [(text, gaps) for text, gaps in said if text.startswith(about_parts)]
-    assert {gaps["names"] for _, gaps in told} == {"x, y", "z", "w"}
-    assert all("[[names]]" in text for text, _ in told)
+    told = [one for one in said if one.text.startswith(about_parts)]
+    assert {Writer().inline(one.gaps["names"]) for one in told} == {"x, y", "z", "w"}
+    assert all("[[names]]" in one.text for one in told)
 
 
 def test_what_is_not_known_is_not_told_as_false() -> None:
@@ -474,5 +470,5 @@ def test_what_is_not_known_is_not_told_as_false() -> None:
     (part,) = found("{coordinates: [x, y], K: [[1, 2], [2, 5]], D: [[1, 0], [0, -1]]}", "{a: real}").dissipation
     assert (part.complete, part.semidefinite) == (False, False)
     feeding = found("{coordinates: [x, y], K: [[1, 2], [2, 5]], D: [[1, 0], [0, -1]]}")
-    said = [text for text, _ in sentences(feeding, PLAIN)]
-    assert "D is not positive semidefinite for [[names]] (proved)." in said
+    said = [one.text for one in sentences(feeding)]
+    assert "$D$ is not positive semidefinite for [[names]] (proved)." in said

@@ -29,7 +29,7 @@ SYSTEMS = ("heavy-top", "satellite-with-damper", "satellite-with-damper-driven",
 def reports(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """What a user gets of the heavy top."""
     folder = tmp_path_factory.mktemp("forms")
-    command = ["run", str(SHIPPED / "heavy-top.yaml"), "--form", "hamilton,routh", "--out", str(folder)]
+    command = ["run", str(SHIPPED / "heavy-top.yaml"), "--form", "hamilton,routh", "--out", str(folder), "-v"]
     found = CliRunner().invoke(main, command)
     assert found.exit_code == 0, found.output
     assert "Routh's form in alpha, beta, without phi; constant: p_phi" in found.output

@@ -17,9 +17,10 @@ from conftest import SHIPPED
 import mbsym
 from mbsym.analysis import Analysis
 from mbsym.analysis.oscillating import oscillating
+from mbsym.report.content import Said
 from mbsym.report.language import Language
 from mbsym.report.schemas import schema
-from mbsym.report.sections.small_parameters import PLAIN, lines, told
+from mbsym.report.sections.small_parameters import lines, told
 from mbsym.report.targets import TARGETS
 from mbsym.report.words.expansion_measured import orders_or_why
 
@@ -120,10 +121,11 @@ def test_where_there_is_none_it_is_told_why(duffing):
 def test_in_other_languages(language, duffing, limit_cycle):
     tongue, gaps = Language(language), re.compile(r"\[\[\w+\]\]")
     for analysis in (duffing, limit_cycle):
-        for one in told(analysis.small_parameters, analysis.system, PLAIN):
-            if not isinstance(one, list):
-                assert tongue.sentence(one[0]) != one[0]
-                assert set(gaps.findall(tongue.sentence(one[0]))) == set(gaps.findall(one[0]))
+        for block in told(analysis.small_parameters, analysis.system):
+            for one in getattr(block, "parts", ()):
+                assert isinstance(one, Said)
+                assert tongue.sentence(one.text) != one.text
+                assert set(gaps.findall(tongue.sentence(one.text))) == set(gaps.findall(one.text))
 
 
 def test_numbers_that_are_put_in_are_measured_with(duffing):

@@ -94,12 +94,12 @@ def test_latex_html_and_wolfram_hold_the_coefficients(damper):
 @pytest.mark.parametrize("language", ["ru", "es"])
 def test_every_sentence_is_said_in_other_languages(language, damper, shaken):
     tongue = Language(language)
-    from mbsym.report.sections.small_parameters import PLAIN, told
+    from mbsym.report.sections.small_parameters import told
 
     listed = [expansion_words.NOTHING, *expansion_words._FAST.values(), *expansion_words._SLOW.values()]
     for analysis in (damper, shaken):
-        found = told(analysis.small_parameters, analysis.system, PLAIN)
-        listed += [one[0] for one in found if not isinstance(one, list)]
+        found = told(analysis.small_parameters, analysis.system)
+        listed += [one.text for block in found for one in getattr(block, "parts", ())]
     for sentence in listed:
         assert tongue.sentence(sentence) != sentence
         gaps = re.compile(r"\[\[\w+\]\]")

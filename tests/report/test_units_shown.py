@@ -410,7 +410,7 @@ def test_dimensionless_results_have_no_physical_unit(tmp_path: Path) -> None:
     invoke("run", path, "--format", "latex", "--problems", "4,5,6", "--out", tmp_path / "out")
     text = (tmp_path / "out" / "report.tex").read_text(encoding="utf-8")
     assert r"[\mathrm{kg}\,\mathrm{m}^{2}]" in text
-    after = text[text.index("Unperturbed motion") :]
+    after = text[text.index("Problem 4. The unperturbed motion") :]
     assert "Eigenvalues" in after
     assert not re.search(r"\[\\mathrm\{(kg|m|s|rad)", after)
     assert len(re.findall(r"\[1/\\mathrm\{s\}\]", after)) == len(re.findall("Eigenvalues there", after))

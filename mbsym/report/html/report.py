@@ -5,7 +5,7 @@ What was found stands first.  Formulas are MathML; long ones are folded away beh
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from markupsafe import Markup, escape
@@ -24,34 +24,18 @@ from mbsym.report.html.description import (
 )
 from mbsym.report.html.diagram import diagram
 from mbsym.report.html.environment import page
-from mbsym.report.html.integrals import of_polynomials, of_symmetries
 from mbsym.report.html.motion import asked_motion
 from mbsym.report.html.writer import Writer
 from mbsym.report.language import Language
 from mbsym.report.lengths import COUNTED, PAPER, withheld
 from mbsym.report.results import Section, contents, results
-from mbsym.report.sections.invariant_sets import plain
-from mbsym.report.sections.small_parameters import told as of_small_parameters
-from mbsym.report.sections.stabilisation import decimal, polynomial
 from mbsym.report.summary import title_of
 from mbsym.report.unit_text import labelled
-from mbsym.report.words.expansion_words import Coefficient
-from mbsym.report.words.expansion_words import Medium as SmallMedium
-from mbsym.report.words.integrals_words import sentences as polynomial_sentences
-from mbsym.report.words.invariant_words import Medium as InvariantMedium
-from mbsym.report.words.invariant_words import closing, family_title, of_family, of_set, opening, told_families
-from mbsym.report.words.normal_form_words import Medium as HigherMedium
-from mbsym.report.words.normal_form_words import sentences as higher_sentences
-from mbsym.report.words.stabilisation_words import FEEDBACK, LYAPUNOV, Medium, sentences
 from mbsym.source.meaning import meaning
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
-    from mbsym.analysis.small import SmallParameters
     from mbsym.model.system import System
-    from mbsym.problems.invariant_sets import InvariantSets
-    from mbsym.problems.normal_forms import NormalForms
-    from mbsym.problems.stabilisation import Stabilisation
 
 #: The order of the sections: as a reader wants them, as in report.tex.
 ORDER = tuple(NUMBERS)
@@ -85,7 +69,6 @@ def context(
     known: dict[str, Callable[..., Any]] = {
         **_functions(long),
         "name": lambda name: Markup(str(names[name])),
-        "named": lambda items: shown.math(*_separated([str(names[name]) for name in items])),
         "dotted": lambda name: Markup(str(names[name].dotted("˙"))),
         "speed": lambda name: speed(name, names),
         "expression": lambda value: expression(value, names),
@@ -93,14 +76,6 @@ def context(
         "title": lambda number: _title(number, sections, system, writer),
         "unperturbed": lambda: _motion(analysis, names),
         "unit": lambda name: labelled("", unit_of(system, name)),
-        "stabilisation_sentences": lambda one: list(_of_stabilisation(one, names)),
-        "polynomial_integrals": of_polynomials,
-        "polynomial_symmetries": of_symmetries,
-        "polynomial_sentences": lambda one: list(_filled(polynomial_sentences(one.found))),
-        "normal_form_sentences": lambda one: list(_of_normal_forms(one, names)),
-        "invariant_paragraphs": lambda one: list(_of_invariant_sets(one, names)),
-        "small_parameter_lines": lambda one: list(_of_small_parameters(one, system, names)),
-        "decimal": decimal,
     }
     values = dict[str, Any](
         system=system,
@@ -112,8 +87,6 @@ def context(
         language=writer.language.name,
         failures={number: stage.failure for number, stage in stages.items() if stage.failure is not None},
         told=compact(analysis, {number: found.get(number) for number in problems}),
-        FEEDBACK=FEEDBACK,
-        LYAPUNOV=LYAPUNOV,
         claims=analysis.claims if whole else (),
         checks=analysis.checks if whole else (),
         diagram=diagram(system) if system.bodies else "",
@@ -137,94 +110,6 @@ def _title(part: int | str, sections: Mapping[int | str, Section[Markup]], syste
         return writer.said(sections[part].title)
     words = title_of(system, int(part))
     return escape(f"Problem {part}. {words[:1].upper()}{words[1:]}")
-
-
-def _of_normal_forms(found: NormalForms, names: MathNames) -> Iterator[Markup]:
-    """The sentences of problem 11, names and formulas in MathML."""
-    write = HigherMedium(
-        names=lambda listed: shown.math(*_separated([str(names[name]) for name in listed])),
-        formula=lambda x: shown.math(shown.inline(x)),
-        math=lambda plain, _: escape(plain),
-        word=lambda text: escape(text),
-    )
-    for text, values in higher_sentences(found, write):
-        yield from _filled([(text, {name: Markup(value) for name, value in values.items()})])
-
-
-def _of_stabilisation(found: Stabilisation, names: MathNames) -> Iterator[Markup]:
-    """The sentences of problem 8, names and formulas in MathML."""
-    write = Medium(
-        names=lambda listed: shown.math(*_separated([str(names[name]) for name in listed])),
-        condition=lambda x, relation: shown.math(shown.inline(x), mo(_SIGNS.get(relation, relation)), "<mn>0</mn>"),
-        formula=lambda x: shown.math(shown.inline(x)),
-        polynomial=lambda factor: escape(polynomial(factor)),
-        square=lambda x: escape("lambda**2 = -(") + shown.math(shown.inline(x)) + ")",
-        word=str,
-    )
-    for text, values in sentences(found, write):  # what stands in gaps is MathML, but for reasons and numbers
-        written = {name: Markup(value) if name != "why" else value for name, value in values.items()}
-        yield from _filled([(text, written)])
-
-
-def _of_invariant_sets(found: InvariantSets, names: MathNames) -> Iterator[list[Markup]]:
-    """Paragraphs of problem 10, names and formulas in MathML."""
-    if found.in_angles:  # names as in the formulas
-        names = mathml_names(found.integrals[0][1].ring)
-    write = InvariantMedium(
-        names=lambda listed: shown.math(*_separated([str(names[name]) for name in listed])),
-        condition=lambda x, relation: shown.math(shown.inline(x), mo(_SIGNS.get(relation, relation)), "<mn>0</mn>"),
-        value=lambda name, x: shown.math(str(names[name]), mo("="), shown.inline(x)),
-        rate=lambda name, x: shown.math(f"<mover>{names[name]}<mo>˙</mo></mover>", mo("="), shown.inline(x)),
-        formula=lambda x: shown.math(shown.inline(x)),
-        even=lambda factor: escape(plain(found).even(factor)),
-        word=lambda word: str(escape(word)),
-    )
-
-    def said(told: Iterable[tuple[str, dict[str, object]]]) -> list[Markup]:
-        return list(_filled((text, {k: Markup(v) for k, v in values.items()}) for text, values in told))
-
-    yield said(opening(found, write))
-    for family in told_families(found):
-        title = escape(f"K = {family_title(family, found)}")
-        yield [title, *said(of_family(family, write))]
-        for k, one in enumerate(family.sets, start=1):
-            yield said(of_set(one, k, write))
-    yield said(closing(found, write))
-
-
-def _of_small_parameters(found: SmallParameters, system: System, names: MathNames) -> Iterator[Markup]:
-    """The lines of problem 12, names and formulas in MathML."""
-    write = SmallMedium(
-        names=lambda listed: shown.math(*_separated([str(names[name]) for name in listed])),
-        formula=lambda x: shown.math(shown.inline(x)),
-        condition=lambda x, relation: shown.math(shown.inline(x), mo(_SIGNS.get(relation, relation)), "<mn>0</mn>"),
-        word=lambda word: str(escape(word)),
-    )
-    for one in of_small_parameters(found, system, write):
-        if isinstance(one, list):
-            yield from (_coefficient(x, names) for x in one)
-        else:
-            text, values = one
-            yield from _filled([(text, {name: Markup(value) for name, value in values.items()})])
-
-
-def _coefficient(one: Coefficient, names: MathNames) -> Markup:
-    symbol = str(names[one.variable])
-    if one.rate:
-        symbol = f"<mover>{symbol}<mo>˙</mo></mover>"
-    order = f"<mrow><mo>(</mo><mn>{one.order}</mn><mo>)</mo></mrow>"
-    return shown.math(f"<msup>{symbol}{order}</msup>", mo("="), shown.inline(one.formula))
-
-
-_SIGNS = {"!=": "≠", ">=": "≥"}
-
-
-def _filled(said_ones: Iterable[tuple[str, dict[str, object]]]) -> Iterator[Markup]:
-    for text, values in said_ones:
-        said = escape(text)
-        for name, value in values.items():
-            said = said.replace(f"[[{name}]]", escape(value))
-        yield said
 
 
 def _functions(long: frozenset[int]) -> dict[str, Callable[..., Any]]:

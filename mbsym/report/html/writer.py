@@ -99,10 +99,6 @@ class Writer:
         return formulas.prose(said, variable) if variable else escape(said)
 
     @inline.register
-    def _(self, value: content.Phrase) -> Markup:
-        return self._joined(value.parts)
-
-    @inline.register
     def _(self, value: content.Strong) -> Markup:
         key = Markup(' id="{}"').format(value.key) if value.key else ""
         grade = Markup(' class="{}"').format(value.grade) if value.grade else ""
@@ -115,6 +111,10 @@ class Writer:
     @inline.register
     def _(self, value: content.Link) -> Markup:
         return Markup('<a href="#{}">{}</a>').format(value.to, self.inline(value.text))
+
+    @inline.register
+    def _(self, value: content.Phrase) -> Markup:
+        return self._joined(value.parts)
 
     @inline.register
     def _(self, value: content.Emphasis) -> Markup:
@@ -175,6 +175,18 @@ class Writer:
     @math.register
     def _(self, value: content.Notation) -> str:
         return notation(value.tex)
+
+    @math.register
+    def _(self, value: content.Number) -> str:
+        return notation(value.tex)
+
+    @math.register
+    def _(self, value: content.Rows) -> str:
+        return table([list(map(self.math, row)) for row in value.rows])
+
+    @math.register
+    def _(self, value: content.Raised) -> str:
+        return power(self.math(value.of), bracketed(mn(value.index)))
 
     @math.register
     def _(self, value: content.Power) -> str:
@@ -395,7 +407,8 @@ def notation(tex: str) -> str:
     """Fixed notation as elements of MathML."""
     from latex2mathml.converter import convert  # few formulas need it
 
-    return re.sub(r"</?math[^>]*>", "", convert(re.sub(r"\\penalty\d+ ?", "", tex)))
+    elements = re.sub(r"</?math[^>]*>", "", convert(re.sub(r"\\penalty\d+ ?", "", tex)))
+    return re.sub(r'(?:<mi mathvariant="normal">\w</mi>){2,}', lambda m: mi(re.sub("<.*?>", "", m[0])), elements)
 
 
 def _untexed(text: str) -> Markup:

@@ -26,20 +26,13 @@ from mbsym.report.latex.formulas import (
     formula,
     measured_matrix,
 )
-from mbsym.report.latex.integrals import of_integrals, of_list, of_symmetries, weights_of
-from mbsym.report.latex.invariant import of_invariant_sets
 from mbsym.report.latex.labels import Labels, prefix_of
-from mbsym.report.latex.normal_forms import of_normal_forms
-from mbsym.report.latex.small import of_small_parameters
-from mbsym.report.latex.stabilisation import of_stabilisation, rational_matrix, rational_row
 from mbsym.report.latex.words import escaped, is_cyrillic
 from mbsym.report.latex.writer import Writer
 from mbsym.report.lengths import COUNTED, PAPER, PAPER_FORMS, withheld
 from mbsym.report.references import references
 from mbsym.report.results import contents, results
 from mbsym.report.unit_text import bracketed
-from mbsym.report.words.integrals_words import OPENING
-from mbsym.report.words.stabilisation_words import FEEDBACK, LYAPUNOV
 from mbsym.source.meaning import meaning
 
 if TYPE_CHECKING:
@@ -105,17 +98,6 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "contents": contents(known, writer.document),
         "problems": problems,
         "failures": {number: stage.failure for number, stage in stages.items() if stage.failure is not None},
-        "stabilisation_sentences": lambda one: of_stabilisation(one, names, tongue),
-        "polynomial_integrals": lambda one: of_integrals(one, tongue),
-        "polynomial_weights": lambda one: weights_of(one),
-        "polynomial_sentences": lambda one: of_list(one, tongue),
-        "polynomial_symmetries": lambda one: of_symmetries(one, tongue),
-        "OPENING": OPENING,
-        "normal_form_sentences": lambda one: of_normal_forms(one, names, tongue),
-        "invariant_paragraphs": lambda one: of_invariant_sets(one, names, tongue),
-        "small_parameter_lines": lambda one: of_small_parameters(one, system, names, tongue),
-        "FEEDBACK": FEEDBACK,
-        "LYAPUNOV": LYAPUNOV,
         "diagram": lambda: diagram(system, names, escaped, tongue.sentence("inertial frame"), form.picture),
         "cyrillic": tongue.name == "ru" or is_cyrillic(system),
     }
@@ -127,8 +109,6 @@ def _filters(analysis: Analysis, tongue: Language, long: frozenset[int], widest:
     system, names = analysis.system, latex_names(analysis.ring)
     return {
         "tex": escaped,
-        "rational_matrix": rational_matrix,
-        "rational_row": rational_row,
         "say": tongue.say,
         "name": lambda name: str(names[name]),
         "dotted": lambda name: names[name].accented("dot"),

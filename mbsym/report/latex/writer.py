@@ -11,7 +11,7 @@ from typing import Any
 
 from mbsym.expressions.tree import Expression
 from mbsym.formulas.formula import Formula
-from mbsym.formulas.latex import LatexNames, latex_names, latex_symbol
+from mbsym.formulas.latex import LatexNames, latex_matrix, latex_names, latex_symbol
 from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.report import content
 from mbsym.report.content import Inline, Said
@@ -162,6 +162,18 @@ class Writer:
         return value.tex
 
     @math.register
+    def _(self, value: content.Number) -> str:
+        return value.tex
+
+    @math.register
+    def _(self, value: content.Rows) -> str:
+        return latex_matrix([list(map(self.math, row)) for row in value.rows])
+
+    @math.register
+    def _(self, value: content.Raised) -> str:
+        return f"{{{self.math(value.of)}}}^{{({value.index})}}"
+
+    @math.register
     def _(self, value: content.Power) -> str:
         return f"{self.math(value.base)}^{{{value.exponent}}}"
 
@@ -223,7 +235,8 @@ class Writer:
 
     @block.register
     def _(self, value: content.Paragraph) -> str:
-        return self._joined(value.parts) + "\n"
+        written = self._joined(value.parts)
+        return f"{{\\raggedright {written}\\par}}" if value.ragged else written + "\n"
 
     @block.register
     def _(self, value: content.Display) -> str:

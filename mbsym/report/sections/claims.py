@@ -79,7 +79,8 @@ def _outcome(line: ClaimLine) -> tuple[Inline, ...]:
 def _difference(result: ClaimResult, number: int) -> Iterator[Block]:
     """By what a claim differs."""
     claim = result.claim
-    title = (Strong(claim.place), ", ", result.title) if claim.place else (Strong(result.title),)
+    about = titles([claim_line(result)])
+    title: tuple[Inline, ...] = (Strong(claim.place), ", ", about) if claim.place else (Strong(about),)
     if claim.right is None:
         yield paragraph(*title, ", ", Said("claimed"), ":")
         yield Display(claim.equals, f"claim:{number}")

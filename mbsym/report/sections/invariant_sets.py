@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
 from mbsym.problems.invariant_sets import (
     FirstApproximation,
@@ -15,14 +13,23 @@ from mbsym.problems.invariant_sets import (
     SecondVariation,
     StationarySet,
 )
+from mbsym.report.content import Block, Heading, Phrase, Said, ragged
 from mbsym.report.documents.results import invariant_sets as doc
-from mbsym.report.even_powers import in_even_powers
 from mbsym.report.plain import LONGEST, Write
-from mbsym.report.words.invariant_words import Medium, closing, family_title, of_family, of_set, opening, told_families
-from mbsym.report.words.said import filled
+from mbsym.report.plain_writer import Writer
+from mbsym.report.words.invariant_words import (
+    closing,
+    family_title,
+    of_family,
+    of_set,
+    opening,
+    ring_of,
+    told_families,
+)
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+    from mbsym.report.results import Results
 
 
 def data(found: InvariantSets, system: System, write: Write) -> doc.InvariantSets:
@@ -93,48 +100,31 @@ def _relations(relations: Sequence[Relation]) -> list[doc.SignCondition]:
     ]
 
 
-def lines(found: InvariantSets, analysis: Analysis) -> Iterator[str]:
-    """The lines in the terminal."""
-    write = plain(found)
-    yield from map(filled, opening(found, write))
+def content(results: Results) -> Iterator[Block]:
+    """What reports say."""
+    yield Heading("invariant-sets", Said("Problem 10. Steady motions and invariant manifolds"))
+    yield from results.missing(10)
+    if 10 not in results.found:
+        return
+    found: InvariantSets = results.found[10]
+    yield ragged(*opening(found))
     for family in told_families(found):
-        yield f"K = {family_title(family, found)}"
-        yield from (f"  {filled(said)}" for said in of_family(family, write))
+        yield ragged(Phrase((family_title(family, found), ":")), *of_family(family))
         for k, one in enumerate(family.sets, start=1):
-            first, *rest = map(filled, of_set(one, k, write))
+            yield ragged(*of_set(one, k, ring_of(found)))
+    if found.generic:
+        yield ragged(*closing(found))
+
+
+def lines(found: InvariantSets, analysis: Analysis) -> Iterator[str]:
+    """The lines in the terminal: sin(theta) for what has the name sin_theta in formulas."""
+    write = Writer(longest=LONGEST, images=dict(found.written))
+    yield from map(write.said, opening(found))
+    for family in told_families(found):
+        yield write.inline(family_title(family, found))
+        yield from (f"  {write.said(said)}" for said in of_family(family))
+        for k, one in enumerate(family.sets, start=1):
+            first, *rest = map(write.said, of_set(one, k, ring_of(found)))
             yield f"  {first}"
             yield from (f"    {text}" for text in rest)
-    yield from map(filled, closing(found, write))
-
-
-def plain(found: InvariantSets) -> Medium:
-    """Text, with sin(theta) for what is called sin_theta in JSON."""
-    images = dict(found.written)
-    pattern = re.compile(r"\b(?:" + "|".join(map(re.escape, images)) + r")\b") if images else None
-
-    def told(text: str) -> str:
-        return text if pattern is None else pattern.sub(lambda match: images[match[0]], text)
-
-    def short(x: Formula) -> str:
-        text = str(x)
-        return told(text) if len(text) <= LONGEST else f"({x.terms} terms; see the reports)"
-
-    def rate(name: str) -> str:
-        return f"d/dt {images[name]}" if name in images else f"{name}'"
-
-    return Medium(
-        names=lambda names: told(", ".join(names)),
-        condition=lambda x, relation: f"{short(x)} {relation} 0",
-        value=lambda name, x: f"{told(name)} = {short(x)}",
-        rate=lambda name, x: f"{rate(name)} = {short(x)}",
-        formula=short,
-        even=lambda factor: told(_even(factor)),
-        word=str,
-    )
-
-
-def _even(factor: Sequence[Formula]) -> str:
-    """``A*lambda**4 + (B + C)*lambda**2 + D`` of a polynomial in lambda**2, lowest coefficient first."""
-    if any(len(str(x)) > LONGEST for x in factor):
-        return f"a polynomial of degree {2 * len(factor) - 2} (see the reports)"
-    return in_even_powers([str(x) for x in factor], lambda k: f"lambda**{k}", "*")
+    yield from map(write.said, closing(found))

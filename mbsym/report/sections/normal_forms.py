@@ -7,17 +7,18 @@ from typing import TYPE_CHECKING, Any
 
 from flint import arb
 
-from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
 from mbsym.problems.normal_forms import Focus, InSymbols, Judged, NormalForms
+from mbsym.report.content import Block, Heading, Said, ragged
 from mbsym.report.documents.nonlinear import Determinant
 from mbsym.report.documents.results import normal_forms as doc
-from mbsym.report.plain import LONGEST, Write
-from mbsym.report.words.normal_form_words import Medium, sentences
-from mbsym.report.words.said import filled
+from mbsym.report.plain import Write
+from mbsym.report.plain_writer import TERMINAL
+from mbsym.report.words.normal_form_words import sentences
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+    from mbsym.report.results import Results
 
 
 def data(found: NormalForms, system: System, write: Write) -> doc.NormalForms:
@@ -78,14 +79,14 @@ def enclosure(x: Any) -> str:
     return str(x.str(20)) if isinstance(x, arb) else str(x)
 
 
+def content(results: Results) -> Iterator[Block]:
+    """What reports say."""
+    yield Heading("normal_forms", Said("Problem 11. Terms of higher order"))
+    yield from results.missing(11)
+    if 11 in results.found:
+        yield from map(ragged, sentences(results.found[11]))
+
+
 def lines(found: NormalForms, analysis: Analysis) -> Iterator[str]:
     """The lines in the terminal."""
-    yield from map(filled, sentences(found, PLAIN))
-
-
-def _short(x: Formula) -> str:
-    text = str(x)
-    return text if len(text) <= LONGEST else f"({x.terms} terms; see the reports)"
-
-
-PLAIN = Medium(names=", ".join, formula=_short, math=lambda plain, _: plain, word=str)
+    yield from map(TERMINAL.said, sentences(found))

@@ -5,20 +5,32 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
 from mbsym.problems.polynomial_integrals import Polynomials
 from mbsym.problems.symmetries import Symmetry
+from mbsym.report.content import Block, Display, Heading, Notation, Relation, Said, Words, ragged, say
 from mbsym.report.documents import integrals
 from mbsym.report.documents.results import polynomial_integrals as doc
 from mbsym.report.plain import LONGEST, Write
+from mbsym.report.plain_writer import TERMINAL
 from mbsym.report.symmetries_json import symmetries_data
 from mbsym.report.words import symmetry_words
-from mbsym.report.words.integrals_words import level_title, sentences, title, weights
-from mbsym.report.words.said import filled
+from mbsym.report.words.integrals_words import (
+    LEVEL,
+    LISTED,
+    OPENING,
+    level_title,
+    sentences,
+    title,
+    weighted,
+    weights_text,
+)
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+    from mbsym.formulas.formula import Formula
+    from mbsym.problems.symmetries import Symmetries
+    from mbsym.report.results import Results
 
 
 def data(result: Polynomials, system: System, write: Write) -> doc.PolynomialIntegrals:
@@ -57,30 +69,63 @@ def data(result: Polynomials, system: System, write: Write) -> doc.PolynomialInt
     )
 
 
+def content(results: Results) -> Iterator[Block]:
+    """What reports say."""
+    yield Heading("polynomial-integrals", Said("Problem 9. Polynomial integrals"))
+    yield from results.missing(9)
+    if 9 not in results.found:
+        return
+    result: Polynomials = results.found[9]
+    found = result.found
+    weights = weighted(result.variables, found.grading.weights)
+    yield ragged(say(OPENING, degree=str(found.degree), weights=weights))
+    for one, formula in zip(found.generators, result.formulas, strict=True):
+        yield ragged(say(LISTED, weight=str(one.weight), name=Words(title(one))))
+        yield _constant(formula)
+    for level, formulas in zip(result.levels, result.on_levels, strict=True):
+        zero, name = level.level, Words(title(level.level))
+        for (weight, _), formula in zip(level.integrals, formulas, strict=True):
+            yield ragged(say(LEVEL, weight=str(weight), own=str(zero.weight), name=name))
+            yield _constant(formula)
+    yield from map(ragged, sentences(found))
+    if result.symmetries is not None:
+        yield from _symmetries(result.symmetries)
+
+
+def _symmetries(found: Symmetries) -> Iterator[Block]:
+    """What each gives, with the integral where problem 7 does not list it; what is known of the list."""
+    yield ragged(Said(symmetry_words.OPENING))
+    for one in found.symmetries:
+        yield ragged(symmetry_words.gives(one, symmetry_words.field(one)))
+        if not one.name:
+            yield _constant(one.integral)
+    yield from map(ragged, symmetry_words.sentences(found))
+
+
+def _constant(formula: Formula) -> Display:
+    return Display(Relation(formula, "=", Notation("\\mathrm{const}")))
+
+
 def lines(result: Polynomials, analysis: Analysis) -> Iterator[str]:
     """The lines in the terminal."""
-    found = result.found
-    yield f"up to weighted degree {found.degree}; weights {weights(found)}"
+    found, write = result.found, TERMINAL.inline
+    weights = weights_text(found.field.variables, found.grading.weights)
+    yield f"up to weighted degree {found.degree}; weights {weights}"
     for one, formula in zip(found.generators, result.formulas, strict=True):
         if one.is_new:
-            yield f"{title(one)} of weight {one.weight}: {_short(formula)}"
+            yield f"{title(one)} of weight {one.weight}: {write(formula)}"
     for level, formulas in zip(result.levels, result.on_levels, strict=True):
         for (weight, _), formula in zip(level.integrals, formulas, strict=True):
-            yield f"{level_title(weight, level)}: {_short(formula)}"
-    yield from map(filled, sentences(found))
+            yield f"{level_title(weight, level)}: {write(formula)}"
+    yield from map(TERMINAL.said, sentences(found))
     if result.symmetries is not None:
-        yield symmetry_words.OPENING
+        yield TERMINAL.said(Said(symmetry_words.OPENING))
         for symmetry in result.symmetries.symmetries:
-            said = filled((symmetry_words.gives(symmetry), {"field": _field(symmetry), "name": symmetry.name}))
-            yield said if symmetry.name else f"{said} {_short(symmetry.integral)}"
-        yield from map(filled, symmetry_words.sentences(result.symmetries))
+            said = TERMINAL.said(symmetry_words.gives(symmetry, _field(symmetry)))
+            yield said if symmetry.name else f"{said} {write(symmetry.integral)}"
+        yield from map(TERMINAL.said, symmetry_words.sentences(result.symmetries))
 
 
 def _field(one: Symmetry) -> str:
     text = symmetry_words.field_text(one)
     return text if len(text) <= LONGEST else "(see the reports)"
-
-
-def _short(formula: Formula) -> str:
-    text = str(formula)
-    return text if len(text) <= LONGEST else f"({formula.terms} terms; see the reports)"

@@ -6,27 +6,20 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from mbsym.analysis.small import SmallParameters
-from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
+from mbsym.report.content import Block, Display, Heading, Paragraph, Said, ragged
 from mbsym.report.documents.results import small_parameters as doc
 from mbsym.report.expansion_json import expansion_data, measured_data
 from mbsym.report.oscillation_json import oscillation_data
-from mbsym.report.plain import LONGEST, Write
+from mbsym.report.plain import Write
+from mbsym.report.plain_writer import TERMINAL
 from mbsym.report.words import oscillation_words
 from mbsym.report.words.expansion_measured import JudgedAverage, averages, flow_measured, oscillation_measured
-from mbsym.report.words.expansion_words import (
-    Medium,
-    coefficients,
-    of_averaging,
-    of_measured,
-    of_none,
-    opening,
-    sentences,
-)
-from mbsym.report.words.said import Said, filled
+from mbsym.report.words.expansion_words import coefficients, of_averaging, of_measured, of_none, opening, sentences
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+    from mbsym.report.results import Results
 
 
 def data(found: SmallParameters, system: System, write: Write) -> doc.SmallParameters:
@@ -68,50 +61,39 @@ def _averaging(judged: JudgedAverage, write: Write) -> doc.Averaged:
     )
 
 
-def told(found: SmallParameters, system: System, write: Medium) -> Iterator[Said | list[Any]]:
-    """Sentences, and lists of coefficients where they stand between them."""
-    yield from of_none(found, write)
+def content(results: Results) -> Iterator[Block]:
+    """What reports say."""
+    yield Heading("small-parameters", Said("Problem 12. Small parameters"))
+    yield from results.missing(12)
+    if 12 in results.found:
+        yield from told(results.found[12], results.system)
+
+
+def told(found: SmallParameters, system: System) -> Iterator[Paragraph | Display]:
+    """Sentences, and coefficients where they stand between them."""
+    yield from map(ragged, of_none(found))
     if found.slow is not None:
-        yield from opening(found.slow, write)
-        yield list(coefficients(found.slow))
-        yield from sentences(found.slow, write)
-        yield from of_measured(found.small, flow_measured(found, system), write)
-    yield from _wave(found, system, write)
+        yield from map(ragged, opening(found.slow))
+        yield from (Display(x.equation) for x in coefficients(found.slow))
+        yield from map(ragged, sentences(found.slow))
+        yield from map(ragged, of_measured(found.small, flow_measured(found, system)))
+    yield from _wave(found, system)
     for one in averages(found, system):
-        yield from of_averaging(one, write)
+        yield from map(ragged, of_averaging(one))
 
 
-def _wave(found: SmallParameters, system: System, write: Medium) -> Iterator[Said | list[Any]]:
+def _wave(found: SmallParameters, system: System) -> Iterator[Paragraph | Display]:
     """The periodic solution."""
     told = found.oscillation
     if told is not None:
-        yield from oscillation_words.opening(told, write)
-        yield list(oscillation_words.coefficients(told))
-        yield from oscillation_words.sentences(told, write)
-        yield from oscillation_words.measured_sentences(told, oscillation_measured(found, system), write)
+        yield from map(ragged, oscillation_words.opening(told))
+        yield from (Display(x.equation) for x in oscillation_words.coefficients(told))
+        yield from map(ragged, oscillation_words.sentences(told))
+        yield from map(ragged, oscillation_words.measured_sentences(told, oscillation_measured(found, system)))
     elif found.small:
-        yield from oscillation_words.of_no_oscillation(found.small, found.no_oscillation, write)
+        yield from map(ragged, oscillation_words.of_no_oscillation(found.small, found.no_oscillation))
 
 
 def lines(found: SmallParameters, analysis: Analysis) -> Iterator[str]:
     """The lines in the terminal."""
-    for one in told(found, analysis.system, SHORT):
-        if isinstance(one, list):
-            yield from (f"  {x.variable}{mark(x.rate)}({x.order}) = {short(x.formula)}" for x in one)
-        else:
-            yield filled(one)
-
-
-def mark(rate: bool) -> str:
-    """What a rate has behind the name of its variable."""
-    return "'" if rate else ""
-
-
-def short(x: Formula) -> str:
-    text = str(x)
-    return text if len(text) <= LONGEST else f"({x.terms} terms; see the reports)"
-
-
-SHORT = Medium(names=", ".join, formula=short, condition=lambda x, relation: f"{short(x)} {relation} 0", word=str)
-#: The same, nothing shortened.
-PLAIN = Medium(names=", ".join, formula=str, condition=lambda x, relation: f"{x} {relation} 0", word=str)
+    return map(TERMINAL.line, told(found, analysis.system))

@@ -8,17 +8,31 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import asdict
 
-from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
 from mbsym.problems.stabilisation import Feedback, Locus, Rank, Stabilisation
+from mbsym.report.content import (
+    Block,
+    Display,
+    Heading,
+    Listed,
+    Relation,
+    Rows,
+    Said,
+    Symbol,
+    exact,
+    joined,
+    paragraph,
+    ragged,
+)
 from mbsym.report.documents.results import stabilisation as doc
-from mbsym.report.plain import LONGEST, Write
+from mbsym.report.plain import Write
+from mbsym.report.plain_writer import TERMINAL
 from mbsym.report.sections.stability import verdict_data
-from mbsym.report.words.said import filled
-from mbsym.report.words.stabilisation_words import FEEDBACK, LYAPUNOV, Medium, sentences
+from mbsym.report.words.stabilisation_words import FEEDBACK, LYAPUNOV, sentences
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+    from mbsym.report.results import Results
 
 
 def data(found: Stabilisation, system: System, write: Write) -> doc.Stabilisation:
@@ -113,43 +127,41 @@ def _numbers(rows: Sequence[Sequence[Fraction]]) -> list[list[str]]:
     return [list(map(str, row)) for row in rows]
 
 
+def content(results: Results) -> Iterator[Block]:
+    """What reports say."""
+    found: Stabilisation | None = results.found.get(8)
+    yield Heading("stabilisation", Said("Problem 8. Stabilisation"))
+    yield from results.missing(8)
+    if found is None:
+        return
+    yield paragraph(
+        Said(
+            "About the linear equations of problem 5, in physical time; asymptotic stability and instability carry "
+            "over to the equations of motion."
+        )
+    )
+    yield from map(ragged, sentences(found))
+    if found.feedback is None:
+        return
+    yield paragraph(Said(FEEDBACK))
+    yield Display(Relation(Symbol("k"), "=", _rows(found.feedback.gains)), "feedback")
+    told = Said("Characteristic polynomial of the closed loop, coefficients from the constant one on:")
+    yield paragraph(told, " ", joined(map(exact, found.feedback.characteristic), ", "), ".")
+    if found.feedback.lyapunov is not None:
+        yield paragraph(Said(LYAPUNOV))
+        yield Display(Relation(Symbol("P"), "=", _rows(found.feedback.lyapunov)), "lyapunov")
+
+
+def _rows(numbers: Sequence[Sequence[Fraction]]) -> Rows:
+    return Rows(tuple(tuple(map(exact, row)) for row in numbers))
+
+
 def lines(found: Stabilisation, analysis: Analysis) -> Iterator[str]:
     """The lines in the terminal."""
-    yield from map(filled, sentences(found, PLAIN))
+    yield from map(TERMINAL.said, sentences(found))
     if found.feedback is not None:
-        yield FEEDBACK
+        yield TERMINAL.said(Said(FEEDBACK))
         for name, row in zip(analysis.system.input_names, found.feedback.gains, strict=True):
-            yield f"  k of {name}: ({', '.join(map(decimal, row))})"
+            yield f"  k of {name}: {TERMINAL.inline(Listed(tuple(map(exact, row)), brackets=True))}"
         if found.feedback.lyapunov is not None:
-            yield LYAPUNOV
-
-
-def decimal(x: Fraction) -> str:
-    """A number that was rounded to some decimal digits, as it is."""
-    return f"{float(x):.12g}"
-
-
-def _short(text: str, formula: Formula) -> str:
-    return text if len(text) <= LONGEST else f"({formula.terms} terms; see the reports)"
-
-
-def polynomial(factor: Sequence[Formula]) -> str:
-    """``lambda**2 + k/m``, highest power first."""
-    powers = [f"lambda**{k}" if k > 1 else "lambda" if k else "" for k in range(len(factor))]
-    written = []
-    for x, power in reversed(list(zip(factor, powers, strict=True))):
-        if x.is_zero:
-            continue
-        text = _short(str(x), x)
-        written.append(power if power and text == "1" else f"({text})*{power}" if power else text)
-    return " + ".join(written)
-
-
-PLAIN = Medium(
-    names=", ".join,
-    condition=lambda x, relation: f"{_short(str(x), x)} {relation} 0",
-    formula=lambda x: _short(str(x), x),
-    polynomial=polynomial,
-    square=lambda x: f"lambda**2 = -({_short(str(x), x)})",
-    word=str,
-)
+            yield TERMINAL.said(Said(LYAPUNOV))

@@ -44,6 +44,7 @@ from mbsym.report.content import (
     Listed,
     Math,
     Notation,
+    Phrase,
     Polynomial,
     Readable,
     Relation,
@@ -51,6 +52,7 @@ from mbsym.report.content import (
     Subheading,
     Symbol,
     Text,
+    Unit,
     Words,
     named,
     paragraph,
@@ -59,8 +61,8 @@ from mbsym.report.content import (
 from mbsym.report.documents import parts
 from mbsym.report.documents.results import stability as doc
 from mbsym.report.plain import LONGEST, Write, shortened, statement_text
+from mbsym.report.plain_writer import Writer as PlainWriter
 from mbsym.report.references import keys_of, theorems_named
-from mbsym.report.unit_text import latex as unit_in_tex
 from mbsym.report.words.verdicts import concluded, decided, verdict
 
 if TYPE_CHECKING:
@@ -211,12 +213,12 @@ def content(results: Results) -> Iterator[Block]:
         for spectrum in found.spectra:
             names = named(spectrum.coordinates)
             roots = [part for root in numbers(spectrum) for part in (", ", *_root(root))][1:]
-            unit = unit_in_tex(rate_unit(results.system))
+            unit = rate_unit(results.system)
             yield paragraph(
                 say("Eigenvalues there, in physical time, of $[[names]]$", names=names),
                 ": ",
                 *roots,
-                *((" ", Notation(f"[{unit}]")) if unit else ()),
+                *((" ", Unit(unit)) if unit else ()),
                 ".",
             )
     theorems = [(name, keys_of(name)) for name in dict.fromkeys(theorems_named(found))]
@@ -348,7 +350,7 @@ def lines(found: Stability, analysis: Analysis) -> Iterator[str]:
         items = [] if part.theory.verdict.stable else list(statements(part.ring, part.theory.requirements))
         verdict = _verdict(part.theory.verdict)
         if part.theory.verdict.word in (Word.DEPENDS, Word.UNSTABLE_BUT_BORDERS) and items:
-            verdict += f"; {_heading(part.theory, items)}:"
+            verdict += f"; {PlainWriter().inline(kind_of_conditions(part.theory, items))}:"
         yield f"{', '.join(part.coordinates)}: {verdict}"
         shown = Shown()
         for item in items:
@@ -421,18 +423,19 @@ def _condition(item: Statement, shown: Shown) -> str:
     return f"{item.label}: {shortened(statement_text(item), 0 if item.formula is None else item.formula.terms)}{remark}"
 
 
-def _heading(theory: Theory, items: Sequence[Statement]) -> str:
+def kind_of_conditions(theory: Theory, items: Sequence[Statement]) -> Inline:
     """What the listed conditions are; some may say themselves what they are needed for."""
     if theory.method is Method.EVEN and not theory.potential:
         if any(item.remark for item in items):
-            return "conditions, necessary but for the case of equality where nothing else is said"
-        return "necessary conditions, but for the case of equality"
+            return Said("conditions, necessary but for the case of equality where nothing else is said")
+        return Said("necessary conditions, but for the case of equality")
     always = next((case.verdict for case in theory.cases if case.always), None)
     if always is not None and always.stable:
-        return f"{_verdict(always)} in any case, asymptotically stable under these conditions"
+        text = "[[verdict]] in any case, asymptotically stable under these conditions"
+        return say(text, verdict=Phrase(concluded(always.word, always.theorems)))
     if theory.method is Method.HURWITZ:  # a motion may be stable without them: where friction is zero, say
-        return f"conditions for {theory.wanted.replace(': ', ' (')})"
-    return "conditions"
+        return say("conditions ([[wanted]])", wanted=Words(theory.wanted))
+    return Said("conditions")
 
 
 def _verdict(verdict: Verdict) -> str:

@@ -6,12 +6,31 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from mbsym.formulas.formula import Column, Formula
 from mbsym.model.system import System
+from mbsym.problems.equations import Equations
 from mbsym.problems.equilibrium import Equilibrium
-from mbsym.problems.stability import Stability
+from mbsym.problems.stability import Stability, SubsystemStability
 from mbsym.problems.stability.word import Word
 from mbsym.report.brief import self_check, worst
-from mbsym.report.content import Block, Facts, Graded, Heading, Inline, Link, Said, Words, named, say
+from mbsym.report.conditions import statements
+from mbsym.report.content import (
+    Block,
+    Facts,
+    Graded,
+    Heading,
+    Inline,
+    Link,
+    Phrase,
+    Relation,
+    Said,
+    Words,
+    joined,
+    named,
+    say,
+)
+from mbsym.report.sections.canonical import TITLES
+from mbsym.report.sections.stability import kind_of_conditions
 from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line
 from mbsym.report.words.verdicts import decided, grade, verdict
 
@@ -24,7 +43,12 @@ Fact = tuple[tuple[Inline, ...], tuple[Inline, ...]]
 def content(results: Results) -> Iterator[Block]:
     """What reports say."""
     yield Heading("summary", Said("What was found"))
-    yield Facts(tuple(_facts(results)))
+    yield finding(results)
+
+
+def finding(results: Results) -> Facts:
+    """What was found, which heads every report and is all that the terminal tells."""
+    return Facts(tuple(_facts(results)))
 
 
 def _facts(results: Results) -> Iterator[Fact]:
@@ -32,8 +56,11 @@ def _facts(results: Results) -> Iterator[Fact]:
     yield _size(system)
     if 2 in found and found[2].cyclic and not system.constraints:
         yield (Said("Cyclic coordinates"),), (named(found[2].cyclic),)
+    if 3 in found and (equations := short_equations(found[3], system)):
+        written = [Relation(one, "=", 0) for one in equations]
+        yield (Said("Equations of motion"),), (joined(written, ";  "),)
     if 4 in found:
-        yield (Said("Unperturbed motion"),), _motion(found[4])
+        yield (Said("The unperturbed motion"),), _motion(found[4])
     if 6 in found:
         yield from _stability(found[6], results)
     if 7 in found:
@@ -44,21 +71,48 @@ def _facts(results: Results) -> Iterator[Fact]:
     if claims:
         count = Counter(claim_line(one).word for one in claims)
         gravest = next(word for word in (REFUTED, OPEN, HELD) if count[word])
-        text = "[[held]] hold, [[refuted]] do not, [[open]] undecided"
-        said = say(text, held=str(count[HELD]), refuted=str(count[REFUTED]), open=str(count[OPEN]))
+        said = say("all [[count]] hold", count=str(len(claims)))
+        if gravest != HELD:
+            text = "[[held]] hold, [[refuted]] do not, [[open]] undecided"
+            said = say(text, held=str(count[HELD]), refuted=str(count[REFUTED]), open=str(count[OPEN]))
         yield (Said("Claims"),), (Link(Graded(said, grade(gravest)), "claims"),)
+        for line in map(claim_line, claims):
+            if line.word != HELD:
+                place = (line.place, ", ") if line.place else ()
+                yield (Said("Claim"), " ", *place, line.title), (Graded(Words(line.outcome), grade(line.word)),)
     for number, failure in results.failures.items():
         link = Link(say("Problem [[number]]", number=str(number)), f"problem-{number}")
         yield (link,), (Said("no result"), ": ", Words(failure.reason))
+    for form, failure in results.forms.forms.failures:
+        yield (Said(TITLES[form]),), (Said("no result"), ": ", Words(failure.reason))
     checks = results.analysis.checks
     if checks:
         yield (Said("Self-check"),), (Link(Graded(self_check(checks), grade(worst(checks))), "checks"),)
 
 
+#: Longer formulas (in characters), and more equations, are left to the report.
+LONGEST, MOST_EQUATIONS = 220, 3
+#: Formulas with more terms are not even written to be measured.
+MOST_TERMS = 24
+
+
+def short_equations(found: Equations, system: System) -> Column:
+    """M q'' - f, where they are short enough to be read at a glance; constraints would add multipliers."""
+    many = len(found.forcing) > MOST_EQUATIONS or found.terms > MOST_TERMS * MOST_EQUATIONS
+    if many or found.constraints is not None:
+        return ()
+    written = found.equalities(system.coordinates)
+    return written if all(map(_is_short, written)) else ()
+
+
+def _is_short(value: Formula) -> bool:
+    return value.terms <= MOST_TERMS and len(value.readable()) <= LONGEST
+
+
 def _size(system: System) -> Fact:
-    freedom = str(len(system.coordinates))
+    freedom = Phrase((str(len(system.coordinates)), ": ", named(system.coordinates)))
     if system.linear:
-        return (Said("Degrees of freedom"),), (say("[[freedom]]; given by its matrices", freedom=freedom),)
+        return (Said("Degrees of freedom"),), (freedom, "; ", Said("given by its matrices"))
     bodies = str(len(system.bodies))
     if system.constraints:
         text = "[[bodies]]; coordinates: [[coordinates]]; constraints: [[constraints]]"
@@ -84,10 +138,37 @@ def _stability(found: Stability, results: Results) -> Iterator[Fact]:
     names = named(found.subsystems[0].coordinates)
     whole = (Said("Stability of the whole system"),) if several else (Said("Stability"), ", ", names)
     depends = found.verdict.word is Word.DEPENDS
-    yield (*whole, *presumed), (*verdict(found.verdict, "verdict"), *(cases if depends else ()))
+    yield (
+        (*whole, *presumed),
+        (
+            *verdict(found.verdict, "verdict"),
+            *(cases if depends else ()),
+            *(() if several else _conditions(found.subsystems[0])),
+        ),
+    )
     for part in found.subsystems if several else ():
         others = (", ", Said("while the others keep to the unperturbed motion"))
-        yield (Said("Stability"), ", ", named(part.coordinates), *presumed), (*verdict(part.theory.verdict), *others)
+        said = (*verdict(part.theory.verdict), *others, *_conditions(part))
+        yield (Said("Stability"), ", ", named(part.coordinates), *presumed), said
     if found.numerical is not None:
         said = verdict(found.numerical, "verdict-at-values")
         yield (Said("At the given values of the parameters"), Words(decided(found))), said
+
+
+def _conditions(part: SubsystemStability) -> Iterator[Inline]:
+    """The conditions that a verdict depends on, where they are short, else their number."""
+    if part.theory.verdict.word not in (Word.DEPENDS, Word.UNSTABLE_BUT_BORDERS):
+        return
+    items = list(statements(part.ring, part.theory.requirements))
+    if not items:
+        return
+    yield from ("; ", kind_of_conditions(part.theory, items), ": ")
+    if all(one.formula is not None and _is_short(one.formula) for one in items):
+        shown: list[Inline] = []
+        for one in items:
+            assert one.formula is not None
+            remark = (" (", Words(one.remark), ")") if one.remark else ()
+            shown.append(Phrase((Relation(one.formula, one.relation, 0), *remark)))
+        yield joined(shown, ", ")
+    else:
+        yield Link(say("[[count]] in number", count=str(len(items))), "problem-6")

@@ -105,13 +105,14 @@ def together(lines: Iterable[ClaimLine]) -> Iterator[list[ClaimLine]]:
             yield from ([line] for line in found)
 
 
-def titles(lines: Iterable[ClaimLine]) -> str:
+def titles(lines: Iterable[ClaimLine]) -> Inline:
     """What several claims are about: ``mass matrix [theta, theta], [theta, delta]; angular velocity of A [1]``."""
     stems: dict[str, list[str]] = {}
     for line in lines:
         stem, bracket, index = line.title.partition(" [")
         stems.setdefault(stem, []).extend([bracket.strip() + index] if bracket else [])
-    return "; ".join(f"{stem} {', '.join(indices)}".strip() for stem, indices in stems.items())
+    told = (Phrase((Words(stem), *((" ", ", ".join(indices)) if indices else ()))) for stem, indices in stems.items())
+    return joined(told, "; ")
 
 
 def _differences(result: ClaimResult) -> Iterator[str]:

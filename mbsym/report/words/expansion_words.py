@@ -1,8 +1,8 @@
-"""What is said of problem 12: sentences with gaps, filled by whoever writes them (terminal, LaTeX, HTML)."""
+"""What is said of problem 12."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -15,8 +15,8 @@ from mbsym.problems.small_parameter.result import Outcome
 from mbsym.problems.stability import Stability
 from mbsym.problems.stability.word import Word
 from mbsym.report.conditions import statements
+from mbsym.report.content import Gaps, Inline, Name, Phrase, Raised, Relation, Said, Words, named, say
 from mbsym.report.words.expansion_measured import SLACK, JudgedAverage
-from mbsym.report.words.said import Said
 
 if TYPE_CHECKING:
     from mbsym.simulation.averaged import Measured as MeasuredAverage
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 SERIES = (
     "Slow integral manifold up to order [[order]] of [[small]]: the fast variables [[fast]] as functions of the slow "
-    "ones [[slow]], and the flow on it. The coefficient of the power k of [[small]] has the index (k)."
+    "ones [[slow]], and the flow on it. The coefficient of the power $k$ of [[small]] has the index $(k)$."
 )
 NOTHING = (
     "The description names no small parameter, and no prescribed quantity has a parameter as its rate: nothing is "
@@ -37,24 +37,14 @@ TOO_SLOW = (
 #: Of an effective potential that the program's own measurement contradicts.
 WITHDRAWN = (
     "The result of averaging over [[phase]] is withdrawn: over a time of [[time]] the largest distance of the motion "
-    "from the averaged one, as a part of its size, is [[distances]] at the given values, and with epsilon a half and a "
-    "quarter of it; it changes like the power [[orders]] of epsilon instead of 1."
+    "from the averaged one, as a part of its size, is [[distances]] at the given values, and with $\\epsilon$ a half "
+    "and a quarter of it; it changes like the power [[orders]] of $\\epsilon$ instead of 1."
 )
 
 
 def too_slow(orders: Sequence[float], expected: int) -> bool:
     """Whether the last of the measured orders falls short of the expected one."""
     return bool(orders) and orders[-1] < expected - SLACK
-
-
-@dataclass(frozen=True)
-class Medium:
-    """How a medium writes names, a formula, ``formula relation 0``, a word."""
-
-    names: Callable[[Sequence[str]], str]
-    formula: Callable[[Formula], str]
-    condition: Callable[[Formula, str], str]
-    word: Callable[[str], str]
 
 
 @dataclass(frozen=True)
@@ -66,34 +56,38 @@ class Coefficient:
     order: int
     formula: Formula
 
+    @property
+    def equation(self) -> Relation:
+        return Relation(Raised(Name(self.variable, int(self.rate)), self.order), "=", self.formula)
+
 
 _FAST = {
-    Outcome.HOLDS: "The manifold attracts near this motion for all sufficiently small [[small]] > 0 (proved: Hurwitz's "
-    "minors of the fast roots, by their first coefficients).",
-    Outcome.CONDITIONAL: "The manifold attracts near this motion for all sufficiently small [[small]] > 0 where "
+    Outcome.HOLDS: "The manifold attracts near this motion for all sufficiently small $[[small]] > 0$ (proved: "
+    "Hurwitz's minors of the fast roots, by their first coefficients).",
+    Outcome.CONDITIONAL: "The manifold attracts near this motion for all sufficiently small $[[small]] > 0$ where "
     "[[conditions]] (proved: Hurwitz's minors of the fast roots, by their first coefficients).",
-    Outcome.FAILS: "The manifold does not attract near this motion for any sufficiently small [[small]] > 0 (proved: a "
-    "Hurwitz minor of the fast roots is negative).",
+    Outcome.FAILS: "The manifold does not attract near this motion for any sufficiently small $[[small]] > 0$ "
+    "(proved: a Hurwitz minor of the fast roots is negative).",
     Outcome.UNDECIDED: "Whether the manifold attracts near this motion is undecided: a Hurwitz minor of the fast roots "
     "vanishes to the order of the expansion, or has no sign.",
 }
 #: Where no root is zero by itself.
 _ALL = {
-    Outcome.HOLDS: "All roots of the flow on it have negative real parts for all sufficiently small [[small]] > 0 "
+    Outcome.HOLDS: "All roots of the flow on it have negative real parts for all sufficiently small $[[small]] > 0$ "
     "(proved in first approximation).",
-    Outcome.CONDITIONAL: "All roots of the flow on it have negative real parts for all sufficiently small [[small]] "
-    "> 0 where [[conditions]] (proved in first approximation).",
-    Outcome.FAILS: "Not all roots of the flow on it have negative real parts for sufficiently small [[small]] > 0 "
+    Outcome.CONDITIONAL: "All roots of the flow on it have negative real parts for all sufficiently small "
+    "$[[small]] > 0$ where [[conditions]] (proved in first approximation).",
+    Outcome.FAILS: "Not all roots of the flow on it have negative real parts for sufficiently small $[[small]] > 0$ "
     "(proved in first approximation).",
 }
 #: Where some are, by coordinates on which nothing depends.
 _SLOW = {
     Outcome.HOLDS: "All roots of the flow on it but [[zeros]] that are zero have negative real parts for all "
-    "sufficiently small [[small]] > 0 (proved in first approximation).",
+    "sufficiently small $[[small]] > 0$ (proved in first approximation).",
     Outcome.CONDITIONAL: "All roots of the flow on it but [[zeros]] that are zero have negative real parts for all "
-    "sufficiently small [[small]] > 0 where [[conditions]] (proved in first approximation).",
+    "sufficiently small $[[small]] > 0$ where [[conditions]] (proved in first approximation).",
     Outcome.FAILS: "Of the flow on it, not all roots but [[zeros]] that are zero have negative real parts for "
-    "sufficiently small [[small]] > 0 (proved in first approximation).",
+    "sufficiently small $[[small]] > 0$ (proved in first approximation).",
     Outcome.UNDECIDED: "Whether the roots of the flow on it have negative real parts is undecided: a Hurwitz minor "
     "vanishes to the order of the expansion, or has no sign.",
 }
@@ -115,65 +109,63 @@ def of_series(found: Expansion, one: Series) -> Iterator[tuple[int, Formula]]:
         yield k, found.formula(listed[k])
 
 
-def opening(found: Expansion, write: Medium) -> Iterator[Said]:
+def opening(found: Expansion) -> Iterator[Said]:
     """What is expanded in what."""
     manifold = found.manifold
-    small = write.names([manifold.field.small])
-    yield from scaled(manifold.field.powers, manifold.field.small, write)
-    values: dict[str, object] = {"order": manifold.order, "small": small}
-    yield SERIES, values | {"fast": write.names(manifold.fast), "slow": write.names(manifold.slow)}
+    small = Name(manifold.field.small)
+    yield from scaled(manifold.field.powers, manifold.field.small)
+    fast, slow = named(manifold.fast), named(manifold.slow)
+    yield say(SERIES, order=str(manifold.order), small=small, fast=fast, slow=slow)
 
 
-def scaled(powers: Iterable[tuple[str, int]], small: str, write: Medium) -> Iterator[Said]:
+def scaled(powers: Iterable[tuple[str, int]], small: str) -> Iterator[Said]:
     """What stands for its product with a power of the small parameter."""
     for name, power in powers:
-        yield (
-            "[[name]] is multiplied by the power [[power]] of [[small]].",
-            {"name": write.names([name]), "power": power, "small": write.names([small])},
-        )
+        text = "[[name]] is multiplied by the power [[power]] of [[small]]."
+        yield say(text, name=Name(name), power=str(power), small=Name(small))
 
 
-def sentences(found: Expansion, write: Medium) -> Iterator[Said]:
+def sentences(found: Expansion) -> Iterator[Said]:
     """What was checked, and what is known of the motion on the manifold and towards it."""
     manifold = found.manifold
     least = [one for one in manifold.residuals if one is not None]
-    values: dict[str, object] = {"small": write.names([manifold.field.small]), "order": manifold.order}
+    values: Gaps = {"small": Name(manifold.field.small), "order": str(manifold.order)}
     if least:
-        yield (
+        yield Said(
             "Put into the equations at a random rational state, it leaves terms of order [[left]] (verified).",
-            values | {"left": min(least)},
+            values | {"left": str(min(least))},
         )
     else:
-        yield "Put into the equations at a random rational state, it leaves nothing (verified).", values
+        yield Said("Put into the equations at a random rational state, it leaves nothing (verified).", values)
     if found.provided:
-        yield (
+        yield say(
             "It holds where these are not zero, which were divided by: [[provided]].",
-            {"provided": ", ".join(map(write.formula, found.provided))},
+            provided=found.provided,
         )
     if manifold.steady is None:
-        yield "Nothing is said of stability: [[missing]].", {"missing": write.word(found.missing)}
+        yield say("Nothing is said of stability: [[missing]].", missing=Words(found.missing))
         return
-    values["zeros"] = manifold.steady.zeros
+    values["zeros"] = str(manifold.steady.zeros)
     outcome, conditions = found.fast
-    yield _FAST[outcome], values | {"conditions": _told(found, conditions, write)}
+    yield Said(_FAST[outcome], values | {"conditions": _told(found, conditions)})
     if len(manifold.steady.slow.polynomial) > 1:
         outcome, conditions = found.slow
         told = _SLOW if manifold.steady.zeros else _SLOW | _ALL
-        yield told[outcome], values | {"conditions": _told(found, conditions, write)}
+        yield Said(told[outcome], values | {"conditions": _told(found, conditions)})
     elif manifold.steady.zeros:
-        yield "All roots of the flow on it are zero: the first approximation decides nothing there.", {}
-    yield (
+        yield Said("All roots of the flow on it are zero: the first approximation decides nothing there.")
+    yield Said(
         "The characteristic polynomial of all variables is divided by that of the flow without a remainder up to order "
         "[[known]] (verified).",
-        values | {"known": manifold.steady.remainder - 1},
+        values | {"known": str(manifold.steady.remainder - 1)},
     )
     if found.fast[0] is Outcome.FAILS:  # a negative minor: a root to the right, whatever the flow on the manifold does
-        yield (
-            "A fast root has a positive real part: this motion is unstable for all sufficiently small [[small]] > 0.",
+        yield Said(
+            "A fast root has a positive real part: this motion is unstable for all sufficiently small $[[small]] > 0$.",
             values,
         )
         return
-    yield (
+    yield Said(
         "By the reduction principle (Strygin and Sobolev) a steady state on an attracting slow manifold is stable, "
         "asymptotically stable or unstable as it is in the flow on it. How small [[small]] has to be is not known "
         "from this: at given values problem 6 decides.",
@@ -181,127 +173,127 @@ def sentences(found: Expansion, write: Medium) -> Iterator[Said]:
     )
 
 
-def of_measured(small: str, told: Measured | str, write: Medium) -> Iterator[Said]:
+def of_measured(small: str, told: Measured | str) -> Iterator[Said]:
     """The error of the flow against all equations."""
     if isinstance(told, str):
-        yield "The error of the flow was not measured: [[why]].", {"why": write.word(told)}
+        yield say("The error of the flow was not measured: [[why]].", why=Words(told))
         return
-    values: dict[str, object] = {"small": write.names([small]), "time": f"{told.time:.4g}"}
+    values: Gaps = {"small": Name(small), "time": f"{told.time:.4g}"}
     values["distances"] = ", ".join(f"{x:.2g}" for x in told.distances)
     if told.exact:
-        yield (
+        yield Said(
             "Measured against a simulation of all equations over a time of [[time]]: the distance of the slow "
             "variables is no larger than the errors of the integrations.",
             values,
         )
         return
-    yield (
+    yield Said(
         "Measured against a simulation of all equations over a time of [[time]], both from the manifold: the largest "
         "distance of the slow variables, as a part of their size, is [[distances]] at the given [[small]], a half "
         "and a quarter of it.",
         values,
     )
     if told.orders:
-        yield (
+        yield Said(
             "It shrinks like the power [[orders]] of [[small]]; [[expected]] is expected where [[small]] is small "
             "enough.",
-            values | {"orders": ", ".join(f"{x:.1f}" for x in told.orders), "expected": told.expected},
+            values | {"orders": ", ".join(f"{x:.1f}" for x in told.orders), "expected": str(told.expected)},
         )
         if too_slow(told.orders, told.expected):
-            yield TOO_SLOW, {}
+            yield Said(TOO_SLOW)
 
 
-def of_averaging(told: JudgedAverage, write: Medium) -> Iterator[Said]:
+def of_averaging(told: JudgedAverage) -> Iterator[Said]:
     """The effective potential, what problem 6 says with it, and the error that was measured.
 
     Of one that the measurement contradicts nothing is said but that.
     """
     one = told.one
-    phase = write.names([one.phase])
+    phase = Name(one.phase)
     if one.found is None:
-        yield "Averaging over [[phase]] gives nothing: [[why]].", {"phase": phase, "why": write.word(one.failure)}
+        yield say("Averaging over [[phase]] gives nothing: [[why]].", phase=phase, why=Words(one.failure))
         return
-    yield (
-        "Averaged over the phase [[phase]]. Its rate [[rate]] is taken as of order 1/epsilon, and what is not named "
-        "here as of order 1.",
-        {"phase": phase, "rate": write.names([one.found.rate])},
+    yield say(
+        "Averaged over the phase [[phase]]. Its rate [[rate]] is taken as of order $1/\\epsilon$, and what is not "
+        "named here as of order 1.",
+        phase=phase,
+        rate=Name(one.found.rate),
     )
     for power in sorted({power for _, power in one.found.orders}):
         names = [name for name, k in one.found.orders if k == power]
-        yield (
-            "Taken as of the order of the power [[power]] of epsilon: [[names]].",
-            {"power": power, "names": write.names(names)},
+        yield say(
+            "Taken as of the order of the power [[power]] of $\\epsilon$: [[names]].",
+            power=str(power),
+            names=named(names),
         )
     if told.withdrawn:
         assert not isinstance(told.measured, str)
-        yield WITHDRAWN, {"phase": phase} | _measures(told.measured)
+        yield say(WITHDRAWN, phase=phase, **_measures(told.measured))
         return
-    yield (
-        "For times of order 1 the motion stays within order epsilon of one in the effective potential below (averaging "
-        "theorem).",
-        {},
+    yield Said(
+        "For times of order 1 the motion stays within order $\\epsilon$ of one in the effective potential below "
+        "(averaging theorem)."
     )
-    yield "What the fast phase adds: [[formula]].", {"formula": write.formula(one.found.vibrational)}
-    yield "Effective potential: [[formula]].", {"formula": write.formula(one.found.potential)}
+    yield say("What the fast phase adds: [[formula]].", formula=one.found.vibrational)
+    yield say("Effective potential: [[formula]].", formula=one.found.potential)
     if one.found.beside:
-        yield (
+        yield say(
             "Beside it act the forces on [[names]] that have no force function here, as they did.",
-            {"names": write.names(one.found.beside)},
+            names=named(one.found.beside),
         )
-    yield from _of_averaged_motion(one, write)
-    yield from _of_measured_average(told.measured, write)
+    yield from _of_averaged_motion(one)
+    yield from _of_measured_average(told.measured)
 
 
-def _of_averaged_motion(one: Averaging, write: Medium) -> Iterator[Said]:
+def _of_averaged_motion(one: Averaging) -> Iterator[Said]:
     assert one.analysis is not None
     stage = one.analysis.stage(6)
     if stage.value is None:
-        yield (
+        yield say(
             "Of the stability of the averaged motion there is no result: [[why]].",
-            {"why": write.word("" if stage.failure is None else stage.failure.reason)},
+            why=Words("" if stage.failure is None else stage.failure.reason),
         )
         return
     found: Stability = stage.value
     equilibrium = one.analysis.equilibrium
     if equilibrium.conditions:
-        told = ", ".join(write.condition(x, "=") for x in equilibrium.conditions)
-        yield "The averaged motion is there where [[conditions]].", {"conditions": told}
+        told = tuple(Relation(x, "=", 0) for x in equilibrium.conditions)
+        yield say("The averaged motion is there where [[conditions]].", conditions=told)
     for part in found.subsystems:
         verdict = part.theory.verdict
-        values: dict[str, object] = {"names": write.names(part.coordinates), "word": write.word(verdict.word.value)}
-        yield "The averaged motion, not the motion itself, by problem 6: [[names]]: [[word]].", values
+        text = "The averaged motion, not the motion itself, by problem 6: [[names]]: [[word]]."
+        yield say(text, names=named(part.coordinates), word=Words(verdict.word.value))
         items = [] if verdict.stable else list(statements(part.ring, part.theory.requirements))
         if verdict.word is Word.DEPENDS and items:
             written = [
-                f"{write.condition(x.formula, x.relation)} ({write.word(x.place.value)})"
+                Phrase((Relation(x.formula, x.relation, 0), " (", Words(x.place.value), ")"))
                 for x in items
                 if x.formula is not None
             ]
             if written:
-                yield (
-                    "What problem 6 asks of the parameters: [[conditions]].",
-                    {"conditions": ", ".join(written)},
-                )
+                yield say("What problem 6 asks of the parameters: [[conditions]].", conditions=written)
             if len(written) < len(items):
-                yield "Further conditions are not written out here.", {}
+                yield Said("Further conditions are not written out here.")
     if found.numerical is not None:
-        yield "At the given values: [[word]].", {"word": write.word(found.numerical.word.value)}
+        yield say("At the given values: [[word]].", word=Words(found.numerical.word.value))
 
 
-def _of_measured_average(told: MeasuredAverage | str, write: Medium) -> Iterator[Said]:
+def _of_measured_average(told: MeasuredAverage | str) -> Iterator[Said]:
     if isinstance(told, str):
-        yield "The distance to the averaged motion was not measured: [[why]].", {"why": write.word(told)}
+        yield say("The distance to the averaged motion was not measured: [[why]].", why=Words(told))
         return
-    values = _measures(told)
-    yield (
+    values: Gaps = {**_measures(told)}
+    yield Said(
         "Measured over a time of [[time]]: the largest distance of the motion from the averaged one, as a part of its "
-        "size, is [[distances]] at the given values, and with epsilon a half and a quarter of it.",
+        "size, is [[distances]] at the given values, and with $\\epsilon$ a half and a quarter of it.",
         values,
     )
-    yield "It shrinks like the power [[orders]] of epsilon; 1 is expected where epsilon is small enough.", values
+    yield Said(
+        "It shrinks like the power [[orders]] of $\\epsilon$; 1 is expected where $\\epsilon$ is small enough.", values
+    )
 
 
-def _measures(told: MeasuredAverage) -> dict[str, object]:
+def _measures(told: MeasuredAverage) -> dict[str, str]:
     return {
         "time": f"{told.time:.4g}",
         "distances": ", ".join(f"{x:.2g}" for x in told.distances),
@@ -309,24 +301,25 @@ def _measures(told: MeasuredAverage) -> dict[str, object]:
     }
 
 
-def of_none(found: SmallParameters, write: Medium) -> Iterator[Said]:
+def of_none(found: SmallParameters) -> Iterator[Said]:
     """What is said where there is nothing to expand in, or no slow manifold was found."""
     if found.nothing:
-        yield NOTHING, {}
+        yield Said(NOTHING)
     elif found.small and found.slow is None:
-        yield (
+        yield say(
             "No slow manifold was found in powers of [[small]]: [[why]].",
-            {"small": write.names([found.small]), "why": write.word(found.no_slow)},
+            small=Name(found.small),
+            why=Words(found.no_slow),
         )
 
 
-def _told(found: Expansion, conditions: Sequence[Condition], write: Medium) -> str:
+def _told(found: Expansion, conditions: Sequence[Condition]) -> tuple[Inline, ...]:
     ring = found.transfer.ring
-    parts = []
+    parts: dict[str, Inline] = {}  # each once
     for one in conditions:
         if one.kind == "inequality":
-            parts.append(write.condition(Formula(ring, one.polynomial), ">"))
+            parts[f"{one.polynomial} > 0"] = Relation(Formula(ring, one.polynomial), ">", 0)
         elif one.kind == "unwritten":
-            parts.append(write.word("a condition too long to be written out"))
-        parts += [write.condition(Formula(ring, p), "!=") for p in one.nonzero]
-    return ", ".join(dict.fromkeys(parts))
+            parts[""] = Words("a condition too long to be written out")
+        parts |= {f"{p} != 0": Relation(Formula(ring, p), "!=", 0) for p in one.nonzero}
+    return tuple(parts.values())

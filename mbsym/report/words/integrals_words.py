@@ -1,4 +1,4 @@
-"""What is said of polynomial integrals: sentences with gaps, filled by whoever writes them."""
+"""What is said of polynomial integrals."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from typing import Any
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.problems.polynomial_integrals import FUNCTION, Case, Generator, OnLevel, PolynomialIntegrals
-from mbsym.report.words.said import Said
+from mbsym.report.content import Gaps, Inline, Phrase, Said, Words, joined, named, say
+from mbsym.report.plain_writer import Writer
 
 #: One integral of a list, and one that holds where another is zero.
 LISTED = "Weight [[weight]], [[name]]:"
@@ -20,17 +21,17 @@ OPENING = (
 HEADING = "Polynomial first integrals up to weighted degree [[degree]]"
 
 
-def weights(found: PolynomialIntegrals) -> str:
+def weights_text(variables: Sequence[Inline], given: Sequence[int]) -> str:
     """``p, q, r: 1; gamma1, gamma2, gamma3: 2``."""
-    return weights_text(found.field.variables, found.grading.weights)
+    return Writer().inline(weighted(variables, given))
 
 
-def weights_text(variables: Sequence[str], given: Sequence[int]) -> str:
-    """The same of variables and their weights."""
-    groups: dict[int, list[str]] = {}
-    for name, weight in zip(variables, given, strict=True):
-        groups.setdefault(weight, []).append(name)
-    return "; ".join(f"{', '.join(names)}: {weight}" for weight, names in groups.items())
+def weighted(variables: Sequence[Inline], given: Sequence[int]) -> Phrase:
+    """The same as a value: those of each weight together."""
+    groups: dict[int, list[Inline]] = {}
+    for one, weight in zip(variables, given, strict=True):
+        groups.setdefault(weight, []).append(one)
+    return joined((Phrase((joined(items, ", "), f": {weight}")) for weight, items in groups.items()), "; ")
 
 
 def title(one: Generator) -> str:
@@ -69,43 +70,39 @@ def _equation(p: Any, write: Callable[[Any], str]) -> str:
 
 def sentences(found: PolynomialIntegrals) -> Iterator[Said]:
     """What is known of the list as a whole."""
-    values: dict[str, object] = {"degree": found.degree, "count": found.independent, "names": aside_text(found)}
+    values: Gaps = {"degree": str(found.degree), "count": str(found.independent), "names": named(found.aside)}
     if not found.generators:
         vectors = found.field.relations and not any(name.startswith("sin(") for name in found.field.variables)
         none = _NONE_BUT_LENGTHS if vectors else _NONE
         none = _NONE_WITHOUT if found.aside and not vectors else none
-        yield none[bool(found.field.parameters)] if found.complete else "None was found.", values
+        yield Said(none[bool(found.field.parameters)] if found.complete else "None was found.", values)
         yield from _left_out(found)
         return
-    yield "As functions at least [[count]] of them are independent (proved: rank of the gradients).", values
+    yield Said("As functions at least [[count]] of them are independent (proved: rank of the gradients).", values)
     if any(one.name.startswith("product of ") for one in found.generators):
-        yield _TRIVIAL, values
+        yield Said(_TRIVIAL, values)
     for one in found.generators:
         if not one.independent:
-            yield _DEPENDENT[one.certainty], {"name": title(one), "weight": one.weight}
+            yield say(_DEPENDENT[one.certainty], name=Words(title(one)), weight=str(one.weight))
     if found.complete:
-        yield _EVERY[bool(found.aside)][bool(found.field.parameters)], values
+        yield Said(_EVERY[bool(found.aside)][bool(found.field.parameters)], values)
     yield from _left_out(found)
     for count in found.counts:
         if not count.complete:
-            yield (
+            yield say(
                 "Of weight [[weight]] there are at most [[more]] more; they were not found within the budget.",
-                {"weight": count.weight, "more": count.most - count.products},
+                weight=str(count.weight),
+                more=str(count.most - count.products),
             )
     if found.complete and not found.new and all(one.name != FUNCTION for one in found.generators):
-        yield (_NO_OTHER_WITHOUT if found.aside else _NO_OTHER)[bool(found.field.parameters)], values
-
-
-def aside_text(found: PolynomialIntegrals) -> str:
-    """``x, y``: positions without a force, and others on which no equation depends, are no variables."""
-    return ", ".join(found.aside)
+        yield Said((_NO_OTHER_WITHOUT if found.aside else _NO_OTHER)[bool(found.field.parameters)], values)
 
 
 def _left_out(found: PolynomialIntegrals) -> Iterator[Said]:
     """x' - B y, of a charge in a magnetic field, is not looked for, nor the area integral of a free body."""
     if found.aside:
         text = "The equations do not contain [[names]]: integrals that do are not looked for here."
-        yield text, {"names": aside_text(found)}
+        yield say(text, names=named(found.aside))
 
 
 _EVERY = {

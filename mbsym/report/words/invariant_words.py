@@ -1,10 +1,13 @@
-"""What is said of problem 10: sentences with gaps, filled by whoever writes them (terminal, LaTeX, HTML)."""
+"""What is said of problem 10.
+
+Names are those of ``ring``, in which the formulas are: sines and cosines have names of their own there.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
 
+from mbsym.algebra.ring import Ring
 from mbsym.formulas.formula import Formula
 from mbsym.problems.invariant_sets import (
     Definiteness,
@@ -13,48 +16,52 @@ from mbsym.problems.invariant_sets import (
     Gap,
     InvariantSets,
     Kind,
-    Relation,
     SecondVariation,
     StationarySet,
 )
-from mbsym.report.words.said import Said
+from mbsym.problems.invariant_sets import Relation as Sign
+from mbsym.report.content import (
+    Gaps,
+    Math,
+    Name,
+    Notation,
+    Polynomial,
+    Relation,
+    Said,
+    Words,
+    joined,
+    named,
+    say,
+)
 
 
-@dataclass(frozen=True)
-class Medium:
-    """How a medium writes names, ``formula relation 0``, ``name = formula``, ``name' = formula``, a formula, a word."""
-
-    names: Callable[[Sequence[str]], str]
-    condition: Callable[[Formula, str], str]
-    value: Callable[[str, Formula], str]
-    rate: Callable[[str, Formula], str]
-    formula: Callable[[Formula], str]
-    even: Callable[[Sequence[Formula]], str]
-    word: Callable[[str], str]
+def ring_of(found: InvariantSets) -> Ring | None:
+    """The ring of its formulas."""
+    return next((x.ring for _, x in found.integrals), None)
 
 
-def opening(found: InvariantSets, write: Medium) -> Iterator[Said]:
+def opening(found: InvariantSets) -> Iterator[Said]:
     """What the families are made of."""
-    yield (
-        "Families K of first integrals with constant multipliers; a motion that begins where grad K = 0 stays there.",
-        {},
+    yield Said(
+        "Families $K$ of first integrals with constant multipliers; a motion that begins where $\\mathrm{grad}\\, K = "
+        "0$ stays there."
     )
     for k, (name, formula) in enumerate(found.integrals):
-        yield "V[[k]], [[name]]: [[formula]].", {"k": k, "name": write.word(name), "formula": write.formula(formula)}
+        yield say("[[symbol]], [[name]]: [[formula]].", symbol=_integral(k), name=Words(name), formula=formula)
     if found.left_out:
-        names = ", ".join(map(write.word, found.left_out))
-        yield (
-            "Left out of the families, as functions of these (verified at a random state): [[names]].",
-            {"names": names},
+        names = tuple(map(Words, found.left_out))
+        yield say(
+            "Left out of the families, as functions of these (verified at a random state): [[names]].", names=names
         )
     if found.relations:
-        relations = ", ".join(write.condition(one, "=") for one in found.relations)
-        yield "Between the variables: [[relations]].", {"relations": relations}
+        yield say("Between the variables: [[relations]].", relations=_zeros(found.relations))
         text = "Of the zero roots of a first approximation so many belong to these relations, and to no motion: [[n]]."
-        yield text, {"n": len(found.relations)}
-    yield "What is said of stability is about these variables: [[names]].", {"names": write.names(found.variables)}
+        yield say(text, n=str(len(found.relations)))
+    yield say(
+        "What is said of stability is about these variables: [[names]].", names=named(found.variables, ring_of(found))
+    )
     if found.in_angles and found.relations:
-        yield "Multipliers of the geometry are Lagrange's: along a motion only the others are constant.", {}
+        yield Said("Multipliers of the geometry are Lagrange's: along a motion only the others are constant.")
 
 
 def told_families(found: InvariantSets) -> list[Family]:
@@ -66,61 +73,66 @@ def _is_empty(family: Family) -> bool:
     return not (family.sets or family.unfinished or family.singular or family.parts)
 
 
-def family_title(family: Family, whole: InvariantSets) -> str:
-    """``K = V0 + lambda1 V1 + lambda2 V2``, in letters that every medium has."""
+def family_title(family: Family, whole: InvariantSets) -> Relation:
+    """K = V0 + lambda1 V1 + lambda2 V2."""
     first = len(whole.integrals) - len(family.integrals)
-    terms = [f"{name}*V{first + k + 1}" for k, name in enumerate(family.multipliers)]
-    return " + ".join([f"V{first}", *terms])
+    parts: list[Math | str] = [Notation("K"), "=", _integral(first)]
+    for k, name in enumerate(family.multipliers, start=first + 1):
+        parts += ["+", Name(name, ring=ring_of(whole)), _integral(k)]
+    return Relation(*parts)
 
 
-def of_family(family: Family, write: Medium) -> Iterator[Said]:
+def _integral(k: int) -> Notation:
+    return Notation(f"V_{{{k}}}")
+
+
+def of_family(family: Family) -> Iterator[Said]:
     if _is_empty(family):
-        yield "It has no stationary points for almost all parameters (proved).", {}
+        yield Said("It has no stationary points for almost all parameters (proved).")
     if family.unfinished:
-        yield (
+        yield say(
             "Branches left aside, because they are beyond the budget or no point of them was found: [[n]]; some may be "
             "empty, and there may be further sets.",
-            {"n": family.unfinished},
+            n=str(family.unfinished),
         )
     if family.singular:
-        yield (
+        yield say(
             "Branches on which the coordinates are singular, left aside: [[n]]; some may have no real points.",
-            {"n": family.singular},
+            n=str(family.singular),
         )
     if family.parts:
-        yield "Pieces that are not invariant by themselves, left aside: [[n]].", {"n": family.parts}
+        yield say("Pieces that are not invariant by themselves, left aside: [[n]].", n=str(family.parts))
 
 
-def of_set(one: StationarySet, number: int, write: Medium) -> Iterator[Said]:
+def of_set(one: StationarySet, number: int, ring: Ring | None) -> Iterator[Said]:
     """What is known of one set."""
-    equations = [write.value(name, x) for name, x in one.solved] + [write.condition(x, "=") for x in one.relations]
-    gaps: dict[str, object] = {
-        "number": number,
-        "equations": ", ".join(equations),
-        "dimension": one.dimension,
-        "union": one.union,
+    gaps: Gaps = {
+        "number": str(number),
+        "equations": (*_values(one.solved, ring), *_zeros(one.relations)),
+        "dimension": str(one.dimension),
+        "union": str(one.union),
     }
     if one.kind is Kind.STEADY:
-        yield "Set [[number]], steady motions: [[equations]].", gaps
+        yield Said("Set [[number]], steady motions: [[equations]].", gaps)
         if one.union:
-            yield "They form a family of dimension [[union]].", gaps
+            yield Said("They form a family of dimension [[union]].", gaps)
     else:
         text = "Set [[number]], an invariant manifold of dimension [[dimension]] for fixed multipliers: [[equations]]."
-        yield text, gaps
+        yield Said(text, gaps)
     if one.nonzero:
-        yield "There [[nonzero]].", {"nonzero": ", ".join(write.condition(x, "!=") for x in one.nonzero)}
-    told = [write.value(name, x) for name, x in one.multipliers if x is not None]
+        yield say("There [[nonzero]].", nonzero=_zeros(one.nonzero, "!="))
+    told = _values([(name, x) for name, x in one.multipliers if x is not None], ring)
     if told:
-        yield "Multipliers: [[told]].", {"told": ", ".join(told)}
+        yield say("Multipliers: [[told]].", told=told)
     if one.motion:
-        yield "On it: [[motion]].", {"motion": ", ".join(write.rate(name, x) for name, x in one.motion)}
-    yield _INVARIANT[one.invariant], {}
+        yield say("On it: [[motion]].", motion=_values(one.motion, ring, 1))
+    yield Said(_INVARIANT[one.invariant])
     if not one.real:
-        yield "No real point was found at the parameters that were tried: whether it has any is open.", {}
+        yield Said("No real point was found at the parameters that were tried: whether it has any is open.")
     if one.variation is not None:
-        yield from _variation(one, one.variation, write)
+        yield from _variation(one, one.variation, ring)
     if one.first is not None:
-        yield from _first(one.first, write)
+        yield from _first(one.first)
         yield from _gap(one)
 
 
@@ -131,38 +143,43 @@ _INVARIANT = {
 }
 
 
-def _all(relations: Sequence[Relation], write: Medium) -> str:
-    return ", ".join(write.condition(one.formula, one.relation) for one in relations)
+def _values(given: Iterable[tuple[str, Formula]], ring: Ring | None, dots: int = 0) -> tuple[Relation, ...]:
+    return tuple(Relation(Name(name, dots, ring), "=", x) for name, x in given)
 
 
-def _variation(one: StationarySet, found: SecondVariation, write: Medium) -> Iterator[Said]:
+def _zeros(formulas: Iterable[Formula], relation: str = "=") -> tuple[Relation, ...]:
+    return tuple(Relation(x, relation, 0) for x in formulas)
+
+
+def _all(signs: Iterable[Sign]) -> tuple[Relation, ...]:
+    return tuple(Relation(one.formula, one.relation, 0) for one in signs)
+
+
+def _variation(one: StationarySet, found: SecondVariation, ring: Ring | None) -> Iterator[Said]:
     if not one.invariant:
         return
     steady = one.kind is Kind.STEADY
     if found.outcome is Definiteness.STABLE:
-        yield (
-            (
-                "Stable (proved: the second variation of K on the level of the integrals is definite)."
-                if steady
-                else "Stable as a set, near motions on it that stay bounded (proved: K is definite across it)."
-            ),
-            {},
+        yield Said(
+            "Stable (proved: the second variation of $K$ on the level of the integrals is definite)."
+            if steady
+            else "Stable as a set, near motions on it that stay bounded (proved: $K$ is definite across it)."
         )
     elif found.outcome is Definiteness.CONDITIONAL:
-        sides = [_all(side, write) for side in (found.positive, found.negative) if side is not None]
-        chosen: dict[str, object] = {"chosen": write.names(found.chosen), "first": sides[0], "second": sides[-1]}
+        sides = [_all(side) for side in (found.positive, found.negative) if side is not None]
+        chosen: Gaps = {"chosen": named(found.chosen, ring), "first": sides[0], "second": sides[-1]}
         if found.chosen and steady:
-            yield "Sufficient for stability, for some value of [[chosen]]: [[first]].", chosen
+            yield Said("Sufficient for stability, for some value of [[chosen]]: [[first]].", chosen)
         elif found.chosen:
-            yield _AS_A_SET_FOR_SOME, chosen
+            yield Said(_AS_A_SET_FOR_SOME, chosen)
         elif steady:
-            yield "Sufficient for stability: [[first]].", chosen
+            yield Said("Sufficient for stability: [[first]].", chosen)
         else:
-            yield "Sufficient for stability as a set, near motions on it that stay bounded: [[first]].", chosen
+            yield Said("Sufficient for stability as a set, near motions on it that stay bounded: [[first]].", chosen)
         if len(sides) == 2:
-            yield "Or, with K of the other sign: [[second]].", chosen
+            yield Said("Or, with $K$ of the other sign: [[second]].", chosen)
     else:
-        yield _NOTHING[found.outcome], {}
+        yield Said(_NOTHING[found.outcome])
 
 
 _AS_A_SET_FOR_SOME = (
@@ -176,40 +193,48 @@ _NOTHING = {
 }
 
 
-def _first(found: FirstApproximation, write: Medium) -> Iterator[Said]:
+def _first(found: FirstApproximation) -> Iterator[Said]:
     if found.factors:
-        factors = ", ".join(write.even(factor) for factor in found.factors)
+        factors = tuple(map(_even, found.factors))
         if found.left:
             text = "First approximation: zero roots: [[zeros]]; among the others are the roots of [[factors]]."
-            yield text, {"zeros": found.zeros, "factors": factors}
+            yield say(text, zeros=str(found.zeros), factors=factors)
         elif found.zeros:
             text = "First approximation: zero roots: [[zeros]]; the others are roots of [[factors]]."
-            yield text, {"zeros": found.zeros, "factors": factors}
+            yield say(text, zeros=str(found.zeros), factors=factors)
         else:
-            yield "First approximation: roots of [[factors]].", {"factors": factors}
+            yield say("First approximation: roots of [[factors]].", factors=factors)
     if found.left:
-        text = "Roots of factors that are not even in lambda, not looked at here but for signs of coefficients: [[n]]."
-        yield text, {"n": found.left}
+        text = (
+            "Roots of factors that are not even in $\\lambda$, not looked at here but for signs of coefficients: [[n]]."
+        )
+        yield say(text, n=str(found.left))
     if found.unstable:
-        yield "Unstable (proved by the first approximation).", {}
+        yield Said("Unstable (proved by the first approximation).")
         return
     plain = [one for one in found.necessary if not one.unless]
     if plain:
-        yield "Necessary for stability: [[conditions]].", {"conditions": _all(plain, write)}
+        yield say("Necessary for stability: [[conditions]].", conditions=_all(plain))
     for one in found.necessary:
         if one.unless:
-            unless = " or ".join(write.condition(x, "=") for x in one.unless)
-            gaps: dict[str, object] = {"condition": _all([one], write), "unless": unless}
-            yield "Necessary for stability: [[condition]], unless [[unless]].", gaps
+            unless = joined(_zeros(one.unless), " ", Said("or"), " ")
+            gaps: Gaps = {"condition": _all([one]), "unless": unless}
+            yield Said("Necessary for stability: [[condition]], unless [[unless]].", gaps)
     if not found.complete:
-        yield "Further necessary conditions were not written out.", {}
+        yield Said("Further necessary conditions were not written out.")
+
+
+def _even(factor: Sequence[Formula]) -> Polynomial:
+    """A polynomial in lambda^2, lowest coefficient first."""
+    zero = factor[0] * 0
+    return Polynomial(tuple(x for one in factor for x in (one, zero))[:-1], "lambda")
 
 
 def _gap(one: StationarySet) -> Iterator[Said]:
     if one.gap is Gap.FOUND:
-        yield (_GAP_FOR_SOME if one.variation is not None and one.variation.chosen else _GAP), {}
+        yield Said(_GAP_FOR_SOME if one.variation is not None and one.variation.chosen else _GAP)
     elif one.gap is Gap.NONE_FOUND:
-        yield _NO_GAP, {}
+        yield Said(_NO_GAP)
 
 
 _GAP = (
@@ -226,7 +251,7 @@ _NO_GAP = (
 )
 
 
-def closing(found: InvariantSets, write: Medium) -> Iterator[Said]:
+def closing(found: InvariantSets) -> Iterator[Said]:
     if found.generic:
-        zeros = ", ".join(write.condition(one, "!=") for one in found.generic)
-        yield "All this is for parameters with [[zeros]]; others were not looked at.", {"zeros": zeros}
+        text = "All this is for parameters with [[zeros]]; others were not looked at."
+        yield say(text, zeros=_zeros(found.generic, "!="))

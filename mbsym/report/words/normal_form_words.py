@@ -1,18 +1,16 @@
-"""What is said of problem 11: sentences with gaps, filled by whoever writes them (terminal, LaTeX, HTML)."""
+"""What is said of problem 11."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import Any
 
 from flint import arb
 
-from mbsym.formulas.formula import Formula
 from mbsym.problems.normal_forms import Focus, InSymbols, Judged, NormalForms, Outcome, Theorem, Why
 from mbsym.problems.stability.word import Word
-from mbsym.report.words.said import Said
+from mbsym.report.content import Gaps, Math, Notation, Number, Relation, Said, Words, named, say
 
 #: Digits of enclosed numbers.
 DIGITS = 10
@@ -25,7 +23,7 @@ REASONS = {
     Why.EQUAL_FREQUENCIES: "Frequencies are equal or are not told apart, and what would decide then is not proved.",
     Why.EQUAL_MORE: "Frequencies are equal or are not told apart, the energy is not shown to be definite, and there "
     "are more than two degrees of freedom: Sokolskii's theorems are of two.",
-    Why.CONE_OPEN: "Frequencies are equal, with two eigenvectors for each root, and on the cone where H2 = 0 the "
+    Why.CONE_OPEN: "Frequencies are equal, with two eigenvectors for each root, and on the cone where $H_2 = 0$ the "
     "normal form of fourth order is not proved to be without zeros, nor to have a simple one: terms "
     "of higher order may decide.",
     Why.ZERO_TWO: "Zero is a double root with two eigenvectors, or a root of higher multiplicity, or this is not "
@@ -42,9 +40,9 @@ REASONS = {
     Why.RESONANCE: "A resonance holds that the theorems for frequencies without resonances exclude.",
     Why.RESONANT_TERM_OPEN: "The resonant term of third order is not told from zero.",
     Why.EQUALITY: "The two sides of Markeev's inequality are not told apart.",
-    Why.DETERMINANT_OPEN: "The determinants D4 and D6 are not told from zero, or resonances of order 5 or 6 are not "
-    "excluded.",
-    Why.FORM_OPEN: "H4 has a zero in the cone of actions Omega.I = 0, or this is not excluded.",
+    Why.DETERMINANT_OPEN: "The determinants $D_4$ and $D_6$ are not told from zero, or resonances of order 5 or 6 are "
+    "not excluded.",
+    Why.FORM_OPEN: "$H_4$ has a zero in the cone of actions $\\Omega \\cdot I = 0$, or this is not excluded.",
     Why.COEFFICIENT_OPEN: "The coefficients of second and third order on the centre manifold vanish, or are not told "
     "from zero: terms of higher order may decide.",
     Why.MORE_PAIRS: "More than one pair of roots is imaginary, and there are applied forces: not decided.",
@@ -56,274 +54,224 @@ REASONS = {
 #: Arnold and Moser's theorem asks for a normal form of fourth order in the actions alone, however that comes about.
 ABSENT = (
     "The terms that the resonance of third order would leave are exactly zero, so that the normal form of fourth order "
-    "holds the actions alone, and D4 is not zero: the motion is stable (Arnold-Moser)."
+    "holds the actions alone, and $D_4$ is not zero: the motion is stable (Arnold-Moser)."
 )
 
 #: What each theorem asks, as far as it was shown.
 THEOREMS = {
     Theorem.DEFINITE: "The quadratic part of the Hamiltonian is definite: the motion is stable (Dirichlet).",
-    Theorem.ARNOLD_MOSER: "No resonance up to order 4 holds and D4 is not zero: the motion is stable (Arnold-Moser).",
-    Theorem.ARNOLD_MOSER_6: "No resonance up to order 6 holds and D6 is not zero: the motion is stable, whether D4 is "
-    "zero or not (Arnold-Moser, order 6).",
+    Theorem.ARNOLD_MOSER: "No resonance up to order 4 holds and $D_4$ is not zero: the motion is stable "
+    "(Arnold-Moser).",
+    Theorem.ARNOLD_MOSER_6: "No resonance up to order 6 holds and $D_6$ is not zero: the motion is stable, whether "
+    "$D_4$ is zero or not (Arnold-Moser, order 6).",
     Theorem.THIRD: "The resonant term of third order is not zero: the motion is unstable (Markeev).",
     Theorem.THIRD_OF_MORE: "One resonance of third order alone holds, the signs of the energies in it let all its "
     "amplitudes grow together, and its term is not zero: the motion is unstable (Markeev; Khazina).",
     Theorem.EQUAL: "The frequencies are equal exactly, with one eigenvector for each root: by the sign of a "
     "coefficient of the normal form of fourth order the motion is [[word]] (Sokolskii).",
     Theorem.EQUAL_TWO: "The frequencies are equal exactly, with two eigenvectors for each root: by the zeros of "
-    "the normal form of fourth order on the cone where H2 = 0 the motion is [[word]] "
+    "the normal form of fourth order on the cone where $H_2 = 0$ the motion is [[word]] "
     "(Sokolskii; Cabral and Meyer).",
     Theorem.DEFINITE_HIGHER: "A root is zero.  With the other variables eliminated the energy begins with [[a]] times "
     "the power [[degree]] of the deviation of [[name]]: a strict minimum or maximum, the motion is stable (Dirichlet).",
     Theorem.ZERO: "A root is zero.  With the other variables eliminated the energy begins with [[a]] times the power "
     "[[degree]] of the deviation of [[name]]: by the parity of that power and the sign of its coefficient against that "
     "of the quadratic part the motion is [[word]] (Sokolskii, resonance of first order).",
-    Theorem.BRUNO: "No resonance up to order 4 holds, and H4 has no zero in the cone of actions Omega.I = 0: the "
-    "motion is formally stable (Bruno); stability in Lyapunov's sense is not proved.",
-    Theorem.ARNOLD: "No resonance up to order 4 holds, and H4 is not degenerate: invariant tori fill most of the "
+    Theorem.BRUNO: "No resonance up to order 4 holds, and $H_4$ has no zero in the cone of actions $\\Omega \\cdot I "
+    "= 0$: the motion is formally stable (Bruno); stability in Lyapunov's sense is not proved.",
+    Theorem.ARNOLD: "No resonance up to order 4 holds, and $H_4$ is not degenerate: invariant tori fill most of the "
     "neighbourhood of the motion, it is stable for most initial states (Arnold); stability in Lyapunov's sense is not "
     "proved.",
 }
 
 
-@dataclass(frozen=True)
-class Medium:
-    """How a medium writes names, a formula, mathematics that is given plainly and in LaTeX, a word."""
-
-    names: Callable[[tuple[str, ...]], str]
-    formula: Callable[[Formula], str]
-    math: Callable[[str, str], str]
-    word: Callable[[str], str]
-
-
-def sentences(found: NormalForms, write: Medium) -> Iterator[Said]:
+def sentences(found: NormalForms) -> Iterator[Said]:
     """Everything, in order."""
     if found.cyclic:
-        names: dict[str, object] = {"names": write.names(found.cyclic)}
+        names: Gaps = {"names": named(found.cyclic)}
         if found.conservative:
-            yield (
+            yield Said(
                 "What is said is about the system without its cyclic coordinates [[names]], whose momenta keep their "
                 "unperturbed values.",
                 names,
             )
         else:
-            yield "What is said is about the other coordinates and all velocities; [[names]] are cyclic.", names
+            yield Said("What is said is about the other coordinates and all velocities; [[names]] are cyclic.", names)
     if found.conservative and not found.coordinates:
-        yield "All coordinates are cyclic: without them nothing is left that could be judged.", {}
+        yield Said("All coordinates are cyclic: without them nothing is left that could be judged.")
         return
     if found.taken_in:
-        yield (
-            "The applied forces have a generalized potential (Helmholtz's conditions): Lagrange's function takes it "
-            "in.",
-            {},
+        yield Said(
+            "The applied forces have a generalized potential (Helmholtz's conditions): Lagrange's function takes it in."
         )
     if found.first is not None:
-        yield (
-            "At the given values problem 6 says without terms of higher order: [[word]].",
-            {"word": write.word(found.first.value)},
+        yield say(
+            "At the given values problem 6 says without terms of higher order: [[word]].", word=Words(found.first.value)
         )
     if found.at_values is not None:
-        yield from _judged(found.at_values, found, write)
+        yield from _judged(found.at_values, found)
     if isinstance(found.in_symbols, InSymbols):
-        yield from _in_symbols(found.in_symbols, found.everywhere, write)
+        yield from _in_symbols(found.in_symbols, found.everywhere)
     elif isinstance(found.in_symbols, Focus):
-        yield from _focus(found.in_symbols, write)
+        yield from _focus(found.in_symbols)
     elif found.no_symbols:
-        yield "There is no formula in parameters: [[why]].", {"why": write.word(found.no_symbols)}
+        yield say("There is no formula in parameters: [[why]].", why=Words(found.no_symbols))
     elif found.at_values is None:
-        yield "There is no formula in parameters here; with numbers for all of them it may be decided.", {}
+        yield Said("There is no formula in parameters here; with numbers for all of them it may be decided.")
 
 
-def _judged(found: Judged, whole: NormalForms, write: Medium) -> Iterator[Said]:
+def _judged(found: Judged, whole: NormalForms) -> Iterator[Said]:
     if found.frequencies and whole.conservative:
-        values = ", ".join(map(decimal, found.frequencies))
-        yield (
-            "Frequencies with the signs of their energies: [[values]] (enclosed).",
-            {"values": write.math(values, values.replace("e", "\\mathrm{e}"))},
-        )
+        text = "Frequencies with the signs of their energies: [[values]] (enclosed)."
+        yield say(text, values=tuple(map(_number, found.frequencies)))
     for one in found.resonances:
-        plain, tex = _relation(one.vector)
-        yield (
-            "A resonance of order [[order]] holds exactly: [[relation]].",
-            {
-                "order": write.math(str(one.order), str(one.order)),
-                "relation": write.math(plain, tex),
-            },
-        )
+        text = "A resonance of order [[order]] holds exactly: [[relation]]."
+        yield say(text, order=str(one.order), relation=_relation(one.vector))
     if found.quadratic:
-        plain, tex = _form(found.quadratic)
-        yield "Normal form of fourth order in the actions: [[form]].", {"form": write.math(plain, tex)}
+        yield say("Normal form of fourth order in the actions: [[form]].", form=_form(found.quadratic))
     for order, value in found.determinants:
-        text = decimal(value)
-        yield (
-            "[[name]] = [[value]].",
-            {
-                "name": write.math(f"D{order}", f"D_{order}"),
-                "value": write.math(text, _tex(text)),
-            },
-        )
+        yield say("$[[symbol]] = [[value]]$.", symbol=Notation(f"D_{order}"), value=_number(value))
     if found.theorem is Theorem.FIRST:
-        yield "The first approximation decides: the motion is [[word]].", {"word": write.word(found.outcome.value)}
+        yield say("The first approximation decides: the motion is [[word]].", word=Words(found.outcome.value))
     elif found.theorem is Theorem.FOURTH and found.sides is not None:
-        left, right = map(decimal, found.sides)
+        left, right = map(_number, found.sides)
         greater = found.outcome is Outcome.STABLE
-        yield (
+        yield say(
             "Markeev's inequality of the resonance of fourth order: [[left]] is greater than [[right]], the motion is "
             "stable."
             if greater
             else "Markeev's inequality of the resonance of fourth order: [[left]] is less than [[right]], the motion "
             "is unstable.",
-            {"left": write.math(left, _tex(left)), "right": write.math(right, _tex(right))},
+            left=left,
+            right=right,
         )
     elif found.theorem is Theorem.REDUCTION:
-        yield from _centre(found, write)
+        yield from _centre(found)
     elif found.theorem in THEOREMS:
         if found.theorem is Theorem.EQUAL and found.coefficient is not None:
-            text = decimal(found.coefficient)
-            yield (
-                "In Sokolskii's normal form of equal frequencies delta A = [[value]].",
-                {"value": write.math(text, _tex(text))},
-            )
+            text = "In Sokolskii's normal form of equal frequencies $\\delta A = [[value]]$."
+            yield say(text, value=_number(found.coefficient))
         absent = found.theorem is Theorem.ARNOLD_MOSER and any(one.order <= 4 for one in found.resonances)
-        yield ABSENT if absent else THEOREMS[found.theorem], _gaps(found, write)
+        yield Said(ABSENT if absent else THEOREMS[found.theorem], _gaps(found))
     if found.why in REASONS and found.outcome is Outcome.UNDECIDED:
-        yield REASONS[found.why], {}
+        yield Said(REASONS[found.why])
     weak = found.outcome in (Outcome.UNDECIDED, Outcome.FORMAL, Outcome.MOST)
     if weak and whole.first is not None and not whole.first.open:
-        yield "That is no matter: problem 6 has decided already.", {}
+        yield Said("That is no matter: problem 6 has decided already.")
 
 
-def _gaps(found: Judged, write: Medium) -> dict[str, object]:
+def _gaps(found: Judged) -> Gaps:
     """What the sentence of a theorem names."""
     text = THEOREMS[found.theorem]
-    gaps: dict[str, object] = {}
-    if "[[word]]" in text:
-        gaps["word"] = write.word(found.outcome.value)
+    gaps: Gaps = {"word": Words(found.outcome.value)} if "[[word]]" in text else {}
     if "[[degree]]" in text:
-        a = decimal(found.coefficient)
-        gaps |= {
-            "name": write.names((found.along,)),
-            "degree": write.math(str(found.degree), str(found.degree)),
-            "a": write.math(a, _tex(a)),
-        }
+        gaps |= {"name": named((found.along,)), "degree": str(found.degree), "a": _number(found.coefficient)}
     return gaps
 
 
-def _centre(found: Judged, write: Medium) -> Iterator[Said]:
-    a = decimal(found.coefficient)
+def _centre(found: Judged) -> Iterator[Said]:
     if not found.frequencies:
         unstable = found.outcome is Outcome.UNSTABLE
-        yield (
+        yield Said(
             "One root is zero, the others are to the left: the first coefficient on the centre manifold that is not "
             "zero makes the motion unstable."
             if unstable
             else "One root is zero, the others are to the left: on the centre manifold the coefficient of second order "
-            "is zero and that of third order negative, the motion is asymptotically stable.",
-            {},
+            "is zero and that of third order negative, the motion is asymptotically stable."
         )
         return
-    w = decimal(found.frequencies[0])
     soft = found.outcome is Outcome.ASYMPTOTIC
-    yield (
+    yield say(
         "One pair of roots is imaginary, of frequency [[w]], the others are to the left; on the centre manifold the "
         "amplitude of [[name]] grows at the rate [[a]] times its cube: asymptotically stable, a soft border."
         if soft
         else "One pair of roots is imaginary, of frequency [[w]], the others are to the left; on the centre manifold "
         "the amplitude of [[name]] grows at the rate [[a]] times its cube: unstable, a hard border.",
-        {
-            "w": write.math(w, _tex(w)),
-            "a": write.math(a, _tex(a)),
-            "name": write.names((found.amplitude_of,)),
-        },
+        w=_number(found.frequencies[0]),
+        a=_number(found.coefficient),
+        name=named((found.amplitude_of,)),
     )
 
 
-def _in_symbols(found: InSymbols, everywhere: Word | None, write: Medium) -> Iterator[Said]:
-    yield (
-        "In parameters, for the frequencies w1 and w2: the sum of their squares is [[trace]], the product of these "
-        "[[product]], the discriminant [[discriminant]].",
-        {
-            "trace": write.formula(found.trace),
-            "product": write.formula(found.product),
-            "discriminant": write.formula(found.discriminant),
-        },
+def _in_symbols(found: InSymbols, everywhere: Word | None) -> Iterator[Said]:
+    yield say(
+        "In parameters, for the frequencies $\\omega_1$ and $\\omega_2$: the sum of their squares is [[trace]], the "
+        "product of these [[product]], the discriminant [[discriminant]].",
+        trace=found.trace,
+        product=found.product,
+        discriminant=found.discriminant,
     )
     zero = found.zero if found.vanishing is None else found.vanishing.determinant
     resonances = found.resonances if found.vanishing is None else found.vanishing.resonances
     if found.determinant.is_zero:
-        yield "D4 is zero for all parameters: the theorem of Arnold and Moser decides nothing at this order.", {}
+        yield Said("$D_4$ is zero for all parameters: the theorem of Arnold and Moser decides nothing at this order.")
     elif zero.is_number:
-        yield "D4 = [[determinant]]; it vanishes for no parameters.", {"determinant": write.formula(found.determinant)}
+        yield say("$D_4 = [[determinant]]$; it vanishes for no parameters.", determinant=found.determinant)
     else:
-        yield (
-            "D4 = [[determinant]]; it vanishes where [[zero]] = 0.",
-            {"determinant": write.formula(found.determinant), "zero": write.formula(zero)},
+        yield say(
+            "$D_4 = [[determinant]]$; it vanishes where $[[zero]] = 0$.", determinant=found.determinant, zero=zero
         )
     for vector, formula in resonances:
         if not formula.is_number:
-            yield (
+            yield say(
                 "The resonance [[ratio]] holds where this vanishes: [[formula]].",
-                {
-                    "ratio": write.math(f"{vector[0]}:{vector[1]}", f"{vector[0]}:{vector[1]}"),
-                    "formula": write.formula(formula),
-                },
+                ratio=Notation(f"{vector[0]}:{vector[1]}"),
+                formula=formula,
             )
     if everywhere is not None:
-        yield "For all parameters problem 6 has decided already: [[word]].", {"word": write.word(everywhere.value)}
+        yield say("For all parameters problem 6 has decided already: [[word]].", word=Words(everywhere.value))
         return
     if found.determinant.is_zero:
         return
-    yield (
+    yield Said(
         "Where sum, product and discriminant are positive the motion is stable (Arnold-Moser) but for parameters at "
-        "which D4 or one of these resonances vanishes; what holds there is told at numbers.",
-        {},
+        "which $D_4$ or one of these resonances vanishes; what holds there is told at numbers."
     )
 
 
-def _focus(found: Focus, write: Medium) -> Iterator[Said]:
+def _focus(found: Focus) -> Iterator[Said]:
     if found.coefficient.is_zero:
-        yield (
+        yield say(
             "Two roots have the sum zero for all parameters, the square of their frequency is [[square]]; on the "
             "centre manifold the growth of the amplitude of [[name]] is without a term of third order for all "
             "parameters: those of higher order may decide.",
-            {"square": write.formula(found.square), "name": write.names((found.amplitude_of,))},
+            square=found.square,
+            name=named((found.amplitude_of,)),
         )
         return
-    yield (
+    yield say(
         "Two roots have the sum zero for all parameters, the square of their frequency is [[square]]; on the centre "
         "manifold the amplitude of [[name]] grows, but for terms of higher order, at the rate [[a]] times its cube.  "
         "Where that square is positive and all other roots are to the left the motion is asymptotically stable if this "
         "rate is negative and unstable if it is positive.",
-        {
-            "square": write.formula(found.square),
-            "a": write.formula(found.coefficient),
-            "name": write.names((found.amplitude_of,)),
-        },
+        square=found.square,
+        a=found.coefficient,
+        name=named((found.amplitude_of,)),
     )
 
 
-def _relation(vector: Sequence[int]) -> tuple[str, str]:
-    """``w1 = 2 w2``, plainly and in LaTeX."""
-    sides: tuple[list[tuple[str, str]], list[tuple[str, str]]] = ([], [])
+def _relation(vector: Sequence[int]) -> Notation:
+    """omega1 = 2 omega2."""
+    sides: tuple[list[str], list[str]] = ([], [])
     for place, k in enumerate(vector, start=1):
         if k:
-            count = f"{abs(k)} " if abs(k) > 1 else ""
-            sides[k < 0].append((f"{count}w{place}", f"{count}\\omega_{place}"))
-    return tuple(  # type: ignore[return-value]
-        " = ".join(" + ".join(one[form] for one in side) or "0" for side in sides) for form in (0, 1)
-    )
+            sides[k < 0].append((f"{abs(k)} " if abs(k) > 1 else "") + f"\\omega_{place}")
+    return Notation(" = ".join(" + ".join(side) or "0" for side in sides))
 
 
-def _form(quadratic: Sequence[tuple[tuple[int, int], Any]]) -> tuple[str, str]:
-    plain, tex = "", ""
+def _form(quadratic: Sequence[tuple[tuple[int, int], Any]]) -> Relation:
+    parts: list[Math | str] = []
     for (i, j), value in quadratic:
         text = decimal(value)
-        sign = " - " if text.startswith("-") else " + " if plain else ""
-        text = text.lstrip("-")
-        power = (f"I{i + 1}^2", f"I_{i + 1}^2") if i == j else (f"I{i + 1} I{j + 1}", f"I_{i + 1} I_{j + 1}")
-        plain += f"{sign}{text} {power[0]}"
-        tex += f"{sign}{_tex(text)} \\penalty0 {power[1]}"
-    return plain.strip(), tex.strip()
+        if parts or text.startswith("-"):
+            parts.append("-" if text.startswith("-") else "+")
+        power = f"I_{i + 1}^2" if i == j else f"I_{i + 1} I_{j + 1}"
+        parts += [Number(text.lstrip("-")), Notation(power)]
+    return Relation(*parts)
+
+
+def _number(x: Any) -> Number:
+    return Number(decimal(x))
 
 
 def decimal(x: Any) -> str:
@@ -337,12 +285,3 @@ def decimal(x: Any) -> str:
     exact = Fraction(int(x.p), int(x.q)) if hasattr(x, "p") else Fraction(x)
     text = str(exact)
     return text if len(text) <= 16 else f"{float(exact):.{DIGITS}g}"
-
-
-def _tex(text: str) -> str:
-    if " within " in text:
-        return text.replace(" within ", " \\pm ")
-    if "e" in text:
-        mantissa, exponent = text.split("e")
-        return f"{mantissa} \\cdot 10^{{{int(exponent)}}}"
-    return text

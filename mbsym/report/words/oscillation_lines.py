@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from mbsym.analysis.oscillating import Oscillating
-from mbsym.report.sections.small_parameters import PLAIN
+from mbsym.report.content import say
+from mbsym.report.plain_writer import Writer
 from mbsym.report.words.oscillation_words import DRIFTS, RATE, SOLUTION, measured_sentences, sentences
-from mbsym.report.words.said import filled
 from mbsym.simulation.oscillating import MeasuredOrders
 
 #: A line, and whether it is a heading.
@@ -20,7 +20,7 @@ def lines(told: Oscillating, measured: MeasuredOrders | str) -> Iterator[Line]:
     small = found.small
     for name, power in found.powers:
         yield f"  {name} stands for {name} {small}" + (f"^{power}" if power != 1 else ""), False
-    yield "  " + filled((SOLUTION, {"order": found.order, "small": small, "leading": found.leading})), True
+    yield "  " + Writer().said(say(SOLUTION, order=str(found.order), small=small, leading=found.leading)), True
     for variable, series in zip(found.names, found.series, strict=True):
         yield from _sum(variable, [_term(small, n, told.written(one)) for n, one in enumerate(series)])
     yield f"  {RATE}", True
@@ -32,8 +32,8 @@ def lines(told: Oscillating, measured: MeasuredOrders | str) -> Iterator[Line]:
         rates = [_term(small, n, str(told.formula(x))) for n, x in enumerate(drift.rates)]
         waves = [_term(small, n, told.written(x)) for n, x in enumerate(drift.waves)]
         yield from _sum(drift.variable, [*(f"t*({x})" for x in rates if x), *waves])
-    for said in (*sentences(told, PLAIN, drifts=True), *measured_sentences(told, measured, PLAIN)):
-        yield f"    {filled(said)}", False
+    for said in (*sentences(told, drifts=True), *measured_sentences(told, measured)):
+        yield f"    {Writer().said(said)}", False
 
 
 def _sum(name: str, terms: Sequence[str]) -> Iterator[Line]:

@@ -1,4 +1,4 @@
-"""What is said of a periodic solution in powers of a small parameter: sentences with gaps, filled by whoever writes."""
+"""What is said of a periodic solution in powers of a small parameter."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from mbsym.algebra.tower import Element
 from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula
 from mbsym.problems.small_parameter.harmonics import Harmonics
-from mbsym.problems.small_parameter.oscillation_result import Amplitude, Divisor
+from mbsym.problems.small_parameter.oscillation_result import Amplitude
+from mbsym.report.content import Gaps, Name, Phrase, Relation, Said, Words, named, say
 from mbsym.report.words.expansion_measured import SLACK
-from mbsym.report.words.expansion_words import Coefficient, Medium, scaled
-from mbsym.report.words.said import Said
+from mbsym.report.words.expansion_words import Coefficient, scaled
 
 if TYPE_CHECKING:
     from mbsym.analysis.oscillating import Oscillating
@@ -27,7 +27,7 @@ DRIFTS = "Variables that no equation needs, but for their initial values"
 
 _SERIES = (
     "Periodic solution up to order [[order]] of [[small]], led by [[leading]]: all variables as functions of "
-    "[[phase]], and the rate of it. The coefficient of the power k of [[small]] has the index (k)."
+    "[[phase]], and the rate of it. The coefficient of the power $k$ of [[small]] has the index $(k)$."
 )
 _FREE = (
     "Secular terms are removed up to this order with any amplitude. Here it is [[amplitude]], the value of [[leading]] "
@@ -43,7 +43,7 @@ _DETERMINED = (
     "is [[value]]."
 )
 _REAL_AMPLITUDE = "The amplitude is real and not zero where [[condition]]."
-_CONSTANTS = "[[names]]: the values of [[variables]] at the phase 0, which are constant where [[small]] = 0."
+_CONSTANTS = "[[names]]: the values of [[variables]] at the phase 0, which are constant where $[[small]] = 0$."
 _LEFT = (
     "Put into the equations at random rational parameters, it leaves terms of order [[left]] of [[small]] (verified)."
 )
@@ -91,11 +91,11 @@ _NONE = "No periodic solution was expanded in powers of [[small]]: [[why]]."
 _NOT_ASKED = "Periodic solutions in powers of [[small]] are looked for by mbsym oscillations."
 
 
-def opening(told: Oscillating, write: Medium) -> Iterator[Said]:
+def opening(told: Oscillating) -> Iterator[Said]:
     """What is expanded in what."""
     found = told.found
-    yield from scaled(found.powers, found.small, write)
-    yield _SERIES, _values(told, write)
+    yield from scaled(found.powers, found.small)
+    yield Said(_SERIES, _values(told))
 
 
 def coefficients(told: Oscillating) -> Iterator[Coefficient]:
@@ -111,51 +111,52 @@ def coefficients(told: Oscillating) -> Iterator[Coefficient]:
             yield Coefficient(told.phase, True, order, told.formula(found.frequency * x))
 
 
-def sentences(told: Oscillating, write: Medium, drifts: bool = False) -> Iterator[Said]:
+def sentences(told: Oscillating, drifts: bool = False) -> Iterator[Said]:
     """What kind of solution it is, what was checked and where it holds; ``drifts``: they are shown."""
-    found, values = told.found, _values(told, write)
+    found, values = told.found, _values(told)
     if found.kind is Amplitude.FREE:
-        values |= {"amplitude": write.formula(told.formula(found.amplitude)), "sine": write.formula(_wave(told, False))}
-        yield _FREE, values
-        yield _FORMAL, {}
+        yield say(_FREE, **values, amplitude=told.formula(found.amplitude), sine=_wave(told, False))
+        yield Said(_FORMAL)
     else:
-        yield _DETERMINED, values | {"value": write.formula(_wave(told, True))}
+        yield say(_DETERMINED, **values, value=_wave(told, True))
         if not told.real_amplitude:
             square = told.formula(found.amplitude * found.amplitude)
-            yield _REAL_AMPLITUDE, {"condition": write.condition(square, ">")}
+            yield say(_REAL_AMPLITUDE, condition=Relation(square, ">", 0))
         if found.other_amplitudes is not None:
-            yield _OTHER_AMPLITUDES, {"condition": write.condition(told.formula(found.other_amplitudes), "=")}
+            yield say(_OTHER_AMPLITUDES, condition=Relation(told.formula(found.other_amplitudes), "=", 0))
     if found.constants:
-        names = ", ".join(write.formula(told.formula(x)) for _, x in found.constants)
-        yield _CONSTANTS, values | {"names": names, "variables": write.names([name for name, _ in found.constants])}
+        names = tuple(told.formula(x) for _, x in found.constants)
+        yield say(_CONSTANTS, **values, names=names, variables=named(name for name, _ in found.constants))
     least = [one for one in found.residuals if one is not None]
-    left = values | {"left": min(least, default=None), "next": found.order + 1}
+    left = values | {"left": str(min(least, default="")), "next": str(found.order + 1)}
     if told.taylor:
-        yield _TAYLOR, {"degree": found.order + 1}
-        yield (_LEFT_OF_TAYLOR if least else _NOTHING_OF_TAYLOR), left
+        yield say(_TAYLOR, degree=str(found.order + 1))
+        yield Said(_LEFT_OF_TAYLOR if least else _NOTHING_OF_TAYLOR, left)
     else:
-        yield (_LEFT if least else _NOTHING), left
+        yield Said(_LEFT if least else _NOTHING, left)
     if not told.real:
         rooted = any(d > 0 for d in found.frequency.top.degrees()[: -len(found.tower.parameters)])
-        real = write.condition(told.formula(found.frequency * found.frequency), ">")
-        nonzero = write.condition(told.formula(found.frequency), "!=")
-        yield (_REAL, values | {"condition": real}) if rooted else (_NONZERO, values | {"condition": nonzero})
+        real = Relation(told.formula(found.frequency * found.frequency), ">", 0)
+        nonzero = Relation(told.formula(found.frequency), "!=", 0)
+        yield say(_REAL, **values, condition=real) if rooted else say(_NONZERO, **values, condition=nonzero)
     for one in told.resonances:
-        zeros = dict(zip(("condition", "other"), _zeros(told, one, write), strict=False))
-        gaps = {"harmonic": one.harmonic, "order": one.order, "names": write.names(one.variables)}
-        yield _RESONANCE if one.damping is None else _BOTH, {**zeros, **gaps}
+        zeros = (Relation(numerator(told, x), "=", 0) for x in one.parts)
+        gaps: Gaps = {"harmonic": str(one.harmonic), "order": str(one.order), "names": named(one.variables)}
+        gaps |= dict(zip(("condition", "other"), zeros, strict=False))
+        yield Said(_RESONANCE if one.damping is None else _BOTH, gaps)
     for group, other in found.others:
-        yield _OTHERS, {"names": write.names(group), "square": write.formula(told.formula(other))}
+        yield say(_OTHERS, names=named(group), square=told.formula(other))
     for sentence, groups in ((_DAMPED, found.damped), (_ZERO, found.with_zero), (_NOT_KNOWN, found.not_known)):
         for group in groups:
-            yield sentence, values | {"names": write.names(group)}
+            yield Said(sentence, values | {"names": named(group)})
     if found.drifts and not drifts:
-        yield _ASIDE, {"names": write.names([one.variable for one in found.drifts])}
+        yield say(_ASIDE, names=named(one.variable for one in found.drifts))
 
 
-def _values(told: Oscillating, write: Medium) -> dict[str, object]:
-    names = {"small": told.found.small, "leading": told.found.leading, "phase": told.phase}
-    return {"order": told.found.order, **{key: write.names([name]) for key, name in names.items()}}
+def _values(told: Oscillating) -> Gaps:
+    found = told.found
+    names = {"small": Name(found.small), "leading": Name(found.leading), "phase": Name(told.phase)}
+    return {"order": str(found.order), **names}
 
 
 def _wave(told: Oscillating, whole: bool) -> Formula:
@@ -164,40 +165,37 @@ def _wave(told: Oscillating, whole: bool) -> Formula:
     return told.wave(Harmonics(told.found.tower, {1: (told.found.amplitude, zero) if whole else (zero, one)}))
 
 
-def _zeros(told: Oscillating, one: Divisor, write: Medium) -> Iterator[str]:
-    """What is zero at a resonance."""
-    return (write.condition(numerator(told, x), "=") for x in one.parts)
-
-
 def numerator(told: Oscillating, value: Element) -> Formula:
     """What has to vanish for a quotient to vanish."""
     tower = told.found.tower
     return told.formula(tower.made(value.top, tower.context.constant(1)))
 
 
-def measured_sentences(told: Oscillating, measured: MeasuredOrders | str, write: Medium) -> Iterator[Said]:
+def measured_sentences(told: Oscillating, measured: MeasuredOrders | str) -> Iterator[Said]:
     """The slopes, and whether they are what they have to be; or why there are none."""
     if isinstance(measured, str):
-        yield _NOT_MEASURED, {"why": write.word(measured)}
+        yield say(_NOT_MEASURED, why=Words(measured))
         return
     expected = told.found.order + 1
-    values: dict[str, object] = {"small": write.names([told.found.small]), "expected": expected}
-    orders = ", ".join(
-        f"{'?' if order is None else format(order, '.2f')} ({write.names([name])})"
+    values: Gaps = {"small": Name(told.found.small), "expected": str(expected)}
+    orders = tuple(
+        Phrase((f"{'?' if order is None else format(order, '.2f')} (", Name(name), ")"))
         for name, order in zip(measured.names, measured.orders, strict=True)
     )
     ends = {
         "from": f"{measured.small * float(measured.parts[-2]):.3g}",
         "to": f"{measured.small * float(measured.parts[-1]):.3g}",
     }
-    yield _MEASURED, values | ends | {"orders": orders}
-    yield _EXPECTED, values
+    yield say(_MEASURED, **values, **ends, orders=orders)
+    yield Said(_EXPECTED, values)
     late = [n for n, k in zip(measured.names, measured.orders, strict=True) if k is not None and k < expected - SLACK]
     if late:
-        yield _TOO_SLOW, values | {"names": write.names(late)}
+        yield say(_TOO_SLOW, **values, names=named(late))
 
 
-def of_no_oscillation(small: str, reason: str, write: Medium) -> Iterator[Said]:
+def of_no_oscillation(small: str, reason: str) -> Iterator[Said]:
     """Where none was found, or none was asked for."""
-    values: dict[str, object] = {"small": write.names([small])}
-    yield (_NONE, values | {"why": write.word(reason)}) if reason else (_NOT_ASKED, values)
+    if reason:
+        yield say(_NONE, small=Name(small), why=Words(reason))
+    else:
+        yield say(_NOT_ASKED, small=Name(small))

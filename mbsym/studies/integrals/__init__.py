@@ -145,18 +145,20 @@ def answer(asked: Asked, request: Request, found: Found) -> Answer:
 
 def _lines(found: Found) -> Iterator[Line]:
     """The table of integrals, what is known of it as a whole, and what is there besides."""
-    from mbsym.report.words.integrals_words import HEADING, sentences, title, weights
-    from mbsym.report.words.said import filled
+    from mbsym.report.content import say
+    from mbsym.report.plain_writer import Writer
+    from mbsym.report.words.integrals_words import HEADING, sentences, title, weights_text
 
     there, integrals = found.there, found.integrals
     uniform = "quasi-homogeneous" if integrals.grading.homogeneous else "not quasi-homogeneous"
-    yield line(f"  weights {weights(integrals)}; the equations are {uniform} under them")
-    yield heading(filled((HEADING, {"degree": integrals.degree})))
+    weights = weights_text(integrals.field.variables, integrals.grading.weights)
+    yield line(f"  weights {weights}; the equations are {uniform} under them")
+    yield heading(Writer().said(say(HEADING, degree=str(integrals.degree))))
     for one in integrals.generators:
         yield line(f"    weight {one.weight}  ", (title(one), "bold" if one.is_new else ""))
         yield line(f"      {there.formula(one.polynomial)}", whole=True)
-    for said in sentences(integrals):
-        yield line(f"    {filled(said)}")
+    for said in map(Writer().said, sentences(integrals)):
+        yield line(f"    {said}")
     for head, texts in _sections(found):
         yield heading(head)
         for text in texts:

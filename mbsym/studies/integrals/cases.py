@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from mbsym.report.words.integrals_words import aside_text, case_title, conditions_text, level_title, weights_text
+from mbsym.report.words.integrals_words import case_title, conditions_text, level_title, weights_text
 
 if TYPE_CHECKING:
     from mbsym.analysis.polynomial import Setting
@@ -27,7 +27,7 @@ def along_lines(there: Setting, usual: PolynomialIntegrals, found: Along) -> Ite
         yield f"whether there are more at {found.name} = {value} is undecided"
     for p in found.irrational:
         yield f"undecided at the zeros of {str(p).replace('x', found.name)}"
-    without = f" that does not contain {aside_text(usual)}" if usual.aside else ""
+    without = f" that does not contain {', '.join(usual.aside)}" if usual.aside else ""
     others = "At all other values" if found.values or found.undecided else "At all values"
     interval = f"of {found.name} from {found.low} to {found.high}"
     if not found.usual:

@@ -15,7 +15,7 @@ from mbsym.analysis.stages import Unavailable
 from mbsym.problems.normal_forms import Focus, Judged, Outcome, Theorem, Why
 from mbsym.problems.normal_forms.exact import Resonant
 from mbsym.problems.normal_forms.twist import judged, vectors
-from mbsym.report.words.normal_form_words import Medium, sentences
+from mbsym.report.words.normal_form_words import sentences
 
 SYSTEMS = Path(__file__).parents[3] / "systems"
 
@@ -188,7 +188,7 @@ def test_two_to_one_with_its_term_and_without(higher: str, outcome: Outcome, the
     found = mbsym.loads(TABLE.replace("HIGHER", higher), (11,)).normal_forms
     assert (found.at_values.outcome, found.at_values.theorem) == (outcome, theorem)
     assert [one.order for one in found.at_values.resonances] == [3]
-    said = " ".join(text for text, _ in sentences(found, Medium(" ".join, str, lambda plain, _: plain, str)))
+    said = " ".join(one.text for one in sentences(found))
     assert told in said
     assert "No resonance" not in said
 

@@ -11,9 +11,9 @@ from click.testing import CliRunner
 import mbsym
 from mbsym.analysis import Analysis
 from mbsym.report.messages import messages
+from mbsym.report.plain_writer import Writer
 from mbsym.report.schemas import schema
 from mbsym.report.words import integrals_words
-from mbsym.report.words.said import filled
 from mbsym_cli.main import main
 
 FREE_BODY = """
@@ -57,7 +57,7 @@ def test_every_integral_of_a_free_body_is_not_said_of_those_that_hold_its_orient
     found = Analysis(mbsym.loads(text).system, problems=(9,)).polynomial_integrals.found
     assert [one.weight for one in found.generators] == [2, 2]
     assert found.complete
-    said = [filled(one) for one in integrals_words.sentences(found)]
+    said = [Writer().said(one) for one in integrals_words.sentences(found)]
     (every,) = [one for one in said if one.startswith("Every")]
     assert f"that does not contain {names} is a polynomial" in every
     assert f"The equations do not contain {names}: integrals that do are not looked for here." in said
@@ -99,7 +99,7 @@ def test_none_is_denied_without_positions():
     text = PARTICLE.replace("[x, y, 0]", "[x, 0, 0]").replace("[x, y]", "[x]")
     text += "loads:\n  - damper: {coordinate: x, coefficient: 1}\n"
     found = Analysis(mbsym.loads(text).system, problems=(9,)).polynomial_integrals.found
-    said = [filled(one) for one in integrals_words.sentences(found)]
+    said = [Writer().said(one) for one in integrals_words.sentences(found)]
     assert said[0] == "There is none up to weighted degree 4 that does not contain x (proved)."
 
 

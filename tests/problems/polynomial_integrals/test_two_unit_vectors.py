@@ -51,7 +51,7 @@ def test_jacobis_integral_of_a_satellite_is_no_further_one():
     assert [one.name.split(",")[0] for one in found.generators] == names
     assert found.complete
     assert found.grading.frames
-    told = [text for text, _ in sentences(found)]
+    told = [one.text for one in sentences(found)]
     assert "Lengths of unit vectors and products of two of them are the same in every motion: 1 and 0." in told
 
 

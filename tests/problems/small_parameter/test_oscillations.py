@@ -21,9 +21,8 @@ from mbsym.problems.small_parameter.lindstedt import NotPeriodic, Resonance
 from mbsym.problems.small_parameter.oscillation_checks import residual_orders
 from mbsym.problems.small_parameter.oscillation_result import Amplitude
 from mbsym.report.oscillation_json import oscillation_data
-from mbsym.report.sections.small_parameters import PLAIN
+from mbsym.report.plain_writer import Writer
 from mbsym.report.words.oscillation_words import numerator, sentences
-from mbsym.report.words.said import filled
 from mbsym.simulation.oscillating import measured_orders
 
 POINT = """mbsym: 1
@@ -111,7 +110,7 @@ def test_every_amplitude_of_several_cycles_is_told(tmp_path, even, squares):
     (symbol,) = left.free_symbols
     other = float(-left.subs(symbol, 0))  # a^2 - other
     assert {round(taken, 9), round(other, 9)} == {round(x, 9) for x in squares}
-    shown = [filled(said) for said in sentences(told, PLAIN)]
+    shown = [Writer().said(said) for said in sentences(told)]
     assert any("Other amplitudes are left out" in one for one in shown)
     assert oscillation_data(told, "not measured").amplitude.others is not UNSET
 
@@ -166,7 +165,7 @@ def test_a_family_is_not_said_to_be_periodic_beyond_its_order(tmp_path):
     """x'' + x = x^4 x': the energy grows by the integral of x^4 x'^2 > 0; in the order 2 nothing of that is seen."""
     loads = ["potential: x**2/2", "generalized force: {x: x**4*x_dot}"]
     told = oscillating(point(tmp_path, loads, small="", more="motion: {x: 0}\n"), 2)
-    shown = " ".join(filled(said) for said in sentences(told, PLAIN))
+    shown = " ".join(Writer().said(said) for said in sentences(told))
     assert "whether some remain in higher orders" in shown.lower()
     assert "cut off so" in shown
     assert "may leave terms of order 3" in shown

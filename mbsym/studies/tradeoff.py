@@ -1,0 +1,194 @@
+"""``mbsym tradeoff``: measures what accuracy costs for one system on this machine."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import KW_ONLY, dataclass, field
+from typing import TYPE_CHECKING, Annotated
+
+from mbsym.studies.closing import closed_motion, not_closed
+from mbsym.studies.request import Flag, Number, Values, Words, duration
+from mbsym.studies.study import (
+    Answer,
+    Asked,
+    Column,
+    Exit,
+    Folder,
+    Line,
+    Refusal,
+    Rows,
+    Study,
+    Watch,
+    failed,
+    line,
+)
+
+if TYPE_CHECKING:
+    from mbsym.numerics.methods.interface import Breakdown
+    from mbsym.numerics.trade import trade_study
+    from mbsym.numerics.trade.tradeoff import Measured
+
+
+def _methods() -> tuple[str, ...]:
+    from mbsym.numerics.methods.table import METHODS
+
+    return tuple(METHODS)
+
+
+METHODS = Words(None, "Some of them, separated by commas.", "-m", choices=_methods, what="method", every="all")
+BUDGET = "Work worth so many seconds on a usual machine, counted, not timed; less than 30 may be too little."
+
+
+@dataclass(frozen=True)
+class Request:
+    """Measure what accuracy costs when FILE is simulated from 0 to T, on this machine.
+
+    Every method climbs a ladder of tolerances or steps, in every arithmetic it knows; its error is measured over the
+    whole interval against a reference solution, whose own error is printed: an extrapolation in 160 bits, or, where
+    that takes too long, one of two methods in extended arithmetic that agree, or of two implicit ones.  Simpler models
+    (gravity of lower order, linearised equations, coordinates that rest taken out) are compared with the most faithful
+    one.
+
+    Written are tradeoff.csv, fidelity.csv and work-precision.svg/.png; Ctrl-C keeps what was measured in files named
+    ...-partial.  Exit codes: 0 done, 1 files could not be written, 2 something is missing or wrong, 3 there is no
+    solution up to T, 130 interrupted.
+
+    \b
+    Example:
+      mbsym tradeoff systems/double-pendulum.yaml --time 60 --target 1e-9
+    """
+
+    time: Annotated[float, duration("Simulate from 0 to T (60, 2*pi).")]
+    _: KW_ONLY
+    target: Annotated[float, Number("X", "The error that is good enough.", least=1e-15, most=0.1)] = 1e-9
+    values: Values = field(default_factory=dict)
+    methods: Annotated[tuple[str, ...], METHODS] = ("all",)
+    budget: Annotated[float, Number("S", BUDGET)] = 60.0
+    fidelity: Annotated[bool, Flag(None, "Compare simpler models too.", both=True)] = True
+    all_rows: Annotated[bool, Flag(None, "Print every run, not only those on the front and near the target.")] = False
+
+
+@dataclass(frozen=True)
+class Found:
+    """What was measured; ``notes``: how the initial state was led to the constraints."""
+
+    measured: trade_study.Study
+    notes: tuple[str, ...]
+
+
+def derive(asked: Asked, request: Request, watch: Watch) -> Found:
+    """Raises NotClosed, Breakdown where there is no reference solution, Failure where the equations have no program."""
+    from mbsym.numerics.methods import table
+    from mbsym.numerics.trade.trade_study import studied
+
+    given, notes = closed_motion(asked.motion)
+    if request.fidelity and asked.system.constraints:
+        notes = (*notes, "note: simpler models are not compared: with constraints they would begin elsewhere")
+    methods = [table.METHODS[name] for name in request.methods]
+    return Found(studied(given, methods, request.time, request.budget, request.fidelity, watch), notes)
+
+
+def answer(asked: Asked, request: Request, found: Found) -> Answer:
+    trade = found.measured.trade
+    stopped = trade.interrupted
+    if not trade.rows:
+        return Answer(complaints=("interrupted",), code=Exit.INTERRUPTED) if stopped else Answer()
+    lines, files = _lines(request, found.measured), _files(asked, request, found.measured)
+    after = f", t = 0 to {request.time:g}"
+    if stopped:
+        complaints = (*found.notes, "interrupted; what was measured is kept")
+        return Answer(lines, files, complaints, Exit.INTERRUPTED, after)
+    return Answer(lines, files, found.notes, after=after)
+
+
+def _files(asked: Asked, request: Request, found: trade_study.Study) -> dict[str, str | bytes]:
+    from mbsym.model.quantities import time_unit, with_unit
+    from mbsym.report.figures.tradeoff_figure import work_precision
+    from mbsym.report.runs.tradeoff_table import fidelity_csv, tradeoff_csv
+    from mbsym.report.unit_text import pretty
+
+    trade, models, unit = found.trade, found.models, time_unit(asked.system)
+    mark = "-partial" if trade.interrupted else ""
+    files: dict[str, str | bytes] = {f"tradeoff{mark}.csv": tradeoff_csv(trade, unit)}
+    if models:
+        files["fidelity.csv"] = fidelity_csv(models)
+    title = f"{asked.system.name}, t = 0 to {with_unit(f'{request.time:g}', pretty(unit))}"
+    pictures = work_precision(trade, request.target, title, models, ("svg", "png"))
+    return files | {name.replace(".", f"{mark}."): content for name, content in pictures.items()}
+
+
+def _lines(request: Request, found: trade_study.Study) -> Iterator[Line | Rows]:
+    from mbsym.numerics.trade.fidelity import model_advice
+    from mbsym.numerics.trade.tradeoff import advice
+
+    trade, models, target = found.trade, found.models, request.target
+    truth = trade.reference
+    yield line(
+        f"  reference: {truth.method}, estimated error {truth.error:.1e}, {truth.seconds:.1f} s; "
+        f"errors below {trade.smallest_judged:.0e} are not told apart"
+    )
+    yield _runs(request, found)
+    for order in trade.orders:
+        if order.pairs > 1:
+            yield line(
+                f"  {order.method}, {order.scalar}: measured order {order.measured:.2f}, nominal {order.nominal} "
+                f"(from {order.pairs} halvings of the step)"
+            )
+    for name, reason in trade.unusable:
+        yield line((f"  {name}: not used: {reason}", "yellow"))
+    if models:
+        yield _models(found)
+    yield line((f"{advice(trade, target)} {model_advice(models, target)}".rstrip(), "bold"), always=True)
+
+
+def _runs(request: Request, found: trade_study.Study) -> Rows:
+    """Runs on the front and near the target, or every one."""
+    from mbsym.report.runs.tradeoff_table import constrained, shown
+
+    near = [row for row in found.trade.rows if row.front or _near(row, request.target)]
+    rows = found.trade.rows if request.all_rows else near
+    strayed = ("constraints",) if constrained(rows) else ()
+    names = ("method", "setting", "error", "drift", *strayed, "evaluations", "steps", "time", "front")
+    columns = [Column(name, right=name not in ("method", "setting", "front")) for name in names]
+    told = shown(rows, found.trade.smallest_judged)
+    return Rows(columns, [[(cell, "" if cells[-1] else "dim") for cell in cells] for cells in told])
+
+
+def _near(row: Measured, target: float) -> bool:
+    return target / 10 < row.error < target * 10
+
+
+def _models(found: trade_study.Study) -> Rows:
+    from mbsym.report.runs.tradeoff_table import models_shown
+
+    names = ("model", "what it neglects", "error", "operations", "time")
+    columns = [Column(name, right=place > 1, fold=place < 2) for place, name in enumerate(names)]
+    return Rows(columns, models_shown(found.models))
+
+
+def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+    from mbsym.numerics.methods.interface import Breakdown
+
+    if isinstance(error, Breakdown):
+        return Refusal(_without_reference(error, request), Exit.BROKEN_DOWN)
+    told = failed(error, "the equations have no program")
+    return not_closed(error, asked.system) or (told and Refusal(told.text, Exit.BROKEN_DOWN))
+
+
+def _without_reference(error: Breakdown, request: Request) -> str:
+    """A solution that ends is one thing, one that takes too long another."""
+    from mbsym.numerics.methods.interface import STEP_LIMIT
+    from mbsym.numerics.trade.reference_search import DISAGREE
+
+    if error.kind == DISAGREE:
+        why = f"no two solutions agree, {error.message}: the motion may be chaotic over such a time"
+        return f"there is no reference solution up to t = {request.time:g}: {why}; a shorter --time helps"
+    if error.kind != STEP_LIMIT:
+        return f"there is no reference solution up to t = {request.time:g}: {error}"
+    reached = f"the budget ended at t = {error.time:.3g}; a shorter --time or a larger --budget helps"
+    return f"no reference solution up to t = {request.time:g} was found: {reached}"
+
+
+STUDY = Study(
+    "tradeoff", Request, derive, answer, refusal, constraints=True, out=Folder("Print only the recommendation.")
+)
