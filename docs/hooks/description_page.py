@@ -10,6 +10,8 @@ from mbsym.source import keys, topics
 from mbsym.source.grammar import Key, Kind, Record
 
 _HEAD = """\
+## Every key
+
 What follows is made of the table that the reader itself goes by; `mbsym explain description`, `loads`, `constraints`,
 `expressions` and `claims` print the same.
 """
