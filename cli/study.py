@@ -25,6 +25,7 @@ from mbsym_cli.console import (
     complain,
     printable,
     read_description,
+    read_held,
     reason_of,
     show_rows,
     tell,
@@ -100,8 +101,6 @@ class _Run:
         """The system, None after complaints; inputs are held, which is said, where the study does so."""
         study = self.study
         if study.held:
-            from mbsym_cli.simulation_inputs import read_held
-
             return read_held(self.file, study.name, study.constraints, not study.matrices)
         unknown = "" if study.constraints else study.name
         return read_description(self.file, unknown, "" if study.matrices else study.name)

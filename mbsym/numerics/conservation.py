@@ -76,6 +76,15 @@ class Doubt(Enum):
     NO_VALUES = "it has no finite value along this run"
 
 
+class Measure(Enum):
+    """What a ``scale`` is."""
+
+    KINETIC = "the largest kinetic energy"
+    INITIAL = "its value at first"
+    UNIT = "its unit"
+    TERMS = "the size of its terms"
+
+
 @dataclass(frozen=True)
 class Conservation:
     """Whether ``quantity`` is conserved, and ``change``: the largest |I(t) - I(0)| of the run over ``scale``."""
@@ -85,6 +94,7 @@ class Conservation:
     change: float
     scale: float
     doubt: Doubt | None = None
+    measure: Measure = Measure.KINETIC
 
     @property
     def broken(self) -> bool:
@@ -93,13 +103,19 @@ class Conservation:
 
 
 def confronted(
-    quantity: str, standing: Standing, values: Any, scale: float, doubt: Doubt | None = None
+    quantity: str,
+    standing: Standing,
+    values: Any,
+    scale: float,
+    doubt: Doubt | None = None,
+    measure: Measure = Measure.KINETIC,
 ) -> Conservation:
     """A standing held against the values along the run: nothing that is not proved stands against them."""
     if not len(values) or not np.all(np.isfinite(np.asarray(values, dtype=float))):
-        return Conservation(quantity, Standing.UNDECIDED, float("nan"), scale, Doubt.NO_VALUES)
+        return Conservation(quantity, Standing.UNDECIDED, float("nan"), scale, Doubt.NO_VALUES, measure)
     change = float(np.max(np.abs(values - values[0]))) / scale
-    found = Conservation(quantity, standing, change, scale, doubt if standing is Standing.UNDECIDED else None)
+    doubt = doubt if standing is Standing.UNDECIDED else None
+    found = Conservation(quantity, standing, change, scale, doubt, measure)
     if standing is Standing.VERIFIED and not change <= CONTRADICTION:
         return replace(found, standing=Standing.UNDECIDED, doubt=Doubt.CONTRADICTED)
     return found

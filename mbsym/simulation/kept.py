@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from mbsym.numerics.columns import columns
 from mbsym.numerics.conservation import (
     Conservation,
+    Measure,
     Standing,
     between_switches,
     confronted,
@@ -33,12 +34,14 @@ def energies(dynamics: Dynamics, found: Trajectory, held: Collection[str]) -> tu
         known, doubt = standing(dynamics, dynamics.relative_energy, 0, points, held, near)
     else:
         known, doubt = energy_standing(dynamics, points, scale / max(float(found.times[-1]), 1e-300), held, near)
+    moving = Measure.KINETIC if found.largest_kinetic else Measure.INITIAL
+    measure = moving if moving is Measure.KINETIC or found.generalized_energy[0] else Measure.UNIT
     if dynamics.natural:
-        same = confronted("energy", known, found.change, scale, doubt)
+        same = confronted("energy", known, found.change, scale, doubt, measure)
         return same, same
-    generalized = confronted("generalised energy", known, found.change, scale, doubt)
+    generalized = confronted("generalised energy", known, found.change, scale, doubt, measure)
     known, doubt = standing(dynamics, dynamics.energies, 0, _seen(found, "energy", found.energy), held, near)
-    return generalized, confronted("energy", known, found.energy, scale, doubt)
+    return generalized, confronted("energy", known, found.energy, scale, doubt, measure)
 
 
 def _seen(found: Trajectory, name: str, values: Any) -> Any:
@@ -67,5 +70,7 @@ def kept_integrals(
         state, doubt = Standing.PROVED, None
         if not item.proved or isinstance(dynamics, LinearisedDynamics):
             state, doubt = standing(dynamics, item.code, 0, _seen(dense, item.column, along), held, _near(dense))
-        kept.append(Kept(item.column, column, confronted(item.name, state, along, size, doubt), item.unit))
+        kept.append(
+            Kept(item.column, column, confronted(item.name, state, along, size, doubt, Measure.TERMS), item.unit)
+        )
     return tuple(kept)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,9 +10,12 @@ import pytest
 from conftest import SHIPPED
 
 import mbsym
-from mbsym.numerics.conservation import CONTRADICTION, Conservation, Doubt, Standing, confronted
+from mbsym.numerics.accuracy import Lacking, NoEstimate
+from mbsym.numerics.conservation import CONTRADICTION, Conservation, Doubt, Measure, Standing, confronted
+from mbsym.report.figures.animation_page import run_sentences
 from mbsym.report.runs.simulation_words import conservation_json, conservation_line, warnings
 from mbsym.simulation import Simulation
+from mbsym_cli.simulation_summary import _lines
 
 CASES = Path(__file__).parents[1] / "cases" / "statements"
 
@@ -158,10 +162,41 @@ def test_scales_are_those_of_the_motion() -> None:
 
 def test_words_of_each_standing() -> None:
     said = {standing: conservation_line(Conservation("energy", standing, 1e-12, 1.0)) for standing in Standing}
-    assert said[Standing.PROVED] == "conserved (proved); largest relative drift 1.0e-12"
-    assert said[Standing.VERIFIED].startswith("conserved (verified numerically along this run); largest relative drift")
-    assert said[Standing.CHANGING] == "not conserved; largest relative change 1.0e-12"
-    assert said[Standing.UNDECIDED] == "undecided; largest relative change 1.0e-12"
+    of = "1.0e-12 times the largest kinetic energy"
+    assert said[Standing.PROVED] == f"conserved (proved); largest drift {of}"
+    assert said[Standing.VERIFIED] == f"conserved (verified numerically along this run); largest drift {of}"
+    assert said[Standing.CHANGING] == f"not conserved; largest change {of}"
+    assert said[Standing.UNDECIDED] == f"undecided; largest change {of}"
+
+
+def test_what_a_change_is_divided_by_is_said() -> None:
+    """x'' + 1000 x' + x = 0 from 1 creeps: 1/2 m v^2 is at most 5e-7 of the energy 1/2, which falls to 7e-3 of itself.
+
+    "Largest relative change 1.0e+06" was told of it.  The energy at the end is exp(-t/500)/2 but for 1e-6 of it.
+    """
+    run = mbsym.simulate(CASES / "creeping-energy.yaml", 2500, estimate=False)
+    wanted = 0.5 * (1 - np.exp(-5)) / run.conservation.scale
+    assert run.conservation.change == pytest.approx(wanted, rel=1e-4)
+    assert run.conservation.scale == pytest.approx(5e-7, rel=0.02)
+    assert f"largest change {wanted:.1e} times the largest kinetic energy" in conservation_line(run.conservation)
+    resting = mbsym.loads((CASES / "osc.yaml").read_text().replace("x: 1", "x: 0"))
+    assert mbsym.simulate(resting, 1, estimate=False).conservation.measure is Measure.UNIT
+
+
+@pytest.mark.parametrize(
+    ("error", "broken"),
+    [(NoEstimate(Lacking.CUT), False), (NoEstimate(Lacking.BREAKS_DOWN), False), (NoEstimate(Lacking.NOT_ASKED), True)],
+)
+def test_what_makes_a_run_doubtful_is_read_first(error: NoEstimate, broken: bool) -> None:
+    """Not behind "conserved (proved)", which is about the equations."""
+    run = mbsym.simulate(CASES / "osc.yaml", 5, estimate=False)
+    kept = replace(run.conservation, change=0.5 if broken else 1e-9)
+    doubtful = replace(run, error=error, conservation=kept, energy_conservation=kept)
+    lines = [text for _, text in _lines(doubtful, CASES / "osc.yaml")]
+    for told in (lines, list(run_sentences(doubtful))):
+        assert ("does not keep it" if broken else error.why.value) in told[0]
+        assert sum("conserved (proved)" in text for text in told[1:]) == 1
+    assert "tolerance" in [text for _, text in _lines(run, CASES / "osc.yaml")][1]
 
 
 def test_what_other_motions_change_may_be_constant_along_this_one() -> None:

@@ -108,6 +108,8 @@ DESCRIBED: dict[str, Any] = {
         ({"spring": {"between": POINTS, "stiffness": "k", "length": 1, "rest": 1}}, "rest"),
         ({"spring": {"coordinate": "x", "stiffness": "k", "length": 1}}, "length"),
         ({"damper": {"coordinate": "x", "between": POINTS, "coefficient": "k"}}, "coordinate"),
+        ({"spring": {"stiffness": "k"}}, "coordinate"),
+        ({"uniform gravity": {"direction": [0, 0, 1]}}, "acceleration"),
         ({"uniform gravity": {"acceleration": "k"}}, "direction"),
         ({"uniform gravity": {"vector": [0, 0, "k"], "direction": [0, 0, 1]}}, "direction"),
         ({"newtonian gravity": {"constant": "k", "about": "b"}}, "centre"),

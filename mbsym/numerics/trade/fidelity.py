@@ -122,8 +122,8 @@ def measured(
         watch(variant.label)
         try:
             runs.append((variant, *_run(scenario, variant, method, times)))
-        except Exception as error:  # whatever goes wrong with one model is told of that one
-            reason = error if isinstance(error, (Failure, Unusable)) else Defect.of(error)
+        except Exception as raised:  # whatever goes wrong with one model is told of that one
+            reason = raised if isinstance(raised, (Failure, Unusable)) else Defect.of(raised)
             runs.append((variant, None, 0, 0, 0.0, str(reason)))
     solved = [(variant.rank, states) for variant, states, *_ in runs if states is not None]
     if not solved:

@@ -143,7 +143,11 @@ Doubted = Annotated[str | None, "why it is undecided", words(Doubt)]
 LargestDrift = Annotated[
     float | str, "the largest difference from the initial value, over relative_to; text where it is not finite"
 ]
-RelativeTo = Annotated[float | str, "what it is relative to"]
+RelativeTo = Annotated[
+    float | str,
+    "what it is relative to: of an energy the largest kinetic energy (its first value where nothing moves, else 1), "
+    "of a first integral the largest sum of the sizes of its terms",
+]
 
 
 class Energy(Part, frozen=True):

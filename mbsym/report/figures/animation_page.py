@@ -19,7 +19,7 @@ from mbsym.model.quantities import energy_unit, time_unit, unit_of, with_unit
 from mbsym.model.system import INERTIAL
 from mbsym.report.figures.animation import Animation, basis, dots, extent, moving_points, view
 from mbsym.report.html.environment import embedded, page
-from mbsym.report.runs.simulation_words import energy_lines, error_lines, warnings
+from mbsym.report.runs.simulation_words import energy_lines, quality
 from mbsym.report.unit_text import pretty
 from mbsym.simulation import Simulation
 
@@ -149,7 +149,12 @@ def _sentences(found: Animation, run: Simulation) -> Iterator[str]:
 
 
 def run_sentences(run: Simulation) -> Iterator[str]:
-    """How it was integrated, whether it reached its end, what it keeps, how large its error is."""
+    """What makes it doubtful, how it was integrated, whether it reached its end, what it keeps, how wrong it is."""
+    doubts, told, unknown = quality(run)
+    yield from (f"Warning: {text}." for text in doubts)
+    error = f"Error of the run: {'; '.join(told)}." if told else "The error of the run was not estimated."
+    if unknown:
+        yield error
     trajectory, setting = run.trajectory, run.trajectory.setting
     how = f"tolerance {setting.tolerance:g} per step" if setting.step is None else f"step {setting.step:g}"
     unit = pretty(time_unit(run.system))
@@ -162,10 +167,8 @@ def run_sentences(run: Simulation) -> Iterator[str]:
         yield f"The run ended early ({why}); {with_unit(f'{float(run.chosen.times[-1]):.9g}', unit)} was asked for."
     for which, what in energy_lines(run):
         yield f"Energy ({which}): {what}."
-    errors = list(error_lines(run.error))
-    yield f"Error of the run: {'; '.join(errors)}." if errors else "The error of the run was not estimated."
-    for text in warnings(run.conservation, run.error):
-        yield f"Warning: {text}."
+    if not unknown:
+        yield error
 
 
 def drawn_sentences(found: Animation) -> Iterator[str]:

@@ -27,15 +27,20 @@ def standing_words(found: Conservation) -> str:
 
 
 def conservation_line(found: Conservation) -> str:
-    """With how far the run keeps it: a drift is an error, a change is none.
+    """With how far the run keeps it, and what that is a part of: a drift is an error, a change is none.
 
     What other motions change may rest along this one, as T - U does at the bottom of a hoop that turns.
     """
     if found.standing is Standing.CHANGING and found.change == 0:
         return f"{standing_words(found)} in general; constant along this run"
     what = "drift" if found.standing in (Standing.PROVED, Standing.VERIFIED) else "change"
-    far = f"; largest relative {what} {found.change:.1e}" if isfinite(found.change) else ""
+    far = f"; largest {what} {_measured(found)}" if isfinite(found.change) else ""
     return standing_words(found) + far
+
+
+def _measured(found: Conservation) -> str:
+    """``1e-12 times the largest kinetic energy``."""
+    return f"{found.change:.1e} times {found.measure.value}"
 
 
 def energy_lines(run: Simulation) -> Iterator[tuple[str, str]]:
@@ -46,9 +51,9 @@ def energy_lines(run: Simulation) -> Iterator[tuple[str, str]]:
 
 
 def invariant_line(found: Conservation) -> str:
-    """``momentum of psi (proved): largest relative drift 1e-12``."""
+    """``momentum of psi (proved): largest drift 1e-12 times the size of its terms``."""
     if found.standing in (Standing.PROVED, Standing.VERIFIED):
-        return f"{found.quantity} ({found.standing.value}): largest relative drift {found.change:.1e}"
+        return f"{found.quantity} ({found.standing.value}): largest drift {_measured(found)}"
     return f"{found.quantity}: {conservation_line(found)}"
 
 
@@ -120,6 +125,16 @@ def warnings(conservation: Conservation, error: ErrorEstimate | NoEstimate) -> I
             f"from t = {error.parted:.4g} on this run and a better one have little in common: the motion is chaotic or "
             "starts at an unstable rest, the run has stepped over something short, or it is too coarse"
         )
+
+
+def quality(run: Simulation) -> tuple[list[str], list[str], bool]:
+    """(warnings, what is said of the error, whether that is to be read first, as warnings are).
+
+    Whoever reads one line of a run that is wrong, or that nobody could judge, shall read that: it stands before what is
+    proved of the equations.
+    """
+    told = list(error_lines(run.error))
+    return list(warnings(run.conservation, run.error)), told, isinstance(run.error, NoEstimate)
 
 
 def conservation_json(found: Conservation) -> dict[str, Any]:

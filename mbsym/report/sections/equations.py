@@ -131,6 +131,16 @@ def reaction_data(found: Sequence[Reaction], tied: Constraints | None, write: Wr
                 doc.PerMultiplier(row=name, force=column_text(force, write), moment=column_text(moment, write))
                 for name, (force, moment) in zip(names, one.per_multiplier, strict=True)
             ],
+            undetermined=[
+                doc.Balance(
+                    rows=[name.label for name in balance.rows],
+                    components=list(balance.components),
+                    force=None if balance.added is None else column_text(balance.added[0], write),
+                    moment=None if balance.added is None else column_text(balance.added[1], write),
+                )
+                for balance in one.balances
+            ],
+            determined_combinations=one.combinations,
         )
         for one in found
     ]
@@ -326,6 +336,10 @@ def _of_reactions(results: Results) -> Iterator[Block]:
     yield paragraph(joined(map(Said, sentences), " "))
     for one in found:
         k = str(results.numbers[one.body])
+        if one.balances:
+            from mbsym.report.words.constraint_words import reaction_sentences
+
+            yield paragraph(joined(reaction_sentences(one), " "))
         yield Components(Symbol("R", k), one.force, f"R:{k}")
         yield Components(Symbol("L", k), one.moment, f"L:{k}")
         for i, (force, moment) in enumerate(one.per_multiplier, start=1):
@@ -353,6 +367,10 @@ def lines(found: Equations, analysis: Analysis) -> Iterator[str]:
         yield "without multipliers: longer than the budget of terms"
     for reaction in analysis.optional("reactions") or () if analysis.system.reactions else ():
         yield f"reaction in the joint of {reaction.body}: {counted(reaction.terms, 'term')}"
+        if reaction.balances:
+            from mbsym.report.words.constraint_words import reaction_sentences
+
+            yield from map(Writer().said, reaction_sentences(reaction))
     if analysis.forms:
         from mbsym.report.canonical import form_lines
 

@@ -50,14 +50,18 @@ def _lines(run: Simulation, file: Path) -> Iterator[tuple[str, str]]:
     from mbsym.report.runs.simulation_words import (
         change_lines,
         energy_lines,
-        error_lines,
         inputs_line,
         invariant_line,
-        warnings,
+        quality,
     )
     from mbsym.report.runs.state_run_words import state_lines
 
     found, chosen, request = run.trajectory, run.chosen, run.request
+    doubts, told, unknown = quality(run)
+    errors = [("" if place else "error", text) for place, text in enumerate(told)]
+    yield from (("warning", text) for text in doubts)
+    if unknown:
+        yield from errors
     if run.plan is not None:
         yield from plan_lines(run.plan, pretty(time_unit(run.system)))
     work = found.work
@@ -97,12 +101,12 @@ def _lines(run: Simulation, file: Path) -> Iterator[tuple[str, str]]:
         yield title, what if len(energies) == 1 else f"{which}: {what}"
     for kept in run.invariants:
         yield "invariant", invariant_line(kept.conservation)
-    for place, text in enumerate(error_lines(run.error)):
-        yield "" if place else "error", text
+    if not unknown:
+        yield from errors
     if run.certificate is not None:
         for place, text in enumerate(certificate_lines(run.certificate, run.system, len(found.times))):
             yield "" if place else "certified", text
-    for text in (*warnings(run.conservation, run.error), *passed_over(run, printable(file))):
+    for text in passed_over(run, printable(file)):
         yield "warning", text
     ratio, at = least_pivot(run.dynamics, found) if found.least_pivot is None else found.least_pivot
     if found.breakdown is None and ratio < NEARLY_SINGULAR:
