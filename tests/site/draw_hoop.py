@@ -23,7 +23,7 @@ from click.testing import CliRunner
 from mbsym_cli.main import main as mbsym
 
 HOOP = Path(__file__).parents[2] / "systems" / "bead-on-hoop.yaml"
-#: Lines of the file that are shown: up to its motion.
+#: Lines of the description that are shown: up to its motion.
 LINES = 14
 #: The rate is varied up to MOST; SECONDS are shown at half speed, in FRAMES.
 MOST, SECONDS, FRAMES = 12, 8, 320
@@ -149,8 +149,8 @@ def path(points: Iterable[tuple[float, float]], kind: str) -> str:
 
 
 def code(width: float) -> str:
-    """The first lines of the file."""
-    lines = HOOP.read_text(encoding="utf-8").splitlines()[:LINES]
+    """The first lines of the description, behind what is said about it."""
+    lines = [line for line in HOOP.read_text(encoding="utf-8").splitlines() if not line.startswith("#")][:LINES]
     shown = [re.sub(r"^( *(?:- )?)([\w ]+)(?=:)", r'\1<tspan class="key">\2</tspan>', escape(line)) for line in lines]
     rows = [text(16, 46 + 19 * k, line, "code") for k, line in enumerate([*shown, "..."])]
     name = text(16, 22, f"systems/{HOOP.name}", "small")
