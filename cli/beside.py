@@ -8,7 +8,6 @@ killed, the work is done here, as if there had been no help.
 from __future__ import annotations
 
 import os
-import pickle
 import signal
 import sys
 import threading
@@ -104,6 +103,8 @@ class _Copy:
                 received += block
         if not received.endswith(b"."):  # the last byte of a pickle
             return False, None
+        import pickle
+
         try:
             return True, pickle.loads(received)
         except Exception:  # written by ourselves, but cut short
@@ -122,6 +123,8 @@ class _Copy:
 
 def _compute(work: Callable[[], Any], sound: Callable[[Any], bool], answer: int) -> None:
     """The copy's whole life.  It says nothing, and leaves everything that it shares with its original as it is."""
+    import pickle
+
     code = 1
     try:
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):

@@ -42,6 +42,12 @@ class Debugging:
     wanted = False
 
 
+class Force:
+    """Whether what mbsym did not write is replaced, too (``--force``)."""
+
+    wanted = False
+
+
 class Defects(logging.Handler):
     """Collects the exceptions that were contained somewhere, in the order in which they came."""
 

@@ -32,6 +32,7 @@ from pathlib import Path
 from typing import IO, BinaryIO, TypeVar, cast
 
 from mbsym.source.render import escaped
+from mbsym_cli.console import Force
 
 T = TypeVar("T")
 
@@ -63,12 +64,6 @@ NOT_OURS = "it is there already and mbsym did not write it; --force replaces it"
 
 #: Command -> file -> SHA-256, one entry a set; a command has several where it was asked for some of its files only.
 Sets = list[tuple[str, dict[str, str]]]
-
-
-class Force:
-    """Whether what mbsym did not write is replaced, too (``--force``)."""
-
-    wanted = False
 
 
 def taken(path: Path) -> bool:

@@ -5,7 +5,6 @@ Sub-commands are imported when they are called, so that ``mbsym --help`` does no
 
 from __future__ import annotations
 
-import gc
 import importlib
 import sys
 from typing import Any, NamedTuple
@@ -78,8 +77,6 @@ class LazyGroup(click.Group):
     def get_command(self, context: click.Context, name: str) -> click.Command | None:
         if name not in COMMANDS:
             return None
-        # Formulas are many small objects and hardly ever cycles: looking for those less often saves time.
-        gc.set_threshold(200_000, 20, 20)
         command = _command(COMMANDS[name].module)
         command.short_help = COMMANDS[name].does
         if not any(option.name == "debug" for option in command.params):
@@ -133,8 +130,7 @@ class LazyGroup(click.Group):
 
     def invoke(self, context: click.Context) -> Any:
         """Ctrl-C, wherever it comes, ends with the code that shells count the signal as; a mistake of ours with 1."""
-        from mbsym_cli.console import FAILED, INTERRUPTED, OK, Debugging, defect, listening, reason_of, trace
-        from mbsym_cli.files import Force
+        from mbsym_cli.console import FAILED, INTERRUPTED, OK, Debugging, Force, defect, listening, reason_of, trace
 
         Debugging.wanted = Force.wanted = False
         try:
@@ -171,7 +167,7 @@ def _force() -> click.Option:
     """``--force``, of every command that writes files."""
 
     def want(context: click.Context, _: click.Parameter, value: bool) -> None:
-        from mbsym_cli.files import Force
+        from mbsym_cli.console import Force
 
         Force.wanted = Force.wanted or value
 

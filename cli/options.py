@@ -16,7 +16,6 @@ from mbsym.expressions.safe import quoted as ascii_safe
 from mbsym.problems import NUMBERS, ranges
 from mbsym.source import render_option
 from mbsym_cli.console import printable
-from mbsym_cli.files import taken
 
 #: The text of an option has at most so many characters.
 MAX_LENGTH = 2_000
@@ -91,6 +90,8 @@ class Options:
 
     def unwritten(self, option: str, path: Path | None) -> None:
         """Complains of a file to be written that is there already."""
+        from mbsym_cli.files import taken
+
         if path is not None and taken(path):
             self.complain(option, "exists", f"{printable(path)} is there already", "another name, or --force")
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import operator
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -41,6 +41,10 @@ class _NoValue(Exception):
 
 class _Vague(Exception):
     """Internal: more bits are needed."""
+
+
+class _TakesBalls(Exception):
+    """Internal: fractions do not do."""
 
 
 class _Unknown(Exception):
@@ -125,24 +129,25 @@ def _power_of_two(exponent: int) -> Any:
 
 @dataclass(frozen=True)
 class _Constants:
-    """Values of the parts of one tree, at so many ``bits``; ``last``: zero is what cannot be told from it."""
+    """Values of the parts of one tree, at so many ``bits``; ``last``: zero is what cannot be told from it.
+
+    ``exact``: there are fractions only; what takes balls raises _TakesBalls.
+    """
 
     known: Known
     bits: int
     last: bool
+    exact: bool = False
 
     def computed(self, tree: Expression) -> Any:
-        if all(isinstance(node, Number | Name | Negative | Operation) for node in _below(tree)) and not self._has_pi(
-            tree
-        ):
-            return self._all(tree)  # no balls, no library of balls
-        from flint import ctx
+        """In fractions as long as they do: only then is the library of balls loaded."""
+        try:
+            return replace(self, exact=True)._all(tree)
+        except _TakesBalls:
+            from flint import ctx
 
-        with ctx.workprec(self.bits):
-            return self._all(tree)
-
-    def _has_pi(self, tree: Expression) -> bool:
-        return any(isinstance(node, Name) and (node.name == "pi" or node.name in self.known) for node in _below(tree))
+            with ctx.workprec(self.bits):
+                return self._all(tree)
 
     def _all(self, tree: Expression) -> Any:
         """The value of a tree, from the leaves upwards: trees may be deep."""
@@ -160,11 +165,14 @@ class _Constants:
             case Number(number):
                 return number
             case Name("pi"):
+                if self.exact:
+                    raise _TakesBalls
                 from flint import arb
 
                 return arb.pi()
             case Name(name):
-                return self.known.get(name)
+                found = self.known.get(name)
+                return found if found is None or isinstance(found, Fraction) else self._ball(found)
             case Negative():
                 return None if parts[0] is None else -parts[0]
             case Operation(sign):
@@ -181,7 +189,7 @@ class _Constants:
         if sign == "**":
             return self._power(node, left, right)
         if not (isinstance(left, Fraction) and isinstance(right, Fraction)):
-            left, right = _ball(left), _ball(right)
+            left, right = self._ball(left), self._ball(right)
         return self._finite(node, _OPERATORS[sign](left, right))
 
     def _power(self, node: Expression, base: Any, exponent: Any) -> Any:
@@ -194,12 +202,12 @@ class _Constants:
         if exponent <= 0 and self._is_zero(base):
             raise _NoValue(node, "zero has no such power")
         if exponent.denominator == 1:
-            return self._finite(node, _ball(base) ** int(exponent))
+            return self._finite(node, self._ball(base) ** int(exponent))
         if self.sign(base) < 0:
             raise _NoValue(node, "a negative number has no such power")
         if self.sign(base) == 0:
             return Fraction(0)
-        return self._finite(node, _ball(base) ** _ball(exponent))
+        return self._finite(node, self._ball(base) ** self._ball(exponent))
 
     def _call(self, node: Expression, function: str, parts: list[Any]) -> Any:
         x = parts[0]
@@ -207,32 +215,32 @@ class _Constants:
             sign = self.sign(x)
             if sign < 0:
                 raise _NoValue(node, "a negative number has no square root")
-            return self._finite(node, _ball(x).sqrt()) if sign else Fraction(0)
+            return self._finite(node, self._ball(x).sqrt()) if sign else Fraction(0)
         if function == "log":
             sign = self.sign(x)
             if sign <= 0:
                 raise _NoValue(node, f"{'a negative number' if sign else 'zero'} has no logarithm")
-            return self._finite(node, _ball(x).log())
+            return self._finite(node, self._ball(x).log())
         if function == "tan":
-            cosine = _ball(x).cos()
+            cosine = self._ball(x).cos()
             if self._is_zero(cosine):
                 raise _NoValue(node, "tan has a pole here")
-            return self._finite(node, _ball(x).sin() / cosine)
+            return self._finite(node, self._ball(x).sin() / cosine)
         if function == "sign":
             return Fraction(self.sign(x))
         if function == "step":
             return Fraction(1 + self.sign(x), 2)
         if function == "pulse":  # step(x - start) - step(x - end)
-            start, end = (self.sign(_ball(x) - _ball(edge)) for edge in parts[1:])
+            start, end = (self.sign(self._ball(x) - self._ball(edge)) for edge in parts[1:])
             return Fraction(start - end, 2)
         if function == "abs":
             return abs(x)
-        return self._finite(node, getattr(_ball(x), function)())
+        return self._finite(node, getattr(self._ball(x), function)())
 
     def _finite(self, node: Expression, found: Any) -> Any:
         if isinstance(found, Fraction):
             if max(found.numerator.bit_length(), found.denominator.bit_length()) > _LONGEST:
-                return _ball(found)
+                return self._ball(found)
             return found
         if found.is_finite():
             return found
@@ -254,11 +262,12 @@ class _Constants:
             raise _Unknown
         return 0
 
+    def _ball(self, x: Any) -> Any:
+        if self.exact:
+            raise _TakesBalls
+        from flint import arb, fmpq
 
-def _ball(x: Any) -> Any:
-    from flint import arb, fmpq
-
-    return arb(fmpq(x.numerator, x.denominator)) if isinstance(x, Fraction) else x
+        return arb(fmpq(x.numerator, x.denominator)) if isinstance(x, Fraction) else x
 
 
 def _below(tree: Expression) -> Iterator[Expression]:

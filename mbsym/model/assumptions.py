@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import chain
 
 from mbsym.expressions.angles import LinearForm, linear_form
 from mbsym.expressions.tree import Expression
@@ -56,8 +57,11 @@ def contradictory(system: System) -> Assumption | None:
     None where there is none, or none is proved.
     """
     known = [*_declared(system), *_equations(system)]
-    for assumption in system.assumptions:
-        known += _inequalities(assumption.left, assumption.relation, assumption.right)
+    added = [_inequalities(one.left, one.relation, one.right) for one in system.assumptions]
+    if _impossible([*known, *chain.from_iterable(added)]) is False:  # what all keep together, some do
+        return None
+    for assumption, inequalities in zip(system.assumptions, added, strict=True):
+        known += inequalities
         if _impossible(known):
             return assumption
     return None
@@ -119,8 +123,8 @@ def _of_form(gap: LinearForm, relation: str) -> list[_Inequality]:
     return [_Inequality(tuple(sorted(coefficients.items())), gap.constant, relation in ("<", ">"))]
 
 
-def _impossible(given: list[_Inequality]) -> bool:
-    """Whether no numbers fulfil all of them; False where it would take too long to know."""
+def _impossible(given: list[_Inequality]) -> bool | None:
+    """Whether no numbers fulfil all of them; None where it would take too long to know."""
     known = set(given)
     while True:
         if any(one.false for one in known):
@@ -134,7 +138,7 @@ def _impossible(given: list[_Inequality]) -> bool:
         known = {one for one in known if one.of(name) == 0}
         known |= {_without(name, one, other) for one in above for other in below}
         if len(known) > MOST_INEQUALITIES:
-            return False
+            return None
 
 
 def _growth(known: set[_Inequality]) -> dict[str, int]:

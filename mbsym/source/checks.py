@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass, replace
 from fractions import Fraction
+from functools import cache
 from typing import Any
 
 from mbsym.expressions.constants import meaningless
@@ -300,9 +301,15 @@ def _occurring(value: object) -> Iterator[str]:
     elif isinstance(value, tuple | list):
         for item in value:
             yield from _occurring(item)
-    elif is_dataclass(value):
-        for one in fields(value):
-            yield from _occurring(getattr(value, one.name))
+    else:
+        for name in _field_names(type(value)):
+            yield from _occurring(getattr(value, name))
+
+
+@cache
+def _field_names(kind: type) -> tuple[str, ...]:
+    """The fields of a dataclass; of what is none, nothing."""
+    return tuple(one.name for one in fields(kind)) if is_dataclass(kind) else ()
 
 
 def _check_given(system: System, reading: Reading) -> None:
