@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 )
 @click.option("--animate", metavar="T", help="The motion from 0 to T in report.html, in three dimensions.")
 @click.option(
-    "--language", metavar="LANGUAGE", help="Of the LaTeX reports: en, ru or es.  [default: the description's, or en]"
+    "--language", metavar="LANGUAGE", help="Of the reports: en, ru or es.  [default: the description's, or en]"
 )
 @click.option("--strict-claims", is_flag=True, help="Exit code 1 unless every claim holds.")
 @click.option("--brief", "-b", is_flag=True, help="Print one line a file.")

@@ -294,7 +294,7 @@ def in_formulas(system: System) -> frozenset[str]:
     return frozenset(_occurring(held)) | {one.name for one in system.relations}
 
 
-def _occurring(value: object) -> Iterator[str]:
+def _occurring(value: Any) -> Iterator[str]:
     """The names in all expressions that a value holds."""
     if isinstance(value, Name):
         yield value.name
