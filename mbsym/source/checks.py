@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import fields, is_dataclass, replace
 from fractions import Fraction
 from functools import cache
@@ -302,12 +302,13 @@ def _occurring(value: Any) -> Iterator[str]:
         for item in value:
             yield from _occurring(item)
     else:
-        for name in _field_names(type(value)):
+        kind: Hashable = type(value)
+        for name in _field_names(kind):
             yield from _occurring(getattr(value, name))
 
 
 @cache
-def _field_names(kind: type) -> tuple[str, ...]:
+def _field_names(kind: Any) -> tuple[str, ...]:
     """The fields of a dataclass; of what is none, nothing."""
     return tuple(one.name for one in fields(kind)) if is_dataclass(kind) else ()
 
