@@ -26,6 +26,13 @@ def sentences(found: Constraints) -> Iterator[Said]:
     if not found.exact_points:
         yield Said("The ranks were taken at certified enclosures of points that keep the constraints.")
     for redundant in found.redundant:
+        if not redundant.from_rows:
+            yield say(
+                "Redundant: [[row]] is satisfied by every motion ([[sure]]).",
+                row=label(redundant.name),
+                sure=Words(redundant.certainty.value),
+            )
+            continue
         yield say(
             "Redundant: [[row]] follows from [[others]] ([[sure]]).",
             row=label(redundant.name),
