@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass, replace
 from fractions import Fraction
 from functools import cache
@@ -302,8 +302,7 @@ def _occurring(value: Any) -> Iterator[str]:
         for item in value:
             yield from _occurring(item)
     else:
-        kind: Hashable = type(value)
-        for name in _field_names(kind):
+        for name in _field_names(value.__class__):
             yield from _occurring(getattr(value, name))
 
 
