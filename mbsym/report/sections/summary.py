@@ -7,9 +7,7 @@ from collections.abc import Iterator
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from mbsym.formulas.formula import Column, Formula
 from mbsym.model.system import System
-from mbsym.problems.equations import Equations
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.stability import Stability, SubsystemStability
 from mbsym.problems.stability.word import Word
@@ -31,6 +29,7 @@ from mbsym.report.content import (
     say,
 )
 from mbsym.report.sections.canonical import TITLES
+from mbsym.report.sections.equations import is_short, short_equations
 from mbsym.report.sections.stability import kind_of_conditions
 from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line, titles
 from mbsym.report.words.verdicts import decided, grade, verdict
@@ -101,25 +100,6 @@ def _facts(results: Results) -> Iterator[Fact]:
         yield (Said("Self-check"),), (Link(Graded(self_check(checks), grade(worst(checks))), "checks"),)
 
 
-#: Longer formulas (in characters), and more equations, are left to the report.
-LONGEST, MOST_EQUATIONS = 220, 3
-#: Formulas with more terms are not even written to be measured.
-MOST_TERMS = 24
-
-
-def short_equations(found: Equations, system: System) -> Column:
-    """M q'' - f, where they are short enough to be read at a glance; constraints would add multipliers."""
-    many = len(found.forcing) > MOST_EQUATIONS or found.terms > MOST_TERMS * MOST_EQUATIONS
-    if many or found.constraints is not None:
-        return ()
-    written = found.equalities(system.coordinates)
-    return written if all(map(_is_short, written)) else ()
-
-
-def _is_short(value: Formula) -> bool:
-    return value.terms <= MOST_TERMS and len(value.readable()) <= LONGEST
-
-
 def _size(system: System, tied: Constraints | None) -> Fact:
     freedom = Phrase((str(len(system.coordinates)), ": ", named(system.coordinates)))
     if system.linear:
@@ -177,7 +157,7 @@ def _conditions(part: SubsystemStability) -> Iterator[Inline]:
     if not items:
         return
     yield from ("; ", kind_of_conditions(part.theory, items), ": ")
-    if all(one.formula is not None and _is_short(one.formula) for one in items):
+    if all(one.formula is not None and is_short(one.formula) for one in items):
         shown: list[Inline] = []
         for one in items:
             assert one.formula is not None
