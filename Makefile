@@ -3,8 +3,8 @@
 # make test     sets up and runs the tests, but those that are slow
 # make test-all the others as well, and properties on more examples: as CI
 # make systems  every description that comes with it, in one line each
-# make gallery  draws systems/figures again
-# make window   draws the README's pictures of the editor again (Chromium)
+# make gallery  draws docs/figures/systems and the README's first picture again
+# make window   draws the pictures of a paper, a robot and the editor again (TeX, Chromium)
 # make robots   27 robots (UR5 to Tiago Dual) derived and held against Pinocchio; installs its URDF files, 400 MB
 # make outputs  every description in every format and language, every documented command, one digest a file;
 #               make outputs REF=<commit> shows what differs from that commit, as a diff that a person reads
@@ -69,19 +69,19 @@ endef
 # The system, how long it moves, which of its figures, further options, anything for a small one.
 define figure
 $(BIN)/mbsym simulate systems/$(1).yaml --time $(2) --format png --out reports/gallery/$(1) --no-estimate --quiet $(4)
-$(if $(5),$(BIN)/python -c "$(SMALL)",cp) reports/gallery/$(1)/$(3).png systems/figures/$(1).png
+$(if $(5),$(BIN)/python -c "$(SMALL)",cp) reports/gallery/$(1)/$(3).png docs/figures/systems/$(1).png
 
 endef
 
 # The system, its axes and settings.
 define map
 $(BIN)/mbsym map systems/$(1).yaml $(2) --format png --out reports/gallery/map-$(1) --quiet
-$(BIN)/python -c "$(SMALL)" reports/gallery/map-$(1)/map.png systems/figures/map-$(1).png
+$(BIN)/python -c "$(SMALL)" reports/gallery/map-$(1)/map.png docs/figures/systems/map-$(1).png
 
 endef
 
 gallery: $(READY)
-	@mkdir -p systems/figures
+	@mkdir -p docs/figures/systems
 	$(call figure,tethered-satellites,60,motion)
 	$(call figure,satellite-with-damper,120,drift,--set p2=1/2)
 	$(call figure,gyrostat,0.1,motion,,small)
@@ -111,10 +111,11 @@ gallery: $(READY)
 	$(call map,satellite-with-damper,--x omega=0:5 --y Lambda=0:2)
 	$(call map,heavy-top,--x Omega=0:100 --y l=0:1/2)
 	$(call map,bicycle,--x v=0:10)
+	$(BIN)/python tests/site/draw_hoop.py docs/figures
 
-# The README's picture and animation of the editor.
+# The pictures of the README beside the first.
 window: $(READY)
-	PYTHONPATH=tests:tests/browser $(BIN)/python tests/browser/draw_window.py docs/figures
+	PYTHONPATH=tests:tests/browser:tests/site $(BIN)/python tests/browser/draw_doors.py docs/figures
 
 outputs: $(READY)
 	$(BIN)/python tests/outputs.py build/outputs $(if $(REF),--ref $(REF)) $(if $(ONLY),--only $(ONLY))

@@ -273,6 +273,23 @@ def read_description(path: Path, unconstrained: str = "", moving: str = "") -> S
     return None if errors else system
 
 
+def read_held(file: Path, command: str, constrained: bool = False, moving: bool = True) -> System | None:
+    """The system of a file with its inputs at the values of the unperturbed motion, which is said.
+
+    A command that is ``constrained`` knows constraints, others refuse them; one that is not about ``moving`` bodies
+    takes systems that are given by their matrices, too.
+    """
+    from mbsym.expressions.tree import text
+    from mbsym.model.driven import held
+
+    system = read_description(file, "" if constrained else command, command if moving else "")
+    if system is None or not system.inputs:
+        return system
+    values = ", ".join(f"{one.name} = {text(one.held)}" for one in system.inputs)
+    complain(file, f"note: for '{command}' the inputs are constant, as on the unperturbed motion: {values}")
+    return held(system)
+
+
 def printable(path: Path | str) -> str:
     """A name of a file for people: what could move a cursor or a title is written as an escape."""
     return escaped(os.fsencode(path).decode("utf-8", "backslashreplace"))

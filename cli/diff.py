@@ -161,7 +161,7 @@ def _side(path: Path) -> dict[str, Source]:
     trees = sorted(path.rglob(RESULTS))
     if trees:
         return {file.parent.relative_to(path).as_posix(): Source(file, False) for file in trees}
-    from mbsym_cli.batch_folders import found_in
+    from mbsym_cli.batch.folders import found_in
 
     found = {place.folder: Source(Path(place.file), True) for place in found_in([path], Path("build")).places}
     if not found:

@@ -146,7 +146,7 @@ def _read(field: Field, given: Any, system: System | None, options: Options) -> 
             found: dict[str, Any] = {}
             for text in given if system is not None else ():
                 read_formula(text, system, MOTIONS, found, options)
-            return found
+            return dict.fromkeys(text.partition("=")[0].strip() for text in given) | found
         case _:
             return given
 

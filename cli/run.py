@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 )
 @click.option("--animate", metavar="T", help="The motion from 0 to T in report.html, in three dimensions.")
 @click.option(
-    "--language", metavar="LANGUAGE", help="Of the LaTeX reports: en, ru or es.  [default: the description's, or en]"
+    "--language", metavar="LANGUAGE", help="Of the reports: en, ru or es.  [default: the description's, or en]"
 )
 @click.option("--strict-claims", is_flag=True, help="Exit code 1 unless every claim holds.")
 @click.option("--brief", "-b", is_flag=True, help="Print one line a file.")
@@ -89,9 +89,8 @@ def command(
     With --accuracy X --until T what the equations leave out (orders of gravity, negligible masses) is held against the
     motion, as 'mbsym simulate --accuracy' does; what changes it too much is told to be needed.
 
-    With --language ru or es the headings, captions, sentences and verdicts of the
-    LaTeX reports are in Russian or Spanish; what claims are about, and why a
-    problem has no result, stay English.
+    With --language ru or es reports in LaTeX and HTML and the terminal are in Russian or Spanish; generated code and
+    JSON stay English.
 
     With --angles sums formulas have cos(q1 - q2) in all files, where that is shorter part by part; with --angles
     products they have products of sines and cosines of single angles.

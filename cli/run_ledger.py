@@ -9,7 +9,7 @@ import click
 
 from mbsym_cli.option_groups import group
 from mbsym_cli.options import Options
-from mbsym_cli.simulation_choice import COARSEST, FINEST
+from mbsym_cli.simulate.choice import COARSEST, FINEST
 
 if TYPE_CHECKING:
     from mbsym.numerics.ledger.work import Wanted

@@ -8,7 +8,7 @@ from __future__ import annotations
 import inspect
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
@@ -25,6 +25,7 @@ from mbsym_cli.console import (
     complain,
     printable,
     read_description,
+    read_held,
     reason_of,
     show_rows,
     tell,
@@ -89,8 +90,9 @@ class _Run:
         system = self._described()
         values, given = read_fields(file, system, study.request, self.texts, self.options)
         request = study.request(**values)
-        self.writes = isinstance(study.out, Folder) and study.writes(request)
-        self._complain(request, system)
+        typed = {name for name, text in self.texts.items() if text not in (None, (), False)}
+        self.writes = isinstance(study.out, Folder) and study.writes(typed)
+        self._complain(request, system, typed)
         code = prevented(file, folder_for(file, self.out) if self.writes else None, system is not None, self.options)
         if code or system is None:
             return code or BAD_INPUT
@@ -100,15 +102,13 @@ class _Run:
         """The system, None after complaints; inputs are held, which is said, where the study does so."""
         study = self.study
         if study.held:
-            from mbsym_cli.simulation_inputs import read_held
-
             return read_held(self.file, study.name, study.constraints, not study.matrices)
         unknown = "" if study.constraints else study.name
         return read_description(self.file, unknown, "" if study.matrices else study.name)
 
-    def _complain(self, request: Any, system: System | None) -> None:
+    def _complain(self, request: Any, system: System | None, typed: Collection[str]) -> None:
         """About what does not go together."""
-        for one in self.study.unfit(request, system) if system is not None else ():
+        for one in self.study.unfit(request, system, typed) if system is not None else ():
             self._unfit(one)
         if isinstance(self.study.out, Single):
             self.options.unwritten("--out", self.out)

@@ -43,7 +43,7 @@ BELOW = {
     "cli": "expressions algebra model source mechanics formulas problems analysis numerics simulation report studies"
     " batch diff editing maps sweeps picture serving __init__",
 }
-MODULES = sorted([*ROOT.rglob("*.py"), *COMMANDS.glob("*.py")])
+MODULES = sorted([*ROOT.rglob("*.py"), *COMMANDS.rglob("*.py")])
 HEAVY = ("sympy", "numpy", "scipy", "jinja2", "rich", "matplotlib", "llvmlite")
 
 

@@ -20,8 +20,10 @@ def test_the_package_says_that_it_is_typed() -> None:
 
 def test_every_package_is_listed() -> None:
     listed = set(tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]["packages"])
-    found = {".".join(path.parent.relative_to(ROOT).parts) for path in (ROOT / "mbsym").rglob("__init__.py")}
-    assert found | {"mbsym_cli", "mbsym_systems", "mbsym_templates"} == listed
+    inits = [path for folder in ("mbsym", "cli") for path in (ROOT / folder).rglob("__init__.py")]
+    found = {".".join(path.parent.relative_to(ROOT).parts) for path in inits}
+    found = {name.replace("cli", "mbsym_cli", 1) if name.split(".")[0] == "cli" else name for name in found}
+    assert found | {"mbsym_systems", "mbsym_templates"} == listed
 
 
 @pytest.mark.skipif(shutil.which("make") is None, reason="no make")

@@ -205,4 +205,4 @@ def test_importing_stays_light() -> None:
 
 def test_the_command_is_short() -> None:
     """What commands decide is in the library: their files read arguments and print; those of studies are no files."""
-    assert len((ROOT / "cli" / "simulate.py").read_text(encoding="utf-8").splitlines()) < 120
+    assert len((ROOT / "cli" / "simulate" / "command.py").read_text(encoding="utf-8").splitlines()) < 120

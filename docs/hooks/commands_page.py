@@ -1,4 +1,4 @@
-"""The page on commands, from their own help texts."""
+"""The end of the page on commands, from their own help texts."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ from in_markdown import fenced
 from mbsym_cli.main import COMMANDS, main
 
 _HEAD = """\
-# Commands
+## Every option
 
 Each command's help, as `mbsym COMMAND --help` prints it.
 [Completion of commands and options](../howto/editor.md#shell-completion) can be had for bash, zsh and fish.
 """
 
 
-def page() -> str:
-    """The page in Markdown."""
+def tail() -> str:
+    """It in Markdown."""
     parts = [_HEAD, fenced(_help(main, "mbsym"))]
     for name, listed in COMMANDS.items():
         parts += [
-            f"## mbsym {name}\n",
+            f"### mbsym {name}\n",
             f"{listed.does}\n",
             fenced(_help(main.get_command(_context(), name), f"mbsym {name}")),
         ]

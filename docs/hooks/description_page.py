@@ -1,4 +1,4 @@
-"""The page on descriptions, from the tables that the reader itself goes by."""
+"""The end of the page on descriptions, from the tables that the reader itself goes by."""
 
 from __future__ import annotations
 
@@ -10,14 +10,10 @@ from mbsym.source import keys, topics
 from mbsym.source.grammar import Key, Kind, Record
 
 _HEAD = """\
-# Description
+## Every key
 
-What may stand in a description. This page is made of the table that the reader itself goes by; `mbsym explain
-description`, `loads`, `constraints`, `expressions` and `claims` print the same. The [tutorial](../tutorial.md) builds a
-description step by step.
-
-Descriptions are YAML, or the plain text of the description editor; `mbsym convert` goes both ways. Nothing in a
-description is executed.
+What follows is made of the table that the reader itself goes by; `mbsym explain description`, `loads`, `constraints`,
+`expressions` and `claims` print the same.
 """
 
 _REMARKS = {
@@ -25,8 +21,8 @@ _REMARKS = {
 }
 
 
-def page() -> str:
-    """The page in Markdown."""
+def tail() -> str:
+    """It in Markdown."""
     parts = [_HEAD, *map(_section, topics.records(keys.DESCRIPTION))]
     loads = "A list; each load is `- kind: {key: value, ...}`, or `- kind: expression`.\n"
     parts += ["## Loads\n", loads, *_kinds(keys.LOADS)]

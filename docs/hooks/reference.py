@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from mkdocs.structure.files import File, Files
+from mkdocs.structure.pages import Page
 
 sys.path.insert(0, str(Path(__file__).parent))
 
@@ -16,11 +17,11 @@ import json_page
 import python_page
 
 PAGES = {
-    "reference/description.md": description_page.page,
-    "reference/commands.md": commands_page.page,
     "reference/python.md": python_page.page,
     "reference/json.md": json_page.page,
 }
+#: What is made stands below what is written.
+TAILS = {"reference/description.md": description_page.tail, "reference/commands.md": commands_page.tail}
 
 
 def on_files(files: Files, config: Any, **_: Any) -> Files:
@@ -30,3 +31,9 @@ def on_files(files: Files, config: Any, **_: Any) -> Files:
     for name, text in json_page.schemas().items():
         files.append(File.generated(config, f"reference/{name}", content=text))
     return files
+
+
+def on_page_markdown(markdown: str, page: Page, **_: Any) -> str:
+    """A page with what is made for its end."""
+    tail = TAILS.get(page.file.src_uri)
+    return f"{markdown}\n\n{tail()}" if tail else markdown

@@ -148,7 +148,9 @@ def reactions_of(analysis: Analysis) -> tuple[Reaction, ...]:
         return ()
     from mbsym.problems.reactions import reactions
 
-    return reactions(analysis.scene, analysis.constraints if analysis.system.constraints else None)
+    if not analysis.system.constraints:
+        return reactions(analysis.scene, None)
+    return reactions(analysis.scene, analysis.constraints, programs_of(analysis))
 
 
 def reactions_check(analysis: Analysis) -> Check | None:

@@ -4,21 +4,36 @@
 
 force and moment about the connection point O_k, in the axes of the body (``mbsym.mechanics.reactions``).
 
+Forces of constraints may be in balance with each other, J^T y = 0 with y not 0 (a third bar, two pins on one axis, a
+row that says 0 = 0 for a planar loop): then lambda + mu y are multipliers for any mu, and what is determined of R are
+those combinations of its components to which no y adds anything,
+
+    R + mu sum y_i R_i.
+
 The second route releases the joint: with six more coordinates there (three displacements, three turns) d'Alembert's
 principle in inertial axes gives, along each of them at rest, the force or moment that the joint had to supply.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from flint import ctx
+
 from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.failures import Failure
+from mbsym.algebra.matrices import determinant
+from mbsym.algebra.ring import Polynomial
+from mbsym.algebra.vectors import Vector
 from mbsym.expressions.tree import ZERO, Name, add
 from mbsym.formulas.formula import Column, column
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics import reactions as recursion
+from mbsym.mechanics.constraints.ranks import eliminated, is_certain
+from mbsym.mechanics.constraints.rows import RowName
+from mbsym.mechanics.constraints.states import PRECISION, Manifold
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.states import Oracles
@@ -29,17 +44,44 @@ if TYPE_CHECKING:
     from mbsym.mechanics.constraints.programs import ConstrainedPrograms
     from mbsym.problems.constraints.result import Constraints
 
+#: At so many states on the constraints is looked what forces in balance add; formulas of more terms are not written.
+STATES, MOST_TERMS = 3, 24
+
 D_ALEMBERT = "d'Alembert's principle with the joint released"
 
 
 @dataclass(frozen=True, repr=False)
+class Balance(Shown):
+    """Forces of ``rows`` that are in balance with each other, and the ``components`` of a reaction that they change.
+
+    ``added`` is what they add with the factor 1, force and moment; None where the formulas would be long.
+    """
+
+    rows: tuple[RowName, ...]
+    components: tuple[int, ...]
+    added: tuple[Column, Column] | None
+
+
+@dataclass(frozen=True, repr=False)
 class Reaction(Shown):
-    """Of one joint; ``per_multiplier`` has (force, moment) for lambda = 1 of each independent row."""
+    """Of one joint; ``per_multiplier`` has (force, moment) for lambda = 1 of each independent row.
+
+    Formulas are those without forces of the other rows.  ``balances`` add to them: the joint is statically
+    indeterminate where there are any, and ``combinations`` is how many combinations of its ``undetermined`` components
+    are determined all the same.
+    """
 
     body: str
     force: Column
     moment: Column
     per_multiplier: tuple[tuple[Column, Column], ...]
+    balances: tuple[Balance, ...] = ()
+    combinations: int = 0
+
+    @property
+    def undetermined(self) -> tuple[int, ...]:
+        """Components that are not determined: 0, 1, 2 of the force, 3, 4, 5 of the moment."""
+        return tuple(sorted({k for one in self.balances for k in one.components}))
 
     @property
     def terms(self) -> int:
@@ -47,23 +89,123 @@ class Reaction(Shown):
         return sum(x.terms for x in (*self.force, *self.moment))
 
 
-def reactions(scene: Scene, tied: Constraints | None) -> tuple[Reaction, ...]:
+def reactions(
+    scene: Scene, tied: Constraints | None, programs: ConstrainedPrograms | None = None
+) -> tuple[Reaction, ...]:
     """The reactions that the description asks for (scene over the ring).  Raises NoClosedForm."""
-    ring = scene.ring
-    rows = [] if tied is None else [(tied.names[i].constraint, tied.names[i].component) for i in tied.independent]
-    found = recursion.reactions(scene, scene.system.reactions, rows)
+    if tied is None or programs is None:
+        return tuple(_reaction(scene, one) for one in recursion.reactions(scene, scene.system.reactions, ()))
+    own = [tied.names[i] for i in tied.independent]
+    others = [name for name in _all_rows(scene) if name not in own]
+    rows = [(name.constraint, name.component) for name in (*own, *others)]
+    found = [_reaction(scene, one) for one in recursion.reactions(scene, scene.system.reactions, rows)]
+    balanced = _Balances(scene, tied, programs, (*own, *others))
     return tuple(
-        Reaction(
-            one.body,
-            column(ring, [ring.reduce(x) for x in one.force]),
-            column(ring, [ring.reduce(x) for x in one.moment]),
-            tuple(
-                (column(ring, [ring.reduce(x) for x in force]), column(ring, [ring.reduce(x) for x in moment]))
-                for force, moment in one.per_multiplier
-            ),
-        )
-        for one in found
+        replace(one, per_multiplier=one.per_multiplier[: len(own)], **balanced.of(one.per_multiplier)) for one in found
     )
+
+
+def _reaction(scene: Scene, one: recursion.Reaction) -> Reaction:
+    def reduced(x: Vector) -> Column:
+        return column(scene.ring, [scene.ring.reduce(y) for y in x])
+
+    parts = tuple((reduced(force), reduced(moment)) for force, moment in one.per_multiplier)
+    return Reaction(one.body, reduced(one.force), reduced(one.moment), parts)
+
+
+def _all_rows(scene: Scene) -> list[RowName]:
+    """Those that say nothing of the coordinates, too: the joints of a planar loop may press against each other."""
+    from mbsym.mechanics.constraints.rows import constraint_rows
+
+    return [row.name for row in constraint_rows(scene)]
+
+
+class _Balances:
+    """The y with J^T y = 0, one for each row that is not independent, and what they add to reactions."""
+
+    def __init__(self, scene: Scene, tied: Constraints, programs: ConstrainedPrograms, rows: Sequence[RowName]) -> None:
+        self.ring, self.tied, self.rows = scene.ring, tied, tuple(rows)
+        with ctx.workprec(PRECISION):
+            self.states = list(Manifold(scene.system.without_speeds, scene.ring, programs).states(STATES))
+            jacobian = [x for row in programs.jacobian for x in row]
+            n = len(scene.system.coordinates)
+            values = [
+                programs.tree.program.evaluate(jacobian, one.state.values, one.state.numbers) for one in self.states
+            ]
+        places = {name: i for i, name in enumerate(programs.names)}
+        self.tables = [
+            {name: flat[i * n : (i + 1) * n] for name, i in places.items()} for flat in values
+        ]  # J by rows at every state
+        follow = {one.name: one.from_rows for one in tied.redundant}
+        self.sets = [(name, *follow.get(name, ())) for name in rows[len(tied.independent) :]]
+
+    def of(self, parts: Sequence[tuple[Column, Column]]) -> dict[str, Any]:
+        """``balances`` and ``combinations`` of one joint, by what every row adds to it for lambda = 1."""
+        added = {
+            name: [x.polynomial for x in (*force, *moment)]
+            for name, (force, moment) in zip(self.rows, parts, strict=True)
+        }
+        with ctx.workprec(PRECISION):
+            per_state: list[list[list[Any]]] = [[] for _ in self.states]
+            found = []
+            for names in self.sets:
+                changes = [self._added(k, names, added) for k in range(len(self.states))]
+                components = tuple(c for c in range(6) if any(is_certain(one[c]) for one in changes))
+                if components:
+                    found.append(Balance(names, components, self._formulas(names, added, components)))
+                    for table, change in zip(per_state, changes, strict=True):
+                        table.append([change[c] for c in range(6)])
+            rank = max((eliminated(table, range(6)).rank for table in per_state), default=0)
+        undetermined = {c for one in found for c in one.components}
+        return {"balances": tuple(found), "combinations": len(undetermined) - rank}
+
+    def _added(self, k: int, names: Sequence[RowName], added: Mapping[RowName, Sequence[Polynomial]]) -> list[Any]:
+        """sum y_i R_i at a state, with y = 1 for the first row."""
+        state, table = self.states[k].state, self.tables[k]
+        carry = Carrier(self.ring, state.numbers, state.values)
+        total = [carry(x) for x in added[names[0]]]
+        if len(names) > 1:
+            rows = [[*(table[name][c] for name in names[1:]), table[names[0]][c]] for c in range(len(table[names[0]]))]
+            done = eliminated(rows, range(len(names) - 1))
+            for i, column_ in done.pivots:
+                factor = done.rows[i][len(names) - 1]
+                own = [carry(x) for x in added[names[1 + column_]]]
+                total = [x - factor * y for x, y in zip(total, own, strict=True)]
+        return total
+
+    def _formulas(
+        self, names: Sequence[RowName], added: Mapping[RowName, Sequence[Polynomial]], components: Sequence[int]
+    ) -> tuple[Column, Column] | None:
+        """The same with y by minors of J, which have no denominators; None where that is long."""
+        ring = self.ring
+        try:
+            weights = self._minors(names)
+            total = []
+            for c in range(6):
+                whole = ring.dot(weights, [added[name][c] for name in names]) if c in components else ring.zero
+                total.append(ring.reduce(whole))
+        except (Failure, ZeroDivisionError, StopIteration):
+            return None
+        if sum(map(len, total)) > MOST_TERMS or not any(total):
+            return None
+        return column(ring, total[:3]), column(ring, total[3:])
+
+    def _minors(self, names: Sequence[RowName]) -> list[Polynomial]:
+        ring, tied = self.ring, self.tied
+        if len(names) == 1:
+            return [ring.one]
+        numbers = [tied.names.index(name) for name in names]
+        table = self.tables[0]
+        done = eliminated([table[name] for name in names[1:]], range(len(table[names[0]])))
+        if tied.in_speeds or done.rank < len(names) - 1:
+            raise StopIteration
+        rows = [[tied.jacobian[i, k].polynomial for k in sorted(done.columns)] for i in numbers]
+        minors = [determinant(ring, rows[:k] + rows[k + 1 :]) for k in range(len(rows))]
+        common = ring.zero
+        for x in minors:
+            common = ring.common_factor(common, x)
+        quotients = [x if common.is_constant() else divmod(x, common)[0] for x in minors]
+        return [-x if k % 2 else x for k, x in enumerate(quotients)]
 
 
 def released(system: System, body: str) -> tuple[System, tuple[str, ...]]:

@@ -65,9 +65,9 @@ def program_not_printed(steps: int) -> Said:
     return say("[[count]] steps, not printed; model.py and model.c have them", count=str(steps))
 
 
-def not_printed(formula: Formula) -> str:
+def not_printed(formula: Formula) -> Said:
     """What stands in a formula's place."""
-    return f"{formula.terms} terms, not printed"
+    return say("[[count]] terms, not printed", count=str(formula.terms))
 
 
 def length(formula: Formula, kept: bool = True) -> Said:

@@ -145,7 +145,7 @@ def contents(known: Results, write: Callable[[Iterator[Block]], T]) -> dict[int 
 
     modules: dict[int | str, Any] = {number: section_of(PROBLEMS[number]) for number in known.problems}
     modules |= {name: import_module(f"mbsym.report.sections.{name}") for name in BESIDE}
-    return {key: Section(x.content, known, write) for key, x in modules.items() if hasattr(x, "content")}
+    return {key: Section(x.content, known, write) for key, x in modules.items()}
 
 
 def results(analysis: Analysis, problems: Sequence[int]) -> Results:

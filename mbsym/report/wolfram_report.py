@@ -62,7 +62,9 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         del found[3]  # equations that are not whole are none: the program takes their place
 
     def written(value: Formula) -> str:
-        return string(not_printed(value)) if id(value) in long else wolfram_text(value.ring, value.polynomial)
+        if id(value) in long:
+            return string(Writer().said(not_printed(value)))
+        return wolfram_text(value.ring, value.polynomial)
 
     return rendered(
         "report.wl.j2",
@@ -87,6 +89,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         polynomial_formulas=[x.wolfram() for x in found[9].formulas] if 9 in found else [],
         small_parameter_formulas=list(_of_small_parameters(found[12], analysis.system)) if 12 in found else [],
         forms=forms,
+        undetermined=_undetermined(analysis) if 3 in problems else "",
         reactions=(analysis.optional("reactions") or ()) if analysis.system.reactions and 3 in problems else (),
         parts=[f"wolfram/{PROBLEMS[number].attribute}.j2" for number in problems],
         failures=[(number, stage.failure) for number, stage in stages.items() if stage.failure is not None],
@@ -220,3 +223,11 @@ def _code(analysis: Analysis) -> dict[str, Any] | None:
         "forcing": body.results[n * n :],
         "omitted": "",
     }
+
+
+def _undetermined(analysis: Analysis) -> str:
+    if not (analysis.system.reactions and analysis.system.constraints):
+        return ""
+    from mbsym.report.code.model_code import undetermined  # few descriptions ask for reactions
+
+    return undetermined(analysis).replace("*)", "* )")

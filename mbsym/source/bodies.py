@@ -14,7 +14,7 @@ from mbsym.model.admissibility import ROUNDING
 from mbsym.model.speeds import Quaternion, UnitVector
 from mbsym.model.system import INERTIAL, Body, Inertia, Rotation, Tensor, Vector, rational
 from mbsym.source.identity import vanishes
-from mbsym.source.keys import BODY, INERTIA, ROTATION
+from mbsym.source.keys import BODY, INERTIA, MASS_CENTRE, ROTATION
 from mbsym.source.placed import Mapping, Node, Scalar, Sequence, TooManyComplaints
 from mbsym.source.reading import ZERO_VECTOR, Fields, Reading, comma_hint
 from mbsym.source.scope import ANGLE, RADIUS, VELOCITY, Allowed, closest, did_you_mean, slip_of, why_no_name
@@ -319,25 +319,19 @@ def _axis(node: Node, reading: Reading) -> int | None:
 
 def _inertia(fields: Fields, reading: Reading) -> Inertia | None:
     """The tensor and its point; a tensor of zeros is no inertia at all."""
-    node, about_node = fields.get("inertia"), fields.get("inertia about")
-    about = (
-        None
-        if about_node is None
-        else reading.word(about_node, "'inertia about'", ("joint", "mass centre", "mass center"))
-    )
+    node, about = fields.get("inertia"), fields.word("inertia about")
     if node is None:
-        if about is not None:
+        if about:
             fields.require("inertia")
         return None
     node, accepted = _accepted(node, fields, reading)
     tensor = _tensor(node, reading)
     if all(is_number(entry, 0) for row in tensor for entry in row):
         return None
-    if about_node is None:
+    if fields.get("inertia about") is None:
         hint = "'inertia about: joint' (the connection point) or 'inertia about: mass centre'"
         reading.error("inertia-point", "it is not said about which point", fields.key_span("inertia"), hint)
-    about = "joint" if about == "joint" else "mass centre"
-    return Inertia(about, tensor, accepted, fields.key_span("inertia"))
+    return Inertia(about or MASS_CENTRE, tensor, accepted, fields.key_span("inertia"))
 
 
 def _accepted(node: Node, fields: Fields, reading: Reading) -> tuple[Node, bool]:

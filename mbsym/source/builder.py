@@ -14,7 +14,7 @@ from mbsym.expressions.place import Complaints
 from mbsym.model.admissibility import known_values
 from mbsym.model.constraints import Constraint
 from mbsym.model.driven import with_held
-from mbsym.model.system import INERTIAL, LANGUAGES, System
+from mbsym.model.system import INERTIAL, System
 from mbsym.source.bodies import draft_bodies, read_body, read_body_name
 from mbsym.source.checks import check_body, check_system, in_formulas
 from mbsym.source.claims import read_abbreviations, read_claims
@@ -108,7 +108,7 @@ def build(node: Node, complaints: Complaints, by_use: bool = False, folder: Path
         limits=read_limits(fields.get("limits"), reading),
         source=fields.text("source"),
         symbols=read_symbols(fields.get("latex"), reading),
-        language=_language(fields, reading),
+        language=fields.word("language"),
         order=_coordinates(fields, "order", "an order of coordinates", reading),
         constraints=constraints,
         dependent=dependent,
@@ -169,11 +169,6 @@ def _reactions(fields: Fields, bodies: list[str], reading: Reading) -> tuple[str
         else:
             found.append(name)
     return tuple(found)
-
-
-def _language(fields: Fields, reading: Reading) -> str:
-    node = fields.get("language")
-    return "" if node is None else reading.word(node, "'language'", LANGUAGES) or ""
 
 
 def _coordinates(

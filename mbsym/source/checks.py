@@ -294,7 +294,7 @@ def in_formulas(system: System) -> frozenset[str]:
     return frozenset(_occurring(held)) | {one.name for one in system.relations}
 
 
-def _occurring(value: object) -> Iterator[str]:
+def _occurring(value: Any) -> Iterator[str]:
     """The names in all expressions that a value holds."""
     if isinstance(value, Name):
         yield value.name
@@ -302,12 +302,12 @@ def _occurring(value: object) -> Iterator[str]:
         for item in value:
             yield from _occurring(item)
     else:
-        for name in _field_names(type(value)):
+        for name in _field_names(value.__class__):
             yield from _occurring(getattr(value, name))
 
 
 @cache
-def _field_names(kind: type) -> tuple[str, ...]:
+def _field_names(kind: Any) -> tuple[str, ...]:
     """The fields of a dataclass; of what is none, nothing."""
     return tuple(one.name for one in fields(kind)) if is_dataclass(kind) else ()
 

@@ -14,8 +14,6 @@ from mbsym.model.claims import (
     EXPRESSION,
     INITIAL_STATE,
     MOST_ORDER,
-    NECESSARY,
-    SUFFICIENT,
     SUM,
     SUMS,
     Abbreviation,
@@ -189,8 +187,7 @@ class _Reader:
         node = self.fields.require("that", "write for example that: b > a")
         scalar = None if node is None else self.reading.scalar(node, "a condition")
         place, span = self.fields.text("place"), self.fields.key_span("claim")
-        role = self.fields.get("as")
-        word = "" if role is None else self.reading.word(role, "the role of a condition", (NECESSARY, SUFFICIENT)) or ""
+        word = self.fields.word("as", "the role of a condition")
         found = [] if scalar is None else read_comparisons(scalar, self.reading, Allowed("a condition", _CONSTANTS))
         return [
             Claim(self.word, one.left, relation=one.relation, right=one.right, role=word, place=place, span=span)

@@ -13,7 +13,7 @@ from mbsym.expressions.tree import CONSTANTS, ZERO, Expression, names
 from mbsym.model.comparison import has_sign
 from mbsym.model.system import Parameter, Prescribed, rational
 from mbsym.model.units import Declared
-from mbsym.source.keys import PARAMETER, PRESCRIBED, SIGNS
+from mbsym.source.keys import PARAMETER, PRESCRIBED, SIGN_WORDS, SIGNS
 from mbsym.source.placed import Entry, Mapping, Node, Scalar, Sequence
 from mbsym.source.reading import Fields, Reading, keys_of
 from mbsym.source.scope import NUMBER, Allowed, did_you_mean
@@ -86,7 +86,7 @@ def _sign_of(value: Expression | None) -> str:
 
 
 def _described(name: str, span: Span, node: Mapping, reading: Reading) -> Parameter:
-    fields = reading.fields(node, f"the parameter {ascii_safe(name)}", {**PARAMETER, **dict.fromkeys(SIGNS, "")})
+    fields = reading.fields(node, f"the parameter {ascii_safe(name)}", {**PARAMETER, **SIGN_WORDS})
     errors = reading.errors
     value = fields.expression("value", NUMBER)
     if reading.errors != errors:
@@ -110,7 +110,7 @@ def note_unit(name: str, fields: Fields, reading: Reading) -> None:
 def _sign(fields: Fields, reading: Reading) -> str | None:
     """``sign: positive`` or ``positive: true``, once; None where nothing is said."""
     given = fields.get("sign")
-    sign = None if given is None else reading.word(given, "a sign", SIGNS)
+    sign: str | None = fields.word("sign", "a sign") or None
     for word in SIGNS:
         flag = fields.get(word)
         if flag is None:

@@ -657,7 +657,7 @@ SYSTEM = {
         label="latex symbols",
     ),
     "order": Key("in which order subsystems and their coordinates are told, in problems 5 and 6: [theta, psi]", _NAMES),
-    "language": Key("of the LaTeX reports: en, ru or es", Word(LANGUAGES)),
+    "language": Key("of the reports: en, ru or es", Word(LANGUAGES)),
     "units": Key(
         "units of coordinates, parameters, prescribed motions: {x: m, theta: rad}; every formula is then checked",
         Named(_UNIT, "coordinate"),
@@ -684,6 +684,12 @@ ALIASES = {
     "gyrostatic momentum": "gyrostatic moment",
     "dimensionless_time": "dimensionless time",
 }
+
+
+def spellings(key: str) -> list[str]:
+    """The other spellings of a key or word."""
+    return [other for other, one in ALIASES.items() if one == key]
+
 
 #: What other programs have and this one has not: no slip of the pen for something else.
 _LOOPS = "loops are closed under 'constraints': - coincide: [{body: A, point: [0, 0, 0]}, {body: B, point: [0, 0, 0]}]"

@@ -7,7 +7,7 @@ every mistake; a System is only returned when there was none.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
@@ -19,7 +19,8 @@ from mbsym.expressions.tree import ZERO, Call, Expression, Name, names, walk
 from mbsym.model.system import Vector
 from mbsym.model.units import Declared
 from mbsym.source import placed
-from mbsym.source.keys import ALIASES, UNSUPPORTED
+from mbsym.source.grammar import Key, Word
+from mbsym.source.keys import ALIASES, UNSUPPORTED, spellings
 from mbsym.source.placed import Entry, Node, Scalar, Sequence
 from mbsym.source.scope import Allowed, Scope, closest, did_you_mean
 
@@ -256,7 +257,7 @@ class Reading:
             raise placed.TooManyComplaints  # without them every name would be unknown
         return node.items
 
-    def fields(self, node: Node, what: str, known: Collection[str], hint: str | None = None) -> Fields:
+    def fields(self, node: Node, what: str, known: Mapping[str, Key], hint: str | None = None) -> Fields:
         """A mapping with a fixed set of keys; an unknown one is complained about and taken for what it resembles."""
         found: dict[str, Entry] = {}
         misspelt: dict[str, Entry] = {}
@@ -274,7 +275,7 @@ class Reading:
                 self.error("unknown-key", message, entry.key.span, keys)
                 if guess:
                     misspelt[guess] = entry
-        return Fields(self, what, {**misspelt, **found}, node.span, isinstance(node, placed.Mapping))
+        return Fields(self, what, {**misspelt, **found}, node.span, isinstance(node, placed.Mapping), known)
 
 
 @dataclass(slots=True)
@@ -286,6 +287,7 @@ class Fields:
     found: dict[str, Entry]
     span: Span
     sound: bool
+    known: Mapping[str, Key]
 
     def get(self, key: str) -> Node | None:
         entry = self.found.get(key)
@@ -304,6 +306,15 @@ class Fields:
     def text(self, key: str) -> str:
         node = self.get(key)
         return "" if node is None else self.reading.free_text(node, f"'{key}'")
+
+    def word(self, key: str, what: str = "") -> str:
+        """One of the words that the table of keys allows; empty where there is none."""
+        node, of = self.get(key), self.known[key].type
+        if node is None or not isinstance(of, Word):
+            return ""
+        words = [other for one in map(str, of.choices) for other in (one, *spellings(one))]
+        found = self.reading.word(node, what or f"'{key}'", words) or ""
+        return ALIASES.get(found, found)
 
     def expression(self, key: str, allowed: Allowed) -> Expression | None:
         node = self.get(key)

@@ -35,7 +35,7 @@ from mbsym.source.grammar import (
     Vector,
     Word,
 )
-from mbsym.source.keys import ALIASES, DESCRIPTION, VERSION
+from mbsym.source.keys import ALIASES, DESCRIPTION, VERSION, spellings
 
 Schema = dict[str, Any]
 
@@ -131,9 +131,7 @@ def _list(item: Schema, least: int, most: int | None) -> Schema:
 
 def _choices(choices: tuple[str | int, ...]) -> list[str | int]:
     """Words in all their spellings; numbers may be quoted."""
-    found: list[str | int] = []
-    for one in choices:
-        found += [one, *(other for other, word in ALIASES.items() if word == one)]
+    found = [other for one in choices for other in (one, *spellings(str(one)))]
     return [*found, *(str(one) for one in choices if isinstance(one, int))]
 
 
@@ -154,12 +152,16 @@ def _record(record: Record, definitions: Schema) -> Schema:
     return schema | ({"oneOf": [{"required": [one]} for one in record.one_of]} if record.one_of else {})
 
 
-def _required(names: list[str]) -> Schema:
-    """That keys are there; of one with another spelling, that it is or the other one."""
-    other = {key: spelling for spelling, key in ALIASES.items() if key in names}
-    found: Schema = {"required": [name for name in names if name not in other]}
-    either = [{"if": {"not": {"required": [other[name]]}}, "then": {"required": [name]}} for name in other]
-    return {**(found if found["required"] else {}), **({"allOf": either} if either else {})}
+def _required(names: list[str], any_of: tuple[str, ...] = ()) -> Schema:
+    """That keys are there, in one of their spellings, and one of several others."""
+    plain = [name for name in names if not spellings(name)]
+    several = [(name, *spellings(name)) for name in names if spellings(name)]
+    several += [any_of] if any_of else []
+    either = [
+        {"if": {"not": {"anyOf": [{"required": [one]} for one in others]}}, "then": {"required": [first]}}
+        for first, *others in several
+    ]
+    return {**({"required": plain} if plain else {}), **({"allOf": either} if either else {})}
 
 
 def _kinds(kinds: Mapping[str, Kind], called: str, definitions: Schema) -> Schema:
@@ -180,7 +182,7 @@ def _kind(kind: Kind, definitions: Schema) -> Schema:
     if len(kind.ways) == 1:
         return schema
     required = [set(kind.required_in(way)) for way in kind.ways]
-    always = _required([key for key in schema.pop("required") if key in set.intersection(*required)])
+    always = [key for key in schema.pop("required") if key in set.intersection(*required)]
     ways = {
         way.keys[0]: {
             "title": way.words,
@@ -189,4 +191,4 @@ def _kind(kind: Kind, definitions: Schema) -> Schema:
         }
         for way, needed in zip(kind.ways, required, strict=True)
     }
-    return {**schema, **always, "dependentSchemas": ways}
+    return {**schema, **_required(always, tuple(ways)), "dependentSchemas": ways}

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Span
-from mbsym.expressions.table import CUBIC, ENDS, EXTRAPOLATE, HOLD, LINEAR, OUTSIDE_ZERO, Points, Source, Table
+from mbsym.expressions.table import HOLD, LINEAR, Points, Source, Table
 from mbsym.model.system import rational
 from mbsym.model.units import Declared
 from mbsym.source.keys import MAX_POINTS, TABLE
@@ -35,8 +35,7 @@ def _table(entry: Entry, reading: Reading) -> Table:
     what = f"the table {ascii_safe(name)}"
     hint = "write {points: [[0, 0], [1, 2.5]]}"
     fields = reading.fields(entry.value, what, TABLE, hint)
-    between = _word("between", (LINEAR, CUBIC), fields.get("between"), reading)
-    outside = _word("outside", (HOLD, OUTSIDE_ZERO, EXTRAPOLATE, ENDS), fields.get("outside"), reading)
+    between, outside = fields.word("between") or LINEAR, fields.word("outside") or HOLD
     unit = fields.get("unit")
     scalar = None if unit is None else reading.scalar(unit, f"the unit of {ascii_safe(name)}")
     if scalar is not None:
@@ -82,12 +81,6 @@ def _columns(node: Node | None, reading: Reading) -> tuple[str, str] | None:
         return None
     first, second = (reading.scalar(item, "a column") for item in node.items)
     return None if first is None or second is None else (first.text.strip(), second.text.strip())
-
-
-def _word(key: str, choices: tuple[str, ...], node: Node | None, reading: Reading) -> str:
-    """One of the words; the first of them where there is none."""
-    found = None if node is None else reading.word(node, f"'{key}'", choices)
-    return found or choices[0]
 
 
 def _points(node: Node, what: str, reading: Reading) -> tuple[Place, ...]:

@@ -45,6 +45,11 @@ def label_of(line: Scalar) -> tuple[Scalar | None, Scalar]:
     return line.part(0, match.start()), line.part(match.end(), len(line.text))
 
 
+def label_in(part: Scalar) -> tuple[Scalar | None, Scalar]:
+    """``key = value`` within a record; what stands in quotes has no key, whatever it holds."""
+    return (None, part) if part.text.startswith('"') or "=" not in part.text else label_of(part)
+
+
 def word_of(text: str) -> str:
     word = " ".join(text.lower().split())
     return SPELLINGS.get(word, word)

@@ -19,7 +19,7 @@ from mbsym.source.placed import Entry, Mapping, Node, Scalar, Sequence
 from mbsym.source.scope import closest
 from mbsym.source.text_claims import claim
 from mbsym.source.text_kinds import of_kind
-from mbsym.source.text_lines import HEADING, key_of, label_of, lines_of, word_of
+from mbsym.source.text_lines import HEADING, key_of, label_in, label_of, lines_of, word_of
 from mbsym.source.text_values import items, row, split
 
 
@@ -160,11 +160,11 @@ class TextReader:
     def record(self, value: Scalar, first: str) -> Node:
         """``a; key = b``: a mapping; a single bare value stays what it is."""
         parts = list(split(value, ";"))
-        if len(parts) == 1 and "=" not in parts[0].text:
+        if len(parts) == 1 and label_in(parts[0])[0] is None:
             return self.unquoted(parts[0]) if first == "meaning" else parts[0]
         entries = []
         for index, part in enumerate(parts):
-            label, rest = label_of(part)
+            label, rest = label_in(part)
             if label is None and index == 0:
                 key = "value" if first == "sign" and part.text[:1].isdigit() else first
                 read = self.unquoted(part) if key == "meaning" else part

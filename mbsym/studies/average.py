@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
@@ -72,7 +72,7 @@ class Request:
         return dict.fromkeys(self.small, 1) | dict(self.order)
 
 
-def unfit(request: Request, system: System) -> Iterator[Unfit]:
+def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
     from mbsym.analysis.averaged import fast_phases
 
     known, phase = fast_phases(system), request.phase

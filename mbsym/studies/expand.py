@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
@@ -60,7 +60,7 @@ class Request:
     ] = None
 
 
-def unfit(request: Request, system: System) -> Iterator[Unfit]:
+def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
     small = system.small
     if small is None:
         hint = "add 'small parameter: eps'"

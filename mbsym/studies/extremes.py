@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
@@ -59,7 +59,7 @@ class Request:
     budget: Annotated[float, Number("S", "Counted work, worth some S seconds.")] = 60.0
 
 
-def unfit(request: Request, system: System) -> Iterator[Unfit]:
+def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
     if request.sequences and system.constraints:
         told = f"sequences are ranked without constraints, and here are some ({listed(system.constraints)})"
         yield Unfit("--sequences", "constraints", told, "without them this would be another system")
@@ -160,6 +160,6 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
 
 STUDY = Study(
     "extremes", Request, derive, answer, refusal, unfit,
-    constraints=True, timed=True, writes=lambda request: not request.sequences,
+    constraints=True, timed=True, writes=lambda typed: "sequences" not in typed,
     out=Folder(quiet="Print only the sentences.", unwritten=None),
 )  # fmt: skip

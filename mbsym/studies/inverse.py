@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from fractions import Fraction
 from pathlib import Path
@@ -48,7 +48,7 @@ class Request:
     ] = field(default_factory=dict)
 
 
-def unfit(request: Request, system: System) -> Iterator[Unfit]:
+def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
     """Coordinates without a motion; with constraints some may follow from the others, which is seen at every time."""
     for name in system.coordinates if not (system.constraints and request.motion) else ():
         if name not in request.motion:

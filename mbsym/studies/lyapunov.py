@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
@@ -41,7 +41,7 @@ class Request:
     tolerance: Annotated[float, Number("X", "Error of one step.", least=1e-14, most=1e-2)] = 1e-10
 
 
-def unfit(request: Request, system: System) -> Iterator[Unfit]:
+def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
     """More exponents than there are; too many intervals, and too few for the statistics of means."""
     from mbsym.numerics.orbits.lyapunov import LEAST_INTERVALS
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Annotated
@@ -61,7 +61,7 @@ class Request:
     vary: Annotated[Axis | None, Range("NAME=LOW:HIGH", "The parameter, and its open interval.", "-v")] = None
 
 
-def unfit(request: Request, system: System) -> Iterator[Unfit]:
+def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
     """Numbers are of parameters that follow from nothing else, and have their declared signs; along a parameter all
     others have one."""
     from mbsym.model.comparison import has_sign

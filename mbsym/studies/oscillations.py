@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Annotated
@@ -81,7 +81,7 @@ class Request:
     language: Annotated[str | None, language("Of figures: en, ru, es.")] = None
 
 
-def unfit(request: Request, system: System) -> Iterator[Unfit]:
+def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
     small, leading = system.small, request.of
     if small is None and (not system.motion or system.speeds):
         hint = "add 'small parameter: eps'"
@@ -95,7 +95,7 @@ def unfit(request: Request, system: System) -> Iterator[Unfit]:
             break
         if name == small.name or (name in dict(small.powers) and value != 0):  # zero has no power
             yield Unfit("--set", "bad-assignment", f"{name} belongs to the small parameter: it stays a symbol")
-    if request.language is not None and not request.format:
+    if "language" in typed and "format" not in typed:
         yield Unfit("--language", *UNWRITTEN)
 
 
@@ -166,5 +166,5 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
 
 STUDY = Study(
     "oscillations", Request, derive, answer, refusal, unfit, as_json, "Print JSON instead of text.",
-    held=False, out=Folder(quiet=None, unwritten=UNWRITTEN), writes=lambda request: bool(request.format),
+    held=False, out=Folder(quiet=None, unwritten=UNWRITTEN), writes=lambda typed: "format" in typed,
 )  # fmt: skip

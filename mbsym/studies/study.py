@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
@@ -185,11 +185,12 @@ class Study(Generic[R, F]):
 
     ``derive(asked, request, watch)`` finds the result; ``answer(asked, request, result)`` tells it, ``json`` as the
     text that ``--json`` prints.  ``refusal`` tells of the exceptions that are answers.  ``unfit`` says
-    what of a request does not go together; fields that could not be read are None there.
+    what of a request does not go together; fields that could not be read are None there, but among those that were
+    ``typed``.
 
     ``constraints``, ``matrices``: whether descriptions with these are understood; ``held``: whether inputs are held at
-    their constant values.  ``out``: where files go; ``writes``: whether there are any; ``document`` makes the single
-    one.  ``timed``: whether the seconds are told.
+    their constant values.  ``out``: where files go; ``writes``: whether there are any, by what was typed; ``document``
+    makes the single one.  ``timed``: whether the seconds are told.
     """
 
     name: str
@@ -197,14 +198,14 @@ class Study(Generic[R, F]):
     derive: Callable[[Asked, R, Watch], F]
     answer: Callable[[Asked, R, F], Answer]
     refusal: Callable[[Exception, Asked, R], Refusal | None]
-    unfit: Callable[[R, System], Iterator[Unfit]] = _nothing
+    unfit: Callable[[R, System, Collection[str]], Iterator[Unfit]] = _nothing
     json: Callable[[Asked, R, F], str] | None = None
     json_help: str = "Print JSON instead of a table."
     constraints: bool = False
     matrices: bool = False
     held: bool = True
     out: Folder | Single | None = Folder()
-    writes: Callable[[R], bool] = lambda request: True
+    writes: Callable[[Collection[str]], bool] = lambda typed: True
     document: Callable[[Asked, R, F], Document] | None = None
     timed: bool = False
 

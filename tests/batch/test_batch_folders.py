@@ -19,8 +19,8 @@ from click.testing import CliRunner
 
 from mbsym.batch.coordinator import Place
 from mbsym.batch.summary_json import schema
-from mbsym_cli.batch import command
-from mbsym_cli.batch_folders import chosen, found_in, share
+from mbsym_cli.batch.command import command
+from mbsym_cli.batch.folders import chosen, found_in, share
 from mbsym_cli.files import Content, deliver
 
 
@@ -209,7 +209,7 @@ def test_what_an_earlier_batch_said_does_not_speak_for_this_one(
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
         return deliver(folder, files, *more)
 
-    monkeypatch.setattr("mbsym_cli.batch_run.deliver", full)
+    monkeypatch.setattr("mbsym_cli.batch.run.deliver", full)
     folder_of(Path("in"), a=pendulum(), b=pendulum("B"))
     done = CliRunner().invoke(command, ["in", "-o", "out", *QUICK])
     assert done.exit_code == 1

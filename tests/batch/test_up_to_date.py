@@ -20,7 +20,7 @@ from mbsym.batch.outcome import Outcome, Row
 from mbsym.batch.task import Asked, Budget, Task
 from mbsym.batch.work import work
 from mbsym.report.exports import fmu
-from mbsym_cli.batch_store import FolderStore
+from mbsym_cli.batch.store import FolderStore
 
 DAMPED = pendulum().replace("loads:\n", "loads:\n  - damper: {coordinate: theta, coefficient: m}\n")
 

@@ -1,30 +1,22 @@
-"""The README says only what is true: its commands run, its description loads, its printed output is what is printed."""
+"""The README and the list of commands are true: commands run and print what stands there, links lead somewhere."""
 
 from __future__ import annotations
 
 import re
 import shlex
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 import warm
-from pages import DOCS, pages
-from pages import blocks as shown
+from pages import COMMANDS, DOCS, ROOT, Block, blocks, differs, pages
 
-import mbsym
-
-ROOT = Path(__file__).parents[2]
-README = (ROOT / "README.md").read_text(encoding="utf-8")
+README = blocks((ROOT / "README.md").read_text(encoding="utf-8"))
+LISTED = blocks((DOCS / COMMANDS).read_text(encoding="utf-8"))
 
 
-def blocks(language: str) -> list[str]:
-    return re.findall(rf"^```{language}\n(.*?)^```", README, re.DOTALL | re.MULTILINE)
-
-
-def commands() -> list[str]:
-    return [line for block in blocks("sh") for line in block.splitlines() if line.startswith("mbsym ")]
+def commands(of: list[Block]) -> list[str]:
+    return [line for one in of if one.language == "sh" for line in one.text.splitlines() if line.startswith("mbsym ")]
 
 
 @pytest.fixture
@@ -55,20 +47,18 @@ def said(line: str) -> tuple[str, ...]:
     return tuple(spelled.get(word, word.removeprefix("systems/")) for word in shlex.split(line, comments=True))
 
 
-#: What pages of the documentation run, and hold against what stands there.
+#: What other pages of the documentation run, and hold against what stands there.
 ON_PAGES = {
     said(line)
     for page in pages()
-    for block in shown((DOCS / page).read_text(encoding="utf-8"))
-    if block.language == "sh"
-    for line in block.text.splitlines()
-    if line.startswith("mbsym ")
+    if page != COMMANDS
+    for line in commands(blocks((DOCS / page).read_text(encoding="utf-8")))
 }
 
 
 @pytest.mark.parametrize(
     "line",
-    [line for line in commands() if said(line) not in ON_PAGES],
+    [line for line in commands(LISTED) if said(line) not in ON_PAGES],
     ids=lambda line: line.partition("#")[0][:70].strip(),
 )
 def test_commands_run(line: str, workplace: Path) -> None:
@@ -84,54 +74,54 @@ def test_commands_run(line: str, workplace: Path) -> None:
     assert done.stdout.strip() or "--out" in line
 
 
-def test_every_command_and_make_target_is_documented() -> None:
-    from mbsym_cli.main import COMMANDS
+def test_every_command_is_documented() -> None:
+    from mbsym_cli.main import COMMANDS as NAMES
 
-    missing = [name for name in COMMANDS if not any(line.split()[1] == name for line in commands())]
-    assert not missing
-    targets = re.findall(r"^make ([\w-]+)", "\n".join(blocks("sh")), re.MULTILINE)
+    assert [name for name in NAMES if not any(line.split()[1] == name for line in commands(LISTED))] == []
+
+
+def test_what_the_readme_shows_below_a_command_is_printed(workplace: Path) -> None:
+    printed = ""
+    for block in README:
+        if block.language == "text":
+            assert differs(block.text, printed) == "", f"README.md:{block.line}\n{printed}"
+        elif commands([block]):
+            (line,) = commands([block])
+            done = shell(line, workplace)
+            assert done.returncode == 0, done.stderr
+            printed = done.stdout
+    assert printed
+
+
+def test_the_make_targets_of_the_readme_are_there() -> None:
+    shown = "\n".join(block.text for block in README if block.language == "sh")
+    targets = set(re.findall(r"^make ([\w-]+)", shown, re.MULTILINE))
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
-    assert {"demo", "test", "test-all"} <= set(targets)
-    assert all(re.search(rf"^{target}:", makefile, re.MULTILINE) for target in targets)
+    assert {"demo", "test", "test-all"} <= targets
+    inline = set(re.findall(r"`make ([\w-]+)`", (ROOT / "README.md").read_text(encoding="utf-8")))
+    assert all(re.search(rf"^{target}:", makefile, re.MULTILINE) for target in targets | inline)
 
 
-def test_description_loads_and_holds() -> None:
-    (text,) = blocks("yaml")
+def test_the_readme_is_short_and_its_links_lead_somewhere() -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert len(text.splitlines()) <= 125
+    links = re.findall(r"\]\(([^)#]+)[^)]*\)", text) + re.findall(r'(?:href|src|srcset)="([^"#]+)', text)
+    assert len(links) > 40
+    assert [link for link in links if not (ROOT / link).exists()] == []
+
+
+def test_the_description_of_the_reference_holds() -> None:
+    """A pendulum on a spring hangs at rest by l0 + m g/k, and its coordinates are found in their order."""
+    import mbsym
+
+    page = blocks((DOCS / "reference" / "description.md").read_text(encoding="utf-8"))
+    (text,) = (block.text for block in page if block.language == "yaml")
     analysis = mbsym.loads(text)
     assert analysis.equilibrium.satisfied
     assert analysis.system.coordinates == ("r", "theta")
 
 
-def test_complaint_is_printed_like_that(workplace: Path) -> None:
-    (text,) = blocks("yaml")
-    (workplace / "pendulum.yaml").write_text(text.replace("angles: [theta]", "angles: [thetta]"), encoding="utf-8")
-    done = shell("mbsym check pendulum.yaml", workplace)
-    assert done.returncode == 2
-    assert done.stderr == next(block for block in blocks("text") if "error[" in block)
-
-
-def test_python_blocks(workplace: Path) -> None:
-    """The first block's comments are what it prints; the second runs on the generated module."""
-    first, second = blocks("python")
-    done = subprocess.run([sys.executable, "-c", first], cwd=workplace, capture_output=True, text=True, check=True)
-    assert done.stdout.splitlines() == re.findall(r"# (.*)", first)
-    assert shell("mbsym run systems/satellite.yaml --format python --out here", workplace).returncode == 0
-    folder = workplace / "here"
-    done = subprocess.run([sys.executable, "-c", second], cwd=folder, capture_output=True, text=True, check=True)
-    assert len(done.stdout.replace("[", " ").replace("]", " ").split()) == 10
-
-
-def test_summary_is_printed_like_that(workplace: Path) -> None:
-    """Every line of the README's summary, seconds aside."""
-    done = shell("mbsym run systems/satellite.yaml --out here", workplace)
-    seconds = re.compile(r"[0-9.]+ s$")
-    printed = {seconds.sub("", line).strip() for line in done.stdout.splitlines()}
-    shown = next(block for block in blocks("text") if "self-check" in block)
-    for line in shown.splitlines():
-        assert line.strip() == "..." or seconds.sub("", line).strip() in printed
-
-
 def test_shipped_systems_are_listed() -> None:
-    listed = set(re.findall(r"`([\w-]+\.(?:yaml|txt))`", README))
+    listed = set(re.findall(r"`([\w-]+\.(?:yaml|txt))`", (DOCS / "systems.md").read_text(encoding="utf-8")))
     shipped = {path.name for path in (ROOT / "systems").iterdir() if path.suffix in {".yaml", ".txt"}}
     assert shipped <= listed

@@ -64,7 +64,7 @@ def planted(outcome: Any = None, **more: Any) -> Study[Request, float]:
         usual = Answer((line(f"  found {found:g}"), line("  kept", always=True)), {"found.txt": f"{found:g}\n"})
         return outcome if isinstance(outcome, Answer) else usual
 
-    def unfit(request: Request, system: Any) -> Any:
+    def unfit(request: Request, system: Any, typed: Any) -> Any:
         if request.rows == 5:
             yield Unfit("--rows", "five", "five are no rows", "take four")
 
@@ -200,3 +200,23 @@ def test_python_takes_a_request_or_its_fields() -> None:
         mbsym.lyapunov(PENDULUM, 5.0, tolerance=1.0)
     with pytest.raises(TypeError):
         mbsym.lyapunov(PENDULUM, 5.0, no_such=1)  # type: ignore[call-arg]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ("map gravity-gradient --x A=0:2 --z D=2:1", ["--z", "--z", "--z"]),
+        ("map gravity-gradient --x A=0:2 --y B=2:0 --locate nothing.csv", ["--y"]),
+        ("oscillations spring-pendulum --of theta --format gif --language ru --out out", ["--format"]),
+        ("equilibria orbital-gyrostat --vary q=1:2 --format json --out out --quiet", ["--vary"]),
+        ("integrals euler-poisson --vary A=2:1 --cases", ["--vary", "--cases"]),
+        ("integrals euler-poisson --budget x", ["--budget", "--budget"]),
+        ("inverse cart-pole --motion p=t --motion theta=q --time 1", ["--motion"]),
+    ],
+)
+def test_an_option_that_cannot_be_read_was_given(words: str, said: list[str]) -> None:
+    """It is complained of itself; nothing is said as if it had been left out, and what it does not go with is said."""
+    command, name, *options = words.split()
+    done = CliRunner().invoke(main, [command, str(SHIPPED / f"{name}.yaml"), *options])
+    assert done.exit_code == 2
+    assert [text.split(": ")[0] for text in done.stderr.splitlines() if "error[" in text] == said, done.stderr

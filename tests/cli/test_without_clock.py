@@ -178,10 +178,8 @@ READS = {f"numerics.{name}": why for name, why in READS.items()} | {
     "serving.events": "how often a page is told that it is still listened to",
     "batch.coordinator": "how often further work is taken",
     "serving.storage": f"{STALE}; when something was saved",
-    **dict.fromkeys(["map_boxes", "map_slices", "equilibria_map_run", "nonlinear_at", "equilibria"], SHOWN),
-    **dict.fromkeys(["equilibria_branches", "nonlinear", "reports", "batch_run"], SHOWN),
-    "map_run": f"{SHOWN}; {PROGRESS}",
-    **dict.fromkeys(["progress", "batch_table"], PROGRESS),
+    **dict.fromkeys(["study", "reports", "batch.run"], SHOWN),
+    **dict.fromkeys(["progress", "batch.table"], PROGRESS),
     "watch": "how often a file is looked at",
     "files": STALE,
 }

@@ -32,6 +32,7 @@ from mbsym.numerics.kernels import arrays
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.report.code import c_source
 from mbsym.report.code.identifiers import prefix_of
+from mbsym.report.code.parsing import unreadable
 from mbsym.report.exports import fmu
 from mbsym.report.targets import FORMATS
 from mbsym.simulation import Request, simulate
@@ -472,6 +473,31 @@ def test_forces_of_constraints_are_those_of_the_equations() -> None:
         needed = model["mass_matrix"](q, p) @ model["rhs"](0.0, x, p, [0.0, 0.0])[6:]
         needed = needed - model["forcing"](q, x[6:], p, 0.0, [0.0, 0.0])
         assert force == pytest.approx(needed, abs=1e-9 * (1 + np.max(np.abs(needed))))
+
+
+def test_linear_matrices_are_of_the_coordinates_that_they_name() -> None:
+    """Three bars that hang: 2 a'' + 5/2 g a = 0 (by hand: bars 3/3, coupler 1; weights 3/2 + 1), of one angle.
+
+    They were padded with zeros to four coordinates, under the names of others.
+    """
+    model: dict[str, Any] = {}
+    text = FORMATS["python"].render(mbsym.loads(case("par3"), (3, 5)), (3, 5))
+    assert isinstance(text, str)
+    assert not unreadable("model.py", text)
+    exec(compile(text, "par3", "exec"), model)
+    (name,) = model["LINEAR"]
+    assert name in model["COORDINATES"]
+    mass, damping, gyroscopic, stiffness, circulatory = model["linear_matrices"]({"g": GRAVITY})
+    assert stiffness / mass == pytest.approx(np.array([[1.25 * GRAVITY]]))
+    assert not any(map(np.any, (damping, gyroscopic, circulatory)))
+
+
+def test_inputs_act_on_the_coordinates_that_are_named() -> None:
+    """A motor turns the left wheel, and the body the other way: -1 and 1, nothing on the other wheel."""
+    model = module()
+    assert model["LINEAR"] == ("tilt", "pl", "pr")
+    gains = model["input_matrix"](model["complete"]())
+    assert gains == pytest.approx(np.array([[-1, -1], [1, 0], [0, 1]]))
 
 
 def test_c(tmp_path: Path) -> None:

@@ -16,10 +16,14 @@ from mbsym.analysis.constrained import programs_of
 from mbsym.analysis.pipeline import Analysis
 from mbsym.formulas.formula import Matrix, column
 from mbsym.mechanics.constraints.states import Manifold
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.variables import ring_environment, ring_of
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
-from mbsym.problems.constraints import Constraints, Embedded
+from mbsym.problems.constraints import Constraints, Embedded, faults
+from mbsym.problems.constraints import analysis as analysis_module
 from mbsym.problems.constraints.checks import check_embedded, check_rows
 from mbsym.problems.constraints.integrability import by_program
+from mbsym.source import read
 
 SLEIGH = """
 mbsym: 1
@@ -359,6 +363,34 @@ def test_a_dependent_set_must_be_right() -> None:
 def test_lengths_that_must_agree_are_told() -> None:
     found = analysed(FREE + "  - relation: x = a\n  - relation: x = Om*a").constraints
     assert (found.position_rank, found.demanded.count) == (1, 1)
+
+
+def test_loops_apart_are_solved_apart(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Twelve four-bars: two of three columns in each, not twenty-four of thirty-six, of which there are 10^9."""
+    bodies, ties = [], []
+    bar = "  - {{name: {0}, attached to: {1}, connection point: [{2}, 0, 0], "
+    bar += "rotation: {{axes: [3], angles: [{3}]}}, mass: 1}}"
+    for k in range(12):
+        bodies += [
+            bar.format(f"A{k}", 0, 9 * k, f"p{k}"),
+            bar.format(f"B{k}", f"A{k}", 1, f"q{k}"),
+            bar.format(f"C{k}", 0, 9 * k + 2, f"r{k}"),
+        ]
+        ties.append(f"  - coincide: [{{body: B{k}, point: [2, 0, 0]}}, {{body: C{k}, point: [3/2, 0, 0]}}]")
+    system, _ = read("\n".join(["mbsym: 1", "name: loops", "bodies:", *bodies, "constraints:", *ties]))
+    assert system is not None
+    tried = 0
+    plain = analysis_module.eliminated
+
+    def counted(*given: Any) -> Any:
+        nonlocal tried
+        tried += 1
+        assert tried < 200
+        return plain(*given)
+
+    monkeypatch.setattr(analysis_module, "eliminated", counted)
+    ring = ring_of(system)
+    assert faults(Scene(system, ring, ring_environment(system, ring), ring)) == ()
 
 
 # --- what does not know constraints says so ---

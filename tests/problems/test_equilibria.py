@@ -445,7 +445,7 @@ def test_distances_are_solved_exactly() -> None:
 
 
 def turned(axis: int, x: float) -> np.ndarray:
-    """C_a(x), as the README states the convention."""
+    """C_a(x), as the documentation states the convention."""
     i, j = axis % 3, (axis + 1) % 3
     matrix = np.eye(3)
     matrix[i, i] = matrix[j, j] = math.cos(x)

@@ -67,9 +67,7 @@ def test_notation_and_gaps_are_the_same_in_all_media(analysis: mbsym.Analysis) -
     energy = analysis.energy.kinetic_energy
     said = say("$L$ does not contain $[[names]]$: cyclic.", names=content.named(["theta"]))
     assert in_latex(analysis).said(said) == r"$L$ does not contain $\theta$: cyclic."
-    assert in_html(analysis).said(said) == (
-        "<math><mrow><mi>L</mi></mrow></math> does not contain <math><mrow><mi>θ</mi></mrow></math>: cyclic."
-    )
+    assert in_html(analysis).said(said) == ("<math><mi>L</mi></math> does not contain <math><mi>θ</mi></math>: cyclic.")
     assert plain_writer.Writer().said(said) == "L does not contain theta: cyclic."
     outside = say("with [[value]] and [[words]]", value=Relation(Symbol("T"), "=", energy), words=Words("stable"))
     assert in_latex(analysis).said(outside).startswith("with $T = ")
@@ -163,6 +161,8 @@ def test_notes_bars_and_script_letters(analysis: mbsym.Analysis) -> None:
     assert in_html(analysis).block(line).endswith('<p class="note soft">(stable)</p>')
     assert in_latex(analysis).math(Symbol("A", look="script")) == r"\mathcal{A}"
     assert in_html(analysis).math(Symbol("A", look="script")) == "<mi>\U0001d49c</mi>"
+    above = in_html(analysis).math(Symbol("R", "2", "(1)"))  # what the first multiplier adds, not R_21
+    assert above == ("<msubsup><mi>R</mi><mrow><mn>2</mn></mrow><mrow><mo>(</mo><mn>1</mn><mo>)</mo></mrow></msubsup>")
     assert plain_writer.Writer().inline(content.joined(("a", "b", "c"), "; ")) == "a; b; c"
 
 
@@ -179,3 +179,39 @@ def test_a_program_is_a_listing_in_names_of_its_medium() -> None:
     assert "M_{11} = s_{1}\\,s_{1}" in in_latex(analysis).block(steps)
     assert "<pre>s1 = theta_dot + theta_dot\nM_11 = s1*s1</pre>" in in_html(analysis).block(steps)
     assert "<summary>Программа</summary>" in in_html(analysis, "ru").block(steps)
+
+
+def test_facts_links_and_grades(analysis: mbsym.Analysis) -> None:
+    """A list of what was found; a bad one stands out on paper, a good one on screens alone; links are for screens."""
+    held, lost = (content.Link(content.Graded(Said("Claims"), x), "claims") for x in ("good", "bad"))
+    facts = content.Facts((((Said("Stability"), ", ", Name("theta")), (held,)), ((Said("Claims"),), (lost,))))
+    written = in_latex(analysis).block(facts)
+    assert "\\item Stability, $\\theta$: Claims.\n\\item Claims: \\textbf{Claims}.\n" in written
+    page = in_html(analysis).block(facts)
+    assert '<dt>Claims</dt>\n<dd><a href="#claims"><span class="bad">Claims</span></a></dd>' in page
+    assert '<strong id="verdict" class="good">' in in_html(analysis).inline(Strong("s", "good", "verdict"))
+
+
+def test_a_table_without_a_title_has_headings_and_falls_into_paragraphs(analysis: mbsym.Analysis) -> None:
+    columns = tuple(content.TableColumn(Said(x), 3.0) for x in ("place", "claim", "outcome"))
+    table = content.Table(None, columns, (((), ("a_b",), (Words("differs"), ": ", "2")), (("p",), ("c",), ("d",))))
+    assert "place & claim & outcome\\\\\\hline\\endhead\n & a\\_b & differs: 2\\\\\n" in in_latex(analysis).block(table)
+    assert in_latex(analysis, form=Form.APPENDIX).block(table) == "a\\_b: differs: 2.\n\np, c: d.\n"
+    assert "<h3>" not in in_html(analysis).block(table)
+    assert '<th scope="col">place</th>' in in_html(analysis).block(table)
+
+
+def test_definitions_names_beside_and_literature(analysis: mbsym.Analysis) -> None:
+    """A publication's letter is told apart from a name that looks like it; \\cite is for whole documents."""
+    letter = content.Definitions(Said("with"), (Relation(Name("theta_"), "=", 1), Relation(Name("c1"), "=", 2)))
+    beside = content.Beside(("theta_", "c1"), (letter,))
+    written = in_latex(analysis).block(beside)
+    assert r"with: $\displaystyle \mathtt{theta\_} = 1$; $\displaystyle c_{1} = 2$." in written
+    assert "verbatim" in in_html(analysis).block(beside)
+    cited = content.Cited(Said("On the theorems"), ((Words("Routh"), ("routh", "lyapunov")),))
+    assert in_latex(analysis).block(cited) == "On the theorems: Routh~\\cite{routh,lyapunov}.\n"
+    assert not in_latex(analysis, form=Form.APPENDIX).block(cited)
+    at = Relation(content.Text(Said("at"), " "), content.Power(Name("theta"), 2), ":", 1)
+    assert in_latex(analysis).math(at) == r"\text{at } \theta^{2} \colon\quad 1"
+    assert plain_writer.Writer().inline(at) == "at  theta**2 : 1"
+    assert in_latex(analysis).math(Relation("-", Symbol("v", "4", "(2)"))) == "-v_{4}^{(2)}"

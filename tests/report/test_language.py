@@ -6,6 +6,7 @@ import ast
 import contextlib
 import re
 import subprocess
+from itertools import product
 from pathlib import Path
 
 import mbsym_templates
@@ -13,12 +14,14 @@ import pytest
 from click.testing import CliRunner
 
 import mbsym
+from mbsym.problems.claims.remarks import Remark, Said, text
 from mbsym.problems.stability import theorems
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.sentences import sentence
 from mbsym.problems.stability.word import Word
 from mbsym.report.compact import compact
 from mbsym.report.language import LANGUAGES, Language
+from mbsym.report.messages import messages
 from mbsym.report.rendering import rendered
 from mbsym.report.targets import TARGETS
 from mbsym_cli.main import main
@@ -42,8 +45,13 @@ def sentences() -> set[str]:
             if isinstance(node, ast.Call) and ast.unparse(node.func) in ("Said", "say") and node.args:
                 found |= _literals(node.args[0])
             elif isinstance(node, ast.Assign) and "[[" in ast.unparse(node.value):
-                found |= _literals(node.value)
-    return found
+                found |= {x for x in _literals(node.value) if re.match(r"[A-Z$[].*[.:]$", x)}  # no part of one
+    return set(filter(_has_words, found))
+
+
+def _has_words(text: str) -> bool:
+    """Not of formulas alone, which are the same in every language."""
+    return re.search(r"[A-Za-z]{2}", re.sub(r"\$[^$]*\$|\[\[\w+\]\]", "", text)) is not None
 
 
 def _literals(node: ast.expr) -> set[str]:
@@ -152,3 +160,121 @@ def test_the_option_goes_before_the_description(tmp_path: Path) -> None:
     done = CliRunner().invoke(main, ["run", str(path), "--language", "de", "--out", str(tmp_path / "no")])
     assert done.exit_code == 2
     assert "en, ru" in done.output
+
+
+# --- claims, and what has no result -----------------------------------------------------------------------------------
+
+CLAIMED = """
+mbsym: 1
+name: bead
+parameters: {m: positive, g: positive, R: positive, w: positive}
+prescribed: {p: {rate: w}}
+bodies:
+  - {name: hoop, attached to: 0, rotation: {axes: [2], angles: [p]}, mass: 0}
+  - name: bead
+    attached to: hoop
+    rotation: {axes: [3], angles: [a]}
+    coordinates: [a]
+    mass centre: [0, -R, 0]
+    mass: m
+loads: [uniform gravity: {vector: [0, -g, 0]}]
+MOTION
+claims:
+  - {claim: condition, that: g > R*w**2}
+  - {claim: condition, that: g > 2*R*w**2}
+  - {claim: first integral, equals: m*R*a_dot}
+  - {claim: first integral, equals: m*R*a}
+  - {claim: force function, equals: 2*m*g*R*cos(a)}
+"""
+
+
+def _texts(path: Path) -> set[str]:
+    """What a module of claims may say: remarks, and the reasons of what it raises, with {} for names and numbers."""
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        said: list[ast.expr] = []
+        if isinstance(node, ast.Call) and ast.unparse(node.func) in ("NoClosedForm", "NotRational"):
+            said = node.args[:1]
+        elif (isinstance(node, ast.keyword) and node.arg == "remark") or (
+            isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "remark"
+        ):
+            said = [node.value]
+        for one in said:
+            if isinstance(one, ast.JoinedStr):
+                parts = [x.value if isinstance(x, ast.Constant) else "{}" for x in one.values]
+                found.add("".join(map(str, parts)))
+            else:
+                found |= _literals(one)
+    # Of these two the gap is one of few words, and they are listed with it.
+    return found - {"", "it is a constant{}, whatever the motion", "{} is not finite"}
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_whatever_is_said_of_claims_is_translated(name: str) -> None:
+    """Remarks of conditions by their codes, for one condition and for several; others as they stand in the modules."""
+    known = {english for _, english in messages(name)}
+    sentences = {text(Remark(code, data)) for code in Said for data in DATA if _takes(code, data)}
+    assert len(sentences) > len(Said)
+    assert sentences <= known, sentences - known
+    folder = Path(mbsym.__file__).parent / "problems" / "claims"
+    others = set().union(*map(_texts, folder.glob("*.py")))
+    assert len(others) > 40
+    # What these two raise is caught: another way is tried then.
+    caught = set().union(*(_texts(folder / f"{x}.py") for x in ("by_integrals", "counterexample")))
+    assert others - caught <= known, others - caught - known
+
+
+DATA = ((1, "", ""), (2, "", ""), ("x", ""), ("", ""), ("stable", True), ("stable", False))
+
+
+def _takes(code: Said, data: tuple[object, ...]) -> bool:
+    try:
+        return bool(text(Remark(code, data)))
+    except TypeError:
+        return False
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_claims_and_reasons_of_missing_results_speak_the_language(name: str) -> None:
+    """Of a bead on a turning hoop: a necessary condition, three refuted claims; without a motion three problems lack.
+
+    (g - R w^2 > 0 is v0 of problem 6; m R a' is no integral; m R a contains no velocity; U = m g R cos a.)
+    """
+    english = [
+        "without it",
+        "it is the condition",
+        "it is not necessary",
+        "contains no velocity",
+        "differs by the factor",
+        "For example at",
+        "condition g",
+        "first integral",
+        "force function",
+        "no unperturbed motion",
+        "does not hold",
+        "the motion is",
+    ]
+    for motion, target in product(("motion: {a: 0}", ""), ("latex", "html")):
+        description = CLAIMED.replace("MOTION", motion)
+        plain = mbsym.loads(description)
+        whole = " ".join(TARGETS[target].render(plain, plain.problems).split())
+        assert sum(x in whole for x in english) >= 7, [x for x in english if x not in whole]
+        analysis = mbsym.loads(description + f"language: {name}\n")
+        written = " ".join(TARGETS[target].render(analysis, analysis.problems).split())
+        assert not [x for x in english if x in written], target
+        if not motion:
+            reason = Language(name).say("the description gives no unperturbed motion")
+            assert written.count(reason) >= 6  # in the summary, and where the results would stand
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_two_theorems_are_translated_each(name: str) -> None:
+    """Lagrange-Dirichlet of one subsystem, Routh of another: the whole rests on both."""
+    analysis = mbsym.load(SHIPPED / "gravity-gradient.yaml")
+    assert analysis.stability.numerical is not None
+    theorems = analysis.stability.numerical.theorems
+    assert theorems == ("Lagrange-Dirichlet", "Routh")
+    analysis.language = name
+    both = ", ".join(map(Language(name).say, theorems))
+    assert both != "Lagrange-Dirichlet, Routh"
+    assert f"({both})" in " ".join(TARGETS["latex"].render(analysis, (6,)).split())

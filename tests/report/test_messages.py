@@ -12,6 +12,7 @@ import polib
 import pytest
 
 import mbsym
+import mbsym_cli
 from mbsym.problems.stability.requirements import Place
 from mbsym.report.language import LANGUAGES
 from mbsym.report.messages import messages
@@ -61,9 +62,9 @@ class _Texts(ast.NodeVisitor):
 
 
 def said() -> str:
-    """Whatever stands in a string of the package or in a template."""
+    """Whatever stands in a string of the package, of a command or in a template."""
     texts = _Texts()
-    for path in FOLDER.rglob("*.py"):
+    for path in (*FOLDER.rglob("*.py"), *Path(next(iter(mbsym_cli.__path__))).rglob("*.py")):
         texts.visit(ast.parse(path.read_text(encoding="utf-8")))
     templates = Path(next(iter(mbsym_templates.__path__)))
     for path in templates.rglob("*.j2"):

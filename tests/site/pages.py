@@ -8,6 +8,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
+#: The page whose commands stand for themselves: they are run one by one, in the clone, by tests/cli/test_readme.py.
+COMMANDS = "reference/commands.md"
 
 _BLOCK = re.compile(r"^(?P<indent> *)```(?P<head>.*)\n(?P<text>(?:.*\n)*?)(?P=indent)```$", re.MULTILINE)
 _MEASURED = re.compile(r"\b[0-9.]+ s\b")

@@ -108,6 +108,8 @@ DESCRIBED: dict[str, Any] = {
         ({"spring": {"between": POINTS, "stiffness": "k", "length": 1, "rest": 1}}, "rest"),
         ({"spring": {"coordinate": "x", "stiffness": "k", "length": 1}}, "length"),
         ({"damper": {"coordinate": "x", "between": POINTS, "coefficient": "k"}}, "coordinate"),
+        ({"spring": {"stiffness": "k"}}, "coordinate"),
+        ({"uniform gravity": {"direction": [0, 0, 1]}}, "acceleration"),
         ({"uniform gravity": {"acceleration": "k"}}, "direction"),
         ({"uniform gravity": {"vector": [0, 0, "k"], "direction": [0, 0, 1]}}, "direction"),
         ({"newtonian gravity": {"constant": "k", "about": "b"}}, "centre"),
@@ -262,3 +264,17 @@ def test_a_word_is_no_name() -> None:
     text += "  - {claim: value, of: x, state: initial, equals: 1}\n"
     done = changes(text, "x.yaml", [{"op": "rename", "kind": "parameter", "name": "initial", "to": "k"}])
     assert len(done["edits"]) == 3, done
+
+
+@pytest.mark.parametrize("words", ["F = m a", "plain: x", "a; b", 'with "quotes" = \\', "= 3", "a = b; c = d"])
+def test_texts_for_people_come_back_from_the_editors_text(words: str) -> None:
+    """What an input means was read as a key of its own where it held an equals sign."""
+    described = {**DESCRIBED, "name": words, "description": words, "inputs": {"u": {"meaning": words}, "v": words}}
+    described["parameters"] = {"k": {"sign": "positive", "meaning": words}}
+    described["prescribed"] = {"w": {"rate": "k", "meaning": words}}
+    described["loads"] = [{"generalized force": {"x": "u + v*w"}}]
+    described["claims"] = [{"claim": "kinetic energy", "equals": "x_dot**2/2", "place": words}]
+    system, complaints = read(to_json(described), "x.json")
+    assert system is not None, list(complaints)
+    again, complaints = read(to_text(system), "x.txt")
+    assert again == system, list(complaints)

@@ -17,10 +17,11 @@ singular exactly where J_d is, and nowhere else.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import combinations, islice
+from math import comb
 from typing import Any
 
 from mbsym.algebra.base import Algebra, Scalar
@@ -28,8 +29,10 @@ from mbsym.algebra.failures import Constrained, NoClosedForm
 from mbsym.algebra.matrices import adjugate, determinant
 from mbsym.algebra.ring import Polynomial, Ring
 
-#: So many blocks of columns are tried for the shortest determinant.
-MOST_BLOCKS = 60
+#: So many blocks of columns are tried for the shortest determinant; of more that are possible one is taken.
+MOST_BLOCKS, MOST_COMBINATIONS = 60, 5_000
+
+NOT_SOLVED = "the dependent coordinates cannot be solved for"
 
 #: The length of a determinant that has no closed form within the budget.
 BEYOND = 1 << 60
@@ -150,19 +153,68 @@ def choose(
 ) -> Pivots:
     """Pivots for the independent rows, in all ``required`` columns and in others, the last ones preferred.
 
-    ``regular(rows, columns)`` tells whether a square block of J is regular somewhere on the manifold.  Raises
-    Constrained where none is.
+    ``regular(rows, columns)`` tells whether a square block of J is regular somewhere on the manifold.  Rows that have
+    no columns in common (loops apart from each other) are chosen for apart.  Raises Constrained where none is.
     """
+    units: list[tuple[int, int]] = []
+    rows: list[int] = []
+    block: list[int] = []
+    waiting = {*required}
+    for own_rows, own_columns in _connected(ring, jacobian, independent):
+        own = _choose(
+            ring,
+            jacobian,
+            own_rows,
+            [k for k in columns if k in own_columns],
+            regular,
+            [k for k in required if k in own_columns],
+        )
+        units += own.units
+        rows += own.block_rows
+        block += own.block_columns
+        waiting -= own_columns
+    if waiting:
+        raise Constrained(NOT_SOLVED)
+    return Pivots(tuple(units), tuple(sorted(rows)), tuple(sorted(block)))
+
+
+def _connected(
+    ring: Ring, jacobian: Sequence[Sequence[Polynomial]], rows: Sequence[int]
+) -> list[tuple[list[int], set[int]]]:
+    """Rows that hang together by their columns, in the order of their first ones, and these columns."""
+    found: list[tuple[list[int], set[int]]] = []
+    for i in rows:
+        own, columns = [i], {k for k, x in enumerate(jacobian[i]) if not ring.vanishes(x)}
+        for other in [one for one in found if one[1] & columns]:
+            own, columns = [*other[0], *own], columns | other[1]
+            found.remove(other)
+        found.append((sorted(own, key=rows.index), columns))
+    return sorted(found, key=lambda one: rows.index(one[0][0]))
+
+
+def _choose(
+    ring: Ring,
+    jacobian: Sequence[Sequence[Polynomial]],
+    independent: Sequence[int],
+    columns: Sequence[int],
+    regular: Callable[[Sequence[int], Sequence[int]], bool],
+    required: Collection[int],
+) -> Pivots:
     for also in (columns, [k for k in columns if k in required]):  # units elsewhere may stand in the way
         units, rows = _units(ring, jacobian, independent, also, required)
         left = [i for i in independent if i not in {row for row, _ in units}]
         used = [k for _, k in units]
         missing = [k for k in required if k not in used]
         free = [k for k in reversed(columns) if k not in used and k not in missing]
-        blocks = (
-            [(*missing, *x) for x in combinations(free, len(left) - len(missing))] if len(missing) <= len(left) else []
-        )
-        possible = (x for x in blocks if regular(sorted(independent), [*used, *x]))
+        count = len(left) - len(missing)
+        if count < 0:
+            continue
+        possible: Iterable[tuple[int, ...]]
+        if comb(len(free), count) > MOST_COMBINATIONS:
+            possible = _one_block(regular, sorted(independent), [*used, *missing], free, missing)
+        else:
+            blocks = ((*missing, *x) for x in combinations(free, count))
+            possible = (x for x in blocks if regular(sorted(independent), [*used, *x]))
         best: tuple[int, tuple[int, ...]] | None = None
         for block in islice(possible, MOST_BLOCKS):
             length = _length(ring, [[rows[i][k] for k in block] for i in left])
@@ -172,7 +224,27 @@ def choose(
                 break
         if best is not None:
             return Pivots(tuple(units), tuple(left), best[1])
-    raise Constrained("the dependent coordinates cannot be solved for")
+    raise Constrained(NOT_SOLVED)
+
+
+def _one_block(
+    regular: Callable[[Sequence[int], Sequence[int]], bool],
+    rows: Sequence[int],
+    taken: Sequence[int],
+    free: Sequence[int],
+    missing: Sequence[int],
+) -> list[tuple[int, ...]]:
+    """The block of the first columns of ``free`` that can be taken, the others being left out one by one; or none."""
+    kept = list(free)
+    if not regular(rows, [*taken, *kept]):
+        return []
+    for k in reversed(free):
+        if len(taken) + len(kept) == len(rows):
+            break
+        fewer = [other for other in kept if other != k]
+        if regular(rows, [*taken, *fewer]):
+            kept = fewer
+    return [(*missing, *kept)] if len(taken) + len(kept) == len(rows) else []
 
 
 def _length(ring: Ring, block: Sequence[Sequence[Polynomial]]) -> int:

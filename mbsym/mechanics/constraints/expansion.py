@@ -25,7 +25,7 @@ from dataclasses import dataclass, replace
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.jet import Jet, Jets
-from mbsym.algebra.ring import Polynomial
+from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs
 from mbsym.mechanics.constraints.elimination import Row, echelon
 from mbsym.mechanics.constraints.rows import Row as ConstraintRow
@@ -36,6 +36,9 @@ from mbsym.model.system import System, acceleration_name, velocity_name
 
 #: A linear form in deviations: polynomials by the number of the deviation.
 Form = dict[int, Polynomial]
+
+#: Longer polynomials are left as they are.
+MOST_FACTORED = 200
 
 #: How often the rates of a motion are completed before it is given up: each time one more coordinate turns.
 MOST_ROUNDS = 64
@@ -128,9 +131,19 @@ def expansion(scene: Scene, signs: Signs, whole: System | None = None) -> Expans
         null_space=tuple(map(tuple, null_space)),
         slopes=tuple(slopes),
         conditions=tuple(conditions),
-        assumed=(*held.assumed, *moved.assumed),
+        assumed=_factors(ring, signs, (*held.assumed, *moved.assumed)),
         lost=lost,
     )
+
+
+def _factors(ring: Ring, signs: Signs, assumed: Iterable[Polynomial]) -> tuple[Polynomial, ...]:
+    """What of these may vanish: their factors, each once."""
+    found: list[Polynomial] = []
+    for x in assumed:
+        numerator, _ = ring.fraction(x)  # what the denominator holds has been divided by before
+        parts = signs.nonzero_condition(numerator).nonzero if len(numerator) <= MOST_FACTORED else (x,)
+        found += [part for part in parts if part not in found]
+    return tuple(found)
 
 
 def over_jets(scene: Scene, base: Base, whole: System | None = None) -> Scene:

@@ -42,7 +42,7 @@ from mbsym.model.constraints import (
     is_holonomic,
     kind_name,
 )
-from mbsym.model.system import Point, rational, velocity_name
+from mbsym.model.system import INERTIAL, Point, rational, velocity_name
 from mbsym.model.system import Vector as Expressions
 
 
@@ -99,16 +99,43 @@ def constraint_rows(scene: Scene, kept: Sequence[tuple[int, int]] | None = None)
         wanted = [k for k in range(len(forms)) if kept is None or (number, k + 1 if len(forms) > 1 else 0) in kept]
         if not wanted:
             continue
-        slopes = [_forms(scene, constraint, along_coordinate(scene, name), name) for name in scene.system.coordinates]
+        moved = _moved_by(scene, constraint)
+        slopes = [
+            _forms(scene, constraint, along_coordinate(scene, name), name) if name in moved else None
+            for name in scene.system.coordinates
+        ]
         for k in wanted:
             label = RowName(
                 number, k + 1 if len(forms) > 1 else 0, kind_name(constraint), is_holonomic(constraint), constraint.span
             )
-            partials = tuple(scene.algebra.reduce(slope[k].velocity) for slope in slopes)
+            partials = tuple(
+                scene.algebra.zero if slope is None else scene.algebra.reduce(slope[k].velocity) for slope in slopes
+            )
             reduce, form = scene.algebra.reduce, forms[k]
             position = None if form.position is None else reduce(form.position)
             rows.append(Row(label, position, reduce(form.velocity), reduce(form.acceleration), partials))
     return tuple(rows)
+
+
+def _moved_by(scene: Scene, constraint: Constraint) -> set[str]:
+    """The coordinates that may move the ends of a constraint: those in its expressions, and in the joints below it."""
+    match constraint:
+        case Coincide(first, second) | Distance(first, second):
+            ends, own = [first.body, second.body], [*first.position, *second.position]
+            if isinstance(constraint, Distance):
+                own.append(constraint.length)
+        case Parallel(first, second):
+            ends, own = [first.body, second.body], [*first.direction, *second.direction]
+        case Rolling():
+            ends, own = [constraint.body, constraint.on, constraint.axes], [*constraint.contact]
+        case _:
+            return {*scene.system.coordinates}
+    for end in ends:
+        while end != INERTIAL:
+            body = scene.system.body(end)
+            own += [*body.connection_point, *body.rotation.angles, *(body.relative_velocity or ())]
+            end = body.attached_to
+    return {name for x in own for name in names(x)}
 
 
 def said_rows(scene: Scene) -> tuple[Row, ...]:

@@ -139,7 +139,7 @@ class Manifold:
     def rank_beside(self) -> int | None:
         """The rank of J where parameters are a little others, if it is not the one at the given values."""
         begin, source = self._begin, random.Random(SEED)
-        if begin is None or not self.system.parameter_names:
+        if begin is None or not self._holds_parameters:
             return None
         others = []
         for _ in range(_TRIED):  # parameters that have to be led back may be led to those given
@@ -147,6 +147,13 @@ class Manifold:
                 others.append(self._rank(self._closed_anew(self._changed(self._moved(begin, source), source))))
         other = max(others, default=self._own_rank)
         return None if other == self._own_rank else other
+
+    @property
+    def _holds_parameters(self) -> bool:
+        """Whether the rows depend on parameters at all."""
+        nodes = [*self._positions, *(x for row in self.found.jacobian for x in row)]
+        names = {str(self.program.instructions[k].payload) for k in self.program.live(nodes)}
+        return not names.isdisjoint(self.system.parameter_names)
 
     def _rank(self, values: Mapping[str, Any]) -> int:
         return self._pivots(values, Balls(dict(values))).rank

@@ -27,7 +27,7 @@ from mbsym.numerics.scenario import exact
 from mbsym.report.code.functions import Function, Functions, prescribed_value
 from mbsym.report.code.identifiers import prefix_of
 from mbsym.report.code.lookups import c_definition, identifier
-from mbsym.report.code.model_code import programs_of, solved
+from mbsym.report.code.model_code import programs_of, solved, undetermined
 from mbsym.report.environment import rendered
 from mbsym.report.numbers import number
 
@@ -158,6 +158,7 @@ def _rendered(template: str, analysis: Analysis, bodies: bool) -> str:
         no_solution="" if tied else comment(known.no_forward),
         no_slopes=comment(known.no_slopes or (known.no_forward if tied else "")),
         no_reactions=comment(known.no_reactions),
+        undetermined=fill(comment(undetermined(analysis)), 110),
         has={
             "code": code is not None,
             "solved": forward is not None,

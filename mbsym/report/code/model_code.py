@@ -282,11 +282,35 @@ def parts(analysis: Analysis, problems: Sequence[int]) -> tuple[tuple[Part, ...]
     return tuple(made), tuple(lacking)
 
 
+def undetermined(analysis: Analysis) -> str:
+    """Which components of reactions the equations do not determine, as a sentence; empty where they do all."""
+    system = analysis.system
+    if not (system.reactions and system.constraints):
+        return ""
+    found = analysis.optional("reactions")
+    if found is None:
+        return "Where constraints follow from others, forces of these are the least that do."
+    told = [
+        f"{one.body}: " + ", ".join(f"{'force' if k < 3 else 'moment'} {k % 3 + 1}" for k in one.undetermined)
+        for one in found
+        if one.undetermined
+    ]
+    if not told:
+        return ""
+    return (
+        f"Statically indeterminate, so not determined by the equations, are {'; '.join(told)}: given are those without "
+        "forces that constraints may have in balance, or with the least of them."
+    )
+
+
 def _reaction_part(analysis: Analysis, found: Solved) -> Part:
     assert found.forward is not None
     values: dict[Place, Node] = {(i, k): x for i, row in enumerate(found.reactions) for k, x in enumerate(row)}
     joints = "; ".join(analysis.system.reactions)
     words = f"Force and moment in the joints of {joints}: a row for each, about its connection point, in its axes"
+    open_ones = undetermined(analysis)
+    if open_ones:
+        words += f". {open_ones.removesuffix('.')}"
     program = found.forward.program
     return Part("reactions", words, (len(found.reactions), 6), program, _nonzero(program, values))
 

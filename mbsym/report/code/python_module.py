@@ -31,7 +31,7 @@ from mbsym.report.code.formula_code import formula_functions
 from mbsym.report.code.functions import Function, Functions, prescribed_value, words_of_inputs
 from mbsym.report.code.identifiers import prefix_of
 from mbsym.report.code.lookups import identifier, python_definition
-from mbsym.report.code.model_code import Solved, first_integrals, programs_of, solved
+from mbsym.report.code.model_code import Solved, first_integrals, programs_of, solved, undetermined
 from mbsym.report.code.model_values import initial_values, ordered, parameters_of, starting
 from mbsym.report.environment import rendered
 
@@ -44,7 +44,7 @@ RESERVED = {
     "result", "velocities", "accelerations", "annotations", "COORDINATES", "PARAMETERS", "DEFAULTS", "mass_matrix",
     "forcing", "rhs", "energy", "generalized_energy", "linear_matrices", "jacobian", "integrals", "values", "zero",
     "main", "simulate", "complete", "initial_state", "given", "npt", "Any", "Sequence", "TypeAlias", "Array", "NAME",
-    "Parameters", "INTEGRALS", "UNITS", "with_unit",
+    "Parameters", "INTEGRALS", "UNITS", "with_unit", "LINEAR",
     "polynomial_integrals", "invariant_sets", "normal_forms", "small_parameters", "missing", "name",
     "SPEEDS", "POSITIONS", "speed_state", "speed_rhs", "speed_restored",
     "speed_simulate", "y", "right", "matrix",
@@ -109,6 +109,11 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
     matrices = gains = None
     if linear is not None and linear.failure is None:
         matrices, gains = writer.linear(analysis, linear.value), writer.gains(analysis, linear.value)
+    linear_names: tuple[str, ...] = ()
+    following = False
+    if linear is not None and linear.failure is None and linear.value.coordinates != system.coordinates:
+        linear_names, reduced = linear.value.coordinates, linear.value.constrained
+        following = bool(reduced and reduced.following)
     return rendered(
         "model.py.j2",
         {},
@@ -148,11 +153,15 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         no_slopes=plain(known.no_slopes or known.no_forward),
         no_reactions=plain(known.no_reactions),
         reactions=_reactions(writer, known),
+        undetermined=wrap(plain(undetermined(analysis)), 112, break_long_words=False),
         related=[item for item in ordered(parameters) if item.needs],
         names=writer.names,
         initial=initial_values(system, writer),
         starting=starting(system, parameters),
         linear=matrices,
+        linear_names=linear_names,
+        linear_size=len(linear_names) or n,
+        following=following,
         gains=gains,
         held=writer.held(),
         input_meanings=[(one.name, plain(one.meaning)) for one in system.inputs if one.meaning],

@@ -11,7 +11,6 @@ from math import gcd
 from flint import fmpq
 from markupsafe import Markup, escape
 
-from mbsym.expressions.counting import counted as counted_things
 from mbsym.formulas.formula import Column, Formula, Matrix
 from mbsym.formulas.mathml import (
     TIMES,
@@ -22,7 +21,6 @@ from mbsym.formulas.mathml import (
     mi,
     mn,
     mo,
-    mtext,
     power,
     row,
     shape_of,
@@ -30,7 +28,6 @@ from mbsym.formulas.mathml import (
     table,
 )
 from mbsym.formulas.tree import Factor, leaves
-from mbsym.report.lengths import not_printed
 
 #: Formulas with more symbols than this are folded away behind their length.
 FOLDED = 120
@@ -120,17 +117,14 @@ def _joined(*parts: str) -> str:
 # --- lines ------------------------------------------------------------------------------------------------------------
 
 
-def line(left: str, value: Formula, long: frozenset[int] = frozenset(), right: str = "", sign: str = "=") -> Markup:
-    """``left = value right`` as a line of its own; folded away where it is long, counted where it is too long."""
-    if value.terms > LONGEST or id(value) in long:
-        return text_line(left, mo(sign) if left else "", mtext(f"({not_printed(value)})"), right)
+def line(left: str, value: Formula, right: str, sign: str, size: str) -> Markup:
+    """``left = value right`` as a line of its own; folded away behind its ``size`` where it is long."""
     pieces = mathml_pieces(value.ring, value.polynomial)
     written = whole([_joined(left, mo(sign) if left else "", pieces[0]), *pieces[1:]], right, spellings(value))
     if leaves(shape_of(value.ring, value.polynomial)) <= FOLDED:
         return written
-    size = escape(counted_things(value.terms, "term"))
     head = math(left, mo(sign), "<mo>\u2026</mo>") if left else ""
-    return Markup(f"<details><summary>{head} <small>{size}</small></summary>{written}</details>")
+    return Markup(f"<details><summary>{head} <small>{escape(size)}</small></summary>{written}</details>")
 
 
 def whole(pieces: Sequence[str], right: str = "", attributes: str = "") -> Markup:

@@ -36,11 +36,8 @@ def part_html(analysis: Analysis, part: str | int, problems: Sequence[int]) -> s
 
     Raises KeyError for a part that there is not.
     """
-    from mbsym.analysis import PROBLEMS
-
     if isinstance(part, str) and part not in PARTS:
         raise KeyError(part)
     with spelled():
         known, values = context(analysis, problems, part in ("summary", "claims", "checks"))
-        problem = None if isinstance(part, str) else PROBLEMS[part]
-        return fragment("part.html.j2", known, part=part, number=part, problem=problem, **values)
+        return fragment("part.html.j2", known, part=part, **values)

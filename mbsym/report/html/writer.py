@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, singledispatchmethod
+from functools import singledispatchmethod
 from typing import Any
 
 from markupsafe import Markup, escape
@@ -14,9 +14,10 @@ from mbsym.formulas.formula import Formula
 from mbsym.formulas.mathml import MathNames, bracketed, letter, mathml_names, mi, mn, mo, mtext, power, table
 from mbsym.formulas.mathml import row as bracketed_row
 from mbsym.formulas.names import greek
+from mbsym.formulas.notation import notation
 from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.report import content
-from mbsym.report.content import Inline, Math, Said
+from mbsym.report.content import Inline, Math, Said, say
 from mbsym.report.html import formulas
 from mbsym.report.html.description import expression, point_of_table, speed_form
 from mbsym.report.html.formulas import RELATIONS
@@ -149,7 +150,7 @@ class Writer:
 
     @math.register
     def _(self, value: Formula) -> str:
-        return mtext(f"({not_printed(value)})") if id(value) in self.long else str(formulas.inline(value))
+        return self._not_printed(value) if self._is_withheld(value) else str(formulas.inline(value))
 
     @math.register
     def _(self, value: content.Name) -> str:
@@ -259,7 +260,7 @@ class Writer:
     def _displayed(self, shown: Math | tuple[Inline, ...]) -> Markup:
         match shown:
             case Formula():
-                return formulas.line("", shown, self.long)
+                return self._line("", shown)
             case content.Polynomial():
                 return formulas.whole(self._pieces(shown))
             case content.Relation(parts):
@@ -286,9 +287,20 @@ class Writer:
         assert isinstance(value, Formula)
         right = "".join(map(self.math, parts[place + 1 :]))
         if place == 0:
-            return formulas.line("", value, self.long, right)
+            return self._line("", value, right)
         left = "".join(map(self.math, parts[: place - 1]))
-        return formulas.line(left, value, self.long, right, str(parts[place - 1]))
+        return self._line(left, value, right, str(parts[place - 1]))
+
+    def _line(self, left: str, value: Formula, right: str = "", sign: str = "=") -> Markup:
+        if self._is_withheld(value):
+            return formulas.text_line(left, mo(sign) if left else "", self._not_printed(value), right)
+        return formulas.line(left, value, right, sign, self.said(say("[[count]] terms", count=str(value.terms))))
+
+    def _is_withheld(self, value: Formula) -> bool:
+        return value.terms > formulas.LONGEST or id(value) in self.long
+
+    def _not_printed(self, value: Formula) -> str:
+        return mtext(f"({self.said(not_printed(value)).unescape()})")
 
     def _beside(self, value: Inline) -> str:
         """A part of a displayed line: words stand in it as text."""
@@ -310,7 +322,7 @@ class Writer:
         if whole:
             return formulas.text_line(left, mo("="), whole)
         return Markup("\n").join(
-            formulas.line(self.math(content.Entry(value.symbol, index)), entry, self.long)
+            self._line(self.math(content.Entry(value.symbol, index)), entry)
             for index, entry in formulas.entries(value.value, value.symmetric)
         )
 
@@ -327,7 +339,7 @@ class Writer:
         if whole:
             return formulas.text_line(left, mo("="), whole)
         return Markup("\n").join(
-            formulas.line(self.math(replace(value.symbol, lower=f"{value.symbol.lower},{k}")), entry, self.long)
+            self._line(self.math(replace(value.symbol, lower=f"{value.symbol.lower},{k}")), entry)
             for k, entry in enumerate(value.value, start=1)
         )
 
@@ -400,15 +412,6 @@ class Writer:
 
 #: Letters for private use, which stand for values in notation.
 _FIRST = 0xE000
-
-
-@cache
-def notation(tex: str) -> str:
-    """Fixed notation as elements of MathML."""
-    from latex2mathml.converter import convert  # few formulas need it
-
-    elements = re.sub(r"</?math[^>]*>", "", convert(re.sub(r"\\penalty\d+ ?", "", tex)))
-    return re.sub(r'(?:<mi mathvariant="normal">\w</mi>){2,}', lambda m: mi(re.sub("<.*?>", "", m[0])), elements)
 
 
 def _untexed(text: str) -> Markup:

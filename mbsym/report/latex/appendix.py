@@ -25,16 +25,8 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
 
 def fragment(analysis: Analysis, problems: Sequence[int], name: str, title: str, number: int | None = None) -> str:
     """The text of ``fragments/NAME.tex``."""
-    return filled(
-        "fragment.tex.j2",
-        analysis,
-        problems,
-        Form.FRAGMENT,
-        title=title,
-        name=name,
-        number=number,
-        part=f"latex/{name}.j2",
-    )
+    part = name if number is None else number
+    return filled("fragment.tex.j2", analysis, problems, Form.FRAGMENT, title=title, part=part)
 
 
 def joined(appendices: Sequence[str]) -> str:

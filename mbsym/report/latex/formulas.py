@@ -12,7 +12,6 @@ from mbsym.expressions.tree import ZERO, Expression
 from mbsym.formulas.formula import Column, Formula, Matrix
 from mbsym.formulas.latex import LatexNames, latex_factor, latex_matrix, latex_text
 from mbsym.report.latex.description import expression
-from mbsym.report.lengths import not_printed
 
 #: Matrices estimated wider than this (in ems) are written entry by entry.
 WIDEST = 40
@@ -24,10 +23,8 @@ LONGEST = 6000
 LONGEST_CONDITION = 150
 
 
-def formula(value: Formula, long: frozenset[int] = frozenset()) -> str:
-    """A formula that may be broken; one that is too long for paper, or is among the ``long`` ones, is only counted."""
-    if value.terms > LONGEST or id(value) in long:
-        return f"\\text{{({not_printed(value)})}}"
+def formula(value: Formula) -> str:
+    """A formula that may be broken."""
     return latex_text(value.ring, value.polynomial, breaks=True)
 
 

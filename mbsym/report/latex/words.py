@@ -49,11 +49,6 @@ def spared(text: str) -> str:
     return re.sub(r"\n{3,}", "\n\n", text)
 
 
-def displayed(words: str) -> str:
-    """Formulas of a sentence that stand by themselves, as the others do."""
-    return re.sub(r"\\\[ (.*?) \\\]", lambda m: f"\\longformula{{{m[1]}}}", words)
-
-
 def prose(words: str, variable: str = r"\lambda") -> str:
     """Words of the stability kernel, with lambda as the ``variable`` of the characteristic polynomial."""
     power = r"\blambda(\\\^\{\}(\d+))?"

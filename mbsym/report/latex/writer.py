@@ -24,7 +24,7 @@ from mbsym.report.latex.formulas import Measured, measured_matrix
 from mbsym.report.latex.labels import Labels
 from mbsym.report.latex.told import CLOSING, OPENING, PARAGRAPH, packed, paragraphs
 from mbsym.report.latex.words import RELATIONS, escaped, prose
-from mbsym.report.lengths import PAPER_PROGRAM, length, program_not_printed
+from mbsym.report.lengths import PAPER_PROGRAM, length, not_printed, program_not_printed
 from mbsym.report.unit_text import bracketed
 
 _DOTS = ("", "dot", "ddot")
@@ -135,7 +135,9 @@ class Writer:
 
     @math.register
     def _(self, value: Formula) -> str:
-        return formulas.formula(value, self.long)
+        if value.terms > formulas.LONGEST or id(value) in self.long:
+            return f"\\text{{({self.said(not_printed(value))})}}"
+        return formulas.formula(value)
 
     @math.register
     def _(self, value: content.Name) -> str:

@@ -12,6 +12,7 @@ from mbsym.expressions.counting import counted
 from mbsym.expressions.rates import acceleration_name, velocity_name
 from mbsym.expressions.tree import Expression, add, multiply, number, power
 from mbsym.expressions.tree import Name as Variable
+from mbsym.formulas.formula import Column, Formula
 from mbsym.model.system import System
 from mbsym.problems.equations import Equations
 from mbsym.report.code.programs import programs_of
@@ -131,6 +132,16 @@ def reaction_data(found: Sequence[Reaction], tied: Constraints | None, write: Wr
                 doc.PerMultiplier(row=name, force=column_text(force, write), moment=column_text(moment, write))
                 for name, (force, moment) in zip(names, one.per_multiplier, strict=True)
             ],
+            undetermined=[
+                doc.Balance(
+                    rows=[name.label for name in balance.rows],
+                    components=list(balance.components),
+                    force=None if balance.added is None else column_text(balance.added[0], write),
+                    moment=None if balance.added is None else column_text(balance.added[1], write),
+                )
+                for balance in one.balances
+            ],
+            determined_combinations=one.combinations,
         )
         for one in found
     ]
@@ -182,6 +193,11 @@ def content(results: Results) -> Iterator[Block]:
         if found is not None:
             yield Folded(Said("The same, written out"), tuple(_closed(found)))
     elif found is not None:
+        written = short_equations(found, system)
+        if written:
+            yield paragraph(Said("The equations of motion:"))
+        for k, one in enumerate(written, start=1):
+            yield Display(Relation(one, "=", 0), f"equation:{k}")
         yield paragraph(equations)
         yield from _closed(found)
     else:
@@ -193,6 +209,26 @@ def content(results: Results) -> Iterator[Block]:
 
         yield from canonical.content(results)
     yield from _of_reactions(results)
+
+
+#: Longer formulas (in characters), and more equations, are left to the report.
+LONGEST, MOST_EQUATIONS = 220, 3
+#: Formulas with more terms are not even written to be measured.
+MOST_TERMS = 24
+
+
+def short_equations(found: Equations, system: System) -> Column:
+    """M q'' - f, where they are short enough to be read at a glance; constraints would add multipliers."""
+    many = len(found.forcing) > MOST_EQUATIONS or found.terms > MOST_TERMS * MOST_EQUATIONS
+    if many or found.constraints is not None:
+        return ()
+    written = found.equalities(system.coordinates)
+    return written if all(map(is_short, written)) else ()
+
+
+def is_short(value: Formula) -> bool:
+    """Whether a formula is read at a glance."""
+    return value.terms <= MOST_TERMS and len(value.readable()) <= LONGEST
 
 
 def _closed(found: Equations) -> Iterator[Block]:
@@ -326,6 +362,10 @@ def _of_reactions(results: Results) -> Iterator[Block]:
     yield paragraph(joined(map(Said, sentences), " "))
     for one in found:
         k = str(results.numbers[one.body])
+        if one.balances:
+            from mbsym.report.words.constraint_words import reaction_sentences
+
+            yield paragraph(joined(reaction_sentences(one), " "))
         yield Components(Symbol("R", k), one.force, f"R:{k}")
         yield Components(Symbol("L", k), one.moment, f"L:{k}")
         for i, (force, moment) in enumerate(one.per_multiplier, start=1):
@@ -353,6 +393,10 @@ def lines(found: Equations, analysis: Analysis) -> Iterator[str]:
         yield "without multipliers: longer than the budget of terms"
     for reaction in analysis.optional("reactions") or () if analysis.system.reactions else ():
         yield f"reaction in the joint of {reaction.body}: {counted(reaction.terms, 'term')}"
+        if reaction.balances:
+            from mbsym.report.words.constraint_words import reaction_sentences
+
+            yield from map(Writer().said, reaction_sentences(reaction))
     if analysis.forms:
         from mbsym.report.canonical import form_lines
 

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
+from itertools import groupby
 from typing import TYPE_CHECKING
 
-from mbsym.formulas.formula import Column, Formula
 from mbsym.model.system import System
-from mbsym.problems.equations import Equations
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.stability import Stability, SubsystemStability
 from mbsym.problems.stability.word import Word
@@ -30,11 +29,13 @@ from mbsym.report.content import (
     say,
 )
 from mbsym.report.sections.canonical import TITLES
+from mbsym.report.sections.equations import is_short, short_equations
 from mbsym.report.sections.stability import kind_of_conditions
-from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line
+from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line, titles
 from mbsym.report.words.verdicts import decided, grade, verdict
 
 if TYPE_CHECKING:
+    from mbsym.problems.constraints import Constraints
     from mbsym.report.results import Results
 
 Fact = tuple[tuple[Inline, ...], tuple[Inline, ...]]
@@ -53,7 +54,7 @@ def finding(results: Results) -> Facts:
 
 def _facts(results: Results) -> Iterator[Fact]:
     system, found = results.system, results.found
-    yield _size(system)
+    yield _size(system, found[3].constraints if 3 in found else None)
     if 2 in found and found[2].cyclic and not system.constraints:
         yield (Said("Cyclic coordinates"),), (named(found[2].cyclic),)
     if 3 in found and (equations := short_equations(found[3], system)):
@@ -79,10 +80,19 @@ def _facts(results: Results) -> Iterator[Fact]:
         for line in map(claim_line, claims):
             if line.word != HELD:
                 place = (line.place, ", ") if line.place else ()
-                yield (Said("Claim"), " ", *place, line.title), (Graded(Words(line.outcome), grade(line.word)),)
-    for number, failure in results.failures.items():
-        link = Link(say("Problem [[number]]", number=str(number)), f"problem-{number}")
-        yield (link,), (Said("no result"), ": ", Words(failure.reason))
+                about = (Said("Claim"), " ", *place, titles([line]))
+                yield about, (Graded(Phrase(line.said), grade(line.word)),)
+    for reason, several in groupby(results.failures.items(), key=lambda one: one[1].reason):
+        numbers = [number for number, _ in several]
+        named_ones = ", ".join(map(str, numbers))
+        title = (
+            say("Problem [[number]]", number=named_ones)
+            if len(numbers) == 1
+            else say("Problems [[numbers]]", numbers=named_ones)
+        )
+        hint = results.failures[numbers[0]].hint
+        more = (" (", Words(hint), ")") if hint else ()
+        yield (Link(title, f"problem-{numbers[0]}"),), (Said("no result"), ": ", Words(reason), *more)
     for form, failure in results.forms.forms.failures:
         yield (Said(TITLES[form]),), (Said("no result"), ": ", Words(failure.reason))
     checks = results.analysis.checks
@@ -90,26 +100,7 @@ def _facts(results: Results) -> Iterator[Fact]:
         yield (Said("Self-check"),), (Link(Graded(self_check(checks), grade(worst(checks))), "checks"),)
 
 
-#: Longer formulas (in characters), and more equations, are left to the report.
-LONGEST, MOST_EQUATIONS = 220, 3
-#: Formulas with more terms are not even written to be measured.
-MOST_TERMS = 24
-
-
-def short_equations(found: Equations, system: System) -> Column:
-    """M q'' - f, where they are short enough to be read at a glance; constraints would add multipliers."""
-    many = len(found.forcing) > MOST_EQUATIONS or found.terms > MOST_TERMS * MOST_EQUATIONS
-    if many or found.constraints is not None:
-        return ()
-    written = found.equalities(system.coordinates)
-    return written if all(map(_is_short, written)) else ()
-
-
-def _is_short(value: Formula) -> bool:
-    return value.terms <= MOST_TERMS and len(value.readable()) <= LONGEST
-
-
-def _size(system: System) -> Fact:
+def _size(system: System, tied: Constraints | None) -> Fact:
     freedom = Phrase((str(len(system.coordinates)), ": ", named(system.coordinates)))
     if system.linear:
         return (Said("Degrees of freedom"),), (freedom, "; ", Said("given by its matrices"))
@@ -117,6 +108,9 @@ def _size(system: System) -> Fact:
     if system.constraints:
         text = "[[bodies]]; coordinates: [[coordinates]]; constraints: [[constraints]]"
         said = say(text, bodies=bodies, coordinates=freedom, constraints=str(len(system.constraints)))
+        if tied is not None:
+            left = len(tied.coordinates) - tied.velocity_rank
+            return (Said("Bodies and frames"),), (said, "; ", say("degrees of freedom: [[freedom]]", freedom=str(left)))
     else:
         said = say("[[bodies]]; degrees of freedom: [[freedom]]", bodies=bodies, freedom=freedom)
     return (Said("Bodies and frames"),), (said,)
@@ -163,7 +157,7 @@ def _conditions(part: SubsystemStability) -> Iterator[Inline]:
     if not items:
         return
     yield from ("; ", kind_of_conditions(part.theory, items), ": ")
-    if all(one.formula is not None and _is_short(one.formula) for one in items):
+    if all(one.formula is not None and is_short(one.formula) for one in items):
         shown: list[Inline] = []
         for one in items:
             assert one.formula is not None

@@ -7,8 +7,9 @@ from collections.abc import Iterable, Iterator
 from mbsym.algebra.certainty import Certainty
 from mbsym.mechanics.constraints.rows import RowName
 from mbsym.problems.constraints import Constraints, Demanded, Integrability
+from mbsym.problems.reactions import Reaction
 from mbsym.problems.reduction import Reduction
-from mbsym.report.content import Name, Phrase, Relation, Said, Words, joined, named, say, speeds
+from mbsym.report.content import Listed, Name, Phrase, Relation, Said, Symbol, Words, joined, named, say, speeds
 
 
 def sentences(found: Constraints) -> Iterator[Said]:
@@ -25,6 +26,13 @@ def sentences(found: Constraints) -> Iterator[Said]:
     if not found.exact_points:
         yield Said("The ranks were taken at certified enclosures of points that keep the constraints.")
     for redundant in found.redundant:
+        if not redundant.from_rows:
+            yield say(
+                "Redundant: [[row]] is satisfied by every motion ([[sure]]).",
+                row=label(redundant.name),
+                sure=Words(redundant.certainty.value),
+            )
+            continue
         yield say(
             "Redundant: [[row]] follows from [[others]] ([[sure]]).",
             row=label(redundant.name),
@@ -90,6 +98,46 @@ def _demanded(found: Demanded) -> Iterator[Said]:
                 "At the given values the configurations that were found have [[f]] degrees of freedom at most.",
                 f=str(found.freedom),
             )
+
+
+def reaction_sentences(found: Reaction) -> Iterator[Said]:
+    """What is not determined of a reaction; nothing where all is."""
+    if not found.balances:
+        return
+    yield say(
+        "The joint of [[body]] is statically indeterminate: the equations do not determine [[components]].",
+        body=found.body,
+        components=Listed(_components(found.undetermined)),
+    )
+    for one in found.balances:
+        if one.added is None:
+            yield say(
+                "Forces of [[rows]] may be in balance within the mechanism, whatever their size, and change "
+                "[[components]].",
+                rows=_labels(one.rows),
+                components=Listed(_components(one.components)),
+            )
+        else:
+            force, moment = (Listed(tuple(x), brackets=True) for x in one.added)
+            yield say(
+                "Forces of [[rows]] may be in balance within the mechanism: they add any multiple of [[force]] to the "
+                "force and of [[moment]] to the moment.",
+                rows=_labels(one.rows),
+                force=force,
+                moment=moment,
+            )
+    if found.combinations:
+        yield say(
+            "Combinations of these components to which they add nothing are determined: [[k]] in number.",
+            k=str(found.combinations),
+        )
+    yield say(
+        "The formulas are those without the forces of [[rows]].", rows=_labels([one.rows[0] for one in found.balances])
+    )
+
+
+def _components(places: Iterable[int]) -> tuple[Symbol, ...]:
+    return tuple(Symbol("RL"[k // 3], str(k % 3 + 1)) for k in places)
 
 
 def reduction_sentences(found: Reduction) -> Iterator[Said]:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.problems.symmetries import Symmetries, Symmetry
-from mbsym.report.content import Gaps, Inline, Name, Said, Words, say
+from mbsym.report.content import Inline, Name, Relation, Said, Symbol, Words, say
 
 #: In reports: what a symmetry gives.
 OPENING = (
@@ -29,11 +29,13 @@ def field_text(one: Symmetry) -> str:
     return "; ".join(parts)
 
 
-def field(one: Symmetry) -> tuple[Said, ...]:
+def field(one: Symmetry) -> tuple[Inline, ...]:
     """xi_x = -y, xi_y = x, tau = 1, Gamma = b y."""
     ring = one.integral.ring
-    shown = [say("$\\xi_{[[name]]} = [[value]]$", name=Name(x, ring=ring), value=xi) for x, xi in one.directions]
-    shown += [] if one.time.is_zero else [say("$\\tau = [[value]]$", value=one.time)]
+    shown: list[Inline] = [
+        say("$\\xi_{[[name]]} = [[value]]$", name=Name(x, ring=ring), value=xi) for x, xi in one.directions
+    ]
+    shown += [] if one.time.is_zero else [Relation(Symbol("tau"), "=", one.time)]
     shown += [] if one.gauge.is_zero else [say("$\\Gamma = [[value]]$", value=one.gauge)]
     return tuple(shown)
 
@@ -63,22 +65,26 @@ def second_route(one: Symmetry) -> str:
 
 def sentences(found: Symmetries) -> Iterator[Said]:
     """What is known of the list as a whole."""
-    values: Gaps = {"unknowns": str(found.unknowns)}
-    proof = _COMPARED if found.compared else _BY
-    almost = _ALMOST if found.symbols else ""
-    if not found.symmetries:
-        none = f"There is none of this kind{almost} {proof}"
-        yield Said(none if found.complete else "None was found; that there is none is not proved.", values)
-        return
-    yield Said("Each of them is an identity of the exact ring (proved).", values)
-    if found.complete:
-        yield Said(
-            f"Every other of this kind is a combination of these with constant coefficients{almost} {proof}", values
-        )
+    proof = say(_COMPARED if found.compared else _BY_RANK, unknowns=str(found.unknowns))
+    if not found.symmetries and found.complete:
+        yield say(_NONE[found.symbols], proof=proof)
+    elif not found.symmetries:
+        yield Said("None was found; that there is none is not proved.")
     else:
-        yield Said("That there are no others is not proved.", values)
+        yield Said("Each of them is an identity of the exact ring (proved).")
+        yield say(_NO_OTHER[found.symbols], proof=proof) if found.complete else Said(_MAYBE_OTHERS)
 
 
-_ALMOST = ", for almost all values of the parameters"
-_BY = "(proved: rank of the conditions on [[unknowns]] constants at exact states)."
-_COMPARED = "(proved: the conditions on [[unknowns]] constants, compared in independent functions)."
+#: Whether some parameters have no numbers.
+_NONE = {
+    False: "There is none of this kind ([[proof]]).",
+    True: "There is none of this kind, for almost all values of the parameters ([[proof]]).",
+}
+_NO_OTHER = {
+    False: "Every other of this kind is a combination of these with constant coefficients ([[proof]]).",
+    True: "Every other of this kind is a combination of these with constant coefficients, for almost all values of the "
+    "parameters ([[proof]]).",
+}
+_MAYBE_OTHERS = "That there are no others is not proved."
+_BY_RANK = "proved: rank of the conditions on [[unknowns]] constants at exact states"
+_COMPARED = "proved: the conditions on [[unknowns]] constants, compared in independent functions"

@@ -5,7 +5,7 @@ The list is told in ``listed.py``, branches over a parameter in ``branches.py``.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Annotated, Any, cast
@@ -77,13 +77,15 @@ class Request:
         return "" if self.vary is None else self.vary.name
 
 
-def unfit(request: Request, system: System) -> Iterator[Unfit]:
+def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
     from mbsym.mechanics.rest import missing_values
 
-    if request.vary is None:
-        for option, given in (("--format", request.format), ("--language", request.language)):
-            if given:
-                yield Unfit(option, *UNWRITTEN)
+    if "vary" not in typed:
+        for name in ("format", "language"):
+            if name in typed:
+                yield Unfit(f"--{name}", *UNWRITTEN)
+    elif request.vary is None:
+        return
     else:
         yield from unless_parameter("--vary", request.varied, system)
         if request.varied in request.values:
@@ -194,7 +196,7 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
 
 STUDY = Study(
     "equilibria", Request, derive, answer, refusal, unfit, as_json,
-    timed=True, writes=lambda request: request.vary is not None,
+    timed=True, writes=lambda typed: "vary" in typed,
     out=Folder(
         "With --vary, print nothing but complaints.", UNWRITTEN, "With --vary, folder.  [default: reports/NAME]",
         alone=("with-vary", "branches are written to a file", "use --format json"),

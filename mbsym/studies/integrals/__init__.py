@@ -6,7 +6,7 @@ where another one has a value in ``levels.py``.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
@@ -74,14 +74,14 @@ class Request:
     )
 
 
-def unfit(request: Request, system: System) -> Iterator[Unfit]:
-    if request.vary is not None and request.cases:
+def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
+    if "vary" in typed and request.cases:
         told = "with --vary other parameters are numbers"
         yield Unfit("--cases", "not-together", told, "choose one of them")
     if request.vary is not None and request.vary.name in request.values:
         told = f"'{request.vary.name}' has an interval and a number"
         yield Unfit("--set", "repeated-name", told, "leave one of them out")
-    if request.budget is not None and not request.cases:
+    if "budget" in typed and not request.cases:
         yield Unfit("--budget", "missing-option", "--budget goes with --cases", "add --cases")
 
 

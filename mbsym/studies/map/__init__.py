@@ -6,7 +6,7 @@ numbers of equilibria in ``equilibria.py``.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from fractions import Fraction
 from functools import cached_property
@@ -123,19 +123,20 @@ def _points(path: Path, axes: list[str]) -> tuple[Points | None, tuple[Unfit, ..
     return found, tuple(told)
 
 
-def unfit(request: Request, system: System) -> Iterator[Unfit]:
+def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
     from mbsym.studies.map.equilibria import fitting
 
     of_one = request.of != "equilibria"
-    if request.z is not None and request.y is None:
+    if "z" in typed and "y" not in typed:
         yield Unfit("--z", "missing-option", "slices of a line are no pictures", "give the second parameter as --y")
-    if request.by == "boxes" and of_one and (request.y is None or request.z is not None):
+    if request.by == "boxes" and of_one and ("y" not in typed or "z" in typed):
         yield Unfit("--by", "missing-option", "boxes are of planes", "give two parameters, as --x and --y")
     yield from distinct(request.axes, request.values)
-    if of_one and request.x is not None:
+    read = len(request.axes) == sum(name in typed for name in ("x", "y", "z")) > 0
+    if of_one and read:
         yield from request.located[1]
     if not of_one:
-        yield from fitting(request, system)
+        yield from fitting(request, system, typed)
 
 
 class NoMap(Exception):

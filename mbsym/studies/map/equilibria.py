@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -22,15 +22,15 @@ INSTEAD = {
 }
 
 
-def fitting(request: Request, system: System) -> Iterator[Unfit]:
+def fitting(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
     """What keeps numbers of equilibria from being mapped."""
-    if request.y is None and request.x is not None:
+    if "y" not in typed and "x" in typed:
         hint = "give the second parameter as --y, or use mbsym equilibria --vary"
         yield Unfit("--y", "missing-option", "numbers of equilibria are mapped over a plane", hint)
-    if request.z is not None:
+    if "z" in typed:
         hint = "leave it out, and map at some of its values, each with an --out: --set NAME=VALUE"
         yield Unfit("--z", "not-of-equilibria", "there are no slices of numbers of equilibria", hint)
-    for option, given in (("--locate", request.locate is not None), ("--by boxes", request.by == "boxes")):
+    for option, given in (("--locate", "locate" in typed), ("--by boxes", request.by == "boxes")):
         if given:
             told = "maps of the stability of one motion have it, numbers of equilibria have not"
             yield Unfit(option, "not-of-equilibria", told, INSTEAD[option])
@@ -44,7 +44,7 @@ def fitting(request: Request, system: System) -> Iterator[Unfit]:
 
     chosen = {axis.name for axis in request.axes}
     lacking = [name for name in missing_values(system, _numbers(system, request)) if name not in chosen]
-    if lacking:
+    if lacking and all(name not in typed or getattr(request, name) is not None for name in ("x", "y", "z")):
         yield missing(lacking, "rational number")
 
 

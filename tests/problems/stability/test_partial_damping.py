@@ -185,7 +185,7 @@ def test_asymptotic_or_merely_stable_depends_but_stable_it_is() -> None:
     )
     assert condition.endswith("m3*(k1 + k2) - m1*k3 != 0")
     text = TARGETS["latex"].render(a, (6,))
-    assert "Otherwise \\textbf{stable} (Lagrange-Dirichlet):\nK " in text
+    assert "Otherwise \\textbf{stable} (Lagrange-Dirichlet):\n\nK " in text
     cases = json.loads(TARGETS["json"].render(a, (6,)))["stability"]["subsystems"][0]["cases"]
     assert [(case["verdict"], bool(case["all_of"])) for case in cases] == [
         ("asymptotically stable", True),

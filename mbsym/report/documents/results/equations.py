@@ -106,8 +106,23 @@ class PerMultiplier(Part, frozen=True):
     moment: Annotated[list[Formula], "its part of the moment", Meta(min_length=3, max_length=3)]
 
 
+class Balance(Part, frozen=True):
+    """forces of constraints that are in balance with each other: any multiple of them may be added"""
+
+    rows: Annotated[list[str], "whose forces; the first one is left out of the formulas"]
+    components: Annotated[
+        list[int], "what they change and the equations do not determine: 0, 1, 2 of the force, 3, 4, 5 of the moment"
+    ]
+    force: Annotated[list[Formula] | None, "what they add to the force; null where that is long"]
+    moment: Annotated[list[Formula] | None, "what they add to the moment; null where that is long"]
+
+
 class Reaction(Part, frozen=True):
     body: Annotated[str, "whose joint"]
     force: Annotated[list[Formula], "without multipliers", Meta(min_length=3, max_length=3)]
     moment: Annotated[list[Formula], "the same of the moment", Meta(min_length=3, max_length=3)]
     per_multiplier: Annotated[list[PerMultiplier], "of each independent row of the constraints, for lambda = 1"]
+    undetermined: Annotated[list[Balance], "why components are not determined; empty where all are"]
+    determined_combinations: Annotated[
+        int, "combinations of the undetermined components that are determined all the same"
+    ]

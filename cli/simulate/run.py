@@ -14,11 +14,11 @@ from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, c
 from mbsym_cli.files import room_beside
 from mbsym_cli.options import Options
 from mbsym_cli.progress import progress
-from mbsym_cli.simulation_closing import not_closed
-from mbsym_cli.simulation_files import write_files
-from mbsym_cli.simulation_planned import InterruptedPlanning, only_planned, planning, print_repeat, simulated_to
-from mbsym_cli.simulation_request import Asked
-from mbsym_cli.simulation_summary import broken, print_summary
+from mbsym_cli.simulate.closing import not_closed
+from mbsym_cli.simulate.files import write_files
+from mbsym_cli.simulate.planned import InterruptedPlanning, only_planned, planning, print_repeat, simulated_to
+from mbsym_cli.simulate.request import Asked
+from mbsym_cli.simulate.summary import broken, print_summary
 
 if TYPE_CHECKING:
     from mbsym.numerics.scenario import Scenario

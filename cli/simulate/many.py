@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from mbsym.numerics.ensembles.variation import Variation
     from mbsym.numerics.scenario import Scenario
-    from mbsym_cli.simulation_request import Asked
+    from mbsym_cli.simulate.request import Asked
 
 #: More names than this are not varied at once.
 MOST_VARIED = 32

@@ -14,7 +14,7 @@ from mbsym_cli.requests import read_some
 if TYPE_CHECKING:
     from mbsym.model.system import System
     from mbsym.simulation import Request
-    from mbsym_cli.simulation_choice import Wanted
+    from mbsym_cli.simulate.choice import Wanted
 
 FORMATS = ("csv", "svg", "png", "pdf", "bodies-csv", "html", "gif")
 

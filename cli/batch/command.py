@@ -13,7 +13,7 @@ from mbsym_cli.console import BAD_INPUT, OutPath
 from mbsym_cli.options import Options
 
 if TYPE_CHECKING:
-    from mbsym_cli.batch_run import Request
+    from mbsym_cli.batch.run import Request
 
 _MEGABYTE = 2**20
 
@@ -116,8 +116,8 @@ def command(
         asked.complain("--appendix", "conflicting-options", "it joins LaTeX files", "add latex to --format")
     if asked.refused() or bound is None:
         sys.exit(BAD_INPUT)
-    from mbsym_cli.batch_machine import processors, shared_memory
-    from mbsym_cli.batch_run import Request, run
+    from mbsym_cli.batch.machine import processors, shared_memory
+    from mbsym_cli.batch.run import Request, run
 
     width = width or processors()
     limit = shared_memory(width) if megabytes is None else megabytes * _MEGABYTE or None
@@ -142,7 +142,7 @@ def command(
 
 def _on_cluster(request: Request) -> int:
     from mbsym.batch.cluster import NoCluster
-    from mbsym_cli.batch_run import run
+    from mbsym_cli.batch.run import run
 
     try:
         return run(request)

@@ -58,6 +58,6 @@ def command(file: Path, out: Path | None, **options: object) -> None:
       mbsym sweep systems/satellite.yaml -v alpha=-0.9:0.9:400 -v gamma=-0.9:0.9:400 -s p1=2/5 -s p2=1/5
       mbsym sweep systems/spring-pendulum.yaml -v "m=1 +- 5%" -v "k=+-10%" --points 10000 --measure frequency
     """
-    from mbsym_cli.sweep_run import swept
+    from mbsym_cli.sweep.run import swept
 
     leave(file, lambda: swept(file, folder_for(file, out), options, os.cpu_count() or 1))

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from mbsym_cli.console import status
 from mbsym_cli.files import Content, deliver
-from mbsym_cli.simulation_request import FIGURES, Asked
-from mbsym_cli.simulation_summary import note
+from mbsym_cli.simulate.request import FIGURES, Asked
+from mbsym_cli.simulate.summary import note
 
 if TYPE_CHECKING:
     from mbsym.numerics.body_motion import BodyMotions

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from mbsym_cli.console import complain, read_description
 from mbsym_cli.formulas import LAWS, read_formula
 from mbsym_cli.option_groups import group
 from mbsym_cli.options import Options
@@ -17,7 +15,7 @@ if TYPE_CHECKING:
     from mbsym.expressions.tree import Expression
     from mbsym.model.system import System
     from mbsym.simulation import Request
-    from mbsym_cli.simulation_options import Group
+    from mbsym_cli.simulate.options import Group
 
 
 @dataclass(frozen=True)
@@ -48,20 +46,3 @@ input_options = group(
         "--input", "laws", multiple=True, metavar="NAME=LAW", help='An input of the file: "u=sin(3*t)"; repeatable.'
     ),
 )
-
-
-def read_held(file: Path, command: str, constrained: bool = False, moving: bool = True) -> System | None:
-    """The system of a file with its inputs at the values of the unperturbed motion, which is said.
-
-    A command that is ``constrained`` knows constraints, others refuse them; one that is not about ``moving`` bodies
-    takes systems that are given by their matrices, too.
-    """
-    from mbsym.expressions.tree import text
-    from mbsym.model.driven import held
-
-    system = read_description(file, "" if constrained else command, command if moving else "")
-    if system is None or not system.inputs:
-        return system
-    values = ", ".join(f"{one.name} = {text(one.held)}" for one in system.inputs)
-    complain(file, f"note: for '{command}' the inputs are constant, as on the unperturbed motion: {values}")
-    return held(system)

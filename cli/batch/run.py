@@ -21,12 +21,12 @@ from mbsym.batch.summary_json import FILENAME, summary_text
 from mbsym.batch.task import Asked, Budget
 from mbsym.expressions.counting import counted
 from mbsym.report.words.findings import github_annotations, json_lines, sarif
-from mbsym_cli.batch_appendix import SUMMARY
-from mbsym_cli.batch_folders import Found, chosen, found_in, share
-from mbsym_cli.batch_gone import forget_gone
-from mbsym_cli.batch_machine import memory_is_bounded
-from mbsym_cli.batch_store import FolderStore
-from mbsym_cli.batch_table import complaints, totals, watcher
+from mbsym_cli.batch.appendix import SUMMARY
+from mbsym_cli.batch.folders import Found, chosen, found_in, share
+from mbsym_cli.batch.gone import forget_gone
+from mbsym_cli.batch.machine import memory_is_bounded
+from mbsym_cli.batch.store import FolderStore
+from mbsym_cli.batch.table import complaints, totals, watcher
 from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, printable
 from mbsym_cli.files import deliver, obstacle
 from mbsym_cli.options import SUFFIXES
@@ -178,8 +178,8 @@ def write_files(request: Request, summary: Summary) -> bool:
         for name, text in summary_files(request, summary).items()
     }
     if request.appendix:
-        from mbsym_cli.batch_appendix import FILENAME as APPENDIX
-        from mbsym_cli.batch_appendix import write_appendix
+        from mbsym_cli.batch.appendix import FILENAME as APPENDIX
+        from mbsym_cli.batch.appendix import write_appendix
 
         name = _of_part(request, APPENDIX)
         writers[name] = partial(write_appendix, request.out, name, summary)

@@ -13,13 +13,12 @@ from mbsym.expressions.constants import out_of_range
 from mbsym.expressions.parser import ascii_safe, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.source import render_option
-from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OK, complain, status
+from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, OK, complain, read_held, status
 from mbsym_cli.files import deliver
 from mbsym_cli.options import MAX_LENGTH, Options
 from mbsym_cli.section_options import complain_unfit, read_settings
-from mbsym_cli.simulation_inputs import read_held
 from mbsym_cli.study import attempted, prevented
-from mbsym_cli.sweep_request import MOST_JOBS, read_vary
+from mbsym_cli.sweep.request import MOST_JOBS, read_vary
 
 if TYPE_CHECKING:
     from mbsym.expressions.tree import Expression
@@ -27,7 +26,7 @@ if TYPE_CHECKING:
     from mbsym.sweeps.measure import Measure
     from mbsym.sweeps.request import Asked
     from mbsym.sweeps.sweep import Chunk, Executor
-    from mbsym_cli.sweep_store import Folder
+    from mbsym_cli.sweep.store import Folder
 
 KINDS = ("csv", "parquet", "svg", "png", "pdf")
 #: A picture holds all points: of more there is none.
@@ -178,7 +177,7 @@ def _measured(file: Path, folder: Path, system: System, asked: Asked, measure: M
     from mbsym.batch.digests import derivation
     from mbsym.source.meaning import meaning
     from mbsym.sweeps.sweep import chunks, measured, shard
-    from mbsym_cli.sweep_store import Folder
+    from mbsym_cli.sweep.store import Folder
 
     every = chunks(asked.points.count)
     digest = asked.digest(meaning(system), derivation())

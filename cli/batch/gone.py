@@ -10,8 +10,8 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from mbsym.batch.outcome import FORMAT
-from mbsym_cli.batch_locks import Locks
-from mbsym_cli.batch_store import COMMAND
+from mbsym_cli.batch.locks import Locks
+from mbsym_cli.batch.store import COMMAND
 from mbsym_cli.files import MANIFEST, deliver, delivered, obstacle, read_manifest
 
 #: A summary is no larger; more of a file is not read.

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from mbsym.numerics.closing import NotClosed
     from mbsym.numerics.scenario import Scenario
     from mbsym.simulation import Request
-    from mbsym_cli.simulation_many import Many
-    from mbsym_cli.simulation_request import Asked
+    from mbsym_cli.simulate.many import Many
+    from mbsym_cli.simulate.request import Asked
 
 #: So many gaps are told one by one.
 MOST_GAPS = 8

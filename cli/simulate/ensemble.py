@@ -17,8 +17,8 @@ from mbsym_cli.telling import told
 if TYPE_CHECKING:
     from mbsym.expressions.tree import Expression
     from mbsym.numerics.scenario import Scenario
-    from mbsym_cli.simulation_many import Varied
-    from mbsym_cli.simulation_request import Asked
+    from mbsym_cli.simulate.many import Varied
+    from mbsym_cli.simulate.request import Asked
 
 
 def spread(

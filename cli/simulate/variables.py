@@ -13,8 +13,8 @@ from mbsym_cli.options import Options
 if TYPE_CHECKING:
     from mbsym.model.system import System
     from mbsym.simulation import Request
-    from mbsym_cli.simulation_many import Many
-    from mbsym_cli.simulation_request import Asked
+    from mbsym_cli.simulate.many import Many
+    from mbsym_cli.simulate.request import Asked
 
 #: What an option that goes with coordinates only is answered with.
 WAY_OUT = "--variables coordinates integrates coordinates and their velocities, angles among them"
@@ -64,7 +64,7 @@ variables_options = group(
         "--variables",
         metavar="[declared|coordinates]",
         help="Of a description with speeds: integrate these, and unit vectors or quaternions in place of angles, or "
-        "coordinates and their velocities.  [default: declared]",
+        "coordinates and their velocities, as is done beside constraints.  [default: declared]",
     ),
 )
 

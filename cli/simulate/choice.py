@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from mbsym.numerics.planning.plan import Accuracy
     from mbsym.numerics.planning.planning import Pins
     from mbsym.simulation import Request
-    from mbsym_cli.simulation_options import Group
-    from mbsym_cli.simulation_request import Asked
+    from mbsym_cli.simulate.options import Group
+    from mbsym_cli.simulate.request import Asked
 
 #: Nothing here is finer, and nothing coarser says anything about a motion.
 FINEST, COARSEST = 1e-17, 0.5

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Union
 
-from mbsym.editing.document.written import Data
 from mbsym.model.claims import BODY as ABOUT_BODY
 from mbsym.model.claims import CLAIMS
-from mbsym.source.keys import ALIASES
+from mbsym.source.grammar import Named
+from mbsym.source.keys import ALIASES, LOADS
 from mbsym.source.labels import BODY, HEADER, NUMBERED, SECTIONS
 
+Data = Union[str, list["Data"], dict[str, "Data"]]  # noqa: UP007 (a quoted name takes no |)
 Line = tuple[str, str]
 
 #: The lists of blocks: key of the description -> what their headings begin with.
@@ -38,12 +40,12 @@ def lines_of_data(data: dict[str, Data]) -> Lines:
     for key, value in data.items():
         plain = ALIASES.get(key, key)
         if plain in BLOCKS and isinstance(value, list):
-            found.blocks[plain] = [_block(plain, one, numbers) for one in value]
+            found.blocks[plain] = [block(plain, one, numbers) for one in value]
         elif plain == "assumptions" and isinstance(value, list):
             found.sections["assumptions"] = [(_flat(one), "") for one in value]
         elif plain in _TITLES and isinstance(value, dict):
             first = _FIRST[plain]
-            found.sections[_TITLES[plain]] = [(name, _entry(plain, one, first)) for name, one in value.items()]
+            found.sections[_TITLES[plain]] = [(name, entry(plain, one, first)) for name, one in value.items()]
         elif plain != "mbsym":
             found.header += _header(plain, value, numbers)
     count = len(found.blocks.get("bodies", ()))
@@ -65,15 +67,16 @@ def _header(key: str, value: Data, numbers: dict[str, str]) -> list[Line]:
     label = next((label for label, one in HEADER.items() if one == key), key)
     if key == "reactions" and isinstance(value, list):
         value = [numbers.get(_flat(one), _flat(one)) for one in value]
-    if key == "small parameter" and isinstance(value, dict):
-        return [(label, _small(value))]
-    free = key in ("name", "description", "source")
-    return [(label, _free(value) if free and isinstance(value, str) else text_of(value))]
+    if key == "small parameter":
+        return [(label, small(value))]
+    told = isinstance(value, str) and key in ("name", "description", "source")
+    return [(label, free(value) if told and isinstance(value, str) else text_of(value))]
 
 
-def _small(value: dict[str, Data]) -> str:
+def small(value: Data) -> str:
+    """``eps``, or ``eps; powers = (e, 1, p2, -1); fast = (x, y)``."""
     parts = []
-    for name, rest in value.items():
+    for name, rest in value.items() if isinstance(value, dict) else ((text_of(value), ""),):
         parts.append(name)
         for key, one in rest.items() if isinstance(rest, dict) else ():
             pairs: list[Data] = [x for pair in one.items() for x in pair] if isinstance(one, dict) else []
@@ -81,17 +84,18 @@ def _small(value: dict[str, Data]) -> str:
     return "; ".join(parts)
 
 
-def _entry(section: str, value: Data, first: str | None) -> str:
+def entry(section: str, value: Data, first: str | None) -> str:
+    """The value of a name in a section."""
     if isinstance(value, dict):
         return record(value, first)
-    return _free(value) if section == "inputs" and isinstance(value, str) else text_of(value)
+    return free(value) if section == "inputs" and isinstance(value, str) else text_of(value)
 
 
 def record(value: dict[str, Data], first: str | None = None) -> str:
     """``positive; value = 2; meaning = length``: the first value without its key where that goes without saying."""
     parts = []
     for index, (key, one) in enumerate(value.items()):
-        written = _free(one) if key == "meaning" and isinstance(one, str) else text_of(one)
+        written = free(one) if key == "meaning" and isinstance(one, str) else text_of(one)
         parts.append(written if index == 0 and key == first and len(value) > 1 else f"{key} = {written}")
     return "; ".join(parts)
 
@@ -107,7 +111,7 @@ def text_of(value: Data) -> str:
     return record(value) if isinstance(value, dict) else _flat(value)
 
 
-def _free(value: str) -> str:
+def free(value: str) -> str:
     """Text for people: in double quotes where it could be taken for something else."""
     if value and value == value.strip() and "\n" not in value and not any(mark in value for mark in ';"#\\='):
         return value
@@ -118,7 +122,8 @@ def _free(value: str) -> str:
 # --- blocks -----------------------------------------------------------------------------------------------------------
 
 
-def _block(section: str, data: Data, numbers: dict[str, str]) -> list[Line]:
+def block(section: str, data: Data, numbers: dict[str, str]) -> list[Line]:
+    """The lines of what is listed in a section; ``numbers`` are those of bodies."""
     if not isinstance(data, dict):
         return []
     if section == "bodies":
@@ -172,20 +177,26 @@ def _shape(value: Data) -> str:
     return record(flat)
 
 
+def names_keys(kind: str) -> bool:
+    """Whether the keys of a kind of load are names."""
+    known = LOADS.get(ALIASES.get(kind, kind))
+    return known is not None and isinstance(known.type, Named)
+
+
 def _tie(kind: str, value: Data, numbers: dict[str, str]) -> list[Line]:
     if isinstance(value, list):
         return _ends(value, numbers)
     if not isinstance(value, dict):
         return [("Expression", text_of(value))]
     lines: list[Line] = []
-    force = ALIASES.get(kind, kind) == "generalized force"
+    names = names_keys(kind)
     for key, one in value.items():
         if key == "between" and isinstance(one, list):
             lines += _ends(one, numbers)
-        elif ALIASES.get(key, key) in NUMBERED and not force:
+        elif ALIASES.get(key, key) in NUMBERED and not names:
             lines.append((key.capitalize(), numbers.get(_flat(one), _flat(one))))
         else:
-            lines.append((key if force else key.capitalize(), text_of(one)))
+            lines.append((key if names else key.capitalize(), text_of(one)))
     return lines
 
 
@@ -207,6 +218,6 @@ def _claim(data: dict[str, Data], numbers: dict[str, str]) -> list[Line]:
         if key == "of" and about_body:
             written = numbers.get(_flat(value), _flat(value))
         elif key == "place" and isinstance(value, str):
-            written = _free(value)
+            written = free(value)
         lines.append((key.capitalize(), written))
     return lines

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 from mbsym.model.quantities import time_unit
 from mbsym.report.unit_text import pretty
 from mbsym_cli.console import BROKEN_DOWN, OK, complain, console, printable, status
-from mbsym_cli.simulation_choice import Wanted
-from mbsym_cli.simulation_request import Asked
+from mbsym_cli.simulate.choice import Wanted
+from mbsym_cli.simulate.request import Asked
 
 if TYPE_CHECKING:
     from mbsym.numerics.scenario import Scenario

@@ -11,19 +11,19 @@ import click
 
 from mbsym_cli.assignments import given_numbers
 from mbsym_cli.console import BAD_INPUT, FAILED, complain, read_description
-from mbsym_cli.ensemble_run import answers, spread
 from mbsym_cli.files import obstacle
 from mbsym_cli.options import Options
-from mbsym_cli.simulation_choice import with_goal
-from mbsym_cli.simulation_closing import begun_at, check_constrained
-from mbsym_cli.simulation_continue import going_on
-from mbsym_cli.simulation_inputs import read_laws
-from mbsym_cli.simulation_many import Many, read_many
-from mbsym_cli.simulation_options import Group, Output
-from mbsym_cli.simulation_request import check_held, read_request
-from mbsym_cli.simulation_run import run
-from mbsym_cli.simulation_together import carried, complain_of_names, complain_of_pairs, typed_options
-from mbsym_cli.simulation_variables import Variables, check_states
+from mbsym_cli.simulate.choice import with_goal
+from mbsym_cli.simulate.closing import begun_at, check_constrained
+from mbsym_cli.simulate.continuing import going_on
+from mbsym_cli.simulate.ensemble import answers, spread
+from mbsym_cli.simulate.inputs import read_laws
+from mbsym_cli.simulate.many import Many, read_many
+from mbsym_cli.simulate.options import Group, Output
+from mbsym_cli.simulate.request import check_held, read_request
+from mbsym_cli.simulate.run import run
+from mbsym_cli.simulate.together import carried, complain_of_names, complain_of_pairs, typed_options
+from mbsym_cli.simulate.variables import Variables, check_states
 
 
 def simulated(

@@ -10,16 +10,16 @@ import click
 
 from mbsym_cli.console import INTERRUPTED, complain
 from mbsym_cli.files import folder_for
-from mbsym_cli.simulation_certify import certify_options
-from mbsym_cli.simulation_choice import choice_options
-from mbsym_cli.simulation_closing import closing_options
-from mbsym_cli.simulation_command import simulated
-from mbsym_cli.simulation_continue import continue_options
-from mbsym_cli.simulation_events import watch_options
-from mbsym_cli.simulation_inputs import input_options
-from mbsym_cli.simulation_many import Many, many_options
-from mbsym_cli.simulation_options import Group, Output, output_options, span_options, way_options
-from mbsym_cli.simulation_variables import variables_options
+from mbsym_cli.simulate.certify import certify_options
+from mbsym_cli.simulate.choice import choice_options
+from mbsym_cli.simulate.closing import closing_options
+from mbsym_cli.simulate.continuing import continue_options
+from mbsym_cli.simulate.events import watch_options
+from mbsym_cli.simulate.inputs import input_options
+from mbsym_cli.simulate.many import Many, many_options
+from mbsym_cli.simulate.options import Group, Output, output_options, span_options, way_options
+from mbsym_cli.simulate.simulated import simulated
+from mbsym_cli.simulate.variables import variables_options
 
 
 @click.command("simulate")
@@ -77,7 +77,8 @@ def command(
     step of fixed length, but for rounding.
 
     Of a description with speeds these are integrated, and unit vectors or a quaternion in place of angles, so that no
-    angle is singular: they are the columns, and the names in conditions.  --variables coordinates takes coordinates.
+    angle is singular: they are the columns, and the names in conditions.  --variables coordinates takes coordinates,
+    as is done beside constraints, where angles may be singular.
 
     With constraints the initial state is the closest one to what is given that satisfies them; --fixed q1,q1_dot keeps
     values.  Every row is led back to them; trajectory.csv has their drift.  A loop that cannot be closed: exit code 3.

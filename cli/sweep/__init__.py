@@ -1,0 +1,1 @@
+"""``mbsym sweep``: its options, chunks that are kept, what is written."""
