@@ -588,6 +588,14 @@ def test_casadi_and_jax() -> None:
     assert slopes @ tangent == pytest.approx((around[3] - before[3]) / 2e-4, abs=1e-4)
 
 
+@pytest.mark.parametrize("kind", ["octave", "julia", "modelica"])
+def test_other_exports_can_be_read(kind: str) -> None:
+    """A choice of rows is no event of Modelica's."""
+    text = rendered(kind)
+    assert not unreadable(FORMATS[kind].filename, text)
+    assert text.count("sign(") == text.count("noEvent(sign(") or kind != "modelica"
+
+
 def test_an_fmu_begins_where_its_description_does(tmp_path: Path) -> None:
     """At yaw 0, where the rows that were used were two; it ends where the simulation does."""
     fmpy = pytest.importorskip("fmpy")
