@@ -21,8 +21,8 @@ from weakref import WeakKeyDictionary
 from mbsym.algebra.ring import Generator, ParameterRing, Polynomial, Ring
 from mbsym.expressions.table import Tabulated
 from mbsym.formulas.names import LOWER_GREEK, greek, injective, parts
-from mbsym.formulas.shape import length, present
-from mbsym.formulas.tree import Angles, Factor, Product, Sum, Wave, angles_or
+from mbsym.formulas.shape import forget_printed, length, present, printed
+from mbsym.formulas.tree import Factor, Product, Sum, Wave, angles_or
 
 _VARIANTS = {"phi": "varphi", "epsilon": "varepsilon"}
 #: Greek letters that LaTeX has no command for: they look Latin.
@@ -41,20 +41,10 @@ _NAMED = {"exp": r"\exp", "log": r"\ln", "atan": r"\arctan", "sign": r"\operator
 
 
 def latex_text(ring: Ring, polynomial: Polynomial, breaks: bool = False) -> str:
-    """The polynomial; with ``breaks`` a paragraph of inline mathematics may break it before any plus or minus.
-
-    Printed once: several files show the same formula.
-    """
-    angles = angles_or("shorter")
-    written = _WRITTEN.setdefault(ring, {})
-    known = written.get((id(polynomial), breaks, angles))
-    if known is None:  # the polynomial is kept with its text, so that its id stays its own
-        known = polynomial, LatexPrinter(ring, breaks).sum(present(ring, polynomial, angles))
-        written[id(polynomial), breaks, angles] = known
-    return known[1]
-
-
-_WRITTEN: WeakKeyDictionary[Ring, dict[tuple[int, bool, Angles], tuple[Polynomial, str]]] = WeakKeyDictionary()
+    """The polynomial; with ``breaks`` a paragraph of inline mathematics may break it before any plus or minus."""
+    return printed(
+        ring, polynomial, angles_or("shorter"), ("latex", breaks), lambda shape: LatexPrinter(ring, breaks).sum(shape)
+    )
 
 
 def latex_factor(ring: Ring, polynomial: Polynomial, breaks: bool = False) -> str:
@@ -155,7 +145,7 @@ def write_as(ring: Ring, given: Mapping[str, str]) -> None:
     """From now on names of the ring are written in LaTeX as ``given``, in every formula."""
     kinds = ("coordinate", "prescribed", "parameter")
     _NAMES[ring] = LatexNames(["t", *(g.name for g in ring.generators if g.kind in kinds)], given)
-    _WRITTEN.clear()  # of the ring and of its parts
+    forget_printed()
 
 
 def _given(text: str) -> Symbol:

@@ -8,13 +8,13 @@ from __future__ import annotations
 from mbsym.algebra.ring import Generator, Polynomial, Ring
 from mbsym.expressions.rates import ENDINGS
 from mbsym.expressions.table import Tabulated
-from mbsym.formulas.shape import present
+from mbsym.formulas.shape import present, printed
 from mbsym.formulas.tree import Factor, Product, Sum, Wave, angles_or
 
 
 def python_text(ring: Ring, polynomial: Polynomial) -> str:
     """The polynomial as one line of Python, in products of sines and cosines unless sums were asked for."""
-    return _PythonPrinter(ring).sum(present(ring, polynomial, angles_or("products")))
+    return printed(ring, polynomial, angles_or("products"), ("python",), lambda shape: _PythonPrinter(ring).sum(shape))
 
 
 def declared_name(generator: Generator) -> str:

@@ -13,7 +13,7 @@ helped.  Factoring is for people; polynomials too long for them are only grouped
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from functools import cache
 from math import lcm, prod
@@ -91,6 +91,26 @@ def length(ring: Ring, shape: Sum) -> int:
 
 
 _PRESENTERS: WeakKeyDictionary[Ring, Presenter] = WeakKeyDictionary()
+
+
+def printed(
+    ring: Ring, polynomial: Polynomial, angles: Angles, language: tuple[str | bool, ...], write: Callable[[Sum], str]
+) -> str:
+    """The text of a polynomial in a language.  Printed once: several files show the same formula."""
+    texts = _PRINTED.setdefault(ring, {})
+    known = texts.get((id(polynomial), angles, language))
+    if known is None:  # the polynomial is kept with its text, so that its id stays its own
+        known = texts[id(polynomial), angles, language] = (polynomial, write(present(ring, polynomial, angles)))
+    return known[1]
+
+
+def forget_printed() -> None:
+    """For whoever changes how names are printed; of the ring and of its parts."""
+    _PRINTED.clear()
+
+
+_Text = tuple[int, Angles, tuple[str | bool, ...]]
+_PRINTED: WeakKeyDictionary[Ring, dict[_Text, tuple[Polynomial, str]]] = WeakKeyDictionary()
 
 _RECIPROCAL, _VELOCITY = 2, 3
 _MOTION = {"velocity": _VELOCITY, "acceleration": 4}

@@ -16,7 +16,7 @@ from mbsym.expressions.table import OUTSIDE_ZERO, Table, Tabulated
 from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, children
 from mbsym.formulas.names import greek, injective, parts
 from mbsym.formulas.python import InfixPrinter, declared_name
-from mbsym.formulas.shape import present
+from mbsym.formulas.shape import printed
 from mbsym.formulas.tree import angles_or
 
 _PRIMES = {"velocity": "'", "acceleration": "''"}
@@ -27,7 +27,13 @@ _SHORT_SYMBOLS = ("Do", "If", "In", "Im", "Re", "Or", "On", "Tr", "Pi", "Up", "B
 
 def wolfram_text(ring: Ring, polynomial: Polynomial, functions_of_time: bool = True) -> str:
     """The polynomial on one line; coordinates as functions of t, or as plain symbols (``\\[Theta]dot``)."""
-    return WolframPrinter(ring, functions_of_time).sum(present(ring, polynomial, angles_or("products")))
+    return printed(
+        ring,
+        polynomial,
+        angles_or("products"),
+        ("wolfram", functions_of_time),
+        lambda shape: WolframPrinter(ring, functions_of_time).sum(shape),
+    )
 
 
 @lru_cache(4096)

@@ -70,17 +70,19 @@ def _excess(scene: Scene, formulas: Iterable[Polynomial], most: int) -> Excess:
         others = [(k, ring.context.gen(k)) for k in occurring([x]) if k not in direct]
         curved = {k for k, g in others if ring.dependencies(g, moving)}
         late = {k for k, g in others if ring.dependencies(g, running)}
+        varying = tuple(direct | curved | late)
         apart: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
         for monomial, coefficient in x.terms():
-            exponents = list(map(int, monomial))
-            degree = sum(exponents[k] for k in direct)
-            runs = any(exponents[k] for k in late)
-            bent = any(exponents[k] for k in curved)
+            rest = list(map(int, monomial))
+            degree = sum([rest[k] for k in direct])
+            runs = any(rest[k] for k in late)
+            bent = any(rest[k] for k in curved)
             if degree <= most and not bent and not (runs and (degree or not most)):
                 continue
-            key = tuple(power if k in direct | curved | late else 0 for k, power in enumerate(exponents))
-            rest = tuple(0 if known else power for known, power in zip(key, exponents, strict=True))
-            apart.setdefault(key, {})[rest] = coefficient
+            key = tuple([rest[k] for k in varying])
+            for k in varying:
+                rest[k] = 0
+            apart.setdefault(key, {})[tuple(rest)] = coefficient
         for terms in apart.values():
             part = ring.context.from_dict(terms)
             if part.is_constant():

@@ -238,3 +238,13 @@ def test_a_part_that_is_no_real_number_is_complained_of(written: str) -> None:
 )
 def test_what_is_a_number_or_not_known_to_be_none_is_taken(written: str) -> None:
     assert not parse(written)[1]
+
+
+@pytest.mark.parametrize(
+    "zero", ["8**(1/2) - 2*2**(1/2)", "sqrt(8) - 2*sqrt(2)", "4**(1/2) - 2", "2 - 6/3", "sin(pi)", "0**(1/2)"]
+)
+def test_a_division_by_zero_is_found_however_zero_is_written(zero: str) -> None:
+    """Roots that are written as powers were looked at with 53 bits, however many were asked for."""
+    for written in (f"1/({zero})", f"x + sin(y)/({zero})"):
+        _, complaints = parse(written)
+        assert ["division by zero" in one.message for one in complaints] == [True], written
