@@ -105,7 +105,7 @@ class Dynamics:
     def correction(self) -> Code | None:
         """(t, q, q') -> what leads a state back to the constraints, 2n outputs; None where there are none.
 
-        One more output is how near the rows that are kept are to losing their rank: beyond 1 nothing is computed there.
+        One more output is how near the rows are to losing their rank: beyond 1 nothing is computed there.
         """
         if self.constraints is None:
             return None
@@ -120,7 +120,7 @@ class Dynamics:
 
     @cached_property
     def multipliers(self) -> Code:
-        """(t, q, q') -> lambda of the rows that are kept; J^T lambda are the generalised forces of the constraints."""
+        """(t, q, q') -> lambda of the rows; J^T lambda are the generalised forces of the constraints."""
         assert self.constraints is not None
         found = self.constraints.dynamics
         return self._code(substituted(found.program, found.multipliers, self._specialised))

@@ -109,6 +109,10 @@ def reduction(scene: Scene, found: Expansion, equations: Projected, leaf: int = 
 
     ``leaf`` relations are kept by integrable velocity constraints: then ``found`` and ``equations`` are those on it.
     """
+    if found.lost and (demanded := [x for x in found.conditions if not x.is_zero()]):
+        told = ", ".join(f"{Formula(scene.ring, x)} = 0" for x in demanded)
+        message = f"the motion keeps the constraints only where {told}, and elsewhere they have another rank"
+        raise SingularPoint(f"{message}: write numbers in the place of these parameters")
     if found.lost:
         raise SingularPoint("the constraints are not independent on this motion although they are near it")
     names, ring = scene.system.coordinates, scene.ring

@@ -337,6 +337,45 @@ def test_ranks_are_those_of_the_branch(name: str, rank: int) -> None:
     assert [len(one.rows) - one.rank for one in found.dependent_sets] == [1]
 
 
+@pytest.mark.parametrize(
+    ("name", "rank"),
+    [
+        ("sarrus-linkage", 4),  # two chains of hinges at a right angle lift a plate: five angles, one freedom
+        ("four-wheels-on-an-axle", 5),  # four wheels roll forward, none aside: of seven velocities two are free
+        ("ball-in-a-cylinder", 4),  # two relations, two of the contact; its radial one follows from the relations
+        ("tied-twice", 1),  # one distance, said three times
+    ],
+)
+def test_mechanisms_with_redundant_rows(name: str, rank: int) -> None:
+    """Ranks by hand; accelerations by the singular values of all rows, J' q' by differences of J q' + j."""
+    dynamics = Dynamics(begun(case(name)))
+    constraints = dynamics.constraints
+    assert constraints is not None
+    assert constraints.rank == mbsym.loads(case(name)).constraints.velocity_rank == rank
+    n, source = constraints.size, np.random.default_rng(3)
+    start = np.array([float(x) for x in dynamics.scenario.state])
+    kernels = [arrays.kernel(code) for code in (dynamics.right_hand_side, dynamics.mass_matrix, dynamics.forcing)]
+    for place in constraints._places(start):
+        state = place.copy()
+        state[n:] = source.normal(size=n)
+        here = constraints.at(0.0, state)
+        state[n:] -= np.linalg.lstsq(here.partials, here.velocities, rcond=1e-9)[0]
+
+        def rows_after(step: float, state: Any = state) -> Any:
+            return constraints.at(step, np.concatenate([state[:n] + step * state[n:], state[n:]])).velocities
+
+        rates, mass, force = (kernel(np.concatenate([[0.0], state])) for kernel in kernels)
+        mass = mass.reshape(n, n)
+        sizes, basis = np.linalg.svd(here.partials)[1:]
+        assert int(np.sum(sizes > 1e-7 * sizes[0])) == rank
+        free = basis[rank:].T
+        bent = (rows_after(STEP) - rows_after(-STEP)) / (2 * STEP)
+        bent = (4 * (rows_after(STEP / 2) - rows_after(-STEP / 2)) / STEP - bent) / 3
+        first = np.linalg.lstsq(here.partials, -bent, rcond=1e-9)[0]
+        wanted = first + free @ np.linalg.solve(free.T @ mass @ free, free.T @ (force - mass @ first))
+        assert rates[n:] == pytest.approx(wanted, abs=1e-7 * (1 + np.max(np.abs(wanted))))
+
+
 def test_a_mechanism_that_moves_at_its_values_only() -> None:
     """Three bars whose lengths are parameters, all 1: four rows of four angles, three of them independent.
 
@@ -349,6 +388,10 @@ def test_a_mechanism_that_moves_at_its_values_only() -> None:
         text = text.replace(f"{{body: {bar}, point: [1, 0, 0]}}", f"{{body: {bar}, point: [{length}, 0, 0]}}")
     found = mbsym.loads(text).constraints
     assert (found.velocity_rank, found.rank_beside, found.demanded.count) == (3, 4, 0)
+    failure = mbsym.loads(text).stage(4).failure
+    assert failure is not None
+    assert "only where" in failure.reason
+    assert "1 - k = 0" in failure.reason or "k - 1 = 0" in failure.reason
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.3])
@@ -543,6 +586,14 @@ def test_casadi_and_jax() -> None:
     before = [segway().accelerations((x - d)[:6], (x - d)[6:])[0] for d in 1e-4 * np.eye(12)]
     tangent = np.eye(12)[3]  # the tilt moves freely: the constraints stay kept
     assert slopes @ tangent == pytest.approx((around[3] - before[3]) / 2e-4, abs=1e-4)
+
+
+@pytest.mark.parametrize("kind", ["octave", "julia", "modelica"])
+def test_other_exports_can_be_read(kind: str) -> None:
+    """A choice of rows is no event of Modelica's."""
+    text = rendered(kind)
+    assert not unreadable(FORMATS[kind].filename, text)
+    assert text.count("sign(") == text.count("noEvent(sign(") or kind != "modelica"
 
 
 def test_an_fmu_begins_where_its_description_does(tmp_path: Path) -> None:

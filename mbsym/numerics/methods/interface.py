@@ -32,7 +32,7 @@ class Breakdown(Exception):
 
 BLOW_UP, SINGULAR, STEP_LIMIT, STUCK = "blow-up", "singular mass matrix", "step limit", "step size too small"
 
-#: The rows of constraints that are kept become dependent: a mechanism in a singular position.
+#: The rows of constraints lose their rank: a mechanism in a singular position.
 SINGULAR_CONSTRAINTS = "singular constraints"
 
 #: No mistake: an event asked for it.

@@ -57,7 +57,7 @@ def modelica(text: str) -> None:
     declared = re.findall(r"^  (?:parameter |input )?Real (\w+)", found[2], re.MULTILINE)
     if len(set(declared)) < len(declared):
         raise SyntaxError("a name is declared twice", ("", 1, 0, None))
-    known = {*declared, "time", "der", *_FUNCTIONS}
+    known = {*declared, "time", "der", "noEvent", *_FUNCTIONS}
     first = plain.count("\n", 0, found.start(3)) + 1
     for number, line in enumerate(found[3].split("\n"), first):
         _known(line, known, number)
