@@ -155,6 +155,7 @@ def _show(
 
         show_brief(brief(analysis, seconds), path.name, request.width)
         return
+    from mbsym.analysis.pipeline import USUAL_PROBLEMS
     from mbsym.formulas.tree import angles_as
     from mbsym.report.results import results
     from mbsym.report.sections.summary import finding
@@ -165,9 +166,9 @@ def _show(
             show(summary(analysis, analysis.problems, written), path, seconds)
         else:
             language = Language(analysis.language or analysis.system.language)
-            show_finding(
-                finding(results(analysis, analysis.problems)), analysis.system.name, path, seconds, written, language
-            )
+            further = summary(analysis, [x for x in analysis.problems if x not in USUAL_PROBLEMS], ()).problems
+            told = finding(results(analysis, analysis.problems))
+            show_finding(told, analysis.system.name, path, seconds, written, language, further)
     if found is not None:
         from mbsym.report.runs.ledger import ledger_lines
         from mbsym_cli.ledger import show_ledger

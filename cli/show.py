@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -35,9 +35,15 @@ def show(found: Summary, path: Path, seconds: float) -> None:
 
 
 def show_finding(
-    found: Facts, title: str, path: Path, seconds: float, files: Sequence[Path], language: Language
+    found: Facts,
+    title: str,
+    path: Path,
+    seconds: float,
+    files: Sequence[Path],
+    language: Language,
+    further: Iterable[Line] = (),
 ) -> None:
-    """What was found, in a line each; where all of it is."""
+    """What was found, in a line each; what ``further`` problems that were asked for gave; where all of it is."""
     from mbsym.report.content import say
     from mbsym.report.plain_writer import Writer
 
@@ -46,6 +52,8 @@ def show_finding(
     for name, said in found.items:
         label = "".join(map(writer.inline, name))
         tell((f"{label}: ", "bold cyan"), *((writer.inline(x), _style(x)) for x in said), indent=2)
+    for line in further:
+        _problem(line)
     if files:
         folder = files[0].parent
         page = next((x for x in files if x.name == "report.html"), files[0])

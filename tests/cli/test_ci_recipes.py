@@ -111,7 +111,8 @@ def test_the_image_holds_every_package() -> None:
     assert all((ROOT / name).exists() for name in names)
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     folders = project["tool"]["setuptools"]["package-dir"]
-    packages = {folders.get(name, name.split(".")[0]) for name in project["tool"]["setuptools"]["packages"]}
+    roots = {name.split(".")[0] for name in project["tool"]["setuptools"]["packages"]}
+    packages = {folders.get(name, name) for name in roots}
     assert packages | {"pyproject.toml", project["project"]["readme"]} <= set(names)
 
 

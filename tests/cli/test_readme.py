@@ -80,6 +80,15 @@ def test_every_command_is_documented() -> None:
     assert [name for name in NAMES if not any(line.split()[1] == name for line in commands(LISTED))] == []
 
 
+def test_commands_stand_in_the_groups_of_the_help() -> None:
+    from mbsym_cli.main import GROUPS
+
+    text = (DOCS / COMMANDS).read_text(encoding="utf-8").partition("## Examples\n")[2].partition("\n## ")[0]
+    parts = [part.partition("\n") for part in text.split("\n### ")[1:]]
+    shown = {title: list(dict.fromkeys(line.split()[1] for line in commands(blocks(part)))) for title, _, part in parts}
+    assert shown == {title: list(names) for title, names in GROUPS.items()}
+
+
 def test_what_the_readme_shows_below_a_command_is_printed(workplace: Path) -> None:
     printed = ""
     for block in README:

@@ -47,7 +47,7 @@ def test_what_cannot_move_is_complained_of_with_every_constraint(tmp_path: Path)
 
 
 def test_what_is_driven_whole_is_derived_and_written(tmp_path: Path) -> None:
-    done = called(tmp_path, DRIVEN, "run")
+    done = called(tmp_path, DRIVEN, "run", "-v")
     assert done.exit_code == 0, done.output
     assert "The constraints determine all velocities" in done.output
     assert "at any one time are of dimension 0" in done.output

@@ -175,7 +175,7 @@ def test_options_of_maps_of_one_motion_are_refused_by_name(tmp_path: Path) -> No
     assert done.exit_code == 2
     lines = done.output.splitlines()
     guilty = [line.partition(":")[0] for line in lines if "error[not-of-equilibria]" in line]
-    assert guilty == ["--z", "--locate", "--by boxes"]
+    assert guilty == ["--z", "--by boxes", "--locate"]
     assert sum("error[" in line for line in lines) == 3
     assert sum("hint: leave it out" in line for line in lines) == 3
 

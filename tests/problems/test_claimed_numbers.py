@@ -135,7 +135,7 @@ def test_tolerances_are_written_and_read(tmp_path: Path) -> None:
     assert "tolerance  of a number at a state" in explained
     path = tmp_path / "p.yaml"
     path.write_text(PENDULUM + f"claims:\n  - {{{VALUE}equals: 0.333, tolerance: 4e-4}}\n", encoding="utf-8")
-    words = ["run", str(path), "--out", str(tmp_path / "out"), "--problems", "1", "--format", "json"]
+    words = ["run", str(path), "--out", str(tmp_path / "out"), "--problems", "1", "--format", "json", "-v"]
     done = CliRunner().invoke(main, words, catch_exceptions=False)
     assert "holds within the tolerance (0.333333333333): 0.0004" in done.stdout
     (told,) = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))["claims"]

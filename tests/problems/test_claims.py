@@ -262,6 +262,9 @@ def test_a_refuted_claim_is_a_finding_unless_claims_are_strict(tmp_path: Path) -
         assert done.exit_code == code, (path, strict, done.output)
         assert ("CLAIM DOES NOT HOLD: eq. (9): kinetic energy: differs" in done.stderr) == (code == 1)
     done = run("run", bad, "--out", tmp_path / "out", "--format", "json", "--problems", "2")
+    assert "Claims: 0 hold, 1 do not, 0 undecided" in done.stdout
+    assert "Claim eq. (9), kinetic energy: differs" in done.stdout
+    done = run("run", bad, "--out", tmp_path / "out", "--format", "json", "--problems", "2", "-v")
     assert "claims: 1 refuted" in done.stdout
     assert "at theta_dot**2: claimed - derived = -m*l**2/2" in done.stdout
     found = json.loads((tmp_path / "out" / "results.json").read_text())["claims"]

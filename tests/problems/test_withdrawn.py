@@ -95,8 +95,10 @@ def test_the_terminal_withdraws_and_the_exit_code_tells(
     done = CliRunner().invoke(main, ["run", str(LIFT), "--out", str(tmp_path), *asked])
     assert done.exit_code == 1
     assert "withdrawn" in done.output
-    assert not [word for word in SAID if word in done.output.split("6 stability")[1].split("self-check:")[0]]
+    assert not [word for word in SAID if word in done.output.split("Self-check:")[0]]
     assert "SELF-CHECK FAILED" in done.output
+    done = CliRunner().invoke(main, ["run", str(LIFT), "--out", str(tmp_path), "-v", *asked])
+    assert not [word for word in SAID if word in done.output.split("6 stability")[1].split("self-check:")[0]]
 
 
 CLAIMS = """

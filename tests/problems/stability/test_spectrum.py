@@ -68,7 +68,7 @@ def test_texts() -> None:
 
 
 def test_the_command_tells_them(tmp_path: Path) -> None:
-    result = CliRunner().invoke(main, ["run", str(SHIPPED / "dumbbell.yaml"), "--out", str(tmp_path)])
+    result = CliRunner().invoke(main, ["run", "-v", str(SHIPPED / "dumbbell.yaml"), "--out", str(tmp_path)])
     assert result.exit_code == 0, result.output
     assert "eigenvalues there (alpha): +-0.00173205i" in result.output
     told = json.loads((tmp_path / "results.json").read_text())["stability"]["eigenvalues_at_values"]
