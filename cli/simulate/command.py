@@ -84,7 +84,8 @@ def command(
     values.  Every row is led back to them; trajectory.csv has their drift.  A loop that cannot be closed: exit code 3.
 
     A blow-up, a singular mass matrix, too many steps or Ctrl-C end it early: what was computed is kept in files named
-    ...-partial.  Exit codes: 0 done, 1 not written, 2 wrong, 3 ended early or not accurate enough, 130 interrupted.
+    ...-partial.  Exit codes: 0 done, 1 not written, 2 wrong, 3 ended early, or not as accurate or as narrow as
+    asked for, 130 interrupted.
 
     \b
     Examples:

@@ -50,8 +50,8 @@ class Request:
     one.
 
     Written are tradeoff.csv, fidelity.csv and work-precision.svg/.png; Ctrl-C keeps what was measured in files named
-    ...-partial.  Exit codes: 0 done, 1 files could not be written, 2 something is missing or wrong, 3 there is no
-    solution up to T, 130 interrupted.
+    ...-partial.  Exit codes: 0 done, 1 files could not be written, or a trial ended in an internal error (the
+    others are kept), 2 something is missing or wrong, 3 there is no solution up to T, 130 interrupted.
 
     \b
     Example:

@@ -15,7 +15,7 @@ from mbsym.numerics.conservation import CONTRADICTION, Conservation, Doubt, Meas
 from mbsym.report.figures.animation_page import run_sentences
 from mbsym.report.runs.simulation_words import conservation_json, conservation_line, warnings
 from mbsym.simulation import Simulation
-from mbsym_cli.simulation_summary import _lines
+from mbsym_cli.simulate.summary import _lines
 
 CASES = Path(__file__).parents[1] / "cases" / "statements"
 
