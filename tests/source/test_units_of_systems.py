@@ -52,6 +52,7 @@ BICYCLE = {
     "roll": "rad",
 }
 UNITS = {
+    "bead-on-hoop": {"m": "kg", "R": "m", "g": "m/s^2", "b": "N*m*s/rad", "Omega": "rad/s", "theta": "rad"},
     "bicycle": BICYCLE,
     "cart-pendulum": {"m0": "kg", "m1": "kg", "l0": "m", "l1": "m", "g": "m/s^2", "F": "N", "x": "m", "q1": "rad"},
     "cart-pole": {"M": "kg", "m": "kg", "J": MOMENTS, "l": "m", "c": "N*s/m", "gamma": "N*m*s", "F": "N", "p": "m"},
