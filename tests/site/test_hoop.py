@@ -27,10 +27,18 @@ def derived(tmp_path_factory: pytest.TempPathFactory) -> Derived:
 
 
 def test_what_is_kept_is_what_is_drawn(tmp_path: Path) -> None:
+    """The same but for a tenth of a pixel: another machine's compiler rounds another way."""
     main(tmp_path)
     for name in NAMES:
-        same = (tmp_path / name).read_text("utf-8") == (FIGURES / name).read_text("utf-8")
+        drawn, kept = ((folder / name).read_text("utf-8") for folder in (tmp_path, FIGURES))
+        (words, places), (kept_words, kept_places) = map(taken_apart, (drawn, kept))
+        same = words == kept_words and places == pytest.approx(kept_places, abs=0.11)
         assert same, f"docs/figures/{name} is not what is derived now: look at it, then make gallery"
+
+
+def taken_apart(text: str) -> tuple[list[str], list[float]]:
+    """What stands around the decimals of a picture, and these."""
+    return re.split(r"-?\d+\.\d+", text), [float(x) for x in re.findall(r"-?\d+\.\d+", text)]
 
 
 @pytest.mark.parametrize("name", NAMES)
