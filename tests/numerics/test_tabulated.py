@@ -137,11 +137,11 @@ def test_reports_list_the_points() -> None:
     analysis = mbsym.loads(CUBIC.replace("0.75]]", "-1/3]]"))
     assert not any(check.failed for check in analysis.checks)
     latex = TARGETS["latex"].render(analysis, (1, 2, 3))
-    assert r"Table $\operatorname{push}$, a natural cubic spline, its end values outside: $(0,\, 0),\; " in latex
+    assert r"Table \texttt{push}, a natural cubic spline, its end values outside: $(0,\, 0),\; " in latex
     assert r"(1.25,\, -1),\; \allowbreak (3,\, \frac{-1}{3})$." in latex
     assert r"\operatorname{push}(t)" in latex
     page = TARGETS["html"].render(analysis, (1, 2, 3))
-    assert "Table <i>push</i>, a natural cubic spline, its end values outside: <math>" in page
+    assert "Table <code>push</code>, a natural cubic spline, its end values outside: <math>" in page
     assert "<mn>0.5</mn><mo>,</mo><mn>2.5</mn>" in page
 
 
