@@ -55,6 +55,7 @@ class Request:
     forms: tuple[str, ...] = ()  # of problem 3, beside Lagrange's
     named: bool = False  # whether the problems were named, or follow from the formats
     verbose: bool = False
+    detail: str = "compact"
 
 
 def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> int:
@@ -83,13 +84,13 @@ def _derive(path: Path, system: System, folder: Path, request: Request) -> int:
     from mbsym.analysis import Analysis
     from mbsym.analysis.given import chosen as own_problems
     from mbsym.formulas.tree import angles_as
-    from mbsym.report.html.motion import animated
 
     started = time.perf_counter()
     problems = request.problems if request.named else own_problems(system, request.problems)
     analysis = Analysis(system, problems, request.terms)
     analysis.language = request.language
     analysis.forms = request.forms
+    analysis.detail, analysis.animate = request.detail, request.animate
     analysis.figures = _figures(folder, system) if "latex" in request.formats else ()
     found = None
     with status(request.quiet) as say:
@@ -98,7 +99,7 @@ def _derive(path: Path, system: System, folder: Path, request: Request) -> int:
             say(f"{path.name}: {text}")
 
         early = derive_all(analysis, request.formats, doing, beside, lambda: angles_as(request.angles))
-        with angles_as(request.angles), animated(request.animate):
+        with angles_as(request.angles):
             files = rendered_all(analysis, request.formats, doing, beside, early)
         texts = {file.filename: file.text for file in files if file.text is not None}
         if request.ledger:

@@ -116,7 +116,7 @@ def command(
     """
     from mbsym.analysis.forms import FORMS
     from mbsym.model.system import LANGUAGES
-    from mbsym.report.detail import DETAILS, detailed
+    from mbsym.report.detail import DETAILS
     from mbsym.report.targets import ANGLES, FORMATS, TARGETS, shown_by
 
     asked = Options()
@@ -154,12 +154,12 @@ def command(
         tuple(name for name in FORMS if name in shown),
         chosen is not None,
         verbose,
+        wanted or detail,
     )
     worst = OK
     base = None if out is not None and len(paths) == 1 else out or REPORTS
-    with detailed(wanted or detail):
-        for path, folder in zip(paths, _folders(paths, out, base), strict=True):
-            worst = max(worst, report_on(path, folder, base, request))
+    for path, folder in zip(paths, _folders(paths, out, base), strict=True):
+        worst = max(worst, report_on(path, folder, base, request))
     sys.exit(worst)
 
 

@@ -197,8 +197,12 @@ class Analysis(Stages):
         self.angles = tuple(angles)
         #: The forms of problem 3 that reports show beside Lagrange's: of ``FORMS``.
         self.forms: tuple[str, ...] = ()
-        #: Of the LaTeX reports, where it is not that of the description.
+        #: Of the reports, where it is not that of the description.
         self.language = ""
+        #: How much reports write out: "compact", or "full".
+        self.detail = "compact"
+        #: The time until which report.html shows the motion; None: it does not, and nothing is integrated.
+        self.animate: float | None = None
         #: Figures beside report.tex that belong to this description (``report.made_figures``).
         self.figures: tuple[Any, ...] = ()
 

@@ -59,15 +59,15 @@ def _derived(task: Task, system: System) -> tuple[Row, dict[str, str | bytes]]:
     from mbsym.analysis import Analysis
     from mbsym.analysis.given import chosen as own_problems
     from mbsym.formulas.tree import angles_as
-    from mbsym.report.detail import detailed
     from mbsym.report.targets import shown_by
     from mbsym.report.whole_run import derive_all, lost, rendered_all
 
     asked = task.asked
     problems = own_problems(system, shown_by(asked.formats)) if asked.problems is None else asked.problems
     analysis = Analysis(system, problems, asked.terms)
+    analysis.detail = asked.detail
     derive_all(analysis, asked.formats, _silent)
-    with angles_as(cast("Angles | None", asked.angles)), detailed(asked.detail):
+    with angles_as(cast("Angles | None", asked.angles)):
         rendered = rendered_all(analysis, asked.formats, _silent)
     files = {file.filename: file.text for file in rendered if file.text is not None}
     defects = lost(analysis, rendered)

@@ -17,7 +17,7 @@ from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
 from mbsym.problems.kinematics import Kinematics
 from mbsym.problems.telling import ToldSystem
-from mbsym.report.detail import FULL, detail
+from mbsym.report.detail import FULL
 from mbsym.report.words.passages import Passage, passages
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def compact(analysis: Analysis, problems: Mapping[int, Any]) -> dict[int, Compac
 
     Nothing is derived unless some problem is long.  The choice is made once for all files of an analysis.
     """
-    if detail() == FULL:
+    if analysis.detail == FULL:
         return {}
     key = (angles_or("shorter"), *((n, id(problems[n])) for n in (1, 2, 3) if n in problems))
     made = _MADE.setdefault(analysis, {})

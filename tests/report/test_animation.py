@@ -26,7 +26,6 @@ from mbsym.report.figures.animation import Animation, animation, projection, vie
 from mbsym.report.figures.animation_gif import MOST, TALL, WIDE, animation_gif
 from mbsym.report.figures.animation_page import animation_page, run_sentences
 from mbsym.report.figures.figures import figures
-from mbsym.report.html.motion import animated
 from mbsym.report.targets import TARGETS
 from mbsym.simulation import Simulation
 
@@ -265,8 +264,8 @@ def test_the_report_shows_the_motion_where_that_is_asked_for(tmp_path: Path) -> 
     """Nothing is integrated unless it is; then the page moves; a missing number is named."""
     analysis = mbsym.load(SHIPPED / "double-pendulum.yaml")
     assert "motion-canvas" not in TARGETS["html"].render(analysis, (3,))
-    with animated(3.0):
-        text = TARGETS["html"].render(analysis, (3,))
+    analysis.animate = 3.0
+    text = TARGETS["html"].render(analysis, (3,))
     assert unreadable("report.html", text) == ""
     (tmp_path / "report.html").write_text(text, encoding="utf-8")
     dom, said = browsed(tmp_path / "report.html")
@@ -274,7 +273,7 @@ def test_the_report_shows_the_motion_where_that_is_asked_for(tmp_path: Path) -> 
     assert ">Pause</button>" in dom
     assert "Integrated from t = 0 to 3 by" in dom
     bare = mbsym.loads((SHIPPED / "double-pendulum.yaml").read_text(encoding="utf-8").split("initial:")[0])
-    with animated(3.0):
-        text = TARGETS["html"].render(bare, (3,))
+    bare.animate = 3.0
+    text = TARGETS["html"].render(bare, (3,))
     assert "No motion is shown: no value for theta1 (its initial position)" in text
     assert "motion-canvas" not in text

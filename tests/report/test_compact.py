@@ -15,7 +15,6 @@ from mbsym.analysis import Analysis
 from mbsym.formulas.tree import angles_as
 from mbsym.report import compact as choice
 from mbsym.report.compact import compact, told_formulas
-from mbsym.report.detail import detailed
 from mbsym.report.latex import report as latex_report
 from mbsym.report.latex import told as latex_told
 from mbsym.report.latex import words as latex_words
@@ -38,8 +37,8 @@ def test_only_long_formulas_are_told(path: Path) -> None:
     with angles_as("products"):
         found = compact(analysis, {n: analysis.stage(n).value for n in (1, 2, 3)})
     assert set(found) == TOLD_IN_PRODUCTS.get(path.stem, set())
-    with detailed("full"):
-        assert compact(analysis, {3: analysis.equations}) == {}
+    analysis.detail = "full"
+    assert compact(analysis, {3: analysis.equations}) == {}
 
 
 @pytest.mark.parametrize("name", sorted(TOLD_IN_PRODUCTS))
@@ -79,8 +78,8 @@ def test_the_equations_of_the_satellite_take_two_pages_at_most(tmp_path: Path) -
     analysis = mbsym.load(SHIPPED / "satellite.yaml")
     said = {}
     for wanted in ("compact", "full"):
-        with detailed(wanted):
-            text = latex_report.render(analysis, (1, 2, 3))
+        analysis.detail = wanted
+        text = latex_report.render(analysis, (1, 2, 3))
         said[wanted] = compiled_latex(equations_alone(text), tmp_path)
     pages = {k: int(re.search(r"Output written on .*?\((\d+) page", x, re.S)[1]) for k, x in said.items()}  # type: ignore[index]
     assert pages["compact"] <= 2 < 4 <= pages["full"]

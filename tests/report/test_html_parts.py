@@ -8,7 +8,7 @@ from html import unescape
 import pytest
 
 from mbsym.analysis import Analysis
-from mbsym.report.html.formulas import inline, spelled
+from mbsym.report.html.formulas import inline
 from mbsym.report.html.report import render
 from mbsym.report.html.sections import PARTS, part_html, title
 from mbsym.source import read
@@ -48,8 +48,7 @@ def test_the_mass_of_a_pendulum_is_spelled_in_three_languages(pendulum: Analysis
 
 def test_a_spelling_says_what_the_formula_is(pendulum: Analysis) -> None:
     force = pendulum.energy.force_function
-    with spelled():
-        html = inline(force)
+    html = inline(force, spelled=True)
     assert attributes(html, "python") == [str(force)]
     assert attributes(html, "wolfram") == [force.wolfram()]
     assert "data-" not in inline(force), "reports go without"

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
-from contextvars import ContextVar
+from collections.abc import Callable, Sequence
 from math import gcd
 
 from flint import fmpq
@@ -41,28 +39,16 @@ LONGEST_CONDITION = 450
 RELATIONS = {"!=": "\u2260", ">=": "\u2265", "<=": "\u2264", "+-": "\u00b1", "-": "\u2212"}
 
 
-#: Whether formulas carry what other programs read: an editor copies it, a report goes without.
-_SPELLED: ContextVar[bool] = ContextVar("spelled", default=False)
-#: Of longer ones exports have it.
+#: Of longer formulas exports have what other programs read.
 LONGEST_SPELLED = 1500
 
 
-@contextmanager
-def spelled() -> Iterator[None]:
-    """Formulas and matrices have the attributes data-latex, data-wolfram and data-python: the value as text.
+def spellings(value: Formula | Matrix, wanted: bool) -> str:
+    """The attributes data-latex, data-wolfram and data-python, which an editor copies; a report goes without.
 
-    Where a line says ``name = value`` it is the value that they spell.
+    Where a line says ``name = value`` it is the value that they spell.  "" also of what is too long.
     """
-    token = _SPELLED.set(True)
-    try:
-        yield
-    finally:
-        _SPELLED.reset(token)
-
-
-def spellings(value: Formula | Matrix) -> str:
-    """The attributes; "" where nobody wants them, and of what is too long."""
-    if not _SPELLED.get() or value.terms > LONGEST_SPELLED:
+    if not wanted or value.terms > LONGEST_SPELLED:
         return ""
     wolfram = value.wolfram() if isinstance(value, Formula) else _nested(value)
     written = {"latex": value.latex(), "wolfram": wolfram, "python": str(value)}
@@ -117,10 +103,11 @@ def _joined(*parts: str) -> str:
 # --- lines ------------------------------------------------------------------------------------------------------------
 
 
-def line(left: str, value: Formula, right: str, sign: str, size: str) -> Markup:
+def line(left: str, value: Formula, right: str, sign: str, size: str, spelled: bool = False) -> Markup:
     """``left = value right`` as a line of its own; folded away behind its ``size`` where it is long."""
     pieces = mathml_pieces(value.ring, value.polynomial)
-    written = whole([_joined(left, mo(sign) if left else "", pieces[0]), *pieces[1:]], right, spellings(value))
+    first = _joined(left, mo(sign) if left else "", pieces[0])
+    written = whole([first, *pieces[1:]], right, spellings(value, spelled))
     if leaves(shape_of(value.ring, value.polynomial)) <= FOLDED:
         return written
     head = math(left, mo(sign), "<mo>\u2026</mo>") if left else ""
@@ -148,24 +135,24 @@ def _size(value: Formula) -> int:
     return leaves(shape_of(value.ring, value.polynomial))
 
 
-def inline(value: Formula) -> Markup:
+def inline(value: Formula, spelled: bool = False) -> Markup:
     """Finished MathML of a formula in one piece."""
-    written, attributes = mathml_text(value.ring, value.polynomial), spellings(value)
+    written, attributes = mathml_text(value.ring, value.polynomial), spellings(value, spelled)
     return Markup(f"<mrow{attributes}>{written}</mrow>" if attributes else written)
 
 
-def components(values: Column, long: frozenset[int] = frozenset()) -> Markup:
+def components(values: Column, long: frozenset[int] = frozenset(), spelled: bool = False) -> Markup:
     """(a, b, c), or nothing if that would be too wide or holds one of the ``long`` formulas."""
     if any(id(x) in long or x.terms > 30 for x in values) or sum(map(_size, values)) > WIDEST:
         return Markup("")
-    return Markup(row([inline(x) for x in values]))
+    return Markup(row([inline(x, spelled) for x in values]))
 
 
-def matrix(value: Matrix, long: frozenset[int] = frozenset()) -> Markup:
+def matrix(value: Matrix, long: frozenset[int] = frozenset(), spelled: bool = False) -> Markup:
     """A matrix in brackets, or nothing if that would be too wide or holds one of the ``long`` formulas."""
     if any(id(x) in long or x.terms > 60 for line in value for x in line):
         return Markup("")
-    number, attributes = _common_number(value), spellings(value)
+    number, attributes = _common_number(value), spellings(value, spelled)
     if number > 1:
         value = Matrix.of(value[0, 0].ring, [[x * fmpq(1, number) for x in line] for line in value.polynomials])
     if sum(max(map(_size, column)) for column in zip(*value, strict=True)) > WIDEST:

@@ -2,31 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
-from contextvars import ContextVar
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
     from mbsym.report.figures.animation_page import Motion
 
-_ASKED: ContextVar[float | None] = ContextVar("animate", default=None)
 
-
-@contextmanager
-def animated(time: float | None) -> Iterator[None]:
-    """Within this block pages show the motion from 0 to ``time``; None: no page does, and nothing is integrated."""
-    token = _ASKED.set(time)
-    try:
-        yield
-    finally:
-        _ASKED.reset(token)
-
-
-def asked_motion(system: System) -> tuple[Motion | None, str]:
-    """(the motion, "") or (None, why there is none); (None, "") where it was not asked for."""
-    time = _ASKED.get()
+def asked_motion(system: System, time: float | None) -> tuple[Motion | None, str]:
+    """(the motion from 0 to ``time``, "") or (None, why there is none); (None, "") where it was not asked for."""
     if time is None:
         return None, ""
     from mbsym.algebra.failures import Failure

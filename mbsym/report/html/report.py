@@ -32,25 +32,26 @@ ORDER = tuple(NUMBERS)
 
 def render(analysis: Analysis, problems: Sequence[int]) -> str:
     """The file's text."""
-    motion, no_motion = asked_motion(analysis.system)
+    motion, no_motion = asked_motion(analysis.system, analysis.animate)
     scripts = ("report.js", "motion.js") if motion is not None else ("report.js",)
     known, values = context(analysis, problems)
     return page("report.html.j2", known, scripts, motion=motion, no_motion=no_motion, **values)
 
 
 def context(
-    analysis: Analysis, problems: Sequence[int], whole: bool = True
+    analysis: Analysis, problems: Sequence[int], whole: bool = True, spelled: bool = False
 ) -> tuple[dict[str, Callable[..., Any]], dict[str, Any]]:
     """What templates about these problems may call, and what they tell.
 
     Not the ``whole`` is what a problem's own template needs: claims and checks, which are about all of them, are left.
+    ``spelled``: formulas carry what other programs read.
     """
     system = analysis.system
     names = mathml_names(analysis.ring)
     about = results(analysis, problems)
     counted = [about.found[number] for number in COUNTED if number in about.found]
     long = withheld([*counted, *about.forms.forms.results], PAPER)
-    writer = Writer(names, Language(analysis.language or system.language), long)
+    writer = Writer(names, Language(analysis.language or system.language), long, spelled)
     sections = contents(about, writer.document)
     known: dict[str, Callable[..., Any]] = {
         "tr": lambda text, **gaps: writer.said(Said(text, gaps)),

@@ -1,7 +1,7 @@
 """Parts of ``report.html`` one by one, as fragments for a page that fills while results are derived.
 
 A fragment is what the same part of the report is, word for word, and its formulas carry what other programs read
-(``html_formulas.spelled``).  Everything that comes from a description is escaped.
+(``html.formulas.spellings``).  Everything that comes from a description is escaped.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from mbsym.report.html.environment import fragment
-from mbsym.report.html.formulas import spelled
 from mbsym.report.html.report import context, title_in
 
 if TYPE_CHECKING:
@@ -38,6 +37,5 @@ def part_html(analysis: Analysis, part: str | int, problems: Sequence[int]) -> s
     """
     if isinstance(part, str) and part not in PARTS:
         raise KeyError(part)
-    with spelled():
-        known, values = context(analysis, problems, part in ("summary", "claims", "checks"))
-        return fragment("part.html.j2", known, part=part, **values)
+    known, values = context(analysis, problems, part in ("summary", "claims", "checks"), spelled=True)
+    return fragment("part.html.j2", known, part=part, **values)

@@ -37,11 +37,15 @@ _COMMA = '<mo separator="true">,</mo><mspace width="0.3em"/>'
 
 @dataclass(frozen=True)
 class Writer:
-    """``names`` of the system; formulas among the ``long`` ones, by their identity, are counted."""
+    """``names`` of the system; formulas among the ``long`` ones, by their identity, are counted.
+
+    ``spelled``: formulas carry what other programs read.
+    """
 
     names: MathNames
     language: Language
     long: frozenset[int] = frozenset()
+    spelled: bool = False
 
     def document(self, blocks: Iterable[content.Block]) -> Markup:
         """The blocks one after the other; headings of sections are those of the page."""
@@ -150,7 +154,7 @@ class Writer:
 
     @math.register
     def _(self, value: Formula) -> str:
-        return self._not_printed(value) if self._is_withheld(value) else str(formulas.inline(value))
+        return self._not_printed(value) if self._is_withheld(value) else str(formulas.inline(value, self.spelled))
 
     @math.register
     def _(self, value: content.Name) -> str:
@@ -294,7 +298,8 @@ class Writer:
     def _line(self, left: str, value: Formula, right: str = "", sign: str = "=") -> Markup:
         if self._is_withheld(value):
             return formulas.text_line(left, mo(sign) if left else "", self._not_printed(value), right)
-        return formulas.line(left, value, right, sign, self.said(say("[[count]] terms", count=str(value.terms))))
+        size = self.said(say("[[count]] terms", count=str(value.terms)))
+        return formulas.line(left, value, right, sign, size, self.spelled)
 
     def _is_withheld(self, value: Formula) -> bool:
         return value.terms > formulas.LONGEST or id(value) in self.long
@@ -318,7 +323,7 @@ class Writer:
         left = self.math(value.symbol)
         if value.value.is_zero:
             return formulas.text_line(left, mo("="), mn(0))
-        whole = "" if value.packed else formulas.matrix(value.value, self.long)
+        whole = "" if value.packed else formulas.matrix(value.value, self.long, self.spelled)
         if whole:
             return formulas.text_line(left, mo("="), whole)
         return Markup("\n").join(
@@ -335,7 +340,7 @@ class Writer:
         left = self.math(value.symbol)
         if formulas.zero(value.value):
             return formulas.text_line(left, mo("="), mn(0))
-        whole = formulas.components(value.value, self.long)
+        whole = formulas.components(value.value, self.long, self.spelled)
         if whole:
             return formulas.text_line(left, mo("="), whole)
         return Markup("\n").join(

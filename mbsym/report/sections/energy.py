@@ -47,8 +47,8 @@ def data(found: Energy, system: System, write: Write) -> doc.Energy:
 
 def content(results: Results) -> Iterator[Block]:
     """What reports say."""
-    system, found, told = results.system, results.found.get(2), results.told.get(2)
     yield Heading("energy", Said("Problem 2. Kinetic energy and force function"))
+    system, found, told = results.system, results.found.get(2), results.told.get(2)
     yield from results.missing(2)
     closed: tuple[Block, ...] = () if found is None else tuple(_closed(found, results))
     if told is not None:

@@ -36,8 +36,8 @@ IN_COORDINATES = (
 
 def content(results: Results) -> Iterator[Block]:
     """What reports say."""
-    system, found = results.system, results.found.get(4)
     yield Heading("equilibrium", Said("Problem 4. The unperturbed motion"))
+    system, found = results.system, results.found.get(4)
     if system.motion or found is not None:
         yield paragraph(Said("The unperturbed motion"))
     if system.motion:
