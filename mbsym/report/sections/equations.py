@@ -218,12 +218,13 @@ MOST_TERMS = 24
 
 
 def short_equations(found: Equations, system: System) -> Column:
-    """M q'' - f, where they are short enough to be read at a glance; constraints would add multipliers."""
+    """M q'' - f, where all equations are short enough to be read at a glance; constraints would add multipliers."""
     many = len(found.forcing) > MOST_EQUATIONS or found.terms > MOST_TERMS * MOST_EQUATIONS
     if many or found.constraints is not None:
         return ()
     written = found.equalities(system.coordinates)
-    return written if all(map(is_short, written)) else ()
+    rates = [rate for _, rate in getattr(found, "kinematic", ())]
+    return written if len(rates) <= MOST_EQUATIONS and all(map(is_short, (*written, *rates))) else ()
 
 
 def is_short(value: Formula) -> bool:

@@ -20,6 +20,7 @@ from mbsym.report.content import (
     Heading,
     Inline,
     Link,
+    Name,
     Phrase,
     Relation,
     Said,
@@ -59,6 +60,7 @@ def _facts(results: Results) -> Iterator[Fact]:
         yield (Said("Cyclic coordinates"),), (named(found[2].cyclic),)
     if 3 in found and (equations := short_equations(found[3], system)):
         written = [Relation(one, "=", 0) for one in equations]
+        written += [Relation(Name(x, 1), "=", rate) for x, rate in getattr(found[3], "kinematic", ())]
         yield (Said("Equations of motion"),), (joined(written, ";  "),)
     if 4 in found:
         yield (Said("The unperturbed motion"),), _motion(found[4])
