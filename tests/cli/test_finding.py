@@ -1,4 +1,4 @@
-"""What a run tells: what was found, result first; each line against a derivation by hand, and where it must be denied."""
+"""What a run tells, result first: each line against a derivation by hand, and where it must be denied."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def told(tmp_path: Path, text: str, *words: str) -> list[str]:
     command = ["run", str(file), "--format", "json", "--out", str(tmp_path / "out"), *words]
     done = CliRunner().invoke(main, command, env={"COLUMNS": "1000"})
     assert done.exit_code == 0, done.output
-    title, *lines = done.stdout.splitlines()
+    _, *lines = done.stdout.splitlines()
     return [line.strip() for line in lines]
 
 
