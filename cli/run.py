@@ -89,8 +89,8 @@ def command(
     With --accuracy X --until T what the equations leave out (orders of gravity, negligible masses) is held against the
     motion, as 'mbsym simulate --accuracy' does; what changes it too much is told to be needed.
 
-    With --language ru or es reports in LaTeX and HTML and the terminal are in Russian or Spanish; generated code and
-    JSON stay English.
+    With --language ru or es reports in LaTeX and HTML, and what was found on the terminal, are in Russian or Spanish;
+    -v, problems 8 to 12 on the terminal, generated code and JSON stay English.
 
     With --angles sums formulas have cos(q1 - q2) in all files, where that is shorter part by part; with --angles
     products they have products of sines and cosines of single angles.

@@ -57,9 +57,9 @@ def show_finding(
     if files:
         folder = files[0].parent
         page = next((x for x in files if x.name == "report.html"), files[0])
-        text = "[[file]] in [[folder]]; with -v all of it is told here"
+        text = "[[file]] in [[folder]]; with -v more is told here"
         if len(files) > 1:
-            text = "[[file]], [[count]] files in all, in [[folder]]; with -v all of it is told here"
+            text = "[[file]], [[count]] files in all, in [[folder]]; with -v more is told here"
         tell(writer.said(say(text, file=page.name, count=str(len(files)), folder=printable(folder))), indent=2)
 
 

@@ -116,14 +116,9 @@ def _conditions(analysis: Analysis) -> Iterator[Line]:
     for part in analysis.stability.subsystems:
         of = ", ".join(part.coordinates)
         told = label_meanings(part.ring, part.theory.requirements)
+        yield Line("", f"conditions: {part.theory.wanted}", "", of)
         for item in statements(part.ring, part.theory.requirements, told=told):
             yield Line("", item.formula or item.never or item.note, item.relation, _remark(item, of))
-        yield Line(
-            "",
-            f"{part.theory.verdict.word}" + f" ({part.theory.verdict.theorem})" * bool(part.theory.verdict.theorem),
-            "",
-            of,
-        )
 
 
 def _remark(item: Statement, of: str) -> str:

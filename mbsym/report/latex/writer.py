@@ -341,7 +341,9 @@ class Writer:
 
     @block.register
     def _(self, value: content.Facts) -> str:
-        items = "".join(f"\\item {self._joined(name)}: {self._joined(said)}.\n" for name, said in value.items)
+        items = "".join(
+            f"\\item {self._joined(name)}: {self._joined(said).removesuffix('.')}.\n" for name, said in value.items
+        )
         return f"\\begin{{itemize}}\\setlength{{\\itemsep}}{{1pt}}\n{items}\\end{{itemize}}\n"
 
     @block.register

@@ -31,7 +31,6 @@ from mbsym.report.content import (
 )
 from mbsym.report.sections.canonical import TITLES
 from mbsym.report.sections.equations import is_short, short_equations
-from mbsym.report.sections.stability import kind_of_conditions
 from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line, titles
 from mbsym.report.words.verdicts import decided, grade, verdict
 
@@ -57,7 +56,7 @@ def _facts(results: Results) -> Iterator[Fact]:
     system, found = results.system, results.found
     yield _size(system, found[3].constraints if 3 in found else None)
     if 2 in found and found[2].cyclic and not system.constraints:
-        yield (Said("Cyclic coordinates"),), (named(found[2].cyclic),)
+        yield (Said("$L$ does not contain"),), (named(found[2].cyclic),)
     if 3 in found and (equations := short_equations(found[3], system)):
         written = [Relation(one, "=", 0) for one in equations]
         written += [Relation(Name(x, 1), "=", rate) for x, rate in getattr(found[3], "kinematic", ())]
@@ -105,11 +104,17 @@ def _facts(results: Results) -> Iterator[Fact]:
 def _size(system: System, tied: Constraints | None) -> Fact:
     freedom = Phrase((str(len(system.coordinates)), ": ", named(system.coordinates)))
     if system.linear:
-        return (Said("Degrees of freedom"),), (freedom, "; ", Said("given by its matrices"))
+        title = "State variables" if system.linear.of_first_order else "Degrees of freedom"
+        return (Said(title),), (freedom, "; ", Said("given by its matrices"))
     bodies = str(len(system.bodies))
     if system.constraints:
         text = "[[bodies]]; coordinates: [[coordinates]]; constraints: [[constraints]]"
-        said = say(text, bodies=bodies, coordinates=freedom, constraints=str(len(system.constraints)))
+        said = say(
+            text,
+            bodies=bodies,
+            coordinates=freedom,
+            constraints=str(len(system.constraints) if tied is None else tied.velocity_rank),
+        )
         if tied is not None:
             left = len(tied.coordinates) - tied.velocity_rank
             return (Said("Bodies and frames"),), (said, "; ", say("degrees of freedom: [[freedom]]", freedom=str(left)))
@@ -130,7 +135,7 @@ def _motion(found: Equilibrium) -> tuple[Inline, ...]:
 def _stability(found: Stability, results: Results) -> Iterator[Fact]:
     """The verdicts: that on the whole first."""
     several, presumed = len(found.subsystems) > 1, results.presumed
-    cases = ("; ", Link(Said("see the cases"), "problem-6"))
+    cases = ("; ", Link(Said("see problem 6 of the report"), "problem-6"))
     names = named(found.subsystems[0].coordinates)
     whole = (Said("Stability of the whole system"),) if several else (Said("Stability"), ", ", names)
     depends = found.verdict.word is Word.DEPENDS
@@ -148,6 +153,8 @@ def _stability(found: Stability, results: Results) -> Iterator[Fact]:
         yield (Said("Stability"), ", ", named(part.coordinates), *presumed), said
     if found.numerical is not None:
         said = verdict(found.numerical, "verdict-at-values")
+        if found.numerical.word is Word.UNDECIDED and found.numerical.explanation:
+            said = (*said, ": ", Words(found.numerical.explanation))
         yield (Said("At the given values of the parameters"), Words(decided(found))), said
 
 
@@ -156,15 +163,15 @@ def _conditions(part: SubsystemStability) -> Iterator[Inline]:
     if part.theory.verdict.word not in (Word.DEPENDS, Word.UNSTABLE_BUT_BORDERS):
         return
     items = list(statements(part.ring, part.theory.requirements))
-    if not items:
+    if not items or any(one.never is not None for one in items):
         return
-    yield from ("; ", kind_of_conditions(part.theory, items), ": ")
+    yield from ("; ", say("conditions ([[wanted]])", wanted=Words(part.theory.wanted)), ": ")
     if all(one.formula is not None and is_short(one.formula) for one in items):
         shown: list[Inline] = []
         for one in items:
             assert one.formula is not None
             remark = (" (", Words(one.remark), ")") if one.remark else ()
             shown.append(Phrase((Relation(one.formula, one.relation, 0), *remark)))
-        yield joined(shown, ", ")
+        yield joined([one for k, one in enumerate(shown) if one not in shown[:k]], ", ")
     else:
         yield Link(say("[[count]] in number", count=str(len(items))), "problem-6")
