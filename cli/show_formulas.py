@@ -46,7 +46,7 @@ def command(file: Path, names: tuple[str, ...], language: str | None, terms: str
         sys.exit(BAD_INPUT)
     from mbsym.algebra.failures import Failure
     from mbsym.analysis import Analysis
-    from mbsym.report.formulas_by_name import known_names, lines, written
+    from mbsym.report.formulas_by_name import known_names, lines, remarked, written
 
     analysis = Analysis(system, terms=budget)
     known = known_names(analysis)
@@ -67,7 +67,7 @@ def command(file: Path, names: tuple[str, ...], language: str | None, terms: str
             continue
         for line in found:
             if line.remark:
-                click.echo(_comment(printable(line.remark), language))
+                click.echo(remarked(printable(line.remark), language or "text"))
             click.echo(written(line, language or "text"))
     sys.exit(worst)
 
@@ -77,9 +77,3 @@ def _nearest(name: str, known: list[str]) -> str:
 
     near = get_close_matches(name, known, 1)
     return f"did you mean '{near[0]}'?" if near else f"there are {', '.join(known)}"
-
-
-def _comment(remark: str, language: str | None) -> str:
-    return {"latex": f"% {remark}", "wolfram": f"(* {remark} *)", "python": f"# {remark}"}.get(
-        language or "", f"# {remark}"
-    )

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.matrices import cramer, determinant
+from mbsym.algebra.ring import Ring
+from mbsym.expressions.rates import ENDINGS, acceleration_name
 from mbsym.formulas.formula import Column, Formula, Matrix, column
 from mbsym.formulas.latex import latex_symbol
 from mbsym.formulas.wolfram import wolfram_name
-from mbsym.problems.stability.spectrum import numbers
+from mbsym.problems.stability.spectrum import RootNumbers, numbers
 from mbsym.report.conditions import Statement, label_meanings, statements
+from mbsym.report.content import Number
+from mbsym.report.sections.stability import root_text
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -25,15 +30,19 @@ LANGUAGES = ("text", "latex", "wolfram", "python")
 MOST_SOLVED = 4
 
 
+Value = Formula | Matrix | Column | tuple[RootNumbers, ...] | str
+
+
 @dataclass(frozen=True)
 class Line:
     """``name = value``, or ``value relation 0`` where it has no name; ``remark`` says in words what it is of.
 
-    ``right`` stands in place of 0: the sum of coefficients times multipliers, by their names.
+    The name is a letter of ours, or a formula of one letter that moves.  ``right`` stands in place of 0: the sum of
+    coefficients times multipliers, by their names.  A value in words is a remark in other languages.
     """
 
-    name: str
-    value: Formula | Matrix | Column | str
+    name: str | Formula
+    value: Value
     relation: str = "="
     remark: str = ""
     right: tuple[tuple[Formula, str], ...] = ()
@@ -51,7 +60,8 @@ def _equations(analysis: Analysis) -> Iterator[Line]:
         right = () if tied is None else tuple((row[i], f"lambda{k}") for k, row in enumerate(tied.jacobian, start=1))
         yield Line("", x, right=tuple(one for one in right if not one[0].is_zero))
     if found.in_speeds:
-        yield from (Line(f"{name}'", x) for name, x in cast("SpeedEquations", found).kinematic)
+        own = cast("SpeedEquations", found)
+        yield from (Line(Formula(x.ring, x.ring.generator("velocity", name)), x) for name, x in own.kinematic)
     if tied is not None:
         yield from _constraints(analysis)
 
@@ -83,9 +93,15 @@ def accelerations(analysis: Analysis) -> Column:
 
 def _accelerations(analysis: Analysis) -> Iterator[Line]:
     found = analysis.equations
-    speeds: Sequence[str] = getattr(found, "speeds", ())
-    names = [f"{x}'" for x in speeds] if speeds else [f"{x}''" for x in analysis.system.coordinates]
-    yield from (Line(name, x) for name, x in zip(names, accelerations(analysis), strict=True))
+    rates = getattr(found, "speed_rates", ()) or map(acceleration_name, analysis.system.coordinates)
+    solved = accelerations(analysis)
+    yield from (Line(_moving(x.ring, rate), x) for rate, x in zip(rates, solved, strict=True))
+
+
+def _moving(ring: Ring, rate: str) -> Formula:
+    """The rate that goes by a name: ``theta_ddot``, ``p_dot``."""
+    kind, end = next((kind, end) for kind, end in reversed(ENDINGS.items()) if rate.endswith(end))
+    return Formula(ring, ring.generator(kind, rate.removesuffix(end)))
 
 
 def _motion(analysis: Analysis) -> Iterator[Line]:
@@ -116,8 +132,10 @@ def _conditions(analysis: Analysis) -> Iterator[Line]:
     for part in analysis.stability.subsystems:
         of = ", ".join(part.coordinates)
         told = label_meanings(part.ring, part.theory.requirements)
-        yield Line("", f"conditions: {part.theory.wanted}", "", of)
-        for item in statements(part.ring, part.theory.requirements, told=told):
+        items = list(statements(part.ring, part.theory.requirements, told=told))
+        none = "" if items else "; none is left that might fail" if part.theory.requirements else "; none was found"
+        yield Line("", f"conditions: {part.theory.wanted}{none}", "", of)
+        for item in items:
             yield Line("", item.formula or item.never or item.note, item.relation, _remark(item, of))
 
 
@@ -126,12 +144,10 @@ def _remark(item: Statement, of: str) -> str:
 
 
 def _eigenvalues(analysis: Analysis) -> Iterator[Line]:
-    from mbsym.report.sections.stability import root_text
-
     if not analysis.stability.spectra:
         raise NoClosedForm("the description does not give all values")
     for part in analysis.stability.spectra:
-        yield Line("", ", ".join(map(root_text, numbers(part))), "", f"of {', '.join(part.coordinates)}")
+        yield Line("", tuple(numbers(part)), "", f"of {', '.join(part.coordinates)}")
 
 
 def _integrals(analysis: Analysis) -> Iterator[Line]:
@@ -170,13 +186,6 @@ def _of_body(analysis: Analysis, name: str) -> Iterator[Line]:
     yield Line("V_C", body.velocity_mass_centre, remark="velocity of its mass centre")
 
 
-def _of_name(analysis: Analysis, name: str) -> Iterator[Line] | None:
-    """Of an integral or of a body, by its name."""
-    if any(x.name == name for x in analysis.system.bodies):
-        return _of_body(analysis, name)
-    return None
-
-
 def known_names(analysis: Analysis) -> list[str]:
     """Everything that may be asked for."""
     return [*NAMES, *(body.name for body in analysis.system.bodies)]
@@ -186,99 +195,118 @@ def lines(analysis: Analysis, name: str) -> Iterator[Line]:
     """The formulas that go by a name.  Raises KeyError where nothing has it, Failure where there is no result."""
     if name in NAMES:
         return NAMES[name][1](analysis)
-    found = _of_name(analysis, name)
-    if found is None:
+    if name not in known_names(analysis):
         raise KeyError(name)
-    return found
+    return _of_body(analysis, name)
 
 
 def written(line: Line, language: str) -> str:
     """A line in one of ``LANGUAGES``."""
+    if isinstance(line.value, str):
+        return line.value if language == "text" else remarked(line.value, language)
     value = _WRITERS[language](line.value)
-    name = _NAMED[language](line.name) if line.name else ""
-    zero = "" if not line.relation or isinstance(line.value, str) else f" {_relation(line.relation, language)}"
-    if not name:
-        right = _sum(line.right, language) if line.right else "0"
-        return value + (zero if "const" in zero else f"{zero} {right}" if zero else "")
-    equals = {"wolfram": " = ", "python": " = "}.get(language, " = ")
-    if language == "text" and "\n" in value:
-        indent = "\n" + " " * (len(name) + len(equals))
-        return name + equals + value.replace("\n", indent)
-    return f"{name}{equals}{value}"
+    if line.name:
+        name = _WRITERS[language](line.name) if isinstance(line.name, Formula) else _LETTERS[language](line.name)
+        return f"{name} = " + value.replace("\n", "\n" + " " * (len(name) + 3))
+    if not line.relation:
+        return value
+    right = _sum(line.right, language) if line.right else "" if "const" in line.relation else "0"
+    return " ".join(filter(None, (value, _RELATIONS[language].get(line.relation, line.relation), right)))
+
+
+def remarked(words: str, language: str) -> str:
+    """A remark of a language."""
+    return {"latex": f"% {words}", "wolfram": f"(* {words} *)"}.get(language, f"# {words}")
 
 
 def _sum(terms: Sequence[tuple[Formula, str]], language: str) -> str:
     """The sum of coefficients times multipliers."""
     times = {"latex": "\\, ", "text": " "}.get(language, "*")
-    written = []
+    found = []
     for coefficient, multiplier in terms:
-        value, name = _WRITERS[language](coefficient), _NAMED[language](multiplier)
+        value, name = _WRITERS[language](coefficient), _LETTERS[language](multiplier)
         factor = f"({value})" if coefficient.terms > 1 or language != "text" else value
-        written.append({"1": name, "-1": f"-{name}"}.get(value, f"{factor}{times}{name}"))
-    return " + ".join(written).replace("+ -", "- ")
+        found.append({"1": name, "-1": f"-{name}"}.get(value, f"{factor}{times}{name}"))
+    return " + ".join(found).replace("+ -", "- ")
 
 
-def _relation(relation: str, language: str) -> str:
-    if language == "latex":
-        return {"!=": r"\neq", ">=": r"\geq", "<=": r"\leq", "= const": r"= \mathrm{const}"}.get(relation, relation)
-    return {"=": "==", "= const": "== const"}.get(relation, relation) if language != "text" else relation
-
-
-def _text(value: Formula | Matrix | Column | str) -> str:
-    if isinstance(value, str):
-        return value
-    if isinstance(value, Formula):
-        return value.readable()
-    if isinstance(value, Matrix):
+def _text(value: Value) -> str:
+    if isinstance(value, Matrix) and value.shape != (1, 1):
         rows = [[x.readable() for x in row] for row in value]
-        if value.shape == (1, 1):
-            return rows[0][0]
         widths = [max(map(len, texts)) for texts in zip(*rows, strict=True)]
         return "\n".join("[ " + "   ".join(map(str.ljust, row, widths)) + " ]" for row in rows)
-    return "(" + ", ".join(x.readable() for x in value) + ")"
+    return _plain(value, Formula.readable, root_text, "({})")
 
 
-def _latex(value: Formula | Matrix | Column | str) -> str:
-    if isinstance(value, str):
-        return f"\\text{{{value}}}"
-    if isinstance(value, Matrix) and value.shape == (1, 1):
-        return value[0, 0].latex()
-    return value.latex() if isinstance(value, Formula | Matrix) else "(" + ",\\; ".join(x.latex() for x in value) + ")"
+def _latex(value: Value) -> str:
+    if isinstance(value, Matrix) and value.shape != (1, 1):
+        return value.latex()
+    return _plain(
+        value, Formula.latex, lambda x: _both(x, "\\,\\mathrm{i}", lambda text: Number(text).tex), "({})", ",\\; "
+    )
 
 
-def _wolfram(value: Formula | Matrix | Column | str) -> str:
-    if isinstance(value, str):
-        return f"(* {value} *)"
+def _latex_root(root: RootNumbers) -> str:
+    return _both(root, "\\,\\mathrm{i}", lambda text: Number(text).tex)
+
+
+def _wolfram(value: Value) -> str:
+    if isinstance(value, Matrix):
+        return "{" + ", ".join(_wolfram(tuple(row)) for row in value) + "}"
+    return _plain(value, Formula.wolfram, lambda x: _both(x, "*I", _decimal), "{{{}}}")
+
+
+def _decimal(text: str) -> str:
+    return re.sub(r"e([-+]?\d+)", lambda found: f"*^{int(found[1])}", text)
+
+
+def _python(value: Value) -> str:
+    if isinstance(value, Matrix):
+        return str(value)
+    return _plain(value, str, lambda x: _both(x, "j"), "({},)")
+
+
+def _plain(
+    value: Value,
+    formula: Callable[[Formula], str],
+    root: Callable[[RootNumbers], str],
+    listed: str,
+    comma: str = ", ",
+) -> str:
+    """A formula, also the only one of a matrix, or several values side by side."""
+    assert not isinstance(value, str)
+    if isinstance(value, Matrix):
+        value = value[0, 0]
     if isinstance(value, Formula):
-        return value.wolfram()
-    rows = [_wolfram(tuple(row)) for row in value] if isinstance(value, Matrix) else [x.wolfram() for x in value]
-    return "{" + ", ".join(rows) + "}"
+        return formula(value)
+    return listed.format(comma.join(root(x) if isinstance(x, RootNumbers) else formula(x) for x in value))
 
 
-def _python(value: Formula | Matrix | Column | str) -> str:
-    if isinstance(value, str):
-        return f"# {value}"
-    return f"({', '.join(map(str, value))},)" if isinstance(value, tuple) else str(value)
+def _both(root: RootNumbers, unit: str, number: Callable[[str], str] = str) -> str:
+    """A root and its conjugate, as often as they occur; ``number`` writes a decimal."""
+    real, imaginary = (number(f"{x:.6g}") for x in (root.real, root.imaginary))
+    both = [f"{real} + {imaginary}{unit}", f"{real} - {imaginary}{unit}"] if root.imaginary else [real]
+    return ", ".join(both * root.multiplicity)
 
 
-_WRITERS = {"text": _text, "latex": _latex, "wolfram": _wolfram, "python": _python}
+_WRITERS: Mapping[str, Callable[[Value], str]] = {
+    "text": _text,
+    "latex": _latex,
+    "wolfram": _wolfram,
+    "python": _python,
+}
 
-
-def _latex_name(name: str) -> str:
-    bare = name.rstrip("'")
-    dots = ("", "dot", "ddot")[len(name) - len(bare)]
-    stem, _, index = bare.partition("_")
-    symbol = latex_symbol(bare)
-    if index in ("O", "C"):
-        return f"{stem}_{{{index}}}"
-    return symbol.accented(dots) if dots else str(symbol)
-
-
-_NAMED: Mapping[str, Callable[[str], str]] = {
+#: How a letter of ours is written.
+_LETTERS: Mapping[str, Callable[[str], str]] = {
     "text": str,
-    "latex": _latex_name,
-    "wolfram": lambda name: (
-        wolfram_name(name.rstrip("'")) + "'" * (len(name) - len(name.rstrip("'"))) + ("[t]" if "'" in name else "")
-    ),
-    "python": lambda name: name.rstrip("'") + ("", "_dot", "_ddot")[len(name) - len(name.rstrip("'"))],
+    "latex": lambda letter: str(latex_symbol(letter)),
+    "wolfram": wolfram_name,
+    "python": str,
+}
+
+_RELATIONS: Mapping[str, Mapping[str, str]] = {
+    "text": {},
+    "latex": {"!=": r"\neq", ">=": r"\geq", "<=": r"\leq", "= const": r"= \mathrm{const}"},
+    "wolfram": {"=": "==", "= const": "== const"},
+    "python": {"=": "==", "= const": "== const"},
 }

@@ -103,3 +103,31 @@ def test_python_has_them_too() -> None:
     pendulum = mbsym.load(SHIPPED / "simple-pendulum.yaml")
     (equation,) = pendulum.equations.equalities(pendulum.system.coordinates)
     assert equation.readable() == "(m l^2 + J) theta'' + b theta' + m l g sin(theta)"
+
+
+def test_letters_are_those_of_the_description_on_both_sides(tmp_path: Path) -> None:
+    text = (SHIPPED / "simple-pendulum.yaml").read_text(encoding="utf-8")
+    path = tmp_path / "pendulum.yaml"
+    path.write_text(text + "latex: {theta: '\\vartheta'}\n", encoding="utf-8")
+    done = CliRunner().invoke(main, ["show", str(path), "accelerations", "--latex"])
+    assert done.stdout.startswith("\\ddot{\\vartheta} = "), done.output
+    assert "\\theta" not in done.stdout
+
+
+def test_words_and_roots_may_be_pasted(tmp_path: Path) -> None:
+    """lambda^2 + 2 z lambda + 1 = 0 with z = 1e-9: small numbers, words with signs that TeX reads."""
+    path = tmp_path / "slow.yaml"
+    path.write_text(
+        "mbsym: 1\nname: slow\nparameters: {z: positive}\n"
+        "linear system: {coordinates: [x], M: [[1]], D: [[2*z]], K: [[1]]}\nvalues: {z: 1e-9}\n",
+        encoding="utf-8",
+    )
+    shown = {
+        language: CliRunner().invoke(main, ["show", str(path), "eigenvalues", "conditions", f"--{language}"]).stdout
+        for language in ("latex", "wolfram", "python")
+    }
+    assert "-1 \\cdot 10^{-9} + 1\\,\\mathrm{i}" in shown["latex"]
+    assert "{-1*^-9 + 1*I, -1*^-9 - 1*I}" in shown["wolfram"]
+    assert eval(shown["python"].splitlines()[1]) == (-1e-9 + 1j, -1e-9 - 1j)
+    for line in shown["latex"].splitlines():
+        assert line.startswith("%") or "\\text" not in line

@@ -15,9 +15,7 @@ from mbsym.formulas.tree import angles_or
 from mbsym.report.language import Language
 from mbsym.report.latex.diagram import diagram
 from mbsym.report.latex.form import Form, heading
-from mbsym.report.latex.formulas import (
-    measured_matrix,
-)
+from mbsym.report.latex.formulas import measured_matrix
 from mbsym.report.latex.labels import Labels, prefix_of
 from mbsym.report.latex.words import escaped, is_cyrillic
 from mbsym.report.latex.writer import Writer
@@ -66,7 +64,6 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "tr": tongue.sentence,
         # No filter: Jinja computes filters of constants when it compiles a template, and keeps what it compiled.
         "heading": lambda key, title: heading(labels, form, key, title),
-        "wide": form is Form.REPORT,
         "prefix": labels.prefix,
         "version": __version__,
         "digest": once(meaning, system),
