@@ -35,7 +35,10 @@ class Writer:
 
     def said(self, sentence: Said) -> str:
         """A sentence with its gaps filled."""
-        parts = (_notation(x) if inside else x for inside, x in content.pieces(self.language.sentence(sentence.text)))
+        parts = (
+            _notation(x) if inside else x.replace("---", "\u2014")
+            for inside, x in content.pieces(self.language.sentence(sentence.text))
+        )
         return re.sub(r"\[\[(\w+)\]\]", lambda m: self._gap(sentence.gaps[m[1]]), "".join(parts))
 
     def line(self, block: content.Paragraph | content.Display) -> str:

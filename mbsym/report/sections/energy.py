@@ -65,13 +65,16 @@ def content(results: Results) -> Iterator[Block]:
             yield Folded(Said("The same, written out"), closed)
     else:
         yield from closed
-    if found is not None and found.cyclic:
+    cyclic, prescribed = ((), ()) if found is None else _absent(found, system)
+    if cyclic:
         text = (
             "$L$ does not contain $[[names]]$; whether a momentum is kept depends on the constraints."
             if system.constraints
             else "$L$ does not contain $[[names]]$: cyclic."
         )
-        yield paragraph(say(text, names=named(found.cyclic)))
+        yield paragraph(say(text, names=named(cyclic)))
+    if prescribed:
+        yield paragraph(say("$L$ does not contain $[[names]]$, which is prescribed.", names=named(prescribed)))
 
 
 _SUM = r"T = \frac12 \sum A_{ij}\, \dot q_i \dot q_j + \sum A_i\, \dot q_i + A_0"
@@ -99,10 +102,18 @@ def _closed(found: Energy, results: Results) -> Iterator[Block]:
     yield Display(Relation(Symbol("U"), "=", found.force_function), "U")
 
 
+def _absent(found: Energy, system: System) -> tuple[list[str], list[str]]:
+    """What L does not contain: coordinates, and prescribed quantities, which have no momentum."""
+    cyclic = [name for name in found.cyclic if name in system.coordinates]
+    return cyclic, [name for name in found.cyclic if name not in cyclic]
+
+
 def lines(found: Energy, analysis: Analysis) -> Iterator[str]:
     """The lines in the terminal."""
     kinetic, force = found.kinetic_energy.terms, found.force_function.terms
     yield f"T: {counted(kinetic, 'term')}, U: {counted(force, 'term')}"
-    if found.cyclic:
-        what = "not in L" if analysis.system.constraints else "cyclic"
-        yield f"{what}: {', '.join(found.cyclic)}"
+    cyclic, prescribed = _absent(found, analysis.system)
+    if cyclic:
+        yield f"{'not in L' if analysis.system.constraints else 'cyclic'}: {', '.join(cyclic)}"
+    if prescribed:
+        yield f"not in L, prescribed: {', '.join(prescribed)}"

@@ -73,7 +73,7 @@ def _facts(results: Results) -> Iterator[Fact]:
     if claims:
         count = Counter(claim_line(one).word for one in claims)
         gravest = next(word for word in (REFUTED, OPEN, HELD) if count[word])
-        said = say("all [[count]] hold", count=str(len(claims)))
+        said = say("all [[count]] hold", count=str(len(claims))) if len(claims) > 1 else Said("it holds")
         if gravest != HELD:
             text = "[[held]] hold, [[refuted]] do not, [[open]] undecided"
             said = say(text, held=str(count[HELD]), refuted=str(count[REFUTED]), open=str(count[OPEN]))
