@@ -167,7 +167,8 @@ def _show(
             show(summary(analysis, analysis.problems, written), path, seconds)
         else:
             language = Language(analysis.language or analysis.system.language)
-            further = summary(analysis, [x for x in analysis.problems if x not in USUAL_PROBLEMS], ()).problems
+            asked = [x for x in request.problems if x not in USUAL_PROBLEMS and request.named]
+            further = summary(analysis, asked, ()).problems
             told = finding(results(analysis, analysis.problems))
             show_finding(told, analysis.system.name, path, seconds, written, language, further)
     if found is not None:

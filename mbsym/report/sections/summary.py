@@ -144,12 +144,12 @@ def _stability(found: Stability, results: Results) -> Iterator[Fact]:
         (
             *verdict(found.verdict, "verdict"),
             *(cases if depends else ()),
-            *(() if several else _conditions(found.subsystems[0])),
+            *(() if several else _conditions(found.subsystems[0], results.variable)),
         ),
     )
     for part in found.subsystems if several else ():
         others = (", ", Said("while the others keep to the unperturbed motion"))
-        said = (*verdict(part.theory.verdict), *others, *_conditions(part))
+        said = (*verdict(part.theory.verdict), *others, *_conditions(part, results.variable))
         yield (Said("Stability"), ", ", named(part.coordinates), *presumed), said
     if found.numerical is not None:
         said = verdict(found.numerical, "verdict-at-values")
@@ -158,19 +158,19 @@ def _stability(found: Stability, results: Results) -> Iterator[Fact]:
         yield (Said("At the given values of the parameters"), Words(decided(found))), said
 
 
-def _conditions(part: SubsystemStability) -> Iterator[Inline]:
+def _conditions(part: SubsystemStability, variable: str) -> Iterator[Inline]:
     """The conditions that a verdict depends on, where they are short, else their number."""
     if part.theory.verdict.word not in (Word.DEPENDS, Word.UNSTABLE_BUT_BORDERS):
         return
     items = list(statements(part.ring, part.theory.requirements))
     if not items or any(one.never is not None for one in items):
         return
-    yield from ("; ", say("conditions ([[wanted]])", wanted=Words(part.theory.wanted)), ": ")
+    yield from ("; ", say("conditions ([[wanted]])", wanted=Words(part.theory.wanted, variable)), ": ")
     if all(one.formula is not None and is_short(one.formula) for one in items):
         shown: list[Inline] = []
         for one in items:
             assert one.formula is not None
-            remark = (" (", Words(one.remark), ")") if one.remark else ()
+            remark = (" (", Words(one.remark, variable), ")") if one.remark else ()
             shown.append(Phrase((Relation(one.formula, one.relation, 0), *remark)))
         yield joined([one for k, one in enumerate(shown) if one not in shown[:k]], ", ")
     else:
