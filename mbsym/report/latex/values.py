@@ -64,6 +64,7 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "tr": tongue.sentence,
         # No filter: Jinja computes filters of constants when it compiles a template, and keeps what it compiled.
         "heading": lambda key, title: heading(labels, form, key, title),
+        "wide": form is Form.REPORT,
         "prefix": labels.prefix,
         "version": __version__,
         "digest": once(meaning, system),
