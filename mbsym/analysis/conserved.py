@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, cast
 from mbsym.algebra.failures import Failure
 from mbsym.analysis import constrained
 from mbsym.analysis.stages import NoResult, Unavailable
+from mbsym.expressions.message import Message, joined, worded
 from mbsym.problems import integrals
 from mbsym.problems.checks import EXACT, NUMERICAL
 from mbsym.problems.integrals import Integral
@@ -40,5 +41,9 @@ def first_integrals(analysis: Analysis) -> tuple[Integral, ...]:
         if check is None or check.outcome not in (EXACT, NUMERICAL):
             raise
         without = NoResult.of(failure)
-        reason = f"{without.reason}; conserved all the same, by structure: {', '.join(known)}"
+        reason = Message(
+            "[[why]]; conserved all the same, by structure: [[known]]",
+            why=without.reason,
+            known=joined(map(worded, known), ", "),
+        )
         raise Unavailable("integrals", replace(without, reason=reason)) from failure

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from mbsym.algebra.failures import Defect, Failure
+from mbsym.algebra.failures import Defect, Failure, message_of
 from mbsym.analysis import constrained, forms, higher, polynomial
 from mbsym.formulas.formula import Column
 from mbsym.mechanics import motion
@@ -61,7 +61,7 @@ def check(analysis: Analysis, name: str) -> Check | None:
         with ring.budget(ring.work_budget // CHECK_SHARE):
             return SECOND_ROUTES[name](analysis)
     except Failure as reason:
-        return Check(name, "", "", comparison.UNDECIDED, str(reason))
+        return Check(name, "", "", comparison.UNDECIDED, message_of(reason))
     except Exception as error:
         analysis.defects.append(error)
         return Check(name, "", "", comparison.UNDECIDED, Defect.of(error).reason)

@@ -17,6 +17,7 @@ from collections.abc import Mapping, Sequence
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.ring import Polynomial
+from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Matrix, column
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import unperturbed_with, unsteady
@@ -54,7 +55,12 @@ def first_order(form: SpeedForm, equations: SpeedEquations, reduced: Reduced, at
     values = {x.index: ring.substitute(_inner(form, x), motion) for x in variables}
     varying = {name for value in values.values() for name in unsteady(plain, value)}
     if varying:
-        raise NoClosedForm(f"the motion is not steady in speeds and positions: they vary with {', '.join(varying)}")
+        raise NoClosedForm(
+            Message(
+                "the motion is not steady in speeds and positions: they vary with [[names]]",
+                names=", ".join(varying),
+            )
+        )
     on = dict(motion) | values
     formulas = [*(rates[x.name] for x in positions), *forcing]
     slopes = [[ring.substitute(ring.derivative(y, x.name), on) for x in variables] for y in formulas]
@@ -109,8 +115,8 @@ def check(form: SpeedForm, found: FirstOrder, reduced: Reduced, at: Equilibrium)
     a, b, c = on(equations.A), on(equations.B), on(equations.C)
     below = solved(ring, a, [[*(-row[place[i]] for i in range(n)), *(-x for x in b[k])] for k, row in enumerate(c)])
     left, right = product(ring, found.A.polynomials, rows), product(ring, rows, [*nu, *below])
-    differences = {
-        f"the row of {name}, column {j}": ring.reduce(x - y - along(z))
+    differences: dict[str, Polynomial] = {
+        Message("the row of [[name]], column [[j]]", name=name, j=j): ring.reduce(x - y - along(z))
         for name, one, other, moved in zip(found.names, left, right, rows, strict=True)
         for j, (x, y, z) in enumerate(zip(one, other, moved, strict=True), start=1)
     }
