@@ -56,8 +56,9 @@ def test_conditions_stand_beside_the_verdict_that_depends_on_them(tmp_path: Path
     text = (SHIPPED / "bead-on-hoop.yaml").read_text(encoding="utf-8")
     lines = told(tmp_path, text)
     at = next(k for k, line in enumerate(lines) if line.startswith("Stability"))
-    assert lines[at : at + 2] == [
-        "Stability  asymptotically stable (Kelvin-Chetaev) if g - R Omega^2 > 0",
+    assert lines[at : at + 3] == [
+        "Stability  depends on the parameters",
+        "asymptotically stable (Kelvin-Chetaev) if g - R Omega^2 > 0",
         "otherwise unstable (Kelvin-Chetaev) if g - R Omega^2 < 0",
     ]
     m, r, b, g, w = (
@@ -73,9 +74,10 @@ def test_each_group_of_coordinates_has_its_cases_in_order(tmp_path: Path) -> Non
     """A rigid satellite (DeBra and Delp): pitch needs A > B, roll and yaw C > A, C > B for a minimum of the energy."""
     lines = told(tmp_path, (SHIPPED / "gravity-gradient.yaml").read_text(encoding="utf-8"))
     at = next(k for k, line in enumerate(lines) if line.startswith("Stability"))
-    assert lines[at] == "Stability  psi, phi: stable (Routh) if C - A > 0, C - B > 0"
-    assert lines[at + 1].startswith("otherwise gyroscopically stabilised only if ")
-    assert lines[at + 2] == "otherwise unstable (Kelvin-Chetaev) if (A - C) (B - C) < 0"
+    assert lines[at] == "Stability  the whole system: depends on the parameters"
+    assert lines[at + 1] == "psi, phi: stable (Routh) if C - A > 0, C - B > 0"
+    assert lines[at + 2].startswith("otherwise gyroscopically stabilised only if ")
+    assert lines[at + 3] == "otherwise unstable (Kelvin-Chetaev) if (A - C) (B - C) < 0"
     assert "theta: stable (Lagrange-Dirichlet) if A - B > 0" in lines
     assert "(of each group of coordinates while the others keep to the unperturbed motion)" in lines
     assert "otherwise unstable (Lyapunov's first method) if A - B < 0" in lines

@@ -143,8 +143,7 @@ def _stability(found: Stability, results: Results) -> Iterator[Inline]:
     if not several:
         yield from _part(found.subsystems[0], "verdict")
         return
-    if found.verdict.word is not Word.DEPENDS:
-        yield Phrase((Said("the whole system"), ": ", *verdict(found.verdict, "verdict")))
+    yield Phrase((Said("the whole system"), ": ", *verdict(found.verdict, "verdict")))
     for part in found.subsystems:
         first, *further = _part(part, "")
         yield Phrase((named(part.coordinates), ": ", first))
@@ -157,7 +156,7 @@ def _part(part: SubsystemStability, key: str) -> Iterator[Inline]:
     known = cases(part.ring, part.theory.cases, label_meanings(part.ring, part.theory.requirements))
     known = [one for one in known if one.all_of or one.any_of or one.otherwise]
     word = part.theory.verdict.word
-    if word is not Word.DEPENDS or not known:
+    if word is not Word.DEPENDS or key or not known:
         yield Phrase(verdict(part.theory.verdict, key))
     if word.stable or word is Word.UNSTABLE:
         return
