@@ -125,3 +125,30 @@ def test_it_speaks_the_language_of_the_report(tmp_path: Path, language: str, wor
     lines = told(tmp_path, PENDULUM, "--language", language)
     assert lines[1] == f"{word}  (m l^2 + J) theta'' + b theta' + m l g sin(theta) = 0"
     assert not [line for line in lines if "stable (" in line and language == "ru"]
+
+
+def test_set_replaces_a_value(tmp_path: Path) -> None:
+    """At Omega = 1, g - R Omega^2 > 0: theta = 0 of the bead on the hoop is stable, and unstable at Omega = 100."""
+    text = (SHIPPED / "bead-on-hoop.yaml").read_text(encoding="utf-8")
+    for value, word in (("1", "asymptotically stable"), ("2*50", "unstable")):
+        (line,) = [x for x in told(tmp_path, text, "-s", f"Omega={value}") if x.startswith("At given values")]
+        assert line.startswith(f"At given values  {word} (Kelvin-Chetaev), decided exactly")
+
+
+@pytest.mark.parametrize("command", ["run", "show"])
+@pytest.mark.parametrize(
+    ("setting", "code"),
+    [
+        ("Omega=-1", "sign-contradiction"),
+        ("Om=1", "unknown-name"),
+        ("theta=1", "misplaced-name"),
+        ("R=x", "unknown-name"),
+        ("R", "bad-assignment"),
+    ],
+)
+def test_a_value_that_cannot_be_is_refused(tmp_path: Path, command: str, setting: str, code: str) -> None:
+    out = ["--out", str(tmp_path / "out")] if command == "run" else []
+    done = CliRunner().invoke(main, [command, str(SHIPPED / "bead-on-hoop.yaml"), "-s", setting, *out])
+    assert done.exit_code == 2
+    assert f"--set: error[{code}]" in done.output
+    assert not (tmp_path / "out").exists()
