@@ -112,7 +112,8 @@ def console(stderr: bool = False) -> Console:
                 for k, piece in enumerate(whole.divide(at)):
                     if k < len(at):
                         piece.rstrip()
-                    piece.plain = piece.plain.replace(UNBROKEN, " ")
+                    if margin is not None:
+                        piece.plain = piece.plain.replace(UNBROKEN, " ")
                     super().print(Text(indent if k else "") + piece, soft_wrap=True)
 
     terminal = (sys.stderr if stderr else sys.stdout).isatty()
@@ -141,11 +142,10 @@ def wrapped(line: str, width: int | None, margin: int | None = None) -> str:
     ``margin``: where the further lines begin.
     """
     if width is None:
-        return line.replace(UNBROKEN, " ")
+        return line
     indent, at = _breaks(line, width, margin)
     ends = zip((0, *at), (*at, len(line)), strict=True)
-    lines = (line[first:last].rstrip() if at else line for first, last in ends)
-    return f"\n{indent}".join(lines).replace(UNBROKEN, " ")
+    return f"\n{indent}".join(line[first:last].rstrip() if at else line for first, last in ends)
 
 
 def _breaks(line: str, width: int, margin: int | None = None) -> tuple[str, list[int]]:
@@ -171,22 +171,23 @@ _CONTROLS = dict.fromkeys((7, 8, 11, 12, 13))
 def tell(*parts: str | tuple[str, str], indent: int = 0, whole: bool = False, margin: int | None = None) -> None:
     """A line of words, some with a style, as rich prints it; into a file or pipe without waiting for rich.
 
-    One that is ``whole`` is not wrapped.  ``margin``: where further lines begin.
+    One that is ``whole`` is not wrapped.  ``margin``: where further lines begin; spaces may be ``UNBROKEN`` then.
     """
     if sys.stdout.isatty() or any(name in os.environ for name in _FORCED):
         from rich.text import Text
 
-        text = Text.assemble(*parts)
+        assembled = Text.assemble(*parts)
         if indent:
-            indented(text, indent)
+            indented(assembled, indent)
         elif margin is not None:
-            console().print(text, margin=margin)  # type: ignore[call-arg]
+            console().print(assembled, margin=margin)  # type: ignore[call-arg]
         else:
-            console().print(text, soft_wrap=whole or None)
+            console().print(assembled, soft_wrap=whole or None)
         return
     words = " " * indent + "".join([part if isinstance(part, str) else part[0] for part in parts])
     width = None if whole else asked_width()
-    print("\n".join([wrapped(line.expandtabs(), width, margin) for line in words.translate(_CONTROLS).split("\n")]))
+    text = "\n".join([wrapped(line.expandtabs(), width, margin) for line in words.translate(_CONTROLS).split("\n")])
+    print(text if margin is None else text.replace(UNBROKEN, " "))
 
 
 #: Columns of a wide table that does not go to a terminal.
