@@ -18,7 +18,6 @@ from mbsym.algebra.ring import TERM_BUDGET, Ring
 from mbsym.algebra.signs import Signs
 from mbsym.analysis import (
     approximation,
-    conserved,
     constrained,
     deriving,
     forms,
@@ -347,7 +346,7 @@ class Analysis(Stages):
         7,
         "first integrals",
         integrals,
-        conserved.first_integrals,
+        deriving.first_integrals,
         ("equations of motion", *constrained.CHECKS, "first integrals"),
         says=True,
     )
