@@ -302,7 +302,7 @@ def complain(path: Path | str, text: str) -> None:
 
 
 def defect(error: BaseException, where: Path | str | None = None) -> None:
-    """Tells of an exception that nobody foresaw, too little memory, a missing part; with ``--debug``, where it came from."""
+    """Tells of an exception nobody foresaw, too little memory, a missing part; with ``--debug``, where it came from."""
     DEFECTS.told.add(described(error))
     before = "" if where is None else f"{printable(where)}: "
     if part := missing(error):
