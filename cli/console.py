@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from mbsym.algebra.failures import LOG
+from mbsym.algebra.parts import missing
 from mbsym.expressions.counting import counted
 from mbsym.expressions.safe import safe as escaped
 
@@ -316,10 +317,12 @@ def complain(path: Path | str, text: str) -> None:
 
 
 def defect(error: BaseException, where: Path | str | None = None) -> None:
-    """Tells of an exception that nobody foresaw, or of too little memory; with ``--debug``, where it came from."""
+    """Tells of an exception nobody foresaw, too little memory, a missing part; with ``--debug``, where it came from."""
     DEFECTS.told.add(described(error))
     before = "" if where is None else f"{printable(where)}: "
-    if isinstance(error, MemoryError):
+    if part := missing(error):
+        print(f"{before}{part} is not installed", file=sys.stderr)
+    elif isinstance(error, MemoryError):
         print(f"{before}out of memory; lower --terms, or ask for fewer --problems", file=sys.stderr)
     else:
         print(f"{before}internal error, please report it: {escaped(described(error))}", file=sys.stderr)
