@@ -28,6 +28,7 @@ from mbsym.maps.verdicts import Border, Judged
 from mbsym.problems.stability.word import Word
 
 if TYPE_CHECKING:
+    from mbsym.maps.branches_result import Critical
     from mbsym.problems.relative_equilibria.equilibria import RelativeEquilibrium
 
 
@@ -112,7 +113,7 @@ class Cell:
     shape: Shape
     number: int
     sample: Any = None
-    said: Judged | Counted | None = None
+    said: Judged | Counted | Critical | None = None
     certainty: Certainty = Certainty.UNDECIDED
     lack: Lack | None = None
     broken: tuple[Demand, ...] = ()

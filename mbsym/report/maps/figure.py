@@ -13,13 +13,11 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from string import ascii_lowercase
-from textwrap import fill, wrap
+from textwrap import fill
 from typing import Any
 
-from flint import fmpq
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, PathPatch
 from matplotlib.path import Path
@@ -27,10 +25,11 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
 from mbsym.algebra.plane import Arrangement, polyline
-from mbsym.algebra.plane.drawing import Branches
+from mbsym.algebra.plane.drawing import Branches as Drawn
 from mbsym.algebra.plane.line import Line
 from mbsym.formulas.latex import LatexNames
 from mbsym.maps.boxes import BoxMap
+from mbsym.maps.branches_result import Branches
 from mbsym.maps.mapping import float_of
 from mbsym.maps.result import Cell, Lack, Map, Of
 from mbsym.maps.seen import stands_out
@@ -39,41 +38,51 @@ from mbsym.model.quantities import unit_of
 from mbsym.model.system import System
 from mbsym.report.figures.drawing import pictures
 from mbsym.report.language import Language
+from mbsym.report.maps.branch_figure import bifurcations
+from mbsym.report.maps.frame import (
+    DARK,
+    EDGE,
+    FINE,
+    SMALL,
+    TEXT,
+    WIDEST,
+    axis_label,
+    framed,
+    legend,
+    named,
+    number,
+    started,
+)
 from mbsym.report.maps.verdict_colours import NONE, WHITE, Look, look_of_count, look_of_degree, look_of_roots
-from mbsym.report.maps.words import INTERRUPTED, border_words, cell_words, marked, percent
-from mbsym.report.unit_text import labelled, pretty
+from mbsym.report.maps.words import INTERRUPTED, border_words, cell_words, marked, percent, stem
+from mbsym.report.unit_text import pretty
 
 XY = tuple[float, float]
 
-#: Inches: the width of a column, what a plane, a bar and a row of small planes take, a line of the legend.
-WIDTH, PLANE, BAR, ROW, LINE = 3.4, 3.25, 1.04, 1.45, 0.155
-#: Points: of text, of small text, and of that in small planes.
-TEXT, SMALL, FINE = 8, 7, 5.5
-#: Pixels per inch: lines are thin.
-RESOLUTION = 300
+#: Inches: what a plane, a bar and a row of small planes take.
+PLANE, BAR, ROW = 3.25, 1.04, 1.45
 #: Points along a branch over a strip, for what is filled.
 NODES = 28
 #: Arcs deviate by no more than this part of the box.
 TOLERANCE = 4e-4
 #: A number is written into a region that is so wide, as a part of the plane, and of a small one.
 ROOM, SMALL_ROOM = 0.045, 0.12
-#: Characters in a line of the legend, and letters beside it.
-WIDEST, MOST_BESIDE = 52, 3
+#: Letters beside a line of the legend.
+MOST_BESIDE = 3
 #: Small planes beside each other, and rows of them on one page.
 ACROSS, ROWS = 2, 3
-#: Longer numbers are rounded in pictures, to so many digits.
-LONGEST, DIGITS = 8, 4
 
-DARK, EDGE = "#1a1a1a", "#777777"
 _DASHES: Any = (0, (3, 2))
 
 
 def map_figure(system: System, found: Map, language: Language, formats: Sequence[str]) -> dict[str, bytes]:
-    """``map.svg`` and others (``equilibria-map.svg``), those that are asked for; of slices ``map-2.svg``, ..., too.
+    """``map.svg`` and others (see ``stem``), those that are asked for; of slices ``map-2.svg``, ..., too.
 
     Nothing where no slice has a map.
     """
     ordered = sorted(formats, key=lambda kind: kind != "png")  # a PNG is drawn before others set their resolution
+    if isinstance(found, Branches):
+        return pictures({stem(found): partial(bifurcations, system, found, language)}, ordered)
     told, shown, size = lettered(found), panels(found), ACROSS * ROWS
     pages = [shown[k : k + size] for k in range(0, len(shown), size)]
     drawings = (partial(_page, system, found, page, told, language) for page in pages)
@@ -82,9 +91,8 @@ def map_figure(system: System, found: Map, language: Language, formats: Sequence
 
 def page_names(found: Map) -> list[str]:
     """The files without their endings: map, map-2, ..."""
-    count = -(-len(panels(found)) // (ACROSS * ROWS))
-    stem = "equilibria-map" if found.of is Of.EQUILIBRIA else "map"
-    return [stem if k == 0 else f"{stem}-{k + 1}" for k in range(count)]
+    count, first = -(-len(panels(found)) // (ACROSS * ROWS)), stem(found)
+    return [first if k == 0 else f"{first}-{k + 1}" for k in range(count)]
 
 
 def panels(found: Map) -> list[tuple[Picture | None, Map]]:
@@ -179,40 +187,6 @@ def _page(
     return figure
 
 
-def started(body: float, entries: int, values: Mapping[str, Any], near: bool = False) -> Figure:
-    """An empty figure of a column's width, with the numbers that were put in above it."""
-    lines = values_lines(values)
-    engine = ConstrainedLayoutEngine(w_pad=0.02, h_pad=0.02, wspace=0.03, hspace=0.03)
-    figure = Figure(
-        figsize=(WIDTH, body + LINE * (entries + len(lines))), dpi=RESOLUTION,
-        layout=engine if near else "constrained",
-    )  # fmt: skip
-    if lines:
-        figure.suptitle("\n".join(lines), fontsize=SMALL, linespacing=1.1)
-    return figure
-
-
-def values_lines(values: Mapping[str, Any]) -> list[str]:
-    """``p_1 = 2/5, p_2 = 1/5``: the numbers that were put in, in lines of a column's width."""
-    names = LatexNames(list(values))
-    # as long as they are written, for where lines end; names are formulas
-    plain = [f"{name}\u00a0=\u00a0{number(x)}," for name, x in values.items()]
-    shown = [f"{named(names, name)} = {number(x)}" for name, x in values.items()]
-    taken, lines = iter(shown), []
-    for line in wrap(" ".join(plain), WIDEST + 8, break_long_words=False, break_on_hyphens=False):
-        lines.append(", ".join(itertools.islice(taken, line.count(","))))
-    return lines
-
-
-def number(x: Any) -> str:
-    """A rational number as it is where it is short, the first digits of another."""
-    told = str(x)
-    rational = not hasattr(x, "polynomial")
-    if rational and len(told) <= LONGEST:
-        return told
-    return f"{float_of(x) if isinstance(x, fmpq) else float(x):.{DIGITS}g}"
-
-
 def title(system: System, found: Stack, picture: Picture) -> str:
     """``C = 7/6`` and, on a second line, between which values the picture is the same."""
     symbol = named(LatexNames([found.axis.name]), found.axis.name)
@@ -224,26 +198,6 @@ def title(system: System, found: Stack, picture: Picture) -> str:
     relations = ("\u2264" if closed_low else "<", "\u2264" if closed_high else "<")
     star = "*" if picture.unseen else ""
     return f"{first}\n{number(low)} {relations[0]} {symbol} {relations[1]} {number(high)}{star}"
-
-
-def framed(axes: Axes, size: float = SMALL) -> None:
-    """The frame and the marks of small axes."""
-    axes.grid(False)
-    axes.tick_params(labelsize=size, length=2.5, width=0.6)
-    for side in axes.spines.values():
-        side.set_visible(True)
-        side.set_linewidth(0.6)
-
-
-def axis_label(system: System, name: str) -> str:
-    """The name as a formula, with its unit."""
-    return labelled(named(LatexNames([name]), name), unit_of(system, name))
-
-
-def named(names: LatexNames, name: str) -> str:
-    """A name on an axis, as a formula where it is one."""
-    symbol = names[name]
-    return name.replace("$", r"\$") if "mathtt" in symbol.stem else f"${symbol}$"
 
 
 # --- one plane, or one bar --------------------------------------------------------------------------------------------
@@ -294,8 +248,8 @@ class _Drawing:
         return (float(box.x0), float(box.x1)), (float(box.y0), float(box.y1))
 
     @cached_property
-    def branches(self) -> Branches:
-        return Branches(self.found.arrangement)
+    def branches(self) -> Drawn:
+        return Drawn(self.found.arrangement)
 
     @cached_property
     def lines(self) -> dict[int, Sequence[XY]]:
@@ -498,33 +452,3 @@ def _entries(shown: Sequence[tuple[Map, Mapping[int, str]]], language: Language)
         line = Line2D([], [], color=DARK, linewidth=0.8, linestyle=_DASHES)
         entries.append((line, language.say("dashed: another verdict on the curve alone")))
     return entries
-
-
-def legend(figure: Figure, entries: Sequence[tuple[Any, str]]) -> None:
-    """(What is shown, what it means) below a figure."""
-    if not entries:
-        return
-    handles, told = zip(*entries, strict=True)
-    figure.legend(
-        handles, told, loc="outside lower left", fontsize=SMALL, frameon=False, handlelength=1.8, handleheight=1.0,
-        labelspacing=0.35, borderaxespad=0.2, handler_map={str: Letter()},
-    )  # fmt: skip
-
-
-class Letter:
-    """A letter in a circle, as in the plane, for a legend's handle."""
-
-    def legend_artist(self, legend: Any, handle: str, fontsize: float, box: Any) -> Any:
-        from matplotlib.text import Text
-
-        text = Text(
-            x=box.xdescent + box.width / 2,
-            y=box.height / 2 - box.ydescent,
-            text=handle,
-            fontsize=SMALL - 1,
-            style="italic",
-            ha="center",
-            va="center_baseline",
-        )
-        box.add_artist(text)
-        return text

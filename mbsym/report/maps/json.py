@@ -15,6 +15,7 @@ from mbsym.algebra.plane.numbers import enclosure
 from mbsym.maps.admissible import Demand
 from mbsym.maps.boundaries import Boundaries, Condition
 from mbsym.maps.boxes import BoxMap
+from mbsym.maps.branches_result import Branches, Meeting, Piece
 from mbsym.maps.check import Check
 from mbsym.maps.equilibria_map import EquilibriaMap
 from mbsym.maps.result import Cell, Counted, Lack, Map
@@ -27,9 +28,14 @@ from mbsym.report.maps.equilibria_json import coordinate_value
 from mbsym.report.sections.stability import verdict_data
 from mbsym.source.meaning import meaning
 
+#: Digits of numbers that are followed in floating point.
+DIGITS = 10
+
 
 def map_json(system: System, found: Map) -> str:
     """One JSON object, keys in a fixed order, the same text for the same input."""
+    if isinstance(found, Branches):
+        return written(_branches(system, found))
     if isinstance(found, EquilibriaMap):
         return written(_equilibria(system, found))
     assert found.section is not None
@@ -193,15 +199,88 @@ def _numbered(one: Cell, area: float) -> equilibria_map.Region:
         stable_throughout=said.throughout,
         found_by_newton_elsewhere=said.confirmed,
         area=area,
-        equilibria=[
-            branches.Equilibrium(
-                coordinates=[coordinate_value(x) for x in there.values],
-                angles_of=there.coordinates_of or None,
-                stability=verdict_data(there.verdict),
-            )
-            for there in said.equilibria
-        ],
+        equilibria=_listed(said),
     )
+
+
+def _listed(found: Counted) -> list[branches.Equilibrium]:
+    return [
+        branches.Equilibrium(
+            coordinates=[coordinate_value(x) for x in one.values],
+            angles_of=one.coordinates_of or None,
+            stability=verdict_data(one.verdict),
+        )
+        for one in found.equilibria
+    ]
+
+
+def _branches(system: System, found: Branches) -> branches.Branches:
+    head = _head(system, found)
+    return branches.Branches(
+        parameter=head.pop("axes")[0],
+        **head,
+        coordinates=list(found.coordinates),
+        proved=found.proved,
+        remarks=[branches.Remark(doubt=one.doubt, about=one.about) for one in found.remarks],
+        intervals=[_interval(found, one, one.counted) for one in found.intervals if one.counted is not None],
+        critical_values=[_critical(found, one) for one in found.criticals],
+        branches=[_piece(one) for one in found.pieces],
+    )
+
+
+def _interval(found: Branches, one: Cell, counted: Counted) -> branches.Interval:
+    low, high = map(coordinate, found.ends(one))
+    return branches.Interval(
+        low=low,
+        high=high,
+        sample=str(one.sample),
+        count=counted.count,
+        stable=counted.stable,
+        constant=one.certainty is Certainty.PROVED,
+        equilibria=_listed(counted),
+    )
+
+
+def _critical(found: Branches, at: Cell) -> branches.CriticalValue:
+    one = found.critical(at)
+    return branches.CriticalValue(
+        value=coordinate(at.sample),
+        intervals=[None if side is None else side.number for side in found.sides(at)],
+        events=[event.value for event in one.events],
+        verdict_changes=found.verdict_changes(at),
+        continuum=one.continuum,
+        border=one.border,
+        counts_agree=one.balance,
+        equilibria=None if one.meetings is None else [_meeting(x) for x in one.meetings],
+    )
+
+
+def _meeting(one: Meeting) -> branches.CriticalValueEquilibrium:
+    return branches.CriticalValueEquilibrium(
+        coordinates=[coordinate_value(x) for x in one.values],
+        angles_of=one.coordinates_of or None,
+        event=one.named.event,
+        below=one.named.below,
+        above=one.named.above,
+        derivatives=dict(one.named.derivatives),
+        stability=None if one.verdict is None else verdict_data(one.verdict),
+    )
+
+
+def _piece(one: Piece) -> branches.Branch:
+    return branches.Branch(
+        interval=one.interval,
+        equilibrium=one.number,
+        throughout=one.throughout,
+        start=one.start,
+        end=one.end,
+        parameter=[_rounded(x) for x in one.parameter],
+        points=[[_rounded(x) for x in q] for q in one.values],
+    )
+
+
+def _rounded(x: float) -> float:
+    return float(f"{x:.{DIGITS}g}")
 
 
 def _check(found: Check | None) -> doc.MapCheck | None:

@@ -5,16 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
+from flint import fmpq
+
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.plane.line import Line
 from mbsym.formulas.latex import LatexNames
 from mbsym.maps.boxes import BoxMap
+from mbsym.maps.branches_result import Branches
 from mbsym.maps.mapping import float_of
 from mbsym.maps.result import Lack, Map, Of
 from mbsym.maps.slices import Stack
 from mbsym.model.system import System
 from mbsym.report.language import Language
 from mbsym.report.maps.figure import lettered, mark_name, marks, page_names, panels
-from mbsym.report.maps.words import INTERRUPTED, border_words, percent
+from mbsym.report.maps.words import INTERRUPTED, border_words, critical_words, percent, stem
 
 #: Longer polynomials are told by their degrees and number of terms.
 MOST_TERMS = 14
@@ -39,7 +43,9 @@ _HEADS = {
 
 
 def map_tex(system: System, found: Map, language: Language) -> str:
-    """Needs graphicx; the pictures are map.pdf, map-2.pdf, ... (equilibria-map.pdf) in the same folder."""
+    """Needs graphicx; the pictures are map.pdf, map-2.pdf, ... (see ``stem``) in the same folder."""
+    if isinstance(found, Branches):
+        return _branches(system, found, language)
     names = LatexNames([axis.name for axis in found.axes])
     caption = caption_of(system, _HEADS[found.of], found.values, language, _plane(found, names))
     if isinstance(found, BoxMap):
@@ -54,6 +60,37 @@ def map_tex(system: System, found: Map, language: Language) -> str:
     points = isinstance(found.ground, Line) and not isinstance(found, Stack)
     head = "The points of the map:" if points else "The curves of the map:"
     return "\n".join([*lines, *listed(language.say(head), _marks(found, names, language))]) + "\n"
+
+
+def _branches(system: System, found: Branches, language: Language) -> str:
+    """The diagram, the numbers of equilibria, the critical values."""
+    name = LatexNames([found.axes[0].name])[found.axes[0].name]
+    caption = caption_of(system, "Relative equilibria of", found.values, language)
+    if found.interrupted:
+        caption += f" {language.say(INTERRUPTED)}."
+    numbers = []
+    for one, last in found.spans():
+        low, high, counted = number_tex(found.ends(one)[0]), number_tex(found.ends(last)[1]), one.counted
+        assert counted is not None
+        doubt = "" if one.certainty is Certainty.PROVED else f" ({language.say('not proved to be constant')})"
+        stable = f"{language.say('of them stable')} {counted.stable}"
+        stable += f", {language.say('undecided')} {counted.undecided}" if counted.undecided else ""
+        numbers.append(rf"\item ${low} < {name} < {high}$: {counted.count}, {stable}{doubt}")
+    told = [(one, words) for one in found.criticals if (words := critical_words(found, one, language))]
+    critical = [rf"\item ${name} = {number_tex(one.sample)}$: {escaped(words)}" for one, words in told]
+    lines = figure_lines("branches.pdf", caption, "equilibria --vary")
+    lines += listed(language.say("Numbers of equilibria:"), numbers)
+    return "\n".join([*lines, *listed(language.say("Critical values:"), critical)]) + "\n"
+
+
+def number_tex(x: Any) -> str:
+    """A rational number, a square root, or digits that end in dots."""
+    if isinstance(x, fmpq):
+        return str(x)
+    c = x.polynomial.coeffs()
+    if len(c) == 3 and c[1] == 0 and c[2] == 1:
+        return ("-" if float(x) < 0 else "") + rf"\sqrt{{{-c[0]}}}"
+    return f"{float(x):.8g}" + r"\ldots"
 
 
 def _plane(found: Map, names: LatexNames) -> str:
@@ -92,7 +129,7 @@ def listed(head: str, items: Iterable[str]) -> list[str]:
 def _marks(found: Map, names: LatexNames, language: Language) -> Iterator[str]:
     """Each letter of the picture with its polynomial in the axes, or its number; of one slice, in two of them."""
     places = {mark_name(found, plane, k): (plane, k) for _, plane in reversed(panels(found)) for k in marks(plane)}
-    file = "equilibria-map.json" if found.of is Of.EQUILIBRIA else "map.json"
+    file = f"{stem(found)}.json"
     for name, letter in lettered(found).items():
         plane, k = places[name]
         words = escaped(border_words(plane, k, language))

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.plane.line import Line
 from mbsym.expressions.counting import counted
 from mbsym.maps.boundaries import Condition, Origin
 from mbsym.maps.boxes import BoxMap
+from mbsym.maps.branches_events import Event
+from mbsym.maps.branches_result import Branches, Doubt, Remark
 from mbsym.maps.result import Cell, Counted, Lack, Map, Of, Shape
 from mbsym.maps.soft_borders import Onset
 from mbsym.maps.verdicts import Judged
+from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word
 from mbsym.report.language import Language
 
@@ -65,6 +68,11 @@ LACKS = {
     Lack.FAMILIES: "infinitely many equilibria",
     Lack.UNCOUNTED: "not counted",
 }
+
+
+def stem(found: Map) -> str:
+    """What the files of a map are called, without their endings."""
+    return "branches" if isinstance(found, Branches) else "equilibria-map" if found.of is Of.EQUILIBRIA else "map"
 
 
 def telling(conditions: Sequence[Condition], outside: bool = False) -> Condition:
@@ -183,3 +191,68 @@ def percent(found: BoxMap, language: Language) -> str:
     """``12.50 % of the area`` are white."""
     told = share(float(found.subdivision.white)).replace("less than", language.say("less than"))
     return f"{told} {language.say('of the area')}"
+
+
+# --- branches of equilibria -------------------------------------------------------------------------------------------
+
+EVENTS = {
+    Event.FOLD: "fold",
+    Event.STEEP: "vertical tangent",
+    Event.TRANSCRITICAL: "transcritical point",
+    Event.ISOLATED: "isolated point",
+    Event.PITCHFORK: "pitchfork",
+    Event.CONTINUUM: "infinitely many equilibria at one value",
+    Event.DEGENERATE: "degenerate point, not named",
+}
+
+_DOUBTS = {
+    Doubt.UNFINISHED: "critical values may be missing, the exact solution is not finished",
+    Doubt.THROUGHOUT: "equilibria are singular over a whole interval: critical values may be missing",
+    Doubt.STABILITY: "where the stability changes along branches is not all solved",
+    Doubt.UNCOUNTED: "the equilibria at a critical value are not all solved",
+    Doubt.MISMATCH: "the counts beside a critical value contradict the events there: nothing is claimed of it",
+    Doubt.INCOMPLETE: "the list at a sample may be incomplete",
+    Doubt.FAMILIES: "at a sample there are infinitely many equilibria, which are not followed",
+}
+
+_BORDER = "equilibria at infinity or at a border (a root or denominator is zero, or the mass matrix singular)"
+_CHANGE = "the verdict of a branch changes"
+_DIFFER = "the verdicts at the samples on both sides differ"
+
+
+def event_words(events: Iterable[Event], language: Language = ENGLISH) -> str:
+    """``2 x fold, pitchfork``."""
+    listed = list(events)
+    told = []
+    for event in dict.fromkeys(listed):
+        words = language.say(EVENTS[event])
+        told.append(f"{listed.count(event)} x {words}" if listed.count(event) > 1 else words)
+    return ", ".join(told)
+
+
+def critical_words(found: Branches, at: Cell, language: Language = ENGLISH) -> str:
+    """What happens at a critical value; "" for nothing that is shown."""
+    one = found.critical(at)
+    if one.balance is False:
+        return language.say(EVENTS[Event.DEGENERATE])
+    parts = [event_words(one.events, language)] if one.events else []
+    if found.leaves(at) and not one.continuum:
+        parts.append(language.say(_BORDER))
+    if found.verdict_changes(at) and not parts and not found.count_changes(at):
+        parts.append(language.say(_CHANGE if found.certain(at) else _DIFFER))
+    if not parts and found.happens(at):
+        parts.append(language.say(EVENTS[Event.DEGENERATE]))
+    return ", ".join(parts)
+
+
+def remark_words(one: Remark) -> str:
+    """A sentence of the terminal on what is not proved."""
+    return _DOUBTS[one.doubt] + (f" ({one.about})" if one.about else "")
+
+
+def stable_words(verdicts: Iterable[Verdict | None]) -> str:
+    """``2``, or ``2, 1 undecided``: what nothing decides is not silently one of those that are not stable."""
+    known = list(verdicts)
+    stable = sum(x is not None and x.stable for x in known)
+    open_ = sum(x is None or x.word.open for x in known)
+    return f"{stable}, {open_} undecided" if open_ else f"{stable}"

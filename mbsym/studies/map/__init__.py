@@ -87,10 +87,6 @@ class Request:
         """Those that are given; one that could not be read is left out."""
         return tuple(one for one in (self.x, self.y, self.z) if one is not None)
 
-    @property
-    def pictures(self) -> tuple[str, ...]:
-        return tuple(kind for kind in self.format if kind in ("svg", "pdf", "png"))
-
     @cached_property
     def located(self) -> tuple[Points | None, tuple[Unfit, ...]]:
         """The points of ``locate``, and what is wrong with the file."""

@@ -18,17 +18,19 @@ from mbsym.maps.soft_borders import Onset
 from mbsym.maps.subdivision import End
 from mbsym.model.system import System
 from mbsym.report.language import Language
-from mbsym.report.maps.words import LACKS, cell_words, condition_words, row_words, share, telling
+from mbsym.report.maps.words import LACKS, cell_words, condition_words, row_words, share, stem, telling
 from mbsym.studies.study import Answer, Column, Exit, Line, Rows, line
 
 if TYPE_CHECKING:
+    from mbsym.report.maps.located import Points
     from mbsym.studies.map import Request
 
 
 def answer(system: System, request: Request, found: Map) -> Answer:
     from mbsym.studies.map import MOST_TOLD
 
-    lines, files = _lines(system, found), _files(system, request, found)
+    lines = _lines(system, found)
+    files = files_of(system, found, request.format, request.language, request.located[0])
     doubts = list(_doubts(found))
     if doubts:
         return Answer(lines, files, doubts[:MOST_TOLD], Exit.FAILED)
@@ -68,21 +70,24 @@ def _findings(found: Map, at: str) -> Iterator[str]:
         yield f"withdrawn{at}, as the map's own check fails in {what}: {one.mistake}"
 
 
-def _files(system: System, request: Request, found: Map) -> dict[str, str | bytes]:
+def files_of(
+    system: System, found: Map, formats: Sequence[str], language: str, points: Points | None = None
+) -> dict[str, str | bytes]:
+    """The picture, JSON, LaTeX, and the given points located."""
     from mbsym.report.maps.figure import map_figure
     from mbsym.report.maps.json import map_json
     from mbsym.report.maps.located import located_csv
     from mbsym.report.maps.tex import map_tex
 
-    spoken, files = Language(request.language), dict[str, str | bytes]()
-    stem = "equilibria-map" if found.of is Of.EQUILIBRIA else "map"
-    if request.pictures:
-        files |= map_figure(system, found, spoken, request.pictures)
-    if "json" in request.format:
-        files[f"{stem}.json"] = map_json(system, found)
-    if "tex" in request.format:
-        files[f"{stem}.tex"] = map_tex(system, found, spoken)
-    if (points := request.located[0]) is not None:
+    spoken, files = Language(language), dict[str, str | bytes]()
+    drawn = [kind for kind in formats if kind in ("svg", "pdf", "png")]
+    if drawn:
+        files |= map_figure(system, found, spoken, drawn)
+    if "json" in formats:
+        files[f"{stem(found)}.json"] = map_json(system, found)
+    if "tex" in formats:
+        files[f"{stem(found)}.tex"] = map_tex(system, found, spoken)
+    if points is not None:
         files["located.csv"] = located_csv(points, found)
     return files
 
