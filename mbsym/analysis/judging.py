@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from mbsym.algebra.failures import Defect, Failure, message_of
+from mbsym.algebra.failures import Failure, message_of
 from mbsym.analysis.judge import Judge
 from mbsym.expressions.message import Message
 from mbsym.mechanics.constraints.refusal import refuse_constraints, refused
@@ -82,8 +82,7 @@ def _judged(source: Analysis, claim: Claim, allowance: int) -> tuple[ClaimResult
         except Failure as reason:
             result = claims.undecided(source.system, claim, message_of(reason))
         except Exception as error:
-            source.defects.append(error)
-            result = claims.undecided(source.system, claim, Defect.of(error).reason)
+            result = claims.undecided(source.system, claim, source.contained(error).reason)
     return result, spent.work
 
 

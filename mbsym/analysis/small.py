@@ -11,7 +11,7 @@ from mbsym.expressions.message import Message, joined
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.model.system import System
-from mbsym.problems.averaging import Averaged
+from mbsym.problems.small_parameter.averaging import Averaged
 from mbsym.problems.small_parameter.result import Outcome
 
 if TYPE_CHECKING:

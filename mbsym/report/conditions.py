@@ -11,7 +11,7 @@ from mbsym.algebra.ring import Ring
 from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
 from mbsym.problems.stability import SubsystemStability
-from mbsym.problems.stability.requirements import OPPOSITE, PART, Case, Place, Requirement
+from mbsym.problems.stability.requirements import PART, REVERSED, Case, Place, Requirement
 from mbsym.problems.stability.word import Word
 from mbsym.report.coefficients import InCoefficients, in_coefficients, names_in
 
@@ -59,7 +59,7 @@ class Labels:
         if bare.partition(" ")[0] not in self.taken:
             return label
         named = Message("condition [[label]]", label=bare)
-        return named if bare == label else Message(OPPOSITE, label=named)
+        return named if bare == label else Message(REVERSED, label=named)
 
 
 def label_meanings(ring: Ring, requirements: Sequence[Requirement]) -> Labels:
@@ -111,7 +111,7 @@ def _stated(ring: Ring, requirement: Requirement, told: Labels) -> Iterator[Stat
 
 def _is_opposite(label: str) -> TypeGuard[Message]:
     """Whether it is the label of a condition reversed, as ``requirements.against`` makes it."""
-    return isinstance(label, Message) and label.text == OPPOSITE
+    return isinstance(label, Message) and label.text == REVERSED
 
 
 def _bare(label: str) -> str:
@@ -123,7 +123,7 @@ def _part(label: str, which: Message) -> Message:
     """v4, squared factor; -(v4, without squares)."""
     bare = _bare(label)
     part = Message(PART, label=bare, part=which)
-    return part if bare == label else Message(OPPOSITE, label=part)
+    return part if bare == label else Message(REVERSED, label=part)
 
 
 def _alternative(ring: Ring, requirement: Requirement, told: Labels) -> Statement:
@@ -181,7 +181,7 @@ class Reference:
     relation: str
 
 
-_OPPOSITE = {">": "<", "<": ">", ">=": "<=", "<=": ">="}
+OPPOSITE = {">": "<", "<": ">", ">=": "<=", "<=": ">="}
 
 
 class Shown:
@@ -208,7 +208,7 @@ class Shown:
             return None
         label, polynomial, relation = statement.label, statement.formula.polynomial, statement.relation
         if _is_opposite(label):
-            label, polynomial, relation = _bare(label), -polynomial, _OPPOSITE.get(relation, relation)
+            label, polynomial, relation = _bare(label), -polynomial, OPPOSITE.get(relation, relation)
         for own in (True, False):
             for under, formula in self._shown:
                 bare, shown = _bare(under), -formula.polynomial if _is_opposite(under) else formula.polynomial
@@ -216,7 +216,7 @@ class Shown:
                     continue
                 ratio = rational_ratio(polynomial, shown)
                 if ratio is not None and (ratio > 0 or not own):
-                    return Reference(label, bare, relation if ratio > 0 else _OPPOSITE.get(relation, relation))
+                    return Reference(label, bare, relation if ratio > 0 else OPPOSITE.get(relation, relation))
         return None
 
 

@@ -20,7 +20,7 @@ from mbsym.expressions.message import Message
 from mbsym.problems.stability.verdict import Verdict
 
 #: How labels are made of other labels: of a condition reversed, of one of several factors, of a part of a condition.
-OPPOSITE, OF_FACTOR, PART = "-([[label]])", "[[label]] of factor [[number]]", "[[label]], [[part]]"
+REVERSED, OF_FACTOR, PART = "-([[label]])", "[[label]] of factor [[number]]", "[[label]], [[part]]"
 
 
 class Method(StrEnum):
@@ -179,7 +179,7 @@ def definiteness(matrix: Matrix, signs: Signs, name: str) -> Definiteness:
 def against(requirements: Sequence[Requirement], known: Signs) -> tuple[Requirement, ...]:
     """p < 0 for every p > 0.  By continuity none of them occurs while all roots have Re <= 0 (or mu <= 0)."""
     return tuple(
-        Requirement(Message(OPPOSITE, label=_whole(r.label)), -r.polynomial, known.condition(-r.polynomial))
+        Requirement(Message(REVERSED, label=_whole(r.label)), -r.polynomial, known.condition(-r.polynomial))
         for r in requirements
         if r.relation == ">" and r.place is not Place.HARMLESS and not r.by_mass and not r.unwritten
     )

@@ -19,7 +19,7 @@ from mbsym.model.system import System
 from mbsym.problems.stability import Stability
 from mbsym.problems.stability.problem import SubsystemStability
 from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.requirements import OF_FACTOR, OPPOSITE, PART, Method
+from mbsym.problems.stability.requirements import OF_FACTOR, PART, REVERSED, Method
 from mbsym.problems.stability.sentences import sentence, with_theorem
 from mbsym.problems.stability.spectrum import RootNumbers, Spectrum, numbers
 from mbsym.problems.stability.symbolic import Theory
@@ -316,7 +316,7 @@ def label_of(label: str) -> Math:
     """v6 as a coefficient's symbol, other labels as words."""
     gaps = label.gaps if isinstance(label, Message) else {}
     made = label.text if isinstance(label, Message) else ""
-    if made == OPPOSITE:
+    if made == REVERSED:
         return Relation("-", label_of(gaps["label"]))
     if made == PART:
         whole, part = label_of(gaps["label"]), (", ", Words(gaps["part"]))
