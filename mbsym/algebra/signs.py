@@ -10,7 +10,7 @@ early where exact sample points that satisfy the assumptions show that nothing s
 from cheap to dear:
 
 * **value**: p holds nothing but numbers, such as sqrt(3) - 1, and its enclosure excludes zero;
-* **terms**: p = sum of terms, each with a known sign ("all coefficients of one sign"), coefficients such as 4 - pi enclosed;
+* **terms**: p = sum of terms, each with a known sign ("all coefficients of one sign"; numbers such as 4 - pi enclosed);
 * **assumptions**: p = sum c_i m_i a_i + rest, with assumptions a_i, numbers c_i and monomials m_i of known sign;
 * **square**: p = A x^2 + B x + C with B^2 - 4 A C < 0 has the sign of A, and so on within the discriminant;
 * **bounds**: a < x, x < b or both are used up by x = a + u, x = b - u, x = (a + b u)/(1 + u) with u > 0, and the

@@ -15,7 +15,11 @@ from click.testing import CliRunner
 
 import mbsym
 from mbsym.algebra.failures import Failure
-from mbsym.report.sections import polynomial_integrals, stability
+from mbsym.problems.stability.reasons import Because
+from mbsym.report.content import Display
+from mbsym.report.plain_writer import Writer
+from mbsym.report.results import results
+from mbsym.report.sections import equilibrium, polynomial_integrals, stability
 from mbsym_cli.main import main
 
 SYSTEMS = Path(__file__).parents[2] / "systems"
@@ -182,3 +186,68 @@ values: {l: 1, g: 9}
 """)
     done = CliRunner().invoke(main, ["nonlinear", str(path), "--vary", "l=1:2"])
     assert "no values listed: of systems whose energy is conserved" in " ".join(done.output.split())
+
+
+FALLING = """
+mbsym: 1
+name: falling
+parameters: {m: positive, c: positive, g: positive}
+bodies:
+  - {name: p, mass: m, connection point: [0, 0, z], coordinates: [z]}
+loads:
+  - uniform gravity: {vector: [0, 0, -g]}
+  - damper: {coordinate: z, coefficient: c}
+motion: {z: {value: 0, rate: -m*g/c}}
+values: {m: 1, c: 2, g: 3}
+"""
+
+
+def test_what_stops_again_does_not_drift_away() -> None:
+    """m z'' + c z' = -m g: the disturbance of z' dies out like exp(-c t/m), and z ends m/c times that elsewhere.  On
+    the shaft with the dragging wheel A a' + B (a' + b') is constant: disturbed, a' stays different, and a drifts."""
+    falling, wheel = mbsym.loads(FALLING).stability, mbsym.loads(WHEEL).stability
+    for verdict in (falling.verdict, falling.numerical):
+        assert verdict is not None
+        assert verdict.because(Because.ELSEWHERE)
+        assert not verdict.because(Because.DRIFT)
+    assert wheel.verdict.because(Because.DRIFT_AT_GIVEN_MOMENTA)
+    assert not wheel.verdict.because(Because.ELSEWHERE)
+    beside = mbsym.loads(
+        FALLING.replace(
+            "loads:", "  - {name: q, attached to: 0, mass: m, connection point: [x, 0, 0], coordinates: [x]}\nloads:"
+        )
+    ).stability.verdict
+    assert beside.because(Because.DRIFT_AT_GIVEN_MOMENTA)  # of x
+    assert not beside.because(Because.ELSEWHERE)
+
+
+JORDAN = """
+mbsym: 1
+name: Jordan
+parameters: {e: real, b: real}
+linear system:
+  coordinates: [u, v, q]
+  A: [[0, e, 0], [0, 0, 0], [0, 0, b]]
+values: {e: 0, b: -1}
+claims:
+  - {claim: condition, that: b <= 0, as: necessary}
+  - {claim: condition, that: e != 0, as: necessary}
+"""
+
+
+def test_matrices_of_first_order_are_no_constraints_and_have_no_stiffness() -> None:
+    """x' = A x: unstable where e != 0 or b > 0, else stable, e = 0 included: that this is a border does not mean that
+    the equations, which are all there is, say nothing there; and e != 0, which is not necessary, is 'any condition'."""
+    found = mbsym.loads(JORDAN)
+    first, second = found.stability.subsystems
+    assert first.theory.kind == second.theory.kind == "of first order"
+    assert [case.all_of[0].label for case in first.theory.cases] == ["minor of order 1 of A"]
+    assert "the first approximation says nothing" not in found.stability.verdict.explanation
+    assert not any("any condition would be necessary, and it" in one.remark for one in found.claims)
+
+
+def test_the_motion_is_that_of_all_coordinates() -> None:
+    (display,) = [
+        block for block in equilibrium.content(results(mbsym.loads(FREE), (4,))) if isinstance(block, Display)
+    ]
+    assert Writer().line(display) == "  x = t, z = 0"

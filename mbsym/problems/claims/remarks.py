@@ -83,7 +83,7 @@ _SENTENCES: dict[Said, str | Callable[..., str]] = {
         "higher order decide, if there are any"
     ),
     Said.NEVER_STABLE: lambda verdict, borders: (
-        "the motion is [[1]]: as it is stable nowhere else, any condition would be necessary, and it says nothing"
+        "the motion is [[1]]: but for these any condition would be necessary, and border cases are left open"
         if borders
         else "the motion is [[1]]: as it is stable for no parameters, any condition would be necessary, and it says "
         "nothing"

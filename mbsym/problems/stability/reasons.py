@@ -51,6 +51,7 @@ class Because(Enum):
     COASTING = auto()
     DRIFT = auto()
     DRIFT_AT_GIVEN_MOMENTA = auto()
+    ELSEWHERE = auto()
     DISPLACEMENTS = auto()  # (how coordinates move together, each a text)
     OTHER_ANGLES = auto()  # (body, axes, angles)
     PARTLY_CYCLIC = auto()

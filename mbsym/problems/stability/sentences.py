@@ -123,6 +123,10 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
         "This is about the other coordinates at the given momenta of the cyclic ones: momenta that differ a little "
         "stay different, the motion then tends to a steady one near by, and the cyclic coordinates may drift away."
     ),
+    Because.ELSEWHERE: (
+        "This is about the other coordinates and all velocities: these tend to theirs again, and the cyclic "
+        "coordinates may end elsewhere."
+    ),
     Because.DISPLACEMENTS: (
         "No equation of motion changes when coordinates move together as {}: along such displacements there are cyclic "
         "coordinates."
@@ -134,9 +138,7 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
     Because.PARTLY_CYCLIC: "A part of the coordinates is cyclic.",
     Because.CONSTANT_MOMENTA: ("The momenta of cyclic coordinates are constant, so their velocities stay near theirs."),
     Because.SEE_CASES: "It depends on the parameters; see the cases.",
-    Because.BORDERS_APART: (
-        "This is so wherever no condition is an equality; about border cases the first approximation says nothing."
-    ),
+    Because.BORDERS_APART: ("This is so wherever no condition is an equality; border cases are left open here."),
     Because.CONDITIONS_UNWRITTEN: "Conditions are too long to be written out; see the cases.",
     Because.BORDER: "On a border: no theorem of the first approximation decides.",
     Because.NEAR_BORDER: "On a border, or too close to one: no theorem of the first approximation decides.",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from mbsym.expressions.tree import text
+from mbsym.expressions.tree import ZERO, text
 from mbsym.model.system import System
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.report.code.functions import moving
@@ -40,8 +40,8 @@ def content(results: Results) -> Iterator[Block]:
     system, found = results.system, results.found.get(4)
     if system.motion or found is not None:
         yield paragraph(Said("The unperturbed motion"))
-    if system.motion:
-        items = [Relation(Name(x.coordinate), "=", moving(x.value, x.rate)) for x in system.motion]
+        moves = {x.coordinate: moving(x.value, x.rate) for x in system.motion}
+        items = [Relation(Name(x), "=", moves.get(x, ZERO)) for x in system.coordinates]
         held = [Relation(Name(x.name), "=", x.held) for x in system.inputs]
         yield Display(Listed((*items, *held)), "motion")
     yield from results.missing(4)
