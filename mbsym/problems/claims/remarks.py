@@ -20,6 +20,7 @@ class Said(Enum):
     UNSTABLE_BEYOND = auto()  # but for the case of equality
     UNSTABLE_INSIDE = auto()  # but where another condition is an equality
     FOR_EXPONENTIAL = auto()  # (of which coordinates, "" of all; note)
+    FOR_DECAY = auto()  # (the same, where zero roots split off)
     GROWS_WITH_EQUALITY = auto()
     STABLE_WITH_EQUALITY = auto()
     STABLE_IN_FIRST_WITH_EQUALITY = auto()
@@ -70,6 +71,11 @@ _SENTENCES: dict[Said, str | Callable[..., str]] = {
         "it is necessary for exponential stability of [[1]] (all roots to the left)[[2]]"
         if whose
         else "it is necessary for exponential stability (all roots to the left)[[2]]"
+    ),
+    Said.FOR_DECAY: lambda whose, note: (
+        "it is necessary for all roots of [[1]] but the zero ones to lie to the left[[2]]"
+        if whose
+        else "it is necessary for all roots but the zero ones to lie to the left[[2]]"
     ),
     Said.GROWS_WITH_EQUALITY: "with equality solutions grow: the equations are linear",
     Said.STABLE_WITH_EQUALITY: "with equality, too, the motion may be stable",

@@ -49,6 +49,7 @@ class Because(Enum):
     HIGHER_ORDER = auto()
     # of cyclic coordinates
     COASTING = auto()
+    VELOCITIES = auto()
     DRIFT = auto()
     DRIFT_AT_GIVEN_MOMENTA = auto()
     ELSEWHERE = auto()

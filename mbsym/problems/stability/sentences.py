@@ -115,6 +115,10 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
         "All coordinates of this part are cyclic: their momenta are constant, so their velocities stay near theirs; "
         "the coordinates drift away if these are disturbed, so that with them counted the motion is unstable."
     ),
+    Because.VELOCITIES: (
+        "All coordinates of this part are cyclic, and the kinetic energy of a disturbance does not grow: velocities "
+        "stay near theirs."
+    ),
     Because.DRIFT: (
         "This is about the other coordinates and all velocities; a perturbation of the cyclic velocities can make "
         "the cyclic coordinates drift away."
@@ -174,7 +178,7 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
     Because.NOT_THE_VALUE: "The motion does not exist there: {} has another value.".format,
     Because.MOTION_NOT_THERE: "The motion does not exist there: {} = {}, not 0.".format,
     Because.MOTION_OPEN: "Whether the motion exists there is open: {} is about 0.".format,
-    Because.POLE: "The description divides by {} there, which is 0: it gives no equations of motion.".format,
+    Because.POLE: "The description divides by {} there, which is 0: there is no motion to be judged.".format,
 }
 
 

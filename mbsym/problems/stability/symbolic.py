@@ -84,6 +84,7 @@ from mbsym.problems.stability.requirements import (
 from mbsym.problems.stability.routh import (
     ENERGY_BESIDES,
     besides_cyclic,
+    energy_besides,
     ignoring_cyclic,
     momenta_are_constant,
     only_momenta,
@@ -705,7 +706,7 @@ def _energy_besides(system: LinearSystem, known: Signs) -> tuple[Case, ...]:
     wanted = definiteness(block or system.kinetic, known, "K" if block else "M").requirements
     if not block:  # T is all of the energy
         wanted = tuple(replace(r, by_mass=True) for r in wanted)
-    return (Case(wanted, (), drifting(concluded(ENERGY_BESIDES), constant_momenta=False)),)
+    return (Case(wanted, (), drifting(energy_besides(system), constant_momenta=False)),)
 
 
 def _all_left(turned: bool) -> Verdict:

@@ -404,6 +404,9 @@ def _without_energy(part: Verdict) -> Verdict:
     return replace(part, grounds=tuple(x for x in part.laid.items() if x[0] is not Ground.ENERGY)) if decays else part
 
 
+_MINIMUM, _WITH_DISSIPATION = Because.MINIMUM, Because.MINIMUM_AND_DISSIPATION
+
+
 def _reasons(parts: tuple[Verdict, ...], row: Row) -> tuple[Reason, ...]:
     """Those of the parts that decide; what is counted in one part is not counted in the whole."""
     alike = [part for part in parts if part.word == row.word and row.wanted <= part.flawed]
@@ -421,8 +424,11 @@ def _reasons(parts: tuple[Verdict, ...], row: Row) -> tuple[Reason, ...]:
         found = {reason for part in moving for reason in part.reasons}
     else:
         if row.ground is Ground.ENERGY and not all(Ground.UNDAMPED in part.laid for part in parts):
-            found = {reason for part in alike for reason in part.reasons} - {Reason(Because.MINIMUM)}
-            found.add(Reason(Because.MINIMUM_AND_DISSIPATION))
+            found = {reason for part in alike if part in moving for reason in part.reasons}
+            if found or any(part.because(_MINIMUM) or part.because(_WITH_DISSIPATION) for part in moving):
+                found = found - {Reason(_MINIMUM)} | {Reason(_WITH_DISSIPATION)}
+            else:
+                found = {_BESIDE_ZERO_ROOTS.get(reason, reason) for part in moving for reason in part.reasons}
         if any(Flaw.CYCLIC in part.flawed for part in moving) or (row.ground is Ground.ENERGY and idle):
             found.add(Reason(Because.PARTLY_CYCLIC))
     if not all(part.stable or part.because(Because.LINEAR_DRIFTS) for part in parts):
