@@ -94,7 +94,8 @@ def carried(scene: Scene, rates: Mapping[str, Polynomial] | None = None) -> dict
             own = {name: scene.ring.substitute(scene.lower(values[name][1]), images) for name in turning(scene)}
             _CARRIED[scene] = carried(scene, own)
         return dict(_CARRIED[scene])
-    values, found = motion_values(scene.system), {}
+    values = motion_values(scene.system)
+    found: dict[int, Polynomial] = {}
     for name, (first, ratio) in in_step(scene.ring, rates).items():
         way = multiply(number(ratio), subtract(Name(first), values[first][0]))
         with suppress(Failure):  # a part of an angle that the ring does not know

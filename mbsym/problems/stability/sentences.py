@@ -117,6 +117,10 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
         "All coordinates of this part are cyclic: their momenta are constant, so their velocities stay near theirs; "
         "the coordinates drift away if these are disturbed, so that with them counted the motion is unstable."
     ),
+    Because.VELOCITIES: (
+        "All coordinates of this part are cyclic, and the kinetic energy of a disturbance does not grow: velocities "
+        "stay near theirs."
+    ),
     Because.DRIFT: (
         "This is about the other coordinates and all velocities; a perturbation of the cyclic velocities can make "
         "the cyclic coordinates drift away."
@@ -124,6 +128,10 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
     Because.DRIFT_AT_GIVEN_MOMENTA: (
         "This is about the other coordinates at the given momenta of the cyclic ones: momenta that differ a little "
         "stay different, the motion then tends to a steady one near by, and the cyclic coordinates may drift away."
+    ),
+    Because.ELSEWHERE: (
+        "This is about the other coordinates and all velocities: these tend to theirs again, and the cyclic "
+        "coordinates may end elsewhere."
     ),
     Because.DISPLACEMENTS: (
         "No equation of motion changes when coordinates move together as [[1]]: along such displacements there are "
@@ -136,9 +144,7 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
     Because.PARTLY_CYCLIC: "A part of the coordinates is cyclic.",
     Because.CONSTANT_MOMENTA: ("The momenta of cyclic coordinates are constant, so their velocities stay near theirs."),
     Because.SEE_CASES: "It depends on the parameters; see the cases.",
-    Because.BORDERS_APART: (
-        "This is so wherever no condition is an equality; about border cases the first approximation says nothing."
-    ),
+    Because.BORDERS_APART: ("This is so wherever no condition is an equality; border cases are left open here."),
     Because.CONDITIONS_UNWRITTEN: "Conditions are too long to be written out; see the cases.",
     Because.BORDER: "On a border: no theorem of the first approximation decides.",
     Because.NEAR_BORDER: "On a border, or too close to one: no theorem of the first approximation decides.",
@@ -174,7 +180,7 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
     Because.NOT_THE_VALUE: "The motion does not exist there: [[1]] has another value.",
     Because.MOTION_NOT_THERE: "The motion does not exist there: [[1]] = [[2]], not 0.",
     Because.MOTION_OPEN: "Whether the motion exists there is open: [[1]] is about 0.",
-    Because.POLE: "The description divides by [[1]] there, which is 0: it gives no equations of motion.",
+    Because.POLE: "The description divides by [[1]] there, which is 0: there is no motion to be judged.",
 }
 
 

@@ -86,6 +86,7 @@ from mbsym.problems.stability.requirements import (
 from mbsym.problems.stability.routh import (
     ENERGY_BESIDES,
     besides_cyclic,
+    energy_besides,
     ignoring_cyclic,
     momenta_are_constant,
     only_momenta,
@@ -288,7 +289,8 @@ def _analyse(system: LinearSystem, signs: Signs, borders: bool) -> Theory:
     if mass.word is not Definite.POSITIVE:
         remarks.append("M is taken to be positive definite, as the matrix of a kinetic energy is.")
     if zero_power:
-        remarks.append(Message("lambda^[[count]] splits off: [[count]] zero roots.", count=zero_power))
+        several = Message("lambda^[[count]] splits off: [[count]] zero roots.", count=zero_power)
+        remarks.append(several if zero_power > 1 else Message("lambda splits off: one zero root."))
     found = replace(
         start,
         removed=removed,
@@ -688,7 +690,8 @@ def _cases_of_linear(system: LinearSystem, found: Theory, known: Signs) -> tuple
     grows = concluded({Fact.EXACTLY_LINEAR, Fact.JORDAN_BLOCK})
     if still and found.zero_power == 2 * len(null) and not decays and all(r.always for r in wanted):
         return (Case(wanted, (), only_drifts(grows)),)
-    return (Case(_of_full_rank(places, len(null), known), (), grows),)
+    letter = "A" if system.of_first_order else "K + N"
+    return (Case(_of_full_rank(places, letter, len(null), known), (), grows),)
 
 
 def _wanted(found: Theory) -> tuple[Requirement, ...]:
@@ -697,8 +700,8 @@ def _wanted(found: Theory) -> tuple[Requirement, ...]:
     return found.requirements or by_mass or (holds_always(found.removed),)
 
 
-def _of_full_rank(matrix: Matrix, null: int, known: Signs) -> tuple[Requirement, ...]:
-    """A minor of order n - ``null`` that is not zero: the matrix has no further null directions there."""
+def _of_full_rank(matrix: Matrix, letter: str, null: int, known: Signs) -> tuple[Requirement, ...]:
+    """A minor of order n - ``null`` that is not zero: the matrix ``letter`` has no further null directions there."""
     n = len(matrix)
     size = n - null
     if not size:
@@ -707,7 +710,9 @@ def _of_full_rank(matrix: Matrix, null: int, known: Signs) -> tuple[Requirement,
         for columns in combinations(range(n), size):
             minor = known.normalised(determinant([[matrix[i][j] for j in columns] for i in rows]))
             if minor != 0:
-                return (differs(Message("minor of order [[size]] of K + N", size=size), minor, known),)
+                return (
+                    differs(Message("minor of order [[size]] of [[letter]]", size=size, letter=letter), minor, known),
+                )
     raise ValueError("the rank is smaller")
 
 
@@ -760,7 +765,7 @@ def _energy_besides(system: LinearSystem, known: Signs) -> tuple[Case, ...]:
     wanted = definiteness(block or system.kinetic, known, "K" if block else "M").requirements
     if not block:  # T is all of the energy
         wanted = tuple(replace(r, by_mass=True) for r in wanted)
-    return (Case(wanted, (), drifting(concluded(ENERGY_BESIDES), constant_momenta=False)),)
+    return (Case(wanted, (), drifting(energy_besides(system), constant_momenta=False)),)
 
 
 def _all_left(turned: bool) -> Verdict:
