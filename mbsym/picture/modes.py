@@ -15,8 +15,9 @@ from math import hypot, inf, pi
 from typing import Any
 
 import numpy as np
-from msgspec import to_builtins
 
+
+from mbsym.report.documents.writer import plain
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.roots import Root
 from mbsym.analysis import Analysis
@@ -175,7 +176,7 @@ def modes_json(found: Modes) -> dict[str, Any]:
     return {
         "base": {name: number(value) for name, value in found.base.items()},
         "turning": {name: number(value) for name, value in found.turning.items()},
-        "verdict": to_builtins(verdict_data(found.verdict)),
+        "verdict": plain(verdict_data(found.verdict)),
         "still": list(found.still),
         "modes": [
             {

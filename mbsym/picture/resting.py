@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from msgspec import to_builtins
 
+
+from mbsym.report.documents.writer import plain
 from mbsym.algebra.failures import NoValue
 from mbsym.analysis.resting import relative_equilibria
 from mbsym.analysis.stages import Unavailable
@@ -84,7 +85,7 @@ def at_rest_json(found: AtRest) -> dict[str, Any]:
                 "values": {name: number(value) for name, value in x.values.items()},
                 "texts": dict(x.texts),
                 "free": list(x.free),
-                "verdict": to_builtins(verdict_data(x.verdict)),
+                "verdict": plain(verdict_data(x.verdict)),
                 "proof": x.proof,
                 "otherAngles": x.other_angles,
                 "family": x.family,
