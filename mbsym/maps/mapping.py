@@ -11,9 +11,10 @@ from typing import Any
 
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
+from mbsym.algebra.arrangements import Arrangement, areas, decompose
 from mbsym.algebra.characteristic import leading_minors
 from mbsym.algebra.failures import TooLargeError
-from mbsym.algebra.plane import Arrangement, Box, Point, areas, decompose
+from mbsym.algebra.plane import Box, Point
 from mbsym.analysis import Analysis
 from mbsym.maps.admissible import Admissibility, admissibility
 from mbsym.maps.boundaries import Boundaries, Condition, Origin, boundaries

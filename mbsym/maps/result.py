@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from itertools import pairwise
 
-from mbsym.algebra.plane import Arrangement, Point
+from mbsym.algebra.arrangements import Arrangement
+from mbsym.algebra.plane import Point
 from mbsym.algebra.plane.line import Line
 from mbsym.maps.admissible import Admissibility, Demand
 from mbsym.maps.boundaries import Boundaries

@@ -13,8 +13,8 @@ from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
-from mbsym.algebra.plane import polyline
-from mbsym.algebra.plane.drawing import Branches
+from mbsym.algebra.arrangements import polyline
+from mbsym.algebra.arrangements.drawing import Branches
 from mbsym.formulas.latex import LatexNames
 from mbsym.maps.equilibria_map import Cell, EquilibriaMap
 from mbsym.model.quantities import unit_of

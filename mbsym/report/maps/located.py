@@ -11,7 +11,8 @@ from fractions import Fraction
 
 from flint import fmpq
 
-from mbsym.algebra.plane import Arc, Corner, Point
+from mbsym.algebra.arrangements import Arc, Corner
+from mbsym.algebra.plane import Point
 from mbsym.algebra.plane.line import Zero
 from mbsym.maps.mapping import Judge
 from mbsym.maps.result import LineMap, PlaneMap, Shape, Standing, Stratum
