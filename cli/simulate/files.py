@@ -121,7 +121,7 @@ def _happened(run: Simulation) -> dict[str, str]:
 def _section(run: Simulation, kinds: Sequence[str]) -> dict[str, bytes]:
     if run.section is None or not kinds:
         return {}
-    from mbsym.report.maps.section_figure import section_figure
+    from mbsym.report.figures.section_figure import section_figure
 
     return section_figure(run.section, run.system, note(run.trajectory), kinds)
 
