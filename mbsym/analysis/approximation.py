@@ -171,9 +171,9 @@ def judgeable(analysis: Analysis) -> Linearisation:
     growing = _growing(analysis)
     if growing:
         reason = Message(
-            "terms of higher order vary with [[growing]] and are not known to be small at all times "
-            "alike; no theorem about the first approximation applies",
-            growing=", ".join(growing),
+            "the equations may vary with [[names]] otherwise than by sines and cosines, and terms of higher order are "
+            "not known to be small at all times alike; no theorem about the first approximation applies",
+            names=", ".join(growing),
         )
         raise Unavailable("stability", NoResult(reason, "", "time-dependent", "time-dependent"))
     return found

@@ -16,8 +16,6 @@ from typing import Any
 
 import numpy as np
 
-
-from mbsym.report.documents.writer import plain
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.roots import Root
 from mbsym.analysis import Analysis
@@ -26,6 +24,7 @@ from mbsym.picture.encode import number
 from mbsym.problems.linearisation import Linearisation
 from mbsym.problems.stability.problem import matrices_at, parameter_values, ring_numbers
 from mbsym.problems.stability.verdict import Verdict
+from mbsym.report.documents.writer import plain
 from mbsym.report.sections.stability import verdict_data
 
 #: A singular value of the pencil below this part of its largest belongs to a shape.

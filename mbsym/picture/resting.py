@@ -7,9 +7,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-
-
-from mbsym.report.documents.writer import plain
 from mbsym.algebra.failures import NoValue
 from mbsym.analysis.resting import relative_equilibria
 from mbsym.analysis.stages import Unavailable
@@ -18,6 +15,7 @@ from mbsym.model.system import System
 from mbsym.picture.encode import number
 from mbsym.problems.relative_equilibria.equilibria import CoordinateValue
 from mbsym.problems.stability.verdict import Verdict
+from mbsym.report.documents.writer import plain
 from mbsym.report.sections.stability import verdict_data
 
 

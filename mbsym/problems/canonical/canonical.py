@@ -35,7 +35,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from mbsym.algebra.failures import Failure, NoClosedForm, SingularPoint
-from mbsym.algebra.matrices import cramer, determinant
+from mbsym.algebra.matrices import solved
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Column, Formula, Matrix, column
@@ -200,8 +200,7 @@ def _solved(ring: Ring, matrix: Sequence[Sequence[Polynomial]], right: Sequence[
                 most=MOST,
             )
         )
-    whole = determinant(ring, matrix)
-    if ring.vanishes(whole):
-        raise SingularPoint("the mass matrix is singular")
-    inverse = ring.reciprocal(whole)
-    return [ring.reduce(ring.times(x, inverse)) for x in cramer(ring, matrix, right)]
+    try:
+        return [x for (x,) in solved(ring, matrix, [[x] for x in right])]
+    except SingularPoint:
+        raise SingularPoint("the mass matrix is singular") from None

@@ -8,12 +8,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from io import StringIO
 
-
-
-from mbsym.report.documents.writer import plain
 from mbsym.algebra.certainty import Certainty
 from mbsym.numerics.ledger.entry import NOT_NEEDED, SECONDS, Ledger, Measure, Saving
 from mbsym.report.documents.results import ledger as doc
+from mbsym.report.documents.writer import plain
 
 COLUMNS = ("kind", "what", "why", "how", "quantity", "unit", "without", "with", "saved", "at_least", "standing")
 
