@@ -182,16 +182,14 @@ def _mode(there: Equations, system: Generating, leading: str, which: int) -> Mod
     if len({one.block for one in own}) > 1 or (len(own) > 1 and not leading):
         raise ModeIsOpen([tuple(there.names[i] for i in one.block) for one in own])
     if which > len(own):
-        block = ", ".join(there.names[i] for i in own[0].block)
-        raise NoClosedForm(
-            Message(
-                "number of frequencies of [[names]] without the small parameter: [[count]]; there is none with the "
-                "number [[which]]",
-                names=block,
-                count=len(own),
-                which=which,
-            )
+        one = "without the small parameter [[names]] have one frequency: there is none with the number [[which]]"
+        more = (
+            "without the small parameter [[names]] have [[count]] frequencies: there is none with the number [[which]]"
         )
+        names = ", ".join(there.names[i] for i in own[0].block)
+        if len(own) == 1:
+            raise NoClosedForm(Message(one, names=names, which=which))
+        raise NoClosedForm(Message(more, names=names, count=len(own), which=which))
     return own[which - 1]
 
 
