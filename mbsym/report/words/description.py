@@ -102,8 +102,9 @@ def _load(value: Load) -> Iterator[Inline]:
             ends = {"first": point(first), "second": point(second)}
             yield say(text, **ends, c=coefficient, r=_dissipation(coefficient, "v"))
         case ForceFunction(spelled=spelled, written=written):
-            left = Notation("-U") if spelled == "potential" else Symbol("U")
-            yield from (Said(spelled.capitalize()), ": ", content.Relation(left, "=", written), ".")
+            potential = spelled == "potential"
+            title, left = ("Potential", Notation("-U")) if potential else ("Force function", Symbol("U"))
+            yield from (Said(title), ": ", content.Relation(left, "=", written), ".")
         case Rayleigh(written):
             yield from (Said("Dissipation function"), ": ", content.Relation(Symbol("R"), "=", written), ".")
         case GeneralizedForce(components):
