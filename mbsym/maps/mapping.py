@@ -206,7 +206,7 @@ def places(ground: Ground) -> list[tuple[Shape, int, Any]]:
 
 
 class Judge:
-    """Judges exact points of a section with one or two axes, one by one: a Point, or a number."""
+    """Judges exact points of a section one by one: a number, a Point, or the rational coordinates of more axes."""
 
     def __init__(self, there: Section, kept: Admissibility) -> None:
         self.section, self.kept = there, kept
@@ -258,6 +258,8 @@ class Judge:
 
 
 def _coordinates(point: Any) -> tuple[Any, ...]:
+    if isinstance(point, tuple):
+        return point
     return (point.x, point.y) if isinstance(point, Point) else (point,)
 
 
@@ -265,4 +267,6 @@ def _sign(place: Any, p: Any) -> int:
     """The sign of a polynomial of the section's context at an exact point."""
     if isinstance(place, AlgebraicNumber):
         return place.sign(univariate(p))
-    return sign(fmpq(p(place))) if isinstance(place, fmpq) else int(place.sign(p))
+    if isinstance(place, fmpq | tuple):
+        return sign(fmpq(p(*_coordinates(place))))
+    return int(place.sign(p))
