@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field, replace
 from enum import StrEnum
 from fractions import Fraction
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from flint import fmpq
@@ -226,6 +227,11 @@ class Map:
     def borders(self) -> tuple[Cell, ...]:
         """The cells between regions."""
         return self.corners if isinstance(self.ground, Line) else self.arcs
+
+    @cached_property
+    def counts(self) -> frozenset[int]:
+        """All numbers of equilibria that regions have."""
+        return frozenset(one.counted.count for one in self.regions if one.counted is not None)
 
     @property
     def whole(self) -> float:
