@@ -6,7 +6,7 @@ boxes; over three a stack of slices, each a map of its own.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field, replace
 from enum import StrEnum
 from fractions import Fraction
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from flint import fmpq
 
 from mbsym.algebra.certainty import Certainty
-from mbsym.algebra.plane import Arc, Arrangement, Corner
+from mbsym.algebra.plane import Arc, Arrangement, Corner, CornerKind
 from mbsym.algebra.plane.line import Line, Zero
 from mbsym.maps.admissible import Admissibility, Demand
 from mbsym.maps.axis import Axis
@@ -301,11 +301,16 @@ class Map:
             below, above = self.place(border).regions
         return None if below is None else self.regions[below], None if above is None else self.regions[above]
 
-    def around(self, corner: Cell) -> list[Cell | None]:
-        """The regions that meet at a corner, each once; None is outside."""
+    def around(self, corner: Cell) -> Sequence[Cell | None]:
+        """The regions that meet at a corner, each once; None is outside.  Of an isolated point the one around it."""
         if isinstance(self.ground, Line):
             return list(self.beside(corner))
-        pairs = [self.beside(self.arcs[k]) for k in self.place(corner).arcs]
+        there = self.place(corner)
+        if there.kind is CornerKind.ISOLATED:
+            at, j = there.place
+            inside = self.arrangement.places.intervals
+            return [self.regions[inside[key]] for key in ((at, j), (at, j - 1)) if key in inside][:1]
+        pairs = [self.beside(self.arcs[k]) for k in there.arcs]
         return list({None if x is None else x.number: x for pair in pairs for x in pair}.values())
 
     def separates(self, border: Cell) -> bool:
