@@ -26,6 +26,7 @@ from mbsym.maps.section import Section
 from mbsym.maps.soft_borders import SoftBorders, SoftOrHard
 from mbsym.maps.subdivision import Subdivision
 from mbsym.maps.verdicts import Border, Judged
+from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word
 
 if TYPE_CHECKING:
@@ -108,7 +109,8 @@ class Cell:
 
     ``said`` holds at the sample exactly, ``certainty`` is how surely it holds in the whole cell (of counted equilibria:
     their number).  Where nothing is said ``lack`` says why; ``broken``: the demands that are not kept there.
-    ``soft``: of borders at which one pair of roots is imaginary and none to the right; None elsewhere.
+    ``soft``: of borders at which one pair of roots is imaginary and none to the right; None elsewhere.  ``nonlinear``:
+    of a verdict that leaves the motion open, what the nonlinear system shows at the sample alone.
     """
 
     shape: Shape
@@ -119,6 +121,7 @@ class Cell:
     lack: Lack | None = None
     broken: tuple[Demand, ...] = ()
     soft: SoftOrHard | None = None
+    nonlinear: Verdict | None = None
 
     @property
     def judged(self) -> Judged | None:
