@@ -11,10 +11,11 @@ from typing import Any
 
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
+from mbsym.algebra.arrangements import Arrangement, areas, decompose
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.characteristic import leading_minors
 from mbsym.algebra.failures import Failure, TooLargeError
-from mbsym.algebra.plane import AlgebraicNumber, Arrangement, Box, Point, areas, decompose
+from mbsym.algebra.plane import AlgebraicNumber, Box, Point
 from mbsym.algebra.plane.line import Line, decompose_line, univariate
 from mbsym.algebra.plane.numbers import sign
 from mbsym.analysis import Analysis

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from flint import fmpq
 
+from mbsym.algebra.arrangements import Arc, Arrangement, Corner, CornerKind
 from mbsym.algebra.certainty import Certainty
-from mbsym.algebra.plane import Arc, Arrangement, Corner, CornerKind
 from mbsym.algebra.plane.line import Line, Zero
 from mbsym.maps.admissible import Admissibility, Demand
 from mbsym.maps.axis import Axis

@@ -6,8 +6,8 @@ lines are one where only such a curve crosses them.
 
 from __future__ import annotations
 
-from mbsym.algebra.plane.arrangement import CornerKind
-from mbsym.algebra.plane.likeness import Graph
+from mbsym.algebra.arrangements.arrangement import CornerKind
+from mbsym.algebra.arrangements.likeness import Graph
 from mbsym.maps.result import Cell, Joined, Map
 
 

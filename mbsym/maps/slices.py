@@ -9,7 +9,7 @@ the plane is decomposed and judged as any other map.  Between two neighbouring c
   same (``maps.boundaries``).
 
 On arcs and at corners verdicts are those of the slice that is looked at.  Another slice between the same two values
-checks both statements: it has to correspond to the first one (``plane.likeness``), verdicts of regions included.
+checks both statements: it has to correspond to the first one (``arrangements.likeness``), verdicts of regions included.
 
 Slices in which the same is shown (``maps.seen``) are one ``Picture``.  A critical value ends it unless the same is
 shown at that value, too; values at which it was not looked at are told with the picture.
@@ -24,12 +24,13 @@ from typing import Any
 
 from flint import fmpq
 
+from mbsym.algebra.arrangements import Arrangement, decompose
+from mbsym.algebra.arrangements.likeness import alike, corresponding
+from mbsym.algebra.arrangements.space import critical_levels, flattened, levels_of
 from mbsym.algebra.failures import Limit, TooLargeError
-from mbsym.algebra.plane import AlgebraicNumber, Arrangement, Point, decompose
-from mbsym.algebra.plane.likeness import alike, corresponding
+from mbsym.algebra.plane import AlgebraicNumber, Point
 from mbsym.algebra.plane.line import Line
 from mbsym.algebra.plane.numbers import Number, between_simply, sign
-from mbsym.algebra.plane.space import critical_levels, flattened, levels_of
 from mbsym.analysis import Analysis
 from mbsym.maps.admissible import Admissibility, Demand
 from mbsym.maps.boundaries import Boundaries, norm_of_factors

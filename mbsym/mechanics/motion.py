@@ -46,7 +46,7 @@ def _turning(scene: Scene) -> tuple[str, ...]:
     return tuple(name for name, rate in rates.items() if not ring.substitute(rate, images).is_zero())
 
 
-def unperturbed(scene: Scene, velocities: bool = True) -> dict[int, Polynomial]:
+def unperturbed(scene: Scene) -> dict[int, Polynomial]:
     """Generator indices and their values on the unperturbed motion (scene over the ring)."""
     ring: Ring = scene.ring
     images: dict[int, Polynomial] = {}
@@ -55,9 +55,8 @@ def unperturbed(scene: Scene, velocities: bool = True) -> dict[int, Polynomial]:
         images |= _standing(scene, "prescribed", one.name, one.held)
     for name, (value, rate) in motion_values(scene.system).items():
         speed = scene.lower(rate)
-        if velocities:
-            images[ring.index("velocity", name)] = speed
-            images[ring.index("acceleration", name)] = ring.zero
+        images[ring.index("velocity", name)] = speed
+        images[ring.index("acceleration", name)] = ring.zero
         if name in spinning:
             continue
         images |= _standing(scene, "coordinate", name, value)

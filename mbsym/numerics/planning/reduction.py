@@ -49,7 +49,7 @@ class Reduction:
         return (*free, *(len(names) + place for place in free)), whole.state
 
 
-def resting(scenario: Scenario, ring: Ring | None = None, among: Collection[str] | None = None) -> Reduction | None:
+def resting(scenario: Scenario, among: Collection[str] | None = None) -> Reduction | None:
     """The largest set of coordinates that provably rest in this scenario, or None where there is none.
 
     ``among`` names those worth looking at (all, by default).  Parameters keep their symbols unless their value here is
@@ -60,7 +60,7 @@ def resting(scenario: Scenario, ring: Ring | None = None, among: Collection[str]
     if not candidates or len(system.coordinates) < 2:
         return None
     try:
-        found = programs(system, ring if ring is not None else ring_of(system))
+        found = programs(system, ring_of(system))
     except Failure:
         return None
     how = Certainty.PROVED

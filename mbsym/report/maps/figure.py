@@ -24,8 +24,8 @@ from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
-from mbsym.algebra.plane import Arrangement, polyline
-from mbsym.algebra.plane.drawing import Branches as Drawn
+from mbsym.algebra.arrangements import Arrangement, polyline
+from mbsym.algebra.arrangements.drawing import Branches as Drawn
 from mbsym.algebra.plane.line import Line
 from mbsym.formulas.latex import LatexNames
 from mbsym.maps.boxes import BoxMap
