@@ -32,6 +32,9 @@ from mbsym.maps.soft_borders import Onset, SoftBorders, SoftOrHard, lost
 from mbsym.maps.verdicts import Judged, matrix_at, verdict_at
 from mbsym.problems.stability.exact import inertia
 
+#: So many points of a map are judged by the nonlinear system, too.
+MOST_ASKED = 200
+
 #: Tells what is being done: a word, how much of it is done, and how much there is.
 Watch = Callable[[str, int, int], None]
 
@@ -111,7 +114,7 @@ def with_nonlinear(found: Map, analysis: Analysis, watch: Watch) -> Map:
     """The map with what the one judge says at rational samples where the first approximation and the energy are open.
 
     It is said of these points alone: what terms of higher order depend on bounds no region.  Only where the axes and
-    all that is given are parameters with numbers.
+    all that is given are parameters with numbers, and at the first ``MOST_ASKED`` of such points.
     """
     there, system = found.section, analysis.system
     if found.of is not Of.STABILITY or found.interrupted or there is None or there.constant is not None:
@@ -120,12 +123,16 @@ def with_nonlinear(found: Map, analysis: Analysis, watch: Watch) -> Map:
     related = {item.name for item in system.relations} | {name for name, _ in analysis.equilibrium.solved}
     if {*system.parameter_names} - related != {*there.numbers, *names} - related:
         return found
-    judge = OneJudge(analysis)
+    judge, left = OneJudge(analysis), MOST_ASKED
 
     def asked(cell: Cell) -> Cell:
+        nonlocal left
         point = _coordinates(cell.sample)
         if cell.judged is None or not cell.judged.verdict.word.open or not all(isinstance(x, fmpq) for x in point):
             return cell
+        if not left:
+            return cell
+        left -= 1
         values = {axis.name: Fraction(int(x.p), int(x.q)) for axis, x in zip(found.axes, point, strict=True)}
         watch("terms of higher order", cell.number, len(found.regions))
         try:

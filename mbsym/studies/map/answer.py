@@ -177,7 +177,7 @@ def remarks(found: Map, system: System | None = None) -> list[str]:
     if large:
         told.append(f"no verdict at {counted(large, 'exact point')} between regions: too large to be decided")
     told += borders_of_slices(planes) if isinstance(found, Stack) else borders(found)
-    told += _nonlinear(planes)
+    told += _nonlinear(found, planes)
     return told + list(_checked(found, planes))
 
 
@@ -252,14 +252,18 @@ def _of_stack(found: Stack) -> list[str]:
     return told
 
 
-def _nonlinear(planes: Sequence[Map]) -> Iterator[str]:
+def _nonlinear(found: Map, planes: Sequence[Map]) -> Iterator[str]:
     """What the nonlinear system shows at single points where the first approximation and the energy show nothing."""
     decided: dict[str, list[str]] = {}
     for plane in planes:
         for one in plane.cells:
             if one.nonlinear is not None:
-                point = (one.sample.x, one.sample.y) if isinstance(one.sample, Point) else (one.sample,)
-                at = ", ".join(f"{axis.name} = {x}" for axis, x in zip(plane.axes, point, strict=True))
+                point: tuple[Any, ...] = (one.sample,)
+                if isinstance(one.sample, Point):
+                    point = (one.sample.x, one.sample.y)
+                if isinstance(found, Stack):  # the slice's own value; without a rational one nothing is asked
+                    point = (*point, plane.values[found.axis.name])
+                at = ", ".join(f"{axis.name} = {x}" for axis, x in zip(found.axes, point, strict=True))
                 decided.setdefault(one.nonlinear.word.value, []).append(at)
     for word, places in decided.items():
         where = "; ".join(places[:MOST_POINTS]) + ("; ..." if len(places) > MOST_POINTS else "")
