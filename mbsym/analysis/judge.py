@@ -16,10 +16,11 @@ from typing import TYPE_CHECKING, Any
 
 from mbsym.algebra.parts import installed
 from mbsym.analysis import higher
+from mbsym.analysis.poles import pole
 from mbsym.problems.stability.problem import ExactVerdicts
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.theorems import HigherOrder
-from mbsym.problems.stability.verdict import Verdict
+from mbsym.problems.stability.verdict import Verdict, undecided
 from mbsym.problems.stability.word import Word
 
 if TYPE_CHECKING:
@@ -42,9 +43,13 @@ class Judge:
     def __call__(self, values: Mapping[str, Fraction]) -> Verdict:
         return self.decided(self.first_approximation(values), values)
 
-    @cached_property
-    def first_approximation(self) -> ExactVerdicts:
+    def first_approximation(self, values: Mapping[str, Any]) -> Verdict:
         """The verdict of step 1; irrational values are enclosures."""
+        divisor = pole(self.analysis, values)
+        return undecided(Because.POLE, divisor) if divisor else self._exact(values)
+
+    @cached_property
+    def _exact(self) -> ExactVerdicts:
         of = self.analysis
         return ExactVerdicts(of.parameters_scene, of.balance, of.judgeable, of.equilibrium, of.signs)
 

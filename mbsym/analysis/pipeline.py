@@ -80,7 +80,7 @@ KNOW_CONSTRAINTS = frozenset(
         *("scene", "held_scene", "parameters_scene", "signs", "kinematics", "energy", "equations", "constraints"),
         *("tied_in_coordinates", "first_order", "small_parameters"),
         *("claims", "checks", "reduced", "residuals", "equilibrium", "first_approximation", "linearisation"),
-        *("judgeable", "balance", "stability", "trials", "integrals", "reactions"),
+        *("state_space", "judgeable", "balance", "stability", "trials", "integrals", "reactions"),
         *(f"check: {name}" for name in ("kinematics", "energy", "equations of motion", *constrained.CHECKS)),
         f"check: {constrained.REACTIONS}",
         *("check: equilibrium", "check: perturbed motion"),

@@ -6,7 +6,7 @@ boxes; over three a stack of slices, each a map of its own.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field, replace
 from enum import StrEnum
 from fractions import Fraction
@@ -155,6 +155,23 @@ class Cell:
             return (self.lack,)
         found = self.judged
         return (found.verdict.word, found.verdict.theorems, found.right, found.real_right, found.degree)
+
+
+class Joined:
+    """Numbers that are joined to classes; the least stands for each."""
+
+    def __init__(self, count: int) -> None:
+        self._above = list(range(count))
+
+    def __call__(self, k: int) -> int:
+        while self._above[k] != k:
+            self._above[k] = self._above[self._above[k]]
+            k = self._above[k]
+        return k
+
+    def join(self, a: int, b: int) -> None:
+        a, b = self(a), self(b)
+        self._above[max(a, b)] = min(a, b)
 
 
 #: How the space of parameters is divided.
@@ -309,25 +326,13 @@ class Map:
     @property
     def together(self) -> tuple[int, ...]:
         """For each region the first of those that it makes one with, as no border between them changes anything."""
-        pairs = [(a.number, b.number) for one in self.borders for a, b in [self.beside(one)] if a and b
-                 and self.look(a) == self.look(one) == self.look(b)]  # fmt: skip
-        return _together(len(self.regions), pairs)
+        regions = Joined(len(self.regions))
+        for one in self.borders:
+            a, b = self.beside(one)
+            if a is not None and b is not None and self.look(a) == self.look(one) == self.look(b):
+                regions.join(a.number, b.number)
+        return tuple(map(regions, range(len(self.regions))))
 
     def conditions(self, cell: Cell) -> list[Condition]:
         """The conditions that are equalities on a border."""
         return [condition for k in self.place(cell).factors for condition in self.boundaries.conditions[k]]
-
-
-def _together(count: int, alike: Iterable[tuple[int, int]]) -> tuple[int, ...]:
-    """For each of so many regions the first one that it is joined with, over pairs that nothing separates."""
-    first = list(range(count))
-
-    def of(k: int) -> int:
-        while first[k] != k:
-            k = first[k]
-        return k
-
-    for a, b in alike:
-        low, high = sorted((of(a), of(b)))
-        first[high] = low
-    return tuple(of(k) for k in range(count))

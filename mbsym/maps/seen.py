@@ -8,30 +8,13 @@ from __future__ import annotations
 
 from mbsym.algebra.arrangements.arrangement import Arrangement, CornerKind
 from mbsym.algebra.arrangements.likeness import Graph
-from mbsym.maps.result import Cell, Map
-
-
-class _Joined:
-    """Numbers that are joined to classes; the least stands for each."""
-
-    def __init__(self, count: int) -> None:
-        self._above = list(range(count))
-
-    def __call__(self, k: int) -> int:
-        while self._above[k] != k:
-            self._above[k] = self._above[self._above[k]]
-            k = self._above[k]
-        return k
-
-    def join(self, a: int, b: int) -> None:
-        a, b = self(a), self(b)
-        self._above[max(a, b)] = min(a, b)
+from mbsym.maps.result import Cell, Joined, Map
 
 
 def seen(found: Map) -> Graph:
     """Areas, lines and points with their looks; lines have edges to the areas beside them and to their end points."""
     there = found.arrangement
-    areas, lines = _Joined(len(there.regions)), _Joined(len(there.arcs))
+    areas, lines = Joined(len(there.regions)), Joined(len(there.arcs))
     shown = [found.drawn(arc) for arc in found.arcs]
     for arc, kept in zip(there.arcs, shown, strict=True):
         below, above = arc.regions
@@ -74,8 +57,8 @@ def _line(found: Map, arc: Cell) -> object:
 
 def _graph(
     found: Map,
-    areas: _Joined,
-    lines: _Joined,
+    areas: Joined,
+    lines: Joined,
     kept: list[int],
     told: list[object],
     points: list[tuple[object, list[int]]],

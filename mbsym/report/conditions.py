@@ -215,9 +215,9 @@ class Shown:
 
 
 _HELD = (
-    "while the inputs are held at constant values",
-    "while the inputs are held at constant values for which the condition of problem 4 holds",
-    "while the inputs are held at constant values for which the conditions of problem 4 hold",
+    "while the inputs keep their values on the unperturbed motion",
+    "while the inputs keep their values on the unperturbed motion, for which the condition of problem 4 holds",
+    "while the inputs keep their values on the unperturbed motion, for which the conditions of problem 4 hold",
 )
 
 

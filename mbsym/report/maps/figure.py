@@ -47,6 +47,7 @@ from mbsym.report.maps.frame import (
     TEXT,
     WIDEST,
     axis_label,
+    equal,
     framed,
     legend,
     named,
@@ -191,7 +192,7 @@ def title(system: System, found: Stack, picture: Picture) -> str:
     """``C = 7/6`` and, on a second line, between which values the picture is the same."""
     symbol = named(LatexNames([found.axis.name]), found.axis.name)
     unit = pretty(unit_of(system, found.axis.name))
-    first = f"{symbol} = {number(found.layers[picture.shown].z)}" + (f" {unit}" if unit else "")
+    first = f"{symbol} {equal(found.layers[picture.shown].z)}" + (f" {unit}" if unit else "")
     if len(picture.layers) == 1 and found.layers[picture.shown].critical:
         return first
     low, closed_low, high, closed_high = found.ends(picture)

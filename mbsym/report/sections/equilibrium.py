@@ -40,7 +40,6 @@ def content(results: Results) -> Iterator[Block]:
     system, found = results.system, results.found.get(4)
     if system.motion or found is not None:
         yield paragraph(Said("The unperturbed motion"))
-    if system.motion:
         yield Display(unperturbed_motion(system), "motion")
     yield from results.missing(4)
     if found is None:

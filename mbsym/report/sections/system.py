@@ -189,10 +189,14 @@ def _body(body: Body, number: int, accepted: dict[str, str]) -> Iterator[Inline]
 
 
 def unperturbed_motion(system: System) -> Listed:
-    """The motion about which problems 4 to 6 are, and the values at which inputs are held."""
+    """The motion about which problems 4 to 6 are, and the values at which inputs are held.
+
+    What is not named is 0, but for what constraints make of it.
+    """
+    moves = {x.coordinate: moving(x.value, x.rate) for x in system.motion}
     alike: dict[Expression, list[str]] = {}
-    for x in system.motion:
-        alike.setdefault(moving(x.value, x.rate), []).append(x.coordinate)
+    for name in moves if system.constraints else system.coordinates:
+        alike.setdefault(moves.get(name, ZERO), []).append(name)
     items = [Relation(*(part for name in names for part in (Name(name), "=")), value) for value, names in alike.items()]
     held = [Relation(Name(x.name), "=", x.held) for x in system.inputs]
     return Listed((*items, *held))
