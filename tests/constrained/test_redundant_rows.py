@@ -442,6 +442,29 @@ def test_what_cannot_move_is_not_run(tmp_path: Path) -> None:
     assert "nothing can move from q1 = 0" in done.output
 
 
+def test_full_stretch_is_singular(tmp_path: Path) -> None:
+    """Two links of length sqrt(2) between points 2 sqrt(2) apart: J has rank 1 of 2 in the one position that they have.
+
+    To first order the elbow moves across, to second order it does not; the pendulum alone has a freedom.  It was run as
+    a mechanism of two freedoms, off its constraints, with exit code 0.
+    """
+    file = CASES / "held-at-full-stretch.yaml"
+    result = CliRunner().invoke(main, ["simulate", str(file), "--time", "1", "--out", str(tmp_path / "out")])
+    assert result.exit_code == 3
+    assert "their rank is 1) they stop at second order" in result.stderr
+    assert "at most 2 of 3 velocities are free" in " ".join(result.stdout.split())
+
+
+@pytest.mark.parametrize("name", ["par3", "bricard", "sarrus-linkage", "tied-twice", "coupling-rod"])
+def test_regular_positions_are_held_no_further(name: str) -> None:
+    """Rows that follow from others all along: also beside the start."""
+    constraints = Dynamics(begun(case(name))).constraints
+    assert constraints is not None
+    assert len(constraints.kept) < len(constraints)
+    start = np.array([float(x) for x in constraints._scenario.state])
+    assert not any(constraints.obstructed(place) for place in constraints._places(start))
+
+
 def test_runs_of_regular_positions_end_whole() -> None:
     """From a = -0.1, where 4 rows seemed independent beside the start; the energy is kept."""
     run = simulate(begun(case("par3")), Request(time=2.0, samples=21, estimate=False))
