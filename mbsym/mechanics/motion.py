@@ -46,7 +46,7 @@ def _turning(scene: Scene) -> tuple[str, ...]:
     return tuple(name for name, rate in rates.items() if not ring.substitute(rate, images).is_zero())
 
 
-def unperturbed(scene: Scene, velocities: bool = True) -> dict[int, Polynomial]:
+def unperturbed(scene: Scene) -> dict[int, Polynomial]:
     """Generator indices and their values on the unperturbed motion (scene over the ring)."""
     ring: Ring = scene.ring
     images: dict[int, Polynomial] = {}
@@ -55,9 +55,8 @@ def unperturbed(scene: Scene, velocities: bool = True) -> dict[int, Polynomial]:
         images |= _standing(scene, "prescribed", one.name, one.held)
     for name, (value, rate) in motion_values(scene.system).items():
         speed = scene.lower(rate)
-        if velocities:
-            images[ring.index("velocity", name)] = speed
-            images[ring.index("acceleration", name)] = ring.zero
+        images[ring.index("velocity", name)] = speed
+        images[ring.index("acceleration", name)] = ring.zero
         if name in spinning:
             continue
         images |= _standing(scene, "coordinate", name, value)
@@ -94,7 +93,8 @@ def carried(scene: Scene, rates: Mapping[str, Polynomial] | None = None) -> dict
             own = {name: scene.ring.substitute(scene.lower(values[name][1]), images) for name in turning(scene)}
             _CARRIED[scene] = carried(scene, own)
         return dict(_CARRIED[scene])
-    values, found = motion_values(scene.system), {}
+    values = motion_values(scene.system)
+    found: dict[int, Polynomial] = {}
     for name, (first, ratio) in in_step(scene.ring, rates).items():
         way = multiply(number(ratio), subtract(Name(first), values[first][0]))
         with suppress(Failure):  # a part of an angle that the ring does not know
