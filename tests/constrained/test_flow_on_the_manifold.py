@@ -230,6 +230,31 @@ def test_linearised_flows(kind: Any, dependent: bool) -> None:
     assert tried >= 4
 
 
+def test_roots_in_speeds() -> None:
+    """x' = A x in declared speeds of the car has all roots that are not zero, those of light trailers, too."""
+    place, tried = "coordinates: [x, y, th]}", 0
+    for seed in range(6):
+        text = trailers(Random(f"trailers {seed}"), False)
+        own = text.replace(place, place[:-1] + ", speeds: {w: omega3, u: x_dot*cos(th) + y_dot*sin(th)}}")
+        plain, told = analysed(text), analysed(own)
+        if plain is None or told is None:
+            continue
+        slopes, basis, _ = flow(plain.system)
+        found = np.linalg.eigvals(numbers(told.first_order.A.polynomials))
+        assert apart(found, np.linalg.eigvals(basis.T @ slopes @ basis)) < 1e-4, own
+        tried += 1
+    assert tried >= 4
+
+
+def test_a_light_trailer_has_its_root_in_speeds() -> None:
+    """p' = -v p/d - ... : pushed (d < 0) it folds, with the root -v/d, whatever the car does."""
+    text = (CASES / "light-push.yaml").read_text(encoding="utf-8")
+    text = text.replace("coordinates: [x, y, th]}", "coordinates: [x, y, th], speeds: {w: omega3}}")
+    found = Analysis(read(text)[0]).first_order  # type: ignore[arg-type]
+    k = found.names.index("ps")
+    assert str(found.A[k, k]) == "-v/d"
+
+
 def test_inputs_and_outputs_of_a_segway() -> None:
     """Motors u1, u2 between body and wheels.  By hand, with wheels of mass w and radius r at d on both sides, half a
     turn's inertia w r^2/2, a body of mass M, height l and inertia J about the axle's direction, p the mean of the
