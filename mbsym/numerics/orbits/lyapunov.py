@@ -50,8 +50,8 @@ class Exponents:
     ``history`` (intervals, k) are the exponents up to ``times``.  ``divergence`` is the mean of tr J along the motion
     and ``sum_error`` how far the sum of all exponents is from it; nan where not all were asked for.
 
-    ``linear``: the equations are linear in the state (proved: their Jacobian does not know it), so that all motions part
-    alike and none is chaotic; ``resting``: the motion is a rest in every digit.
+    ``linear``: the equations are linear in the state (proved: their Jacobian does not know it), so that all motions
+    part alike and none is chaotic; ``resting``: the motion is a rest in every digit.
     """
 
     values: Any

@@ -88,8 +88,8 @@ def _judged(found: Exponents) -> str:
     match found.parting:
         case Parting.POSITIVE if found.linear:
             return (
-                "neighbouring motions part exponentially over this time; the equations are linear: all of their motions "
-                "part alike, and none is chaotic"
+                "neighbouring motions part exponentially over this time; the equations are linear: all of their "
+                "motions part alike, and none is chaotic"
             )
         case Parting.POSITIVE if found.resting:
             return "the motion is a rest, and neighbouring motions leave it exponentially over this time"
