@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from mbsym.algebra.failures import LOG
+from mbsym.algebra.parts import missing
 from mbsym.expressions.counting import counted
 from mbsym.expressions.safe import safe as escaped
 
@@ -92,8 +93,15 @@ def console(stderr: bool = False) -> Console:
     from rich.text import Text
 
     class Wrapping(Console):
-        def print(self, *objects: Any, soft_wrap: bool | None = None, markup: bool | None = None, **how: Any) -> None:
-            width = asked_width(stderr)
+        def print(
+            self,
+            *objects: Any,
+            soft_wrap: bool | None = None,
+            markup: bool | None = None,
+            margin: int | None = None,
+            **how: Any,
+        ) -> None:
+            width = asked_width(stderr) if margin is None else asked_width(stderr) or sys.maxsize
             plain = len(objects) == 1 and isinstance(objects[0], Text | str) and not how and not soft_wrap
             if width is None or not plain:
                 super().print(*objects, soft_wrap=soft_wrap, markup=markup, **how)
@@ -101,10 +109,12 @@ def console(stderr: bool = False) -> Console:
             line = objects[0]
             text = line if isinstance(line, Text) else Text(line) if markup is False else Text.from_markup(line)
             for whole in text.split(allow_blank=True):
-                indent, at = _breaks(whole.plain, width)
+                indent, at = _breaks(whole.plain, width, margin)
                 for k, piece in enumerate(whole.divide(at)):
                     if k < len(at):
                         piece.rstrip()
+                    if margin is not None:
+                        piece.plain = piece.plain.replace(UNBROKEN, " ")
                     super().print(Text(indent if k else "") + piece, soft_wrap=True)
 
     terminal = (sys.stderr if stderr else sys.stdout).isatty()
@@ -143,12 +153,15 @@ def _breaks(line: str, width: int, margin: int | None = None) -> tuple[str, list
     """What stands before the further lines, and where these begin: at words, so that none is wider that need not be."""
     before = len(line) - len(line.lstrip(" "))
     indent, at, start, room = " " * (before + HANGING if margin is None else margin), list[int](), 0, width
-    for word in re.finditer(r"\S+", line):
+    for word in re.finditer(r"[^ \t\n]+", line):
         if word.end() - start > room and word.start() > max(start, before):
             at.append(word.start())
             start, room = word.start(), width - len(indent)
     return indent, at
 
+
+#: A space at which no line ends; it is printed as an ordinary one.
+UNBROKEN = "\u00a0"
 
 #: What rich takes for a terminal though the output is none.
 _FORCED = ("FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE")
@@ -156,23 +169,26 @@ _FORCED = ("FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE")
 _CONTROLS = dict.fromkeys((7, 8, 11, 12, 13))
 
 
-def tell(*parts: str | tuple[str, str], indent: int = 0, whole: bool = False) -> None:
+def tell(*parts: str | tuple[str, str], indent: int = 0, whole: bool = False, margin: int | None = None) -> None:
     """A line of words, some with a style, as rich prints it; into a file or pipe without waiting for rich.
 
-    One that is ``whole`` is not wrapped.
+    One that is ``whole`` is not wrapped.  ``margin``: where further lines begin; spaces may be ``UNBROKEN`` then.
     """
     if sys.stdout.isatty() or any(name in os.environ for name in _FORCED):
         from rich.text import Text
 
-        text = Text.assemble(*parts)
+        assembled = Text.assemble(*parts)
         if indent:
-            indented(text, indent)
+            indented(assembled, indent)
+        elif margin is not None:
+            console().print(assembled, margin=margin)  # type: ignore[call-arg]
         else:
-            console().print(text, soft_wrap=whole or None)
+            console().print(assembled, soft_wrap=whole or None)
         return
     words = " " * indent + "".join([part if isinstance(part, str) else part[0] for part in parts])
     width = None if whole else asked_width()
-    print("\n".join([wrapped(line.expandtabs(), width) for line in words.translate(_CONTROLS).split("\n")]))
+    text = "\n".join([wrapped(line.expandtabs(), width, margin) for line in words.translate(_CONTROLS).split("\n")])
+    print(text if margin is None else text.replace(UNBROKEN, " "))
 
 
 #: Columns of a wide table that does not go to a terminal.
@@ -301,10 +317,12 @@ def complain(path: Path | str, text: str) -> None:
 
 
 def defect(error: BaseException, where: Path | str | None = None) -> None:
-    """Tells of an exception that nobody foresaw, or of too little memory; with ``--debug``, where it came from."""
+    """Tells of an exception nobody foresaw, too little memory, a missing part; with ``--debug``, where it came from."""
     DEFECTS.told.add(described(error))
     before = "" if where is None else f"{printable(where)}: "
-    if isinstance(error, MemoryError):
+    if part := missing(error):
+        print(f"{before}{part} is not installed", file=sys.stderr)
+    elif isinstance(error, MemoryError):
         print(f"{before}out of memory; lower --terms, or ask for fewer --problems", file=sys.stderr)
     else:
         print(f"{before}internal error, please report it: {escaped(described(error))}", file=sys.stderr)

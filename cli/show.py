@@ -7,15 +7,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mbsym.expressions.counting import counted
-from mbsym_cli.console import printable, tell
+from mbsym_cli.console import UNBROKEN, printable, tell
 
 if TYPE_CHECKING:
     from mbsym.problems.checks import Check
     from mbsym.report.brief import Brief
-    from mbsym.report.content import Facts
+    from mbsym.report.content import Facts, Inline
     from mbsym.report.language import Language
     from mbsym.report.summary import Line, Summary
     from mbsym.report.words.claims import ClaimLine
+
+#: Longer relations may be broken, in letters.
+MOST_UNBROKEN = 40
 
 _COLOURS = {"exact": "green", "verified numerically": "green", "FAILED": "bold red"}
 _COLOURS |= {"undecided": "yellow", "singular": "yellow"}
@@ -43,32 +46,39 @@ def show_finding(
     language: Language,
     further: Iterable[Line] = (),
 ) -> None:
-    """What was found, in a line each; what ``further`` problems that were asked for gave; where all of it is."""
+    """What was found, each with its name; what ``further`` problems that were asked for gave; where all of it is."""
     from mbsym.report.content import say
     from mbsym.report.plain_writer import Writer
 
     writer = Writer(language, readable=True)
     tell((title, "bold"), (f"  {printable(path)}, {seconds:.2f} s", "dim"))
-    for name, said in found.items:
-        label = "".join(map(writer.inline, name))
-        tell((f"{label}: ", "bold cyan"), *((writer.inline(x), _style(x)) for x in said), indent=2)
+    labels = [writer.inline(fact.name) for fact in found.items]
+    width = max(map(len, labels)) + 4
+    for label, fact in zip(labels, found.items, strict=True):
+        for k, said in enumerate(fact.lines):
+            name = (f"  {label:<{width - 2}}", "bold cyan") if k == 0 else " " * width
+            tell(name, *((_unbroken(text, x), _style(x)) for text, x in writer.pieces(said)), margin=width + 2)
     for line in further:
         _problem(line)
     if files:
-        folder = files[0].parent
         page = next((x for x in files if x.name == "report.html"), files[0])
-        text = "[[file]] in [[folder]]; with -v more is told here"
+        text = "[[file]] (all of it here: -v)"
         if len(files) > 1:
-            text = "[[file]], [[count]] files in all, in [[folder]]; with -v more is told here"
-        tell(writer.said(say(text, file=page.name, count=str(len(files)), folder=printable(folder))), indent=2)
+            text = "[[file]] (files there: [[count]]; all of it here: -v)"
+        tell(writer.said(say(text, file=printable(page), count=str(len(files)))), indent=2)
+
+
+def _unbroken(text: str, value: Inline) -> str:
+    """A short relation stands in one line."""
+    from mbsym.report.content import Relation
+
+    return text.replace(" ", UNBROKEN) if isinstance(value, Relation) and len(text) <= MOST_UNBROKEN else text
 
 
 def _style(value: object) -> str:
     """The colour of a verdict or an outcome."""
-    from mbsym.report.content import Graded, Link, Strong
+    from mbsym.report.content import Graded, Strong
 
-    while isinstance(value, Link):
-        value = value.text
     grade = value.grade if isinstance(value, Strong | Graded) else ""
     return {"good": "green", "bad": "bold red", "open": "yellow"}.get(grade, "")
 

@@ -25,10 +25,11 @@ from typing import Any
 
 from flint import acb, acb_poly, arb, ctx, fmpq, fmpq_poly
 
+from mbsym.algebra.arrangements import Arrangement
+from mbsym.algebra.arrangements.arrangement import Arc, Piece, sample_of
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import Failure, Limit, TooLargeError
-from mbsym.algebra.plane import Arrangement, Point
-from mbsym.algebra.plane.arrangement import Arc, Piece, sample_of
+from mbsym.algebra.plane import Point
 from mbsym.algebra.plane.numbers import Root, between_simply, compare, enclosure, primitive, roots_between
 from mbsym.algebra.plane.numbers import high as upper
 from mbsym.algebra.plane.numbers import low as lower

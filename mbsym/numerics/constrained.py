@@ -256,16 +256,25 @@ class Constraints:
 
     @property
     def _massless(self) -> bool:
-        """Whether M is singular at the initial position and beside it."""
+        """Whether M is singular at the initial position or beside it, and the rows hold what moves no mass there.
+
+        Or singular everywhere there, whatever the rows hold.
+        """
         state = np.array([float(x) for x in self._scenario.state])
+        regular = False
         for place in self._places(state):
             masses = self._masses(np.concatenate(([0.0], place))).reshape(self.size, self.size)
             sizes = np.sqrt(np.diag(masses))
-            if not np.all(sizes > 0):
+            held = sizes > 0
+            scaled = masses / np.outer(np.where(held, sizes, 1.0), np.where(held, sizes, 1.0))
+            if np.linalg.eigvalsh(scaled)[0] > MASSLESS:
+                regular = True
                 continue
-            if np.linalg.eigvalsh(masses / np.outer(sizes, sizes))[0] > MASSLESS:
-                return False
-        return True
+            rows = self.at(0.0, place).partials / np.where(held, sizes, 1.0)
+            rows = rows / _positive(np.linalg.norm(rows, axis=1))[:, None]
+            if np.linalg.eigvalsh(scaled + rows.T @ rows)[0] > CERTAIN:
+                return True
+        return not regular
 
     @cached_property
     def nearest(self) -> tuple[Fraction, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import singledispatchmethod
 from typing import Any
@@ -35,11 +35,30 @@ class Writer:
 
     def said(self, sentence: Said) -> str:
         """A sentence with its gaps filled."""
-        parts = (
-            _notation(x) if inside else x.replace("---", "\u2014")
-            for inside, x in content.pieces(self.language.sentence(sentence.text))
-        )
-        return re.sub(r"\[\[(\w+)\]\]", lambda m: self._gap(sentence.gaps[m[1]]), "".join(parts))
+        return "".join(text for text, _ in self.pieces(sentence))
+
+    def pieces(self, value: Inline) -> Iterator[tuple[str, Inline]]:
+        """What stands one after the other, each with the value that it is of: a screen may show them differently."""
+        if isinstance(value, content.Phrase):
+            for part in value.parts:
+                yield from self.pieces(part)
+        elif isinstance(value, content.Link):
+            yield from self.pieces(value.text)
+        elif isinstance(value, Said):
+            parts = (
+                _notation(x) if inside else x.replace("---", "\u2014")
+                for inside, x in content.pieces(self.language.sentence(value.text))
+            )
+            for k, text in enumerate(re.split(r"\[\[(\w+)\]\]", "".join(parts))):
+                if k % 2 == 0:
+                    yield text, text
+                    continue
+                filled = value.gaps[text]
+                if isinstance(filled, Sequence) and not isinstance(filled, str):
+                    filled = content.joined(filled, ", ")
+                yield from self.pieces(filled)
+        else:
+            yield self.inline(value), value
 
     def line(self, block: content.Paragraph | content.Display) -> str:
         """A paragraph, or a displayed formula a little to the right."""
@@ -47,11 +66,6 @@ class Writer:
             return self.inline(content.Phrase(block.parts))
         value = block.value
         return "  " + self.inline(content.Phrase(value) if isinstance(value, tuple) else value)
-
-    def _gap(self, value: Inline | Sequence[Inline]) -> str:
-        if isinstance(value, Sequence) and not isinstance(value, str):
-            return ", ".join(map(self.inline, value))
-        return self.inline(value)
 
     @singledispatchmethod
     def inline(self, value: Any) -> str:
@@ -87,7 +101,7 @@ class Writer:
 
     @inline.register
     def _(self, value: content.Phrase) -> str:
-        return "".join(map(self.inline, value.parts))
+        return "".join(text for text, _ in self.pieces(value))
 
     @inline.register
     def _(self, value: content.Words) -> str:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from mbsym.algebra.failures import Failure
     from mbsym.analysis import Analysis
     from mbsym.model.system import System
-    from mbsym.problems.averaging import Averaged
+    from mbsym.problems.small_parameter.averaging import Averaged
     from mbsym.simulation.averaged import Measured
 
 ORDER = (

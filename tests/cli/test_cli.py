@@ -6,6 +6,7 @@ import doctest
 import json
 import os
 import re
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -295,7 +296,7 @@ def test_every_help_has_an_example(name: str) -> None:
 @pytest.mark.parametrize("number", PROBLEMS)
 def test_the_explanations_are_doctests(number: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ROOT)
-    failed, tried = doctest.testmod(PROBLEMS[number].module)
+    failed, tried = doctest.testmod(import_module(f"mbsym.problems.{PROBLEMS[number].module}"))
     assert (failed, tried > 1) == (0, True)
 
 

@@ -151,7 +151,9 @@ motion: {{x: 0, u: {held}}}
     assert analysis.integrals == ()
     from mbsym.report.sections.stability import lines
 
-    assert "all this while the inputs are held at constant values" in list(lines(analysis.stability, analysis))
+    assert "all this while the inputs keep their values on the unperturbed motion" in list(
+        lines(analysis.stability, analysis)
+    )
 
 
 BODY = """mbsym: 1

@@ -21,7 +21,7 @@ import mbsym
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.analysis import Analysis
 from mbsym.analysis.averaged import averaged_system, averaging_of
-from mbsym.problems import averaging
+from mbsym.problems.small_parameter import averaging
 from mbsym.report.schemas import schema
 from mbsym.report.sections.small_parameters import lines
 from mbsym.report.targets import TARGETS

@@ -13,7 +13,6 @@ from functools import cached_property
 
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.program import Node, Program
-from mbsym.algebra.ring import Ring
 from mbsym.expressions.tree import Expression, names
 from mbsym.model.system import System, velocity_name
 from mbsym.numerics.dynamics import Dynamics
@@ -33,9 +32,8 @@ class Parametrised(Dynamics):
         scenario: Scenario,
         free: Sequence[str],
         overrides: Mapping[str, Expression] | None = None,
-        ring: Ring | None = None,
     ) -> None:
-        super().__init__(scenario, ring)
+        super().__init__(scenario)
         self.free = tuple(free)
         self.overrides = dict(overrides or {})
         self.inputs = (*self.inputs, *self.free)

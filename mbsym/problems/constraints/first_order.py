@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.matrices import ScalarMatrix, solved
 from mbsym.algebra.ring import Polynomial
 from mbsym.formulas.formula import Matrix, column
 from mbsym.mechanics.kinematics import Scene
@@ -25,7 +26,7 @@ from mbsym.mechanics.variables import ring_environment
 from mbsym.problems.checks import Check, check_identities
 from mbsym.problems.constraints.in_speeds import dependent_speeds
 from mbsym.problems.equilibrium import Equilibrium, unsolved
-from mbsym.problems.first_order import FirstOrder, product, solved
+from mbsym.problems.first_order import FirstOrder
 from mbsym.problems.in_speeds.speeds import SpeedEquations
 from mbsym.problems.reduction import Reduced
 
@@ -108,7 +109,8 @@ def check(form: SpeedForm, found: FirstOrder, reduced: Reduced, at: Equilibrium)
 
     a, b, c = on(equations.A), on(equations.B), on(equations.C)
     below = solved(ring, a, [[*(-row[place[i]] for i in range(n)), *(-x for x in b[k])] for k, row in enumerate(c)])
-    left, right = product(ring, found.A.polynomials, rows), product(ring, rows, [*nu, *below])
+    change = ScalarMatrix(ring, rows)
+    left, right = ScalarMatrix(ring, found.A.polynomials) @ change, change @ ScalarMatrix(ring, [*nu, *below])
     differences = {
         f"the row of {name}, column {j}": ring.reduce(x - y - along(z))
         for name, one, other, moved in zip(found.names, left, right, rows, strict=True)
@@ -141,6 +143,7 @@ def _motion(form: SpeedForm, reduced: Reduced, at: Equilibrium) -> tuple[Scene, 
         else:
             found[ring.index("coordinate", name)] = ring.substitute(value, images)
         found[ring.index("velocity", name)] = ring.substitute(rate, images)
+    found |= {k: ring.substitute(x, images) for k, x in base.related.items() if k not in images}
     return plain, found
 
 

@@ -18,6 +18,7 @@ from mbsym.report.words.normal_form_words import sentences
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+    from mbsym.formulas.formula import Formula
     from mbsym.report.results import Results
 
 
@@ -90,3 +91,19 @@ def content(results: Results) -> Iterator[Block]:
 def lines(found: NormalForms, analysis: Analysis) -> Iterator[str]:
     """The lines in the terminal."""
     yield from map(TERMINAL.said, sentences(found))
+
+
+def formulas(found: NormalForms, system: System) -> Iterator[tuple[str, Formula]]:
+    """What each formula is, and the formula: those that model.py has."""
+    symbols = found.in_symbols
+    if isinstance(symbols, InSymbols):
+        yield "sum of squares of the frequencies", symbols.trace
+        yield "product of squares of the frequencies", symbols.product
+        yield "discriminant", symbols.discriminant
+        yield "D4", symbols.determinant
+        yield "D4 vanishes with", symbols.zero
+        for vector, formula in symbols.resonances:
+            yield f"resonance {':'.join(map(str, vector))} vanishes with", formula
+    elif isinstance(symbols, Focus):
+        yield "square of the frequency", symbols.square
+        yield f"coefficient for the amplitude of {symbols.amplitude_of}", symbols.coefficient

@@ -19,6 +19,7 @@ from mbsym.report.words.expansion_words import coefficients, of_averaging, of_me
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+    from mbsym.formulas.formula import Formula
     from mbsym.report.results import Results
 
 
@@ -97,3 +98,18 @@ def _wave(found: SmallParameters, system: System) -> Iterator[Paragraph | Displa
 def lines(found: SmallParameters, analysis: Analysis) -> Iterator[str]:
     """The lines in the terminal."""
     return map(TERMINAL.line, told(found, analysis.system))
+
+
+def formulas(found: SmallParameters, system: System) -> Iterator[tuple[str, Formula]]:
+    """What each formula is, and the formula: those that model.py has."""
+    if found.slow is not None:
+        for one in coefficients(found.slow):
+            yield f"{one.variable}{chr(39) if one.rate else ''}, order {one.order}", one.formula
+    if found.oscillation is not None:
+        for one in oscillation_words.coefficients(found.oscillation):
+            yield f"periodic solution: {one.variable}{chr(39) if one.rate else ''}, order {one.order}", one.formula
+    for each in averages(found, system):
+        if each.found is not None:
+            over = f"averaged over {each.found.phase} ({each.found.scaling})"
+            yield f"effective potential, {over}", each.found.potential
+            yield f"what the fast phase adds, {over}", each.found.vibrational

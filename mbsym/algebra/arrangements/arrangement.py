@@ -11,10 +11,10 @@ from typing import Any
 
 from flint import fmpq
 
+from mbsym.algebra.arrangements.stacks import Column, Fibre
 from mbsym.algebra.plane.numbers import Rational, Root, compare, primitive, roots_between, sign
 from mbsym.algebra.plane.points import Point
 from mbsym.algebra.plane.projection import Box, Curve, Polynomial
-from mbsym.algebra.plane.stacks import Column, Fibre
 
 
 class CornerKind(StrEnum):
@@ -172,10 +172,6 @@ class Arrangement:
             found.append(table)
             assert at < len(self.columns)
         return tuple(found)
-
-    def signs_at(self, point: Point) -> tuple[int, ...]:
-        """The signs of the given factors at an exact point."""
-        return tuple(point.sign(p) for p in self.factors)
 
 
 def sample_of(root: Any) -> Any:
