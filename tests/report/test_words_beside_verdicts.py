@@ -305,6 +305,8 @@ def test_what_loses_energy_by_terms_of_higher_order_is_not_called_conservative()
     """x'' + c x'^3 + k x = 0 loses energy at the rate c x'^4."""
     oscillators = TWO.replace("LOAD", "potential: k*(x**2 + y**2)/2")
     assert all("(conservative)" in x for x in headings_of(oscillators))
+    given = "mbsym: 1\nname: given\nparameters: {g: real}\nlinear system: {coordinates: [x, y], G: [[0, g], [-g, 0]]}\n"
+    assert headings_of(given) == ["x, y (gyroscopic conservative)"]  # there are no other terms
     lossy = oscillators.replace("motion", "  - rayleigh: c*x_dot**4/4\nmotion")
     assert all("in first approximation conservative" in x for x in headings_of(lossy))
 
