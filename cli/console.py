@@ -105,11 +105,15 @@ def console(stderr: bool = False) -> Console:
                 for k, piece in enumerate(whole.divide(at)):
                     if k < len(at):
                         piece.rstrip()
+                    piece.plain = piece.plain.replace(UNBROKEN, " ")
                     super().print(Text(indent if k else "") + piece, soft_wrap=True)
 
     terminal = (sys.stderr if stderr else sys.stdout).isatty()
     return Wrapping(stderr=stderr, highlight=False, soft_wrap=not terminal, width=None if terminal else 120)
 
+
+#: A space at which no line ends.
+UNBROKEN = "\u00a0"
 
 #: What is left of a line stands so much further to the right.
 HANGING = 2
@@ -143,11 +147,18 @@ def _breaks(line: str, width: int, margin: int | None = None) -> tuple[str, list
     """What stands before the further lines, and where these begin: at words, so that none is wider that need not be."""
     before = len(line) - len(line.lstrip(" "))
     indent, at, start, room = " " * (before + HANGING if margin is None else margin), list[int](), 0, width
-    for word in re.finditer(r"\S+", line):
-        if word.end() - start > room and word.start() > max(start, before):
-            at.append(word.start())
-            start, room = word.start(), width - len(indent)
+    for first, last in _words(line, width - len(indent)):
+        if last - start > room and first > max(start, before):
+            at.append(first)
+            start, room = first, width - len(indent)
     return indent, at
+
+
+def _words(line: str, widest: int) -> Iterator[tuple[int, int]]:
+    """Where words begin and end; a sign is one with what is behind it, and what would be too wide is several."""
+    for word in re.finditer(r"(?:[-+=<>]+ )?[^ ]+", line):
+        inner = f"[^{UNBROKEN}]+" if word.end() - word.start() > widest else ".+"
+        yield from (part.span() for part in re.compile(inner).finditer(line, *word.span()))
 
 
 #: What rich takes for a terminal though the output is none.
@@ -164,15 +175,15 @@ def tell(*parts: str | tuple[str, str], indent: int = 0, whole: bool = False) ->
     if sys.stdout.isatty() or any(name in os.environ for name in _FORCED):
         from rich.text import Text
 
-        text = Text.assemble(*parts)
-        if indent:
-            indented(text, indent)
-        else:
-            console().print(text, soft_wrap=whole or None)
+        text = Text.assemble(" " * indent, *parts)
+        if whole:
+            text.plain = text.plain.replace(UNBROKEN, " ")
+        console().print(text, soft_wrap=whole or None)
         return
     words = " " * indent + "".join([part if isinstance(part, str) else part[0] for part in parts])
     width = None if whole else asked_width()
-    print("\n".join([wrapped(line.expandtabs(), width) for line in words.translate(_CONTROLS).split("\n")]))
+    lines = [wrapped(line.expandtabs(), width) for line in words.translate(_CONTROLS).split("\n")]
+    print("\n".join(lines).replace(UNBROKEN, " "))
 
 
 #: Columns of a wide table that does not go to a terminal.

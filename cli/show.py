@@ -6,32 +6,16 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mbsym.expressions.counting import counted
+from mbsym.report.content import Said, say
 from mbsym_cli.console import printable, tell
 
 if TYPE_CHECKING:
-    from mbsym.problems.checks import Check
     from mbsym.report.brief import Brief
     from mbsym.report.content import Facts
-    from mbsym.report.language import Language
-    from mbsym.report.summary import Line, Summary
-    from mbsym.report.words.claims import ClaimLine
+    from mbsym.report.plain_writer import Line, Writer
 
 _COLOURS = {"exact": "green", "verified numerically": "green", "FAILED": "bold red"}
 _COLOURS |= {"undecided": "yellow", "singular": "yellow"}
-_CLAIM_COLOURS = {"held": "green", "refuted": "bold red", "undecided": "yellow"}
-
-
-def show(found: Summary, path: Path, seconds: float) -> None:
-    """Problems with what they gave and the seconds they took, the self-check, and where the files are."""
-    tell((found.system, "bold"), (f"  {printable(path)}, {seconds:.2f} s", "dim"))
-    for line in found.problems:
-        _problem(line)
-    _claims(found.claims)
-    _checks(found.checks)
-    if found.files:
-        folder = found.files[0].parent
-        tell("  files in ", (printable(folder), "bold"), f": {', '.join(_listed(found.files, folder))}")
 
 
 def show_finding(
@@ -40,46 +24,20 @@ def show_finding(
     path: Path,
     seconds: float,
     files: Sequence[Path],
-    language: Language,
+    writer: Writer,
     further: Iterable[Line] = (),
+    more: bool = False,
 ) -> None:
-    """What was found, in a line each; what ``further`` problems that were asked for gave; where all of it is."""
-    from mbsym.report.content import say
-    from mbsym.report.plain_writer import Writer
-
-    writer = Writer(language, readable=True)
+    """What was found, in a line each; ``further`` lines; where all of it is, and how ``more`` of it is told."""
     tell((title, "bold"), (f"  {printable(path)}, {seconds:.2f} s", "dim"))
-    for name, said in found.items:
-        label = "".join(map(writer.inline, name))
-        tell((f"{label}: ", "bold cyan"), *((writer.inline(x), _style(x)) for x in said), indent=2)
-    for line in further:
-        _problem(line)
+    for parts, whole in (*writer.document([found]), *further):
+        tell("  ", *parts, whole=whole)
     if files:
         folder = files[0].parent
         page = next((x for x in files if x.name == "report.html"), files[0])
-        text = "[[file]] in [[folder]]; with -v more is told here"
-        if len(files) > 1:
-            text = "[[file]], [[count]] files in all, in [[folder]]; with -v more is told here"
-        tell(writer.said(say(text, file=page.name, count=str(len(files)), folder=printable(folder))), indent=2)
-
-
-def _style(value: object) -> str:
-    """The colour of a verdict or an outcome."""
-    from mbsym.report.content import Graded, Link, Strong
-
-    while isinstance(value, Link):
-        value = value.text
-    grade = value.grade if isinstance(value, Strong | Graded) else ""
-    return {"good": "green", "bad": "bold red", "open": "yellow"}.get(grade, "")
-
-
-def _listed(files: Sequence[Path], folder: Path) -> list[str]:
-    """The files of a folder by name; those in folders in it are counted, each such folder where its first file is."""
-    inner = [path.relative_to(folder).parts[:-1] for path in files]
-    told = {
-        parts: f"{'/'.join(parts)} ({counted(inner.count(parts), 'file')})" if parts else "" for parts in set(inner)
-    }
-    return list(dict.fromkeys(told[parts] or path.name for parts, path in zip(inner, files, strict=True)))
+        text = "[[file]], [[count]] files in all, in [[folder]]" if len(files) > 1 else "[[file]] in [[folder]]"
+        where = writer.said(say(text, file=page.name, count=str(len(files)), folder=printable(folder)))
+        tell(where, *(("; ", writer.said(Said("with -v more is told here"))) if more else ()), indent=2)
 
 
 def show_brief(found: Brief, name: str, width: int) -> None:
@@ -93,41 +51,3 @@ def show_brief(found: Brief, name: str, width: int) -> None:
         (f"{found.seconds:7.2f} s", "dim"),
         (f"  {found.missing}" if found.missing else "", "yellow"),
     )
-
-
-def _problem(line: Line) -> None:
-    tell("  ", (f"{line.number} {line.title}", "bold cyan"), (f"  {line.seconds:.3f} s", "dim"))
-    for text in line.lines:
-        indent = 4 + len(text) - len(text.lstrip())
-        tell((text.strip(), "" if line.available else "yellow"), indent=indent)
-
-
-def _claims(claims: tuple[ClaimLine, ...]) -> None:
-    """How many hold; then each with its place, and by what it differs."""
-    if not claims:
-        return
-    from mbsym.report.words.claims import together
-
-    words = [claim.word for claim in claims]
-    counts = [f"{words.count(word)} {word}" for word in ("held", "refuted", "undecided") if word in words]
-    tell((f"  claims: {', '.join(counts)}", "bold cyan"))
-    width = min(28, max(len(claim.place) for claim in claims))
-    for group in together(claims):
-        claim = group[0]
-        place = f"{claim.place:<{width}}  " if width else ""
-        told = (f"{claim.title}: ", claim.outcome)
-        if len(group) > 1:
-            told = (f"{len(group)} claims ", claim.outcome.replace("holds", "hold", 1))
-        tell(place + told[0], (told[1], _CLAIM_COLOURS[claim.word]), indent=4)
-        for text in claim.lines:
-            tell(text.strip(), indent=6 + len(text) - len(text.lstrip()))
-
-
-def _checks(checks: tuple[Check, ...]) -> None:
-    if not checks:
-        return
-    tell(("  self-check: two independent routes each", "bold cyan"))
-    width = max(len(check.name) for check in checks)
-    for check in checks:
-        outcome = f"{check.outcome} ({check.detail})" if check.detail else check.outcome
-        tell(f"{check.name:<{width}}  ", (outcome, _COLOURS[check.outcome]), indent=4)

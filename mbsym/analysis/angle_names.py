@@ -2,11 +2,12 @@ r"""How sines, cosines and rates are written where they are variables of a field
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.ring import Ring
-from mbsym.formulas import latex, mathml
+from mbsym.formulas import latex, mathml, python
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
@@ -38,4 +39,5 @@ def write_in(ring: Ring, analysis: Analysis, names: Mapping[str, str]) -> tuple[
         latex.write_as(ring, told | symbols)
     if page:
         mathml.write_as(ring, page)
+        python.write_as(ring, {x: re.sub("_dot$", "'", names[x]) for x in page})
     return tuple((plain, name) for plain, name in names.items() if plain != name)

@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from scipy.integrate import solve_ivp
+from terminal import told
 
 import mbsym
 from mbsym.algebra.failures import NoClosedForm
@@ -23,7 +24,6 @@ from mbsym.analysis import Analysis
 from mbsym.analysis.averaged import averaged_system, averaging_of
 from mbsym.problems import averaging
 from mbsym.report.schemas import schema
-from mbsym.report.sections.small_parameters import lines
 from mbsym.report.targets import TARGETS
 from mbsym.report.words.expansion_measured import averages, contradicts
 from mbsym.simulation.averaged import Measured, measured
@@ -329,7 +329,7 @@ def _texts(system):
     analysis = Analysis(system, (12,))
     for target in ("wolfram", "python", "json"):
         found[target] = TARGETS[target].render(analysis, (12,))
-    found["terminal"] = "\n".join(lines(analysis.small_parameters, analysis))
+    found["terminal"] = "\n".join(told(analysis, 12))
     return {name: " ".join(text.split()) for name, text in found.items()}
 
 

@@ -1,4 +1,4 @@
-"""Problem 9, polynomial integrals: what results.json and the terminal show of it."""
+"""Problem 9, polynomial integrals: what results.json and reports show of it."""
 
 from __future__ import annotations
 
@@ -7,27 +7,22 @@ from typing import TYPE_CHECKING
 
 from mbsym.model.system import System
 from mbsym.problems.polynomial_integrals import Polynomials
-from mbsym.problems.symmetries import Symmetry
 from mbsym.report.content import Block, Display, Heading, Notation, Relation, Said, Words, ragged, say
 from mbsym.report.documents import integrals
 from mbsym.report.documents.results import polynomial_integrals as doc
-from mbsym.report.plain import LONGEST, Write
-from mbsym.report.plain_writer import TERMINAL
+from mbsym.report.plain import Write
 from mbsym.report.symmetries_json import symmetries_data
 from mbsym.report.words import symmetry_words
 from mbsym.report.words.integrals_words import (
     LEVEL,
     LISTED,
     OPENING,
-    level_title,
     sentences,
     title,
     weighted,
-    weights_text,
 )
 
 if TYPE_CHECKING:
-    from mbsym.analysis import Analysis
     from mbsym.formulas.formula import Formula
     from mbsym.problems.symmetries import Symmetries
     from mbsym.report.results import Results
@@ -104,28 +99,3 @@ def _symmetries(found: Symmetries) -> Iterator[Block]:
 
 def _constant(formula: Formula) -> Display:
     return Display(Relation(formula, "=", Notation("\\mathrm{const}")))
-
-
-def lines(result: Polynomials, analysis: Analysis) -> Iterator[str]:
-    """The lines in the terminal."""
-    found, write = result.found, TERMINAL.inline
-    weights = weights_text(found.field.variables, found.grading.weights)
-    yield f"up to weighted degree {found.degree}; weights {weights}"
-    for one, formula in zip(found.generators, result.formulas, strict=True):
-        if one.is_new:
-            yield f"{title(one)} of weight {one.weight}: {write(formula)}"
-    for level, formulas in zip(result.levels, result.on_levels, strict=True):
-        for (weight, _), formula in zip(level.integrals, formulas, strict=True):
-            yield f"{level_title(weight, level)}: {write(formula)}"
-    yield from map(TERMINAL.said, sentences(found))
-    if result.symmetries is not None:
-        yield TERMINAL.said(Said(symmetry_words.OPENING))
-        for symmetry in result.symmetries.symmetries:
-            said = TERMINAL.said(symmetry_words.gives(symmetry, _field(symmetry)))
-            yield said if symmetry.name else f"{said} {write(symmetry.integral)}"
-        yield from map(TERMINAL.said, symmetry_words.sentences(result.symmetries))
-
-
-def _field(one: Symmetry) -> str:
-    text = symmetry_words.field_text(one)
-    return text if len(text) <= LONGEST else "(see the reports)"

@@ -1,4 +1,4 @@
-"""Problem 12, small parameters: what results.json and the terminal show of it."""
+"""Problem 12, small parameters: what results.json and reports show of it."""
 
 from __future__ import annotations
 
@@ -12,13 +12,11 @@ from mbsym.report.documents.results import small_parameters as doc
 from mbsym.report.expansion_json import expansion_data, measured_data
 from mbsym.report.oscillation_json import oscillation_data
 from mbsym.report.plain import Write
-from mbsym.report.plain_writer import TERMINAL
 from mbsym.report.words import oscillation_words
 from mbsym.report.words.expansion_measured import JudgedAverage, averages, flow_measured, oscillation_measured
 from mbsym.report.words.expansion_words import coefficients, of_averaging, of_measured, of_none, opening, sentences
 
 if TYPE_CHECKING:
-    from mbsym.analysis import Analysis
     from mbsym.report.results import Results
 
 
@@ -92,8 +90,3 @@ def _wave(found: SmallParameters, system: System) -> Iterator[Paragraph | Displa
         yield from map(ragged, oscillation_words.measured_sentences(told, oscillation_measured(found, system)))
     elif found.small:
         yield from map(ragged, oscillation_words.of_no_oscillation(found.small, found.no_oscillation))
-
-
-def lines(found: SmallParameters, analysis: Analysis) -> Iterator[str]:
-    """The lines in the terminal."""
-    return map(TERMINAL.line, told(found, analysis.system))
