@@ -46,7 +46,7 @@ class Line(NamedTuple):
 
 @dataclass(frozen=True)
 class Writer:
-    """Sentences in a language; ``readable`` formulas are as people write them, others as Python reads them.
+    """Sentences in a language; ``readable`` formulas are as people write them, others as Python reads them, unbroken.
 
     Formulas with a text of more than ``longest`` letters are counted, with the ``file`` that has them if there is one.
     What is drawn has at most ``width`` columns.
@@ -208,7 +208,7 @@ class Writer:
 
     def _line(self, *parts: Inline, indent: int = 0, style: str = "") -> Line:
         shown = ((self.inline(x), _style(x) or style) for x in parts)
-        return Line(((" " * indent, ""), *shown) if indent else tuple(shown))
+        return Line(((" " * indent, ""), *shown) if indent else tuple(shown), bool(indent) and not self.readable)
 
     @singledispatchmethod
     def block(self, value: Any) -> Iterator[Line]:
@@ -382,6 +382,7 @@ def _is_sum(text: str) -> bool:
 
 #: What is read in notation, and what stands for it, one after the other.
 _NOTATION = (
+    (r"\\varphi", r"\\phi"),
     (r"\\([{}])", lambda m: "\x01" if m[1] == "{" else "\x02"),
     (r" ?\\cdot ?", "."),
     (r" ?\\times ?", "\u00d7"),
@@ -392,7 +393,6 @@ _NOTATION = (
     (r"\\frac(\d)(\d)", r"\1/\2"),
     (r"\\frac ?\{([^{}]*)\}\{([^{}]*)\}", r"\1/\2"),
     (r"(?<![A-Za-z][A-Za-z])_\{?(?=\d)", ""),
-    (r"\\varphi", "phi"),
     (r"\\([A-Za-z]+)", r"\1"),
     (r"[{}]", ""),
     (r" {2,}", " "),

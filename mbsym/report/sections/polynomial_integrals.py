@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from mbsym.model.system import System
 from mbsym.problems.polynomial_integrals import Polynomials
-from mbsym.report.content import Block, Display, Heading, Notation, Relation, Said, Words, ragged, say
+from mbsym.report.content import Block, Display, Heading, Inline, Notation, Relation, Said, Words, ragged, say
 from mbsym.report.documents import integrals
 from mbsym.report.documents.results import polynomial_integrals as doc
 from mbsym.report.plain import Write
@@ -16,7 +16,9 @@ from mbsym.report.words import symmetry_words
 from mbsym.report.words.integrals_words import (
     LEVEL,
     LISTED,
+    NOT_UNIFORM,
     OPENING,
+    UNIFORM,
     sentences,
     title,
     weighted,
@@ -24,6 +26,7 @@ from mbsym.report.words.integrals_words import (
 
 if TYPE_CHECKING:
     from mbsym.formulas.formula import Formula
+    from mbsym.problems.polynomial_integrals import PolynomialIntegrals
     from mbsym.problems.symmetries import Symmetries
     from mbsym.report.results import Results
 
@@ -72,11 +75,7 @@ def content(results: Results) -> Iterator[Block]:
         return
     result: Polynomials = results.found[9]
     found = result.found
-    weights = weighted(result.variables, found.grading.weights)
-    yield ragged(say(OPENING, degree=str(found.degree), weights=weights))
-    for one, formula in zip(found.generators, result.formulas, strict=True):
-        yield ragged(say(LISTED, weight=str(one.weight), name=Words(title(one))))
-        yield _constant(formula)
+    yield from listed(found, result.variables, result.formulas)
     for level, formulas in zip(result.levels, result.on_levels, strict=True):
         zero, name = level.level, Words(title(level.level))
         for (weight, _), formula in zip(level.integrals, formulas, strict=True):
@@ -84,10 +83,21 @@ def content(results: Results) -> Iterator[Block]:
             yield _constant(formula)
     yield from map(ragged, sentences(found))
     if result.symmetries is not None:
-        yield from _symmetries(result.symmetries)
+        yield from of_symmetries(result.symmetries)
 
 
-def _symmetries(found: Symmetries) -> Iterator[Block]:
+def listed(found: PolynomialIntegrals, variables: Sequence[Inline], formulas: Sequence[Formula]) -> Iterator[Block]:
+    """What is looked for, and each integral."""
+    yield ragged(
+        say(OPENING, degree=str(found.degree), weights=weighted(variables, found.grading.weights)),
+        Said(UNIFORM if found.grading.homogeneous else NOT_UNIFORM),
+    )
+    for one, formula in zip(found.generators, formulas, strict=True):
+        yield ragged(say(LISTED, weight=str(one.weight), name=Words(title(one))))
+        yield _constant(formula)
+
+
+def of_symmetries(found: Symmetries) -> Iterator[Block]:
     """What each gives, with the integral where problem 7 does not list it; what is known of the list."""
     yield ragged(Said(symmetry_words.OPENING))
     for one in found.symmetries:

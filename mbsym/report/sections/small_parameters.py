@@ -17,7 +17,11 @@ from mbsym.report.words.expansion_measured import JudgedAverage, averages, flow_
 from mbsym.report.words.expansion_words import coefficients, of_averaging, of_measured, of_none, opening, sentences
 
 if TYPE_CHECKING:
+    from mbsym.analysis.expanding import Expansion
+    from mbsym.analysis.oscillating import Oscillating
     from mbsym.report.results import Results
+    from mbsym.simulation.expanded import Measured
+    from mbsym.simulation.oscillating import MeasuredOrders
 
 
 def data(found: SmallParameters, system: System, write: Write) -> doc.SmallParameters:
@@ -71,22 +75,29 @@ def told(found: SmallParameters, system: System) -> Iterator[Paragraph | Display
     """Sentences, and coefficients where they stand between them."""
     yield from map(ragged, of_none(found))
     if found.slow is not None:
-        yield from map(ragged, opening(found.slow))
-        yield from (Display(x.equation) for x in coefficients(found.slow))
-        yield from map(ragged, sentences(found.slow))
-        yield from map(ragged, of_measured(found.small, flow_measured(found, system)))
-    yield from _wave(found, system)
+        yield from of_slow(found.slow, flow_measured(found, system))
+    if found.oscillation is not None:
+        yield from of_wave(found.oscillation, oscillation_measured(found, system))
+    elif found.small:
+        yield from map(ragged, oscillation_words.of_no_oscillation(found.small, found.no_oscillation))
     for one in averages(found, system):
         yield from map(ragged, of_averaging(one))
 
 
-def _wave(found: SmallParameters, system: System) -> Iterator[Paragraph | Display]:
-    """The periodic solution."""
-    told = found.oscillation
-    if told is not None:
-        yield from map(ragged, oscillation_words.opening(told))
-        yield from (Display(x.equation) for x in oscillation_words.coefficients(told))
-        yield from map(ragged, oscillation_words.sentences(told))
-        yield from map(ragged, oscillation_words.measured_sentences(told, oscillation_measured(found, system)))
-    elif found.small:
-        yield from map(ragged, oscillation_words.of_no_oscillation(found.small, found.no_oscillation))
+def of_slow(found: Expansion, measured: Measured | str) -> Iterator[Paragraph | Display]:
+    """The slow manifold, the flow on it, and its error."""
+    yield from map(ragged, opening(found))
+    yield from (Display(x.equation) for x in coefficients(found))
+    yield from map(ragged, sentences(found))
+    yield from map(ragged, of_measured(found.manifold.field.small, measured))
+
+
+def of_wave(found: Oscillating, measured: MeasuredOrders | str) -> Iterator[Paragraph | Display]:
+    """The periodic solution, variables that follow from it, and its error."""
+    yield from map(ragged, oscillation_words.opening(found))
+    yield from (Display(x.equation) for x in oscillation_words.coefficients(found))
+    if found.found.drifts:
+        yield ragged(Said(oscillation_words.DRIFTS))
+        yield from map(Display, oscillation_words.drifting(found))
+    yield from map(ragged, oscillation_words.sentences(found))
+    yield from map(ragged, oscillation_words.measured_sentences(found, measured))
