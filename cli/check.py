@@ -6,14 +6,18 @@ import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 import mbsym
-from mbsym.expressions.counting import counted
+from mbsym.report.language import Language
 from mbsym.source import is_description, load
-from mbsym_cli.console import BAD_INPUT, FAILED, OK, defect, printable, read_description
+from mbsym_cli.console import BAD_INPUT, FAILED, OK, asked_width, defect, printable, read_description, wrapped
 from mbsym_cli.options import Options
+
+if TYPE_CHECKING:
+    from mbsym.model.system import System
 
 #: How complaints are written: for people, or for a program that reads them on standard output.
 OUTPUT_FORMATS = ("text", "github", "sarif", "json")
@@ -88,12 +92,22 @@ def _check(path: Path) -> int:
     system = read_description(path)
     if system is None:
         return BAD_INPUT
-    bodies = counted(len(system.bodies), "body", "bodies")
-    if system.linear is not None:
-        bodies = f"given by {', '.join(one.key for one in system.linear.matrices)}"
-    freedom = counted(len(system.coordinates), "degree of freedom", "degrees of freedom")
-    if system.constraints:  # how many of them are free is another question
-        freedom = counted(len(system.coordinates), "coordinate", "coordinates")
-        freedom += f" and {counted(len(system.constraints), 'constraint', 'constraints')}"
-    print(f"{printable(path)}: ok: {system.name}; {bodies}, {freedom} ({', '.join(system.coordinates)})")
+    print(wrapped(f"{printable(path)}: ok: {system.name}; {_size(system)}", asked_width()))
     return OK
+
+
+def _size(system: System) -> str:
+    """What it consists of, in its language."""
+    say, names = Language(system.language).sentence, ", ".join(system.coordinates)
+    freedom = f"{len(system.coordinates)}: {names}"
+    if system.linear is not None:
+        title = "State variables" if system.linear.of_first_order else "Degrees of freedom"
+        given = ", ".join(one.key for one in system.linear.matrices)
+        return f"{say(title)}: {freedom}; {say('given by its matrices')}: {given}"
+    bodies = len(system.bodies)
+    if system.constraints:  # how many of the coordinates are free is another question
+        text, count = "[[bodies]]; coordinates: [[coordinates]]; constraints: [[constraints]]", len(system.constraints)
+        told = say(text, bodies=bodies, coordinates=freedom, constraints=count)
+    else:
+        told = say("[[bodies]]; degrees of freedom: [[freedom]]", bodies=bodies, freedom=freedom)
+    return f"{say('Bodies and frames')}: {told}"

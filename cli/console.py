@@ -277,7 +277,7 @@ def read_description(path: Path, unconstrained: str = "", moving: str = "") -> S
         message = f"'mbsym {moving}' is about bodies, and this system is given by its matrices"
         complaints.error("given-by-matrices", message, system.linear.span, "'mbsym run' judges its stability")
     for complaint in complaints.sorted():
-        print(render(complaint, text, str(path)), file=sys.stderr)
+        diagnose(render(complaint, text, str(path)))
     errors = len(complaints.errors)
     if errors:
         complain(path, f"{counted(errors, 'error', 'errors')}; nothing was written.")
@@ -309,6 +309,13 @@ def printable(path: Path | str) -> str:
 def complain(path: Path | str, text: str) -> None:
     """A line about a file on standard error."""
     print(wrapped(f"{printable(path)}: {text}", asked_width(stderr=True)), file=sys.stderr)
+
+
+def diagnose(text: str) -> None:
+    """A rendered complaint on standard error; on a terminal its lines are wrapped, but for what it quotes."""
+    width = asked_width(stderr=True)
+    for line in text.split("\n"):
+        print(line if re.match(r" *\d* \|", line) else wrapped(line, width), file=sys.stderr)
 
 
 def defect(error: BaseException, where: Path | str | None = None) -> None:

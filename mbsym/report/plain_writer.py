@@ -80,7 +80,10 @@ class Writer:
     @singledispatchmethod
     def inline(self, value: Any) -> str:
         """What stands in a line."""
-        return text(value).replace("**", "^").replace("*", UNBROKEN) if self.readable else text(value)
+        if not self.readable:
+            return text(value)
+        primed = re.sub(r"_(d{1,2})ot\b", lambda m: "'" * len(m[1]), text(value))
+        return primed.replace("**", "^").replace("*", UNBROKEN)
 
     @inline.register
     def _(self, value: str) -> str:
@@ -173,7 +176,7 @@ class Writer:
     def _(self, value: content.Relation) -> str:
         written, before = "", None
         for x in value.parts:
-            piece = self.inline(x)
+            piece = self.inline(x).strip()
             called = isinstance(before, content.Symbol) and isinstance(x, content.Listed) and x.brackets
             close = self.readable and (isinstance(before, str) or (x == "=" and len(written) <= _SHORT))
             behind = UNBROKEN if close else " "

@@ -97,4 +97,4 @@ def test_every_medium_says_so() -> None:
         assert "indeterminate" in str(FORMATS[kind].render(analysis, (3,))), kind
     assert '"determined_combinations": 1' in str(FORMATS["json"].render(analysis, (3,)))
     lines = " ".join(told(analysis, 3))
-    assert "The joint of v1 is statically indeterminate: the equations do not determine R_1, R_3, L_2." in lines
+    assert "The joint of v1 is statically indeterminate: the equations do not determine R1, R3, L2." in lines

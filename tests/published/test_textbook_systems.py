@@ -155,7 +155,7 @@ def test_an_undecided_verdict_says_why(tmp_path: Path) -> None:
     a = analysed(tmp_path, THREE_BODIES.replace("sqrt(3)/2", "sqrt(3)/2 + mu"), MU="0.01")
     assert verdict(a).word == Word.UNDECIDED
     (line,) = [text for text in told(a, 6) if text.startswith("At the given values")]
-    assert line.endswith("undecided. The motion does not exist there.")
+    assert line.startswith("At the given values of the parameters: undecided. The motion does not exist there: ")
 
 
 def test_families_are_written_without_inner_names(tmp_path: Path) -> None:

@@ -213,5 +213,5 @@ def test_definitions_names_beside_and_literature(analysis: mbsym.Analysis) -> No
     assert not in_latex(analysis, form=Form.APPENDIX).block(cited)
     at = Relation(content.Text(Said("at"), " "), content.Power(Name("theta"), 2), ":", 1)
     assert in_latex(analysis).math(at) == r"\text{at } \theta^{2} \colon\quad 1"
-    assert plain_writer.Writer().inline(at) == "at  theta**2: 1"
+    assert plain_writer.Writer().inline(at) == "at theta**2: 1"
     assert in_latex(analysis).math(Relation("-", Symbol("v", "4", "(2)"))) == "-v_{4}^{(2)}"
