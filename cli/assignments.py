@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from mbsym.expressions.parser import ascii_safe, names_apart, parse_expression
 from mbsym.expressions.place import Complaint, Complaints, Span
-from mbsym.expressions.tree import CONSTANTS, Expression, Name, names, walk
+from mbsym.expressions.tree import CONSTANTS, Expression, Name, names, substitute, walk
 from mbsym.model.system import velocity_name
 from mbsym.source import render_option
 from mbsym.source.scope import did_you_mean, listed
@@ -100,6 +100,26 @@ def given_numbers(
         if lacking:
             options.complaints.append(missing(file, lacking))
         return None, assigned.values
+
+
+def with_settings(file: Path, system: System, settings: Sequence[str], options: Options) -> System:
+    """The description with the values of ``--set``; every complaint joins those of ``options``."""
+    from mbsym.model.system import with_values
+    from mbsym.numerics.scenario import Lack, contradictions_of
+
+    assigned = assignments(settings, system, options)
+    values = {}
+    known = {one.name: one.value for one in system.parameters if one.value is not None} | dict(assigned.values)
+    for name, value in assigned.values.items():
+        if name not in system.parameter_names:
+            assigned.complain(name, "misplaced-name", f"'{name}' is no parameter: it has no value here", options)
+            continue
+        values[name] = substitute(value, {k: v for k, v in known.items() if k != name})
+        if lacking := sorted(names(values[name])):
+            assigned.complain(name, "missing-value", f"no value for {', '.join(lacking)}", options)
+    if not options.complaints:
+        contradictions(file, Lack((), contradictions_of(system, values)), assigned, options)
+    return with_values(system, values)
 
 
 def contradictions(file: Path, lack: Lack, assigned: Assigned, options: Options) -> None:

@@ -98,16 +98,12 @@ def _check(path: Path) -> int:
 
 def _size(system: System) -> str:
     """What it consists of, in its language."""
-    say, names = Language(system.language).sentence, ", ".join(system.coordinates)
-    freedom = f"{len(system.coordinates)}: {names}"
+    say, count = Language(system.language).sentence, len(system.coordinates)
+    title = "State variables" if system.linear is not None and system.linear.of_first_order else "Coordinates"
+    told = [f"{say(title)}: {f'{count}: ' if count > 1 else ''}{', '.join(system.coordinates)}"]
     if system.linear is not None:
-        title = "State variables" if system.linear.of_first_order else "Degrees of freedom"
         given = ", ".join(one.key for one in system.linear.matrices)
-        return f"{say(title)}: {freedom}; {say('given by its matrices')}: {given}"
-    bodies = len(system.bodies)
+        return "; ".join([*told, f"{say('given by its matrices')}: {given}"])
     if system.constraints:  # how many of the coordinates are free is another question
-        text, count = "[[bodies]]; coordinates: [[coordinates]]; constraints: [[constraints]]", len(system.constraints)
-        told = say(text, bodies=bodies, coordinates=freedom, constraints=count)
-    else:
-        told = say("[[bodies]]; degrees of freedom: [[freedom]]", bodies=bodies, freedom=freedom)
-    return f"{say('Bodies and frames')}: {told}"
+        told.append(say("constraints: [[count]]", count=len(system.constraints)))
+    return "; ".join([*told, say("bodies and frames: [[count]]", count=len(system.bodies))])

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from mbsym.algebra.failures import LOG
+from mbsym.algebra.parts import missing
 from mbsym.expressions.counting import counted
 from mbsym.expressions.safe import safe as escaped
 
@@ -92,8 +93,15 @@ def console(stderr: bool = False) -> Console:
     from rich.text import Text
 
     class Wrapping(Console):
-        def print(self, *objects: Any, soft_wrap: bool | None = None, markup: bool | None = None, **how: Any) -> None:
-            width = asked_width(stderr)
+        def print(
+            self,
+            *objects: Any,
+            soft_wrap: bool | None = None,
+            markup: bool | None = None,
+            margin: int | None = None,
+            **how: Any,
+        ) -> None:
+            width = asked_width(stderr) if margin is None else asked_width(stderr) or sys.maxsize
             plain = len(objects) == 1 and isinstance(objects[0], Text | str) and not how and not soft_wrap
             if width is None or not plain:
                 super().print(*objects, soft_wrap=soft_wrap, markup=markup, **how)
@@ -101,7 +109,7 @@ def console(stderr: bool = False) -> Console:
             line = objects[0]
             text = line if isinstance(line, Text) else Text(line) if markup is False else Text.from_markup(line)
             for whole in text.split(allow_blank=True):
-                indent, at = _breaks(whole.plain, width)
+                indent, at = _breaks(whole.plain, width, margin)
                 for k, piece in enumerate(whole.divide(at)):
                     if k < len(at):
                         piece.rstrip()
@@ -111,9 +119,6 @@ def console(stderr: bool = False) -> Console:
     terminal = (sys.stderr if stderr else sys.stdout).isatty()
     return Wrapping(stderr=stderr, highlight=False, soft_wrap=not terminal, width=None if terminal else 120)
 
-
-#: A space at which no line ends.
-UNBROKEN = "\u00a0"
 
 #: What is left of a line stands so much further to the right.
 HANGING = 2
@@ -156,10 +161,13 @@ def _breaks(line: str, width: int, margin: int | None = None) -> tuple[str, list
 
 def _words(line: str, widest: int) -> Iterator[tuple[int, int]]:
     """Where words begin and end; a sign is one with what is behind it, and what would be too wide is several."""
-    for word in re.finditer(r"(?:[-+=<>]+ )?[^ ]+", line):
+    for word in re.finditer(r"(?:[-+=<>]+ )?[^ \t\n]+", line):
         inner = f"[^{UNBROKEN}]+" if word.end() - word.start() > widest else ".+"
         yield from (part.span() for part in re.compile(inner).finditer(line, *word.span()))
 
+
+#: A space at which no line ends; it is printed as an ordinary one.
+UNBROKEN = "\u00a0"
 
 #: What rich takes for a terminal though the output is none.
 _FORCED = ("FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE")
@@ -167,22 +175,25 @@ _FORCED = ("FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE")
 _CONTROLS = dict.fromkeys((7, 8, 11, 12, 13))
 
 
-def tell(*parts: str | tuple[str, str], indent: int = 0, whole: bool = False) -> None:
+def tell(*parts: str | tuple[str, str], indent: int = 0, whole: bool = False, margin: int | None = None) -> None:
     """A line of words, some with a style, as rich prints it; into a file or pipe without waiting for rich.
 
-    One that is ``whole`` is not wrapped.
+    One that is ``whole`` is not wrapped.  ``margin``: where further lines begin; spaces may be ``UNBROKEN`` then.
     """
     if sys.stdout.isatty() or any(name in os.environ for name in _FORCED):
         from rich.text import Text
 
         text = Text.assemble(" " * indent, *parts)
-        if whole:
+        if whole or asked_width() is None:
             text.plain = text.plain.replace(UNBROKEN, " ")
-        console().print(text, soft_wrap=whole or None)
+        if margin is None:
+            console().print(text, soft_wrap=whole or None)
+        else:
+            console().print(text, margin=margin)  # type: ignore[call-arg]
         return
     words = " " * indent + "".join([part if isinstance(part, str) else part[0] for part in parts])
     width = None if whole else asked_width()
-    lines = [wrapped(line.expandtabs(), width) for line in words.translate(_CONTROLS).split("\n")]
+    lines = [wrapped(line.expandtabs(), width, margin) for line in words.translate(_CONTROLS).split("\n")]
     print("\n".join(lines).replace(UNBROKEN, " "))
 
 
@@ -319,10 +330,12 @@ def diagnose(text: str) -> None:
 
 
 def defect(error: BaseException, where: Path | str | None = None) -> None:
-    """Tells of an exception that nobody foresaw, or of too little memory; with ``--debug``, where it came from."""
+    """Tells of an exception nobody foresaw, too little memory, a missing part; with ``--debug``, where it came from."""
     DEFECTS.told.add(described(error))
     before = "" if where is None else f"{printable(where)}: "
-    if isinstance(error, MemoryError):
+    if part := missing(error):
+        print(f"{before}{part} is not installed", file=sys.stderr)
+    elif isinstance(error, MemoryError):
         print(f"{before}out of memory; lower --terms, or ask for fewer --problems", file=sys.stderr)
     else:
         print(f"{before}internal error, please report it: {escaped(described(error))}", file=sys.stderr)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from mbsym.report.language import Language
 from mbsym.report.whole_run import derive_all, lost, rendered_all
+from mbsym_cli.assignments import with_settings
 from mbsym_cli.beside import beside
 from mbsym_cli.console import (
     BAD_INPUT,
@@ -28,6 +29,7 @@ from mbsym_cli.console import (
     trace,
 )
 from mbsym_cli.files import deliver, delivered, digest_of, obstacle
+from mbsym_cli.options import Options
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -63,6 +65,7 @@ class Request:
     named: bool = False  # whether the problems were named, or follow from the formats
     verbose: bool = False
     detail: str = "compact"
+    settings: tuple[str, ...] = ()  # values that replace those of the description
 
 
 def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> int:
@@ -74,6 +77,11 @@ def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> 
         system = read_description(path)
         if system is None:
             return BAD_INPUT
+        if request.settings:
+            asked = Options()
+            system = with_settings(path, system, request.settings, asked)
+            if asked.refused(path):
+                return BAD_INPUT
         reason = obstacle(folder, base)
         if reason:
             complain(path, f"the reports cannot be written: {reason}")

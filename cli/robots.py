@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from codecs import BOM_UTF8
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -29,11 +30,13 @@ class Choices:
 
 def robot_text(file: Path) -> str | None:
     """The text of a URDF or MJCF file; None of everything else, and of what cannot be read."""
-    from mbsym.source.robots import is_robot
-
     try:
         with file.open("rb") as stream:
             head = stream.read(_LOOK)
+            if not head.removeprefix(BOM_UTF8).lstrip().startswith(b"<"):
+                return None
+            from mbsym.source.robots import is_robot  # descriptions are no XML
+
             if not is_robot(head.decode("utf-8", "replace")):
                 return None
             data = head + stream.read(_MOST)

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     "--format", "formats", "-f", default="all", show_default=True, help="Some of them; exports only where named."
 )
 @click.option("--out", "-o", type=OutPath(path_type=Path), help="Folder of the reports.  [default: reports/NAME]")
+@click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Replace a value; repeatable.")
 @click.option("--detail", default="compact", show_default=True, metavar="WORD", help="Long formulas: compact, or full.")
 @click.option("--terms", default="60000", show_default=True, metavar="N", help="Budget of terms of one closed formula.")
 @click.option(
@@ -43,13 +44,14 @@ if TYPE_CHECKING:
 @click.option("--strict-claims", is_flag=True, help="Exit code 1 unless every claim holds.")
 @click.option("--brief", "-b", is_flag=True, help="Print one line a file.")
 @ledger_options
-@click.option("--verbose", "-v", is_flag=True, help="Print what the reports say of each problem, every claim and every check.")
+@click.option("--verbose", "-v", is_flag=True, help="Print what the reports say of problems, claims and checks.")
 @click.option("--quiet", "-q", is_flag=True, help="Print only what went wrong.")
 def command(
     files: tuple[Path, ...],
     problems: str | None,
     formats: str,
     out: Path | None,
+    settings: tuple[str, ...],
     detail: str,
     terms: str,
     angles: str | None,
@@ -98,9 +100,13 @@ def command(
     With --animate T the equations are integrated from the description's initial state and values (as 'mbsym simulate'
     does), and report.html shows the moving bodies with time controls; where a number is missing it says which.
 
+    With --set NAME=VALUE a parameter has another value than in the description: for the verdict at given values,
+    eigenvalues, parameters that code begins with.
+
     \b
     Examples:
       mbsym run systems/satellite.yaml
+      mbsym run systems/bead-on-hoop.yaml --set Omega=5
       mbsym run systems/satellite.yaml --animate 20
       mbsym run systems/ --problems 1-5 --format latex,json --out reports
       mbsym run systems/cart-pole.yaml --problems 5,6,8
@@ -155,6 +161,7 @@ def command(
         chosen is not None,
         verbose,
         wanted or detail,
+        settings,
     )
     worst = OK
     base = None if out is not None and len(paths) == 1 else out or REPORTS

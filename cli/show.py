@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mbsym.report.content import Said, say
+from mbsym.report.content import say
 from mbsym_cli.console import printable, tell
 
 if TYPE_CHECKING:
@@ -28,16 +28,16 @@ def show_finding(
     further: Iterable[Line] = (),
     more: bool = False,
 ) -> None:
-    """What was found, in a line each; ``further`` lines; where all of it is, and how ``more`` of it is told."""
+    """What was found, each with its name; ``further`` lines; where all of it is, and how ``more`` of it is told."""
     tell((title, "bold"), (f"  {printable(path)}, {seconds:.2f} s", "dim"))
-    for parts, whole in (*writer.document([found]), *further):
-        tell("  ", *parts, whole=whole)
+    for parts, whole, margin in (*writer.document([found]), *further):
+        tell("  ", *parts, whole=whole, margin=None if margin is None else margin + 2)
     if files:
-        folder = files[0].parent
         page = next((x for x in files if x.name == "report.html"), files[0])
-        text = "[[file]], [[count]] files in all, in [[folder]]" if len(files) > 1 else "[[file]] in [[folder]]"
-        where = writer.said(say(text, file=page.name, count=str(len(files)), folder=printable(folder)))
-        tell(where, *(("; ", writer.said(Said("with -v more is told here"))) if more else ()), indent=2)
+        texts = ("[[file]]", "[[file]] (files there: [[count]])")
+        if more:
+            texts = ("[[file]] (all of it here: -v)", "[[file]] (files there: [[count]]; all of it here: -v)")
+        tell(writer.said(say(texts[len(files) > 1], file=printable(page), count=str(len(files)))), indent=2)
 
 
 def show_brief(found: Brief, name: str, width: int) -> None:

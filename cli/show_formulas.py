@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from mbsym_cli.assignments import with_settings
 from mbsym_cli.console import BAD_INPUT, FAILED, OK, complain, printable, read_description, status
 from mbsym_cli.options import Options
 
@@ -17,8 +18,9 @@ from mbsym_cli.options import Options
 @click.option("--latex", "language", flag_value="latex", help="Write LaTeX.")
 @click.option("--wolfram", "language", flag_value="wolfram", help="Write Wolfram Language.")
 @click.option("--python", "language", flag_value="python", help="Write Python, with the names of the description.")
+@click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Replace a value; repeatable.")
 @click.option("--terms", metavar="N", default="1000000", show_default=True, help="Longest formula that is derived.")
-def command(file: Path, names: tuple[str, ...], language: str | None, terms: str) -> None:
+def command(file: Path, names: tuple[str, ...], language: str | None, settings: tuple[str, ...], terms: str) -> None:
     """Print formulas of FILE by their NAMEs: its equations of motion, or what is asked for.
 
     \b
@@ -42,6 +44,8 @@ def command(file: Path, names: tuple[str, ...], language: str | None, terms: str
     system = read_description(file)
     asked = Options()
     budget = asked.whole("--terms", terms, 1, 10**12)
+    if system is not None and settings:
+        system = with_settings(file, system, settings, asked)
     if asked.refused(file) or system is None or budget is None:
         sys.exit(BAD_INPUT)
     from mbsym.algebra.failures import Failure

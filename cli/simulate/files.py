@@ -47,7 +47,7 @@ def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
     does, stops it only when the rest is delivered.
     """
     from mbsym.model.quantities import unit_of
-    from mbsym.numerics.input_columns import input_columns
+    from mbsym.numerics.further_columns import input_columns
     from mbsym.report.runs.bodies_csv import bodies_parts
     from mbsym.report.runs.certificate import enclosure_csv
     from mbsym.report.runs.constrained_run_words import drift_columns
@@ -121,7 +121,7 @@ def _happened(run: Simulation) -> dict[str, str]:
 def _section(run: Simulation, kinds: Sequence[str]) -> dict[str, bytes]:
     if run.section is None or not kinds:
         return {}
-    from mbsym.report.maps.section_figure import section_figure
+    from mbsym.report.figures.section_figure import section_figure
 
     return section_figure(run.section, run.system, note(run.trajectory), kinds)
 

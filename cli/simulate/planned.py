@@ -55,7 +55,7 @@ def only_planned(file: Path, given: Scenario, asked: Asked) -> int:
         plan, settled = plan_for(given, asked.request, goal.accuracy, goal.pins)
     if asked.quiet:
         if not plan.reached:
-            complain(file, "no plan reaches the accuracy asked for")
+            complain(file, "no plan is shown to reach the accuracy asked for")
         return OK if plan.reached else BROKEN_DOWN
     out = console()
     out.print(Text.assemble((given.system.name, "bold"), (f"  {printable(file)}", "dim")))

@@ -11,6 +11,7 @@ from a defect of ours.  Nobody has to read the sentence to know what happened.
 ``SingularPoint``  a division by zero at the point where a formula is asked for
 ``NoValue``        a name has no number there
 ``Constrained``    something that leaves constraints out was asked of a system that has some
+``NotInstalled``   a part of mbsym is needed that this installation lacks
 ``Defect``         an exception that nobody foresaw, contained
 =================  ==========================================================================
 """
@@ -19,6 +20,8 @@ from __future__ import annotations
 
 import logging
 from enum import Enum
+
+from mbsym.algebra.parts import missing
 
 LOG = logging.getLogger("mbsym")
 
@@ -90,6 +93,12 @@ class SingularPoint(Failure, ZeroDivisionError):
     code = "singular"
 
 
+class NotInstalled(Failure):
+    """A part of mbsym was asked for that this installation lacks (``parts``); the message names it."""
+
+    code = "not-installed"
+
+
 class Defect(Failure):
     """An exception that nobody foresaw: the program is at fault, and only what it was about is lost.
 
@@ -101,8 +110,10 @@ class Defect(Failure):
     severity = Severity.DEFECT
 
     @classmethod
-    def of(cls, error: Exception) -> Defect:
-        """What to say of it, once it is logged; running out of memory is nobody's mistake."""
+    def of(cls, error: Exception) -> Failure:
+        """What to say of it, once it is logged; running out of memory, or lacking a part, is nobody's mistake."""
+        if part := missing(error):
+            return NotInstalled(f"{part} is not installed")
         if isinstance(error, MemoryError):
             found = cls("out of memory", limit=Limit.MEMORY, remedy="lower --terms, or ask for fewer --problems")
         else:

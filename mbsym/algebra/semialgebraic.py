@@ -112,12 +112,11 @@ class ParameterSet:
             )
         )
 
-    def emptiness(self, signs: Signs) -> Emptiness:
-        """Whether no parameters with these signs and assumptions are in it."""
-        return self.witness(signs)[0]
-
     def witness(self, signs: Signs) -> tuple[Emptiness, Mapping[int, Any] | None]:
-        """The same, and rational values of parameters in it by generator, where some were found; others are free."""
+        """Whether no parameters with these signs and assumptions are in it, and rational values of parameters that are.
+
+        Values are by generator, where some were found; others are free.
+        """
         for point in _points(signs):
             if self.holds(point):
                 return Emptiness.INHABITED, dict(enumerate(point))

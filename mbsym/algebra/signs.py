@@ -10,7 +10,7 @@ early where exact sample points that satisfy the assumptions show that nothing s
 from cheap to dear:
 
 * **value**: p holds nothing but numbers, such as sqrt(3) - 1, and its enclosure excludes zero;
-* **terms**: p = sum of terms, each with a known sign ("all coefficients of one sign");
+* **terms**: p = sum of terms, each with a known sign ("all coefficients of one sign"; numbers such as 4 - pi enclosed);
 * **assumptions**: p = sum c_i m_i a_i + rest, with assumptions a_i, numbers c_i and monomials m_i of known sign;
 * **square**: p = A x^2 + B x + C with B^2 - 4 A C < 0 has the sign of A, and so on within the discriminant;
 * **bounds**: a < x, x < b or both are used up by x = a + u, x = b - u, x = (a + b u)/(1 + u) with u > 0, and the
@@ -24,7 +24,7 @@ Polynomials are ``fmpq_mpoly`` of python-flint over the rationals in the generat
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache, cached_property
 from operator import le, sub
@@ -338,11 +338,13 @@ class Signs:
     def _by_value(self, p: Polynomial) -> SignSet | None:
         """The sign of a number, where its enclosure excludes zero; None for what has parameters or may be zero."""
         used = occurring([p]) if self.numbers else []
-        if not used or not all(k in self.numbers for k in used):
-            return None
+        return self._enclosed(p.terms(), used) if used and all(k in self.numbers for k in used) else None
+
+    def _enclosed(self, terms: Iterable[tuple[tuple[int, ...], Any]], used: Sequence[int]) -> SignSet | None:
+        """The sign of the sum of terms in the numbers ``used``; None where its enclosure holds zero."""
         with ctx.workprec(_NUMBER_BITS):
             total = arb(0)
-            for exponents, coefficient in p.terms():
+            for exponents, coefficient in terms:
                 term = arb(coefficient)
                 for k in used:
                     for _ in range(int(exponents[k])):
@@ -364,7 +366,8 @@ class Signs:
             context = type(self.context).get([names[i] for i in used], self.context.ordering())
             words = tuple(self.words[i] for i in used)
             assumptions = tuple((a.project_to_context(context), relation) for a, relation in self.assumptions)
-            self._restrictions[used] = _shared(Signs(context, words, assumptions))
+            numbers = {at: self.numbers[k] for at, k in enumerate(used) if k in self.numbers}
+            self._restrictions[used] = _shared(Signs(context, words, assumptions, numbers=numbers))
         small = self._restrictions[used]
         return small, p.project_to_context(small.context)
 
@@ -378,7 +381,8 @@ class Signs:
         if len(result) == 1:
             return result
         # Only the question as asked has witnesses: making them anew for each change would cost more than it saves.
-        least = self._observed(p) if after < 0 else frozenset()
+        # Those of numbers such as pi are no values of theirs.
+        least = self._observed(p) if after < 0 and not self._numbers_in(p) else frozenset()
         if result != least:
             result &= self._by_assumptions(p, after)
         if len(result) > 1 and result != least:
@@ -415,11 +419,33 @@ class Signs:
 
     def _by_terms(self, p: Polynomial) -> SignSet:
         result = ZERO
-        for exponents, coefficient in p.terms():
-            result = _sum(result, self._term(exponents, coefficient))
+        for signs in self._signs_of_terms(p):
+            result = _sum(result, signs)
             if result == ANY:
                 break
         return result
+
+    def _signs_of_terms(self, p: Polynomial) -> Iterator[SignSet]:
+        """Signs of the terms; terms that differ in numbers alone are one: 4 a - pi a has the sign of a."""
+        used = self._numbers_in(p)
+        if not used:
+            yield from (self._term(*term) for term in p.terms())
+            return
+        groups: dict[tuple[int, ...], list[tuple[tuple[int, ...], Any]]] = {}
+        for exponents, coefficient in p.terms():
+            groups.setdefault(tuple(0 if k in used else n for k, n in enumerate(exponents)), []).append(
+                (exponents, coefficient)
+            )
+        for exponents, terms in groups.items():
+            value = self._enclosed(terms, used)
+            if value is not None:
+                yield _product(self._monomial(exponents), value)
+            else:
+                yield from (self._term(*term) for term in terms)
+
+    def _numbers_in(self, p: Polynomial) -> list[int]:
+        """The generators in p that are numbers."""
+        return [k for k in occurring([p]) if k in self.numbers] if self.numbers else []
 
     def _by_assumptions(self, p: Polynomial, after: int) -> SignSet:
         """p = sum c m a + rest: look for a combination that shows p >= 0 (or > 0), and one that shows p <= 0."""
@@ -612,7 +638,8 @@ class Signs:
             for polynomial, relation in self.assumptions
             if not _is_bound(polynomial, generator, relation)
         )
-        return _Change(generator, Signs(self.context, words, assumptions), substitute, ends)
+        numbers = {k: value for k, value in self.numbers.items() if k != generator}
+        return _Change(generator, Signs(self.context, words, assumptions, numbers=numbers), substitute, ends)
 
     def _bounds(self, generator: int) -> tuple[tuple[Any, bool] | None, tuple[Any, bool] | None]:
         """The best numeric bounds (value, strict) of a generator from below and from above."""
@@ -701,7 +728,8 @@ _MOST_SHARED = 256
 def _shared(known: Signs) -> Signs:
     """The first knowledge with this content, with everything that has been proved from it."""
     assumptions = tuple((str(p), relation) for p, relation in known.assumptions)
-    key = (known.context.names(), known.context.ordering(), known.words, assumptions)
+    numbers = tuple((k, str(value.mid().man_exp())) for k, value in known.numbers.items())
+    key = (known.context.names(), known.context.ordering(), known.words, assumptions, numbers)
     if key not in _SHARED:
         if len(_SHARED) >= _MOST_SHARED:
             _SHARED.clear()

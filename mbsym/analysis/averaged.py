@@ -13,8 +13,8 @@ from mbsym.expressions.tree import Expression, Name, names, number
 from mbsym.model.loads import ForceFunction
 from mbsym.model.substitution import folded, put
 from mbsym.model.system import System
-from mbsym.problems import averaging
-from mbsym.problems.averaging import Averaged
+from mbsym.problems.small_parameter import averaging
+from mbsym.problems.small_parameter.averaging import Averaged
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis

@@ -14,11 +14,13 @@ from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.mechanics.rest import given_values, missing_values
 from mbsym.mechanics.rotation_orders import Reordered, rotation_orders
-from mbsym.problems import dissipation, energy, equations, equilibrium, stability
+from mbsym.problems import dissipation, energy, equations, equilibrium, integrals, stability
+from mbsym.problems.checks import EXACT, NUMERICAL
 from mbsym.problems.dissipation import Balance
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
 from mbsym.problems.equilibrium import Equilibrium
+from mbsym.problems.integrals import Integral
 from mbsym.problems.stability import Stability
 from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.verdict import undecided
@@ -205,3 +207,30 @@ def equilibria_of(analysis: Analysis) -> Equilibria:
     from mbsym.problems.relative_equilibria import equilibria
 
     return resting.judged(analysis.system, values, equilibria.equilibria(analysis.system, values))
+
+
+def first_integrals(analysis: Analysis) -> tuple[Integral, ...]:
+    """All first integrals of problem 7.
+
+    Raises Failure where formulas outgrow a limit; the reason names then what is conserved nevertheless, if the
+    straight-line program from which that is read has passed its check.
+    """
+    if analysis.system.constraints:
+        return constrained.integrals_of(analysis)
+    if analysis.speed_form is not None:
+        from mbsym.problems.in_speeds import speed_integrals
+
+        equations = cast("SpeedEquations", analysis.equations)
+        return speed_integrals.integrals(analysis.speed_form, analysis.scene, analysis.energy, equations)
+    try:
+        return integrals.integrals(analysis.scene, analysis.energy, analysis.equations, analysis.programs)
+    except Failure as failure:
+        if failure.limit is None or analysis.optional("programs") is None:
+            raise
+        known = integrals.by_structure(analysis.system, analysis.programs)
+        check = analysis.check("straight-line program") if known else None
+        if check is None or check.outcome not in (EXACT, NUMERICAL):
+            raise
+        without = NoResult.of(failure)
+        reason = f"{without.reason}; conserved all the same, by structure: {', '.join(known)}"
+        raise Unavailable("integrals", replace(without, reason=reason)) from failure

@@ -14,10 +14,13 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from mbsym.algebra.parts import installed
 from mbsym.analysis import higher
+from mbsym.analysis.poles import pole
 from mbsym.problems.stability.problem import ExactVerdicts
 from mbsym.problems.stability.reasons import Because, Reason
-from mbsym.problems.stability.verdict import Verdict
+from mbsym.problems.stability.theorems import HigherOrder
+from mbsym.problems.stability.verdict import Verdict, undecided
 from mbsym.problems.stability.word import Word
 
 if TYPE_CHECKING:
@@ -40,9 +43,13 @@ class Judge:
     def __call__(self, values: Mapping[str, Fraction]) -> Verdict:
         return self.decided(self.first_approximation(values), values)
 
-    @cached_property
-    def first_approximation(self) -> ExactVerdicts:
+    def first_approximation(self, values: Mapping[str, Any]) -> Verdict:
         """The verdict of step 1; irrational values are enclosures."""
+        divisor = pole(self.analysis, values)
+        return undecided(Because.POLE, divisor) if divisor else self._exact(values)
+
+    @cached_property
+    def _exact(self) -> ExactVerdicts:
         of = self.analysis
         return ExactVerdicts(of.parameters_scene, of.balance, of.judgeable, of.equilibrium, of.signs)
 
@@ -62,6 +69,8 @@ class Judge:
             verdict = open_verdicts.decided_at(verdict, self.analysis.parameters_scene, values)
             if not verdict.word.open or verdict.coordinates_singular:
                 return verdict
+        if not installed("mbsym.problems.normal_forms"):
+            return verdict
         found = self._of_higher_order(values)
         return verdict if found is None else self._in_words(found) or verdict
 
@@ -75,13 +84,11 @@ class Judge:
         Problem 11 keeps the momenta of cyclic coordinates.  Instability then is one; stability is one of neighbouring
         momenta, too, if its conditions are inequalities (Dirichlet's theorem, Arnold and Moser's without resonance).
         """
-        from mbsym.problems.normal_forms.result import Theorem
-
         word = _WORDS.get(found.outcome.value)
         if word is None:
             return None
         if word is not Word.UNSTABLE and higher.ignorable(self.analysis)[1]:
-            if found.theorem not in (Theorem.DEFINITE, Theorem.ARNOLD_MOSER):
+            if found.theorem not in (HigherOrder.DEFINITE, HigherOrder.ARNOLD_MOSER):
                 return None
             word = Word.STABLE_BUT_CYCLIC
         return Verdict(word, (found.theorem.value,), (Reason(Because.TERMS_OF_HIGHER_ORDER),))

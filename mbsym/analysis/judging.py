@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from mbsym.algebra.failures import Defect, Failure
+from mbsym.algebra.failures import Failure
 from mbsym.analysis.judge import Judge
 from mbsym.mechanics.constraints.refusal import refuse_constraints, refused
 from mbsym.mechanics.variables import angle_denominators, angles_of
@@ -81,8 +81,7 @@ def _judged(source: Analysis, claim: Claim, allowance: int) -> tuple[ClaimResult
         except Failure as reason:
             result = claims.undecided(source.system, claim, str(reason))
         except Exception as error:
-            source.defects.append(error)
-            result = claims.undecided(source.system, claim, Defect.of(error).reason)
+            result = claims.undecided(source.system, claim, str(source.contained(error)))
     return result, spent.work
 
 

@@ -24,7 +24,7 @@ from mbsym.model.oscillation_names import names_in, oscillation_names
 from mbsym.model.small import SmallParameter
 from mbsym.model.system import System, velocity_name
 from mbsym.problems.angle_field import in_angles
-from mbsym.problems.normal_forms.taylor_field import taylor_field
+from mbsym.problems.normal_forms.dissipative import taylor_field
 from mbsym.problems.small_parameter.graded_rows import graded_rows
 from mbsym.problems.small_parameter.harmonics import Harmonics
 from mbsym.problems.small_parameter.oscillation_result import Amplitude, Divisor, Oscillation

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import cached_property
-from types import ModuleType
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from mbsym.algebra.failures import Severity
@@ -18,21 +18,15 @@ from mbsym.algebra.ring import TERM_BUDGET, Ring
 from mbsym.algebra.signs import Signs
 from mbsym.analysis import (
     approximation,
-    conserved,
     constrained,
     deriving,
     forms,
-    found,
     given,
-    higher,
-    invariant,
     judging,
-    polynomial,
     second_routes,
-    small,
 )
 from mbsym.analysis.forms import FORMS
-from mbsym.analysis.stages import Derived, NoResult, Stage, Stages, Unavailable
+from mbsym.analysis.stages import Derived, NoResult, Stage, Stages, Unavailable, later
 from mbsym.expressions.tree import Expression
 from mbsym.formulas.formula import Column
 from mbsym.mechanics.constraints.refusal import refuse_constraints
@@ -42,21 +36,7 @@ from mbsym.mechanics.states import Oracles
 from mbsym.mechanics.variables import ring_environment, ring_of
 from mbsym.model.driven import held
 from mbsym.model.system import System
-from mbsym.problems import (
-    energy,
-    equations,
-    equilibrium,
-    integrals,
-    kinematics,
-    knowledge,
-    linearisation,
-    normal_forms,
-    small_parameter,
-    stabilisation,
-    stability,
-)
-from mbsym.problems import invariant_sets as problem_10
-from mbsym.problems import polynomial_integrals as problem_9
+from mbsym.problems import kinematics, knowledge
 from mbsym.problems.checks import Check, oracles
 from mbsym.problems.claims import ClaimResult
 from mbsym.problems.claims.counterexample import Trials
@@ -146,13 +126,13 @@ CHECKED_IN_COORDINATES |= {"perturbed motion": "linearisation", **forms.CHECKED}
 
 
 class Problem(Derived["Analysis", T]):
-    """A numbered problem: an attribute of Analysis that holds its result; ``module`` explains it."""
+    """A numbered problem: an attribute of Analysis that holds its result; ``module`` of ``problems`` explains it."""
 
     def __init__(
         self,
         number: int,
         title: str,
-        module: ModuleType,
+        module: str,
         derive: Callable[[Analysis], T],
         stands_on: Sequence[str],
         says: bool = False,
@@ -167,7 +147,7 @@ class Problem(Derived["Analysis", T]):
     @property
     def explanation(self) -> str:
         """What ``mbsym explain`` prints."""
-        return str(self.module.__doc__).strip()
+        return str(import_module(f"mbsym.problems.{self.module}").__doc__).strip()
 
 
 class Analysis(Stages):
@@ -308,13 +288,13 @@ class Analysis(Stages):
     # --- the numbered problems ---
 
     kinematics = Problem[Kinematics](
-        1, "kinematics", kinematics, lambda a: kinematics.kinematics(a.scene), ("kinematics",)
+        1, "kinematics", "kinematics", lambda a: kinematics.kinematics(a.scene), ("kinematics",)
     )
-    energy = Problem[Energy](2, "energy and force function", energy, deriving.energy_of, ("energy",))
+    energy = Problem[Energy](2, "energy and force function", "energy", deriving.energy_of, ("energy",))
     equations = Problem[Equations](
         3,
         "nonlinear Lagrange equations",
-        equations,
+        "equations",
         deriving.equations_of,
         ("equations of motion", "constraints", "constrained motion"),
     )
@@ -327,14 +307,14 @@ class Analysis(Stages):
     equilibrium = Problem[Equilibrium](
         4,
         "equilibrium conditions",
-        equilibrium,
+        "equilibrium",
         deriving.equilibrium_of,
         ("equilibrium",),
         says=True,
     )
     first_approximation = Derived["Analysis", Linearisation](approximation.first_approximation)
     linearisation = Problem[Linearisation](
-        5, "linearisation", linearisation, approximation.autonomous, ("linearisation", "perturbed motion")
+        5, "linearisation", "linearisation", approximation.autonomous, ("linearisation", "perturbed motion")
     )
     state_space: Derived[Analysis, StateSpace] = Derived(
         deriving.state_space_of,
@@ -342,51 +322,56 @@ class Analysis(Stages):
     )
     judgeable = Derived["Analysis", Linearisation](approximation.judgeable)
     balance = Derived["Analysis", Balance](deriving.balance_of)
-    stability = Problem[Stability](6, "stability", stability, deriving.stability_of, JUDGED, says=True)
+    stability = Problem[Stability](6, "stability", "stability", deriving.stability_of, JUDGED, says=True)
     integrals = Problem[tuple[Integral, ...]](
         7,
         "first integrals",
-        integrals,
-        conserved.first_integrals,
+        "integrals",
+        deriving.first_integrals,
         ("equations of motion", *constrained.CHECKS, "first integrals"),
         says=True,
     )
 
     stabilisation: Problem[Stabilisation] = Problem(
-        8, "stabilisation", stabilisation, deriving.stabilisation_of, (*JUDGED, "stabilisation"), says=True
+        8, "stabilisation", "stabilisation", deriving.stabilisation_of, (*JUDGED, "stabilisation"), says=True
     )
 
     polynomial_integrals: Problem[Polynomials] = Problem(
         9,
         "polynomial integrals",
-        problem_9,
-        polynomial.polynomials_of,
+        "polynomial_integrals",
+        later("mbsym.analysis.polynomial", "polynomials_of"),
         ("equations of motion", "polynomial integrals"),
         says=True,
     )
 
     further_integrals = Derived["Analysis", tuple[Integral, ...]](
-        found.beyond, ("equations of motion", "polynomial integrals"), says=True
+        later("mbsym.analysis.found", "beyond"), ("equations of motion", "polynomial integrals"), says=True
     )
 
     invariant_sets: Problem[InvariantSets] = Problem(
         10,
         "steady motions and invariant manifolds",
-        problem_10,
-        invariant.invariant_sets_of,
+        "invariant_sets",
+        later("mbsym.analysis.invariant", "invariant_sets_of"),
         ("equations of motion", "first integrals"),
         says=True,
     )
 
     normal_forms: Problem[NormalForms] = Problem(
-        11, "terms of higher order", normal_forms, higher.normal_forms_of, (*JUDGED, "normal forms"), says=True
+        11,
+        "terms of higher order",
+        "normal_forms",
+        later("mbsym.analysis.higher", "normal_forms_of"),
+        (*JUDGED, "normal forms"),
+        says=True,
     )
 
     small_parameters: Problem[SmallParameters] = Problem(
         12,
         "small parameters",
-        small_parameter,
-        small.small_parameters_of,
+        "small_parameter",
+        later("mbsym.analysis.small", "small_parameters_of"),
         ("equations of motion", "energy"),
         says=True,
     )

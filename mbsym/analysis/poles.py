@@ -18,9 +18,11 @@ if TYPE_CHECKING:
 
 
 def pole(analysis: Analysis, values: Mapping[str, Any]) -> str:
-    """A polynomial in parameters that is zero at ``values`` and by which T, U or an applied force divides; "" for none.
+    """A polynomial in parameters that is zero at ``values`` and by which the description divides; "" for none.
 
-    The first approximation need not hold it: in U = -k x^2/2 - x^4/(b - 4) it does not, and there is no U for b = 4.
+    It does in T, in U, in an applied force or in the unperturbed motion.  The first approximation need not hold it: in
+    U = -k x^2/2 - x^4/(b - 4) it does not, and there is no U for b = 4; of the motion r = k a/(k - m w^2) of a bead on
+    a turning rod neither, and there is no such motion for k = m w^2.
     """
     ring = analysis.ring
     poles = {
@@ -28,14 +30,13 @@ def pole(analysis: Analysis, values: Mapping[str, Any]) -> str:
         for k, g in enumerate(ring.generators)
         if g.kind == "reciprocal" and g.argument is not None and _vanishes(ring, g.argument, values)
     }
-    if not poles:
-        return ""
-    energy = analysis.optional("energy")
+    energy = analysis.optional("energy") if poles else None
     if energy is None:
         return ""
     told = [energy.force_function, energy.A0, *energy.A1, *(x for row in energy.A2 for x in row)]
     applied = generalized_forces(analysis.held_scene).values()
-    held = sorted(poles.intersection(occurring([*(x.polynomial for x in told), *applied])))
+    moves = (analysis.parameters_scene.lower(x) for one in analysis.system.motion for x in (one.value, one.rate))
+    held = sorted(poles.intersection(occurring([*(x.polynomial for x in told), *applied, *moves])))
     divisor = ring.generators[held[0]].argument if held else None
     return "" if divisor is None else str(Formula(ring, divisor))
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 from mbsym.algebra.failures import NOT_THERE, Failure
+from mbsym.algebra.parts import installed
 from mbsym.analysis import higher
 from mbsym.analysis.judge import Judge
 from mbsym.analysis.pipeline import Analysis
@@ -35,6 +36,8 @@ def relative_equilibria(system: System, values: Mapping[str, Value], within: flo
 
 def judged(system: System, values: Mapping[str, Value], found: Equilibria) -> Equilibria:
     """Open verdicts at isolated places, judged further."""
+    if not installed("mbsym.problems.normal_forms"):
+        return found
     if len(system.coordinates) > MOST_COORDINATES or not any(x.verdict.word.open for x in found.equilibria):
         return found
     bare = at_numbers(system, values)

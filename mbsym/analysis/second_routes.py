@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from mbsym.algebra.failures import Defect, Failure
-from mbsym.analysis import constrained, forms, higher, polynomial
+from mbsym.algebra.failures import Failure, NotInstalled
+from mbsym.analysis import constrained, forms
+from mbsym.analysis.stages import later
 from mbsym.formulas.formula import Column
 from mbsym.mechanics import motion
 from mbsym.problems import checks as comparison
@@ -63,8 +64,10 @@ def check(analysis: Analysis, name: str) -> Check | None:
     except Failure as reason:
         return Check(name, "", "", comparison.UNDECIDED, str(reason))
     except Exception as error:
-        analysis.defects.append(error)
-        return Check(name, "", "", comparison.UNDECIDED, Defect.of(error).reason)
+        failure = analysis.contained(error)
+        if isinstance(failure, NotInstalled):
+            return None
+        return Check(name, "", "", comparison.UNDECIDED, str(failure))
 
 
 # --- one by one: None where there is nothing to compare ---
@@ -205,8 +208,8 @@ SECOND_ROUTES: dict[str, Callable[[Analysis], Check | None]] = {
     "first approximation in speeds": _first_order,
     "first integrals": _integrals,
     "stabilisation": _stabilisation,
-    "polynomial integrals": polynomial.check,
-    "normal forms": higher.check,
+    "polynomial integrals": later("mbsym.analysis.polynomial", "check"),
+    "normal forms": later("mbsym.analysis.higher", "check"),
     "constraints": constrained.rows_check,
     "constrained motion": constrained.motion_check,
     constrained.REACTIONS: constrained.reactions_check,

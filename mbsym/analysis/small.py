@@ -10,7 +10,7 @@ from mbsym.analysis.averaged import averaged_system, averaging_of, fast_phases
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.model.system import System
-from mbsym.problems.averaging import Averaged
+from mbsym.problems.small_parameter.averaging import Averaged
 from mbsym.problems.small_parameter.result import Outcome
 
 if TYPE_CHECKING:

@@ -6,9 +6,10 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
+from importlib import import_module
 from typing import Any, Generic, Self, TypeVar, overload
 
-from mbsym.algebra.failures import Defect, Failure, Limit, Severity, SingularPoint
+from mbsym.algebra.failures import Defect, Failure, Limit, NotInstalled, Severity, SingularPoint
 from mbsym.expressions.guessing import GuessesNames
 
 T = TypeVar("T")
@@ -49,7 +50,7 @@ class NoResult:
 
 
 #: In a word or two why there is no answer, where no bound was met: by the kind of failure.
-_IN_SHORT = {"constraints": "constraints"}
+_IN_SHORT = {"constraints": "constraints", NotInstalled.code: "not installed"}
 
 
 class Unavailable(Failure):
@@ -110,14 +111,20 @@ class Stages(GuessesNames):
             except Failure as reason:
                 failure = NoResult.of(reason)
             except Exception as error:  # it costs this stage and what needs it, and is told
-                self.defects.append(error)
-                failure = NoResult.of(Defect.of(error))
+                failure = NoResult.of(self.contained(error))
             finally:
                 self._depth -= 1
             whole = time.perf_counter() - started
             self._stages[name] = Stage(name, value, failure, whole - self._nested)
             self._nested = outer + whole
         return self._stages[name]
+
+    def contained(self, error: Exception) -> Failure:
+        """What to say of an exception that nobody foresaw; ``defects`` has it then."""
+        found = Defect.of(error)
+        if found.severity is Severity.DEFECT:
+            self.defects.append(error)
+        return found
 
     def forget(self, stage: Stage) -> None:
         """As if the stage had not been asked for."""
@@ -192,6 +199,15 @@ class Stages(GuessesNames):
     def derived(self) -> frozenset[str]:
         """The names of the stages that something has asked for so far."""
         return frozenset(self._stages)
+
+
+def later(module: str, name: str) -> Callable[..., Any]:
+    """A function of a module that is imported when it is first called."""
+
+    def call(*given: Any) -> Any:
+        return getattr(import_module(module), name)(*given)
+
+    return call
 
 
 class Derived(Generic[Owner, T]):

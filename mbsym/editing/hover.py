@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from mbsym.editing.keys import keys_in
-from mbsym.editing.markdown import code, plain
 from mbsym.editing.place import key_at, where, word_at
 from mbsym.expressions.rates import without_velocity
 from mbsym.expressions.tree import text as written
@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 
 #: A derived formula with more terms is counted.
 MOST_TERMS = 40
+
+
+_PUNCTUATION = re.compile(r"([\\`*_\[\]<>&~|!#$])")
 
 
 def explanation(text: str, line: int, column: int, analysis: Analysis | None = None) -> str | None:
@@ -111,3 +114,18 @@ def _or_none(derive):  # type: ignore[no-untyped-def]
         return derive()
     except (Unavailable, Failure):
         return None
+
+
+def plain(text: str) -> str:
+    r"""Text as it is; what could mean more is escaped.
+
+    >>> plain("a*b ![x](y)")
+    'a\\*b \\!\\[x\\](y)'
+    """
+    shown = "".join(character if character.isprintable() else " " for character in text)
+    return _PUNCTUATION.sub(r"\\\1", shown)
+
+
+def code(text: str) -> str:
+    """A formula as code; formulas hold no backticks."""
+    return f"`{text.replace('`', ' ')}`"

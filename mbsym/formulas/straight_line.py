@@ -6,13 +6,16 @@ Code is made from here, never from expanded formulas: it is short, and it comput
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
+from mbsym.algebra.base import Lowering
+from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.program import Instruction, Node, Program
+from mbsym.expressions.table import Tabulated
+from mbsym.expressions.tree import MOST_WRITTEN_OUT, Name, slope_written_out, written_out
 from mbsym.formulas.numerals import writable
-from mbsym.formulas.unfolded import unfolded
 
 #: Longer expressions are given a name even if they are used only once.
 WIDTH = 60
@@ -134,3 +137,32 @@ class _Writer:
     def _operand(self, number: int, wanted: int) -> str:
         text, precedence = self.written[number]
         return text if precedence >= wanted else f"({text})"
+
+
+class WithoutTables(Program):
+    """A program in which f(x) of a table is a sum over its knots; see ``written_out``."""
+
+    def function(self, name: str, x: Node) -> Node:
+        """Raises NoClosedForm for a table of many points."""
+        if not isinstance(name, Tabulated) or name.curve.constant is not None:
+            return super().function(name, x)
+        table, count = name.table, len(name.table.points)
+        if count > MOST_WRITTEN_OUT:
+            reason = f"the table {table.name} has {count} points: there it is written out by moduli, up to"
+            raise NoClosedForm(f"{reason} {MOST_WRITTEN_OUT}")
+        at = Name("x")
+        expression = slope_written_out(name.curve, at) if name.curve.order else written_out(table, at, whole=False)
+        return Lowering(self, {"x": x})(expression)
+
+
+def unfolded(program: Program, outputs: Sequence[Node]) -> tuple[Program, list[Node]]:
+    """The same outputs in a program without tables; the program itself where it has none."""
+    if not any(isinstance(program.instructions[number].operation, Tabulated) for number in program.live(outputs)):
+        return program, list(outputs)
+    fresh = WithoutTables()
+    inputs = {
+        str(program.instructions[number].payload): fresh.input(str(program.instructions[number].payload))
+        for number in program.live(outputs)
+        if program.instructions[number].operation == "input"
+    }
+    return fresh, program.evaluate(outputs, inputs, fresh)

@@ -72,6 +72,12 @@ class Origin(Enum):
     SIGN = "declared sign"
     INERTIA = "triangle inequality"
     UNDEFINED = "division"
+    #: Of numbers of equilibria.
+    SINGULAR = "singular equilibria"
+    LEAVING = "at infinity or at a border"
+
+
+OF_EQUILIBRIA = (Origin.SINGULAR, Origin.LEAVING)
 
 
 @dataclass(frozen=True)
@@ -115,6 +121,11 @@ def boundaries(
         found += conditions_of(part, number, section=section, known=known)
     if section.constant is not None:
         found = [replace(x, polynomial=norm_of_factors(section, x.polynomial)) for x in found]
+    return factored(found)
+
+
+def factored(found: Sequence[Condition]) -> Boundaries:
+    """The irreducible factors of conditions, each once, with those in which it stands."""
     factors: list[Polynomial] = []
     places: dict[str, int] = {}
     conditions: list[list[Condition]] = []

@@ -11,33 +11,30 @@ on both sides, which are found by another route.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from itertools import pairwise
 from typing import Any
 
 from flint import fmpq
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
+from mbsym.algebra.plane.line import Interval, Line, divided
 from mbsym.algebra.plane.numbers import Number, ascending, between_simply, compare, enclosure
 from mbsym.algebra.polynomial_systems import Limits
+from mbsym.maps.boundaries import Boundaries
 from mbsym.maps.branches_curve import Curve, CurvePoint, Found, curves, joined
 from mbsym.maps.branches_events import named
 from mbsym.maps.branches_linked import linked
-from mbsym.maps.branches_result import Branches, Critical, Doubt, Interval, Meeting, Piece, Remark
+from mbsym.maps.branches_result import Branches, Critical, Doubt, Meeting, Piece, Remark
 from mbsym.maps.branches_stability import decided_throughout, is_undamped, stability_changes
+from mbsym.maps.mapping import Watch, ends, lengths, unwatched
+from mbsym.maps.result import Cell, Counted, Lack, Of, Shape
 from mbsym.maps.section import Axis
 from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.model.system import System
 from mbsym.problems.relative_equilibria.equilibria import CoordinateValue, Equilibria, equilibria
-
-#: Tells what is being done: a word, how much of it is done, and how much there is.
-Watch = Callable[[str, int, int], None]
-
-
-def unwatched(_: str, done: int, whole: int) -> None:
-    """Tells nobody."""
 
 
 def branches(
@@ -64,50 +61,57 @@ def branches(
     of_all = (bifurcating, leaving, changing)
     numbers = _distinct([x for one in of_all for x in (*(y.number for y in one.points), *one.continua)])
     count_proved = not any(one.unfinished or one.throughout for one in (bifurcating, leaving))
-    intervals: list[Interval] = []
-    pieces: list[Piece] = []
-    criticals: list[Critical] = []
-    interrupted = False
+    line = divided(*ends(axis), [(x, ()) for x in numbers])
+    regions = [Cell(Shape.INTERVAL, one.id, one.sample, lack=Lack.NOT_REACHED) for one in line.intervals]
+    corners = [Cell(Shape.ZERO, one.id, one.number, lack=Lack.NOT_REACHED) for one in line.zeros]
+    names = tuple(dict.fromkeys(name for one in parts for name in one.names))
+    related = {item.name for item in system.relations}
+    given = {name: value for name, value in values.items() if name != axis.name and name not in related}
+
+    def made(pieces: Sequence[Piece] = (), interrupted: bool = True) -> Branches:
+        """As far as it was reached."""
+        return Branches(
+            Of.EQUILIBRIA, (axis,), given, line, Boundaries((), (), ()), tuple(regions), (), tuple(corners),
+            lengths(line), interrupted=interrupted, coordinates=names, pieces=tuple(pieces),
+            remarks=tuple(dict.fromkeys(remarks)),
+        )  # fmt: skip
+
     try:
-        for k, (low, high) in enumerate(_gaps(numbers, axis)):
-            watch("samples", k, len(numbers) + 1)
-            sample = _sample(low, high)
-            found = equilibria(system, {**values, axis.name: sample}, limits=bounds)
-            remarks += _of_sample(found, sample)
+        for k, interval in enumerate(line.intervals):
+            watch("samples", k, len(regions))
+            sample = _sample(interval, line)
+            found = equilibria(system, {**values, axis.name: fraction(sample)}, limits=bounds)
+            remarks += _of_sample(found, fraction(sample))
             constant = count_proved and found.complete and not found.families
-            intervals.append(Interval(low, high, sample, found.equilibria, constant))
+            surely = Certainty.PROVED if constant else Certainty.UNDECIDED
+            regions[k] = Cell(Shape.INTERVAL, k, sample, Counted(found.equilibria), surely)
         for k, number in enumerate(numbers):
             watch("critical values", k, len(numbers))
             meetings, reason, singular = _meetings(parts, number)
             if meetings is not None and isinstance(number, fmpq):
-                at = Fraction(int(number.p), int(number.q))
-                meetings = _judged(meetings, equilibria(system, {**values, axis.name: at}, limits=bounds))
+                at = equilibria(system, {**values, axis.name: fraction(number)}, limits=bounds)
+                meetings = _judged(meetings, at)
             if reason:
                 remarks.append(Remark(Doubt.UNCOUNTED, f"{short(number)}: {reason}"))
-            criticals.append(
-                Critical(
-                    number,
-                    meetings,
-                    _among(number, bifurcating.continua),
-                    singular or _among(number, [*leaving.continua, *(x.number for x in leaving.points)]),
-                    None,
-                )
-            )
+            border = singular or _among(number, [*leaving.continua, *(x.number for x in leaving.points)])
+            there = Critical(meetings, _among(number, bifurcating.continua), border)
+            corners[k] = Cell(Shape.ZERO, k, number, there, Certainty.PROVED)
         watch("branches", 0, 1)
-        criticals = [_balanced(one, intervals, axis) for one in criticals]
-        remarks += [Remark(Doubt.MISMATCH, short(one.number)) for one in criticals if one.balance is False]
+        without = made()
+        for one in without.criticals:
+            there = _balanced(without, one)
+            corners[one.number] = replace(one, said=there)
+            if there.balance is False:
+                remarks.append(Remark(Doubt.MISMATCH, short(one.sample)))
         solved = not (changing.unfinished or changing.throughout)
         undamped = all(is_undamped(one.search) for one in parts)
-        for piece in linked(parts, axis, intervals, criticals):
-            throughout = decided_throughout(intervals[piece.interval], piece.number, solved, undamped)
-            pieces.append(replace(piece, throughout=throughout))
+        pieces = [
+            replace(piece, throughout=decided_throughout(regions[piece.interval], piece.number, solved, undamped))
+            for piece in linked(parts, made())
+        ]
+        return made(pieces, interrupted=False)
     except KeyboardInterrupt:
-        interrupted = True
-    names = tuple(dict.fromkeys(name for one in parts for name in one.names))
-    related = {item.name for item in system.relations}
-    given = {name: value for name, value in values.items() if name != axis.name and name not in related}
-    told = tuple(dict.fromkeys(remarks))
-    return Branches(axis, given, names, tuple(criticals), tuple(intervals), tuple(pieces), told, interrupted)
+        return made()
 
 
 def _doubts(bifurcating: Found, leaving: Found, changing: Found) -> list[Remark]:
@@ -139,20 +143,16 @@ def _among(x: Number, others: Sequence[Number]) -> bool:
     return any(compare(x, y) == 0 for y in others)
 
 
-def _gaps(numbers: Sequence[Number], axis: Axis) -> list[tuple[Number, Number]]:
-    """The open intervals that are left; ends that are critical belong to none."""
-    low, high = (fmpq(x.numerator, x.denominator) for x in (axis.low, axis.high))
-    inner = [x for x in numbers if compare(x, low) > 0 and compare(x, high) < 0]
-    marks = [low, *inner, high]
-    return list(pairwise(marks))
+def _sample(interval: Interval, line: Line) -> Any:
+    """A rational number in an interval, but 0: a parameter that vanishes may make the equations others."""
+    if interval.sample != 0:
+        return interval.sample
+    last = interval.ends[1]
+    return between_simply(fmpq(0), line.high if last is None else line.zeros[last].number)
 
 
-def _sample(low: Number, high: Number) -> Fraction:
-    """A rational number between, but 0: a parameter that vanishes may make the equations others."""
-    found = between_simply(low, high)
-    if found == 0:
-        found = between_simply(fmpq(0), high)
-    return Fraction(int(found.p), int(found.q))
+def fraction(x: Any) -> Fraction:
+    return Fraction(int(x.p), int(x.q))
 
 
 def _meetings(parts: Sequence[Curve], number: Number) -> tuple[tuple[Meeting, ...] | None, str, bool]:
@@ -197,19 +197,20 @@ def _close(a: Sequence[CoordinateValue], b: Sequence[CoordinateValue]) -> bool:
     )
 
 
-def _balanced(one: Critical, intervals: Sequence[Interval], axis: Axis) -> Critical:
+def _balanced(found: Branches, at: Cell) -> Critical:
     """Whether the events account for the counts on both sides."""
+    one = found.critical(at)
     if one.meetings is None or one.continuum or one.border:
         return one
     named_ = [x.named for x in one.meetings]
     if any(x.below is None for x in named_):
         return one
+    below, above = found.sides(at)
     holds: list[bool] = []
-    for k, interval in enumerate(intervals):
-        if compare(interval.high, one.number) == 0:
-            holds.append(sum(x.below or 0 for x in named_) == len(intervals[k].equilibria))
-        if compare(interval.low, one.number) == 0:
-            holds.append(sum(x.above or 0 for x in named_) == len(intervals[k].equilibria))
+    if below is not None:
+        holds.append(sum(x.below or 0 for x in named_) == len(found.equilibria(below)))
+    if above is not None:
+        holds.append(sum(x.above or 0 for x in named_) == len(found.equilibria(above)))
     return replace(one, balance=all(holds)) if holds else one
 
 

@@ -9,11 +9,12 @@ from itertools import chain
 
 from flint import arb
 
-from mbsym.algebra.plane.numbers import Number, compare, enclosure
+from mbsym.algebra.plane.numbers import enclosure
 from mbsym.maps.branches_curve import Curve
 from mbsym.maps.branches_followed import followed, uses_only_known
-from mbsym.maps.branches_result import Critical, Interval, Meeting, Piece
-from mbsym.maps.section import Axis
+from mbsym.maps.branches_result import Branches, Meeting, Piece
+from mbsym.maps.mapping import float_of
+from mbsym.maps.result import Cell
 from mbsym.problems.relative_equilibria.equilibria import RelativeEquilibrium
 from mbsym.problems.relative_equilibria.place import Place
 
@@ -21,43 +22,34 @@ from mbsym.problems.relative_equilibria.place import Place
 FAR = 0.05
 
 
-def linked(
-    parts: Sequence[Curve], axis: Axis, intervals: Sequence[Interval], criticals: Sequence[Critical]
-) -> list[Piece]:
+def linked(parts: Sequence[Curve], found: Branches) -> list[Piece]:
     """The branches over all intervals, with the meetings they start from and end in."""
     usable = {one.label: one for one in parts if uses_only_known(one.ring, [*one.forcing, *chain(*one.slopes)])}
     pieces: list[Piece] = []
-    for k, interval in enumerate(intervals):
-        ends = [_critical_at(criticals, x) for x in (interval.low, interval.high)]
+    for interval in found.intervals:
         made: list[Piece] = []
         arrivals: list[tuple[tuple[float, ...] | None, tuple[float, ...] | None]] = []
-        for number, one in enumerate(interval.equilibria):
-            curve = usable.get(one.coordinates_of)
-            piece, where = _followed(curve, one, interval, k, number, axis)
+        for number, one in enumerate(found.equilibria(interval)):
+            piece, where = _followed(usable.get(one.coordinates_of), one, found, interval, number)
             made.append(piece)
             arrivals.append(where)
         starts, stops = (
-            _assigned(critical, [x[side] for x in arrivals], usable, below=side == 1)
-            for side, critical in enumerate(ends)
+            _assigned(found, critical, [x[side] for x in arrivals], usable, below=side == 1)
+            for side, critical in enumerate(found.between(interval))
         )
-        made = [replace(one, start=a, end=b) for one, a, b in zip(made, starts, stops, strict=True)]
-        pieces += made
+        pieces += [replace(one, start=a, end=b) for one, a, b in zip(made, starts, stops, strict=True)]
     return pieces
 
 
-def _critical_at(criticals: Sequence[Critical], x: Number) -> Critical | None:
-    return next((one for one in criticals if compare(one.number, x) == 0), None)
-
-
 def _followed(
-    curve: Curve | None, one: RelativeEquilibrium, interval: Interval, k: int, number: int, axis: Axis
+    curve: Curve | None, one: RelativeEquilibrium, found: Branches, interval: Cell, number: int
 ) -> tuple[Piece, tuple[tuple[float, ...] | None, tuple[float, ...] | None]]:
-    sample = float(interval.sample)
+    sample, k = float_of(interval.sample), interval.number
     values = {x.name: x.value for x in one.values}
     if curve is None or set(curve.names) != set(values):
         start = tuple(x.value for x in one.values)
         return Piece(k, number, False, None, None, (sample,), (start,)), (None, None)
-    low, high = (float(enclosure(x).mid()) for x in (interval.low, interval.high))
+    low, high = (float(enclosure(x).mid()) for x in found.ends(interval))
     start = tuple(values[name] for name in curve.names)
     ps, qs, at_low, at_high = followed(curve, start, sample, low, high)
     piece = Piece(k, number, False, None, None, tuple(ps), tuple(qs))
@@ -75,7 +67,8 @@ def _features(curve: Curve, p: float, q: Sequence[float]) -> tuple[float, ...]:
 
 
 def _assigned(
-    critical: Critical | None,
+    found: Branches,
+    at: Cell | None,
     arrivals: Sequence[tuple[float, ...] | None],
     usable: dict[str, Curve],
     below: bool,
@@ -85,10 +78,11 @@ def _assigned(
     ``below``: the branches lie at smaller values of the parameter than the critical one.
     """
     nobody: list[int | None] = [None] * len(arrivals)
-    if critical is None or critical.meetings is None:
+    meetings = None if at is None else found.critical(at).meetings
+    if at is None or meetings is None:
         return nobody
-    p = float(enclosure(critical.number).mid())
-    places = [_features_at(one, usable, p) for one in critical.meetings]
+    p = float(enclosure(at.sample).mid())
+    places = [_features_at(one, usable, p) for one in meetings]
     chosen: list[int | None] = []
     for where in arrivals:
         distances = [
@@ -97,7 +91,7 @@ def _assigned(
         ]  # fmt: skip
         nearest = min(distances, default=(math.inf, -1))
         chosen.append(nearest[1] if nearest[0] < FAR else None)
-    wanted = [one.named.below if below else one.named.above for one in critical.meetings]
+    wanted = [one.named.below if below else one.named.above for one in meetings]
     return [
         k if k is not None and (wanted[k] is None or chosen.count(k) == wanted[k]) else None for k in chosen
     ]  # fmt: skip

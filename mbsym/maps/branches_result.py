@@ -1,16 +1,15 @@
-"""Branches of relative equilibria over one parameter, as values."""
+"""Branches of relative equilibria over one parameter, as a map with what goes on from cell to cell."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from fractions import Fraction
 
-from mbsym.algebra.plane.numbers import Number, compare
+from mbsym.algebra.certainty import Certainty
+from mbsym.algebra.plane.numbers import Number
 from mbsym.maps.branches_events import Event, Named
-from mbsym.maps.section import Axis
+from mbsym.maps.result import Cell, Map
 from mbsym.problems.relative_equilibria.equilibria import CoordinateValue, RelativeEquilibrium
 from mbsym.problems.stability.verdict import Verdict
 
@@ -50,45 +49,23 @@ class Meeting:
 
 @dataclass(frozen=True)
 class Critical:
-    """A value of the parameter at which something happens, or may: ``number`` is exact.
+    """What happens, or may, at a value of the parameter.
 
     ``meetings``: the equilibria there; None where they could not be counted.  ``continuum``: some are not isolated.
     ``border``: on some solution an unknown is at infinity, a root or a denominator zero, or the mass matrix singular.
     ``balance``: whether the counts on both sides agree with the events named (None: an end, or nothing to compare).
     """
 
-    number: Number
     meetings: tuple[Meeting, ...] | None
     continuum: bool
     border: bool
-    balance: bool | None
+    balance: bool | None = None
 
     @property
     def events(self) -> tuple[Event, ...]:
         """What happens, each as often as it does."""
         found = [one.named.event for one in self.meetings or () if one.named.event is not Event.REGULAR]
         return (*found, Event.CONTINUUM) if self.continuum else tuple(found)
-
-
-@dataclass(frozen=True)
-class Interval:
-    """Between two critical values (or ends): ``sample`` is rational, ``equilibria`` those there, ``constant`` whether
-    their number is proved to be the same in the whole open interval."""
-
-    low: Number
-    high: Number
-    sample: Fraction
-    equilibria: tuple[RelativeEquilibrium, ...]
-    constant: bool
-
-    @property
-    def stable(self) -> int:
-        return sum(one.verdict.stable for one in self.equilibria)
-
-    @property
-    def undecided(self) -> int:
-        """Those of which nothing decides whether they are stable."""
-        return sum(one.verdict.word.open for one in self.equilibria)
 
 
 @dataclass(frozen=True)
@@ -109,87 +86,111 @@ class Piece:
     values: tuple[tuple[float, ...], ...]
 
 
-@dataclass(frozen=True)
-class Branches:
-    """``criticals`` ascending; ``intervals`` between them; ``pieces`` of branches, interval by interval.
+@dataclass(frozen=True, kw_only=True)
+class Branches(Map):
+    """Cells are intervals, with the equilibria at their samples, and critical values between them, or at the ends.
 
-    ``given``: the numbers of the other parameters.  ``coordinates``: those that the equations contain.
+    ``pieces`` of branches, interval by interval.  ``coordinates``: those that the equations contain.
     """
 
-    axis: Axis
-    given: Mapping[str, Fraction]
     coordinates: tuple[str, ...]
-    criticals: tuple[Critical, ...]
-    intervals: tuple[Interval, ...]
     pieces: tuple[Piece, ...]
     remarks: tuple[Remark, ...]
-    interrupted: bool = False
 
-    def sides(self, one: Critical) -> tuple[int | None, int | None]:
-        """The numbers of the intervals below and above a critical value."""
-        below = [k for k, x in enumerate(self.intervals) if compare(x.high, one.number) == 0]
-        above = [k for k, x in enumerate(self.intervals) if compare(x.low, one.number) == 0]
-        return (below[0] if below else None), (above[0] if above else None)
+    @property
+    def intervals(self) -> list[Cell]:
+        """Those that were reached."""
+        return [one for one in self.regions if one.counted is not None]
 
-    def count_changes(self, one: Critical) -> bool:
+    @property
+    def criticals(self) -> list[Cell]:
+        """The critical values that were reached, each with ``critical``."""
+        return [one for one in self.corners if one.said is not None]
+
+    def critical(self, at: Cell) -> Critical:
+        """What happens at a critical value."""
+        assert isinstance(at.said, Critical)
+        return at.said
+
+    def equilibria(self, interval: Cell) -> tuple[RelativeEquilibrium, ...]:
+        """Those at a sample."""
+        return () if interval.counted is None else interval.counted.equilibria
+
+    def ends(self, interval: Cell) -> tuple[Number, Number]:
+        """From where to where an interval goes."""
+        line, (first, last) = self.line, self.place(interval).ends
+        low, high = (None if k is None else line.zeros[k].number for k in (first, last))
+        return line.low if low is None else low, line.high if high is None else high
+
+    def sides(self, at: Cell) -> tuple[Cell | None, Cell | None]:
+        """The intervals below and above a critical value, where they were reached."""
+        below, above = (one if one is not None and one.counted is not None else None for one in self.beside(at))
+        return below, above
+
+    def count_changes(self, at: Cell) -> bool:
         """Whether there are other numbers of equilibria on the two sides."""
-        below, above = self.sides(one)
-        if below is None or above is None:
-            return True
-        return len(self.intervals[below].equilibria) != len(self.intervals[above].equilibria)
+        below, above = self.sides(at)
+        return below is None or above is None or len(self.equilibria(below)) != len(self.equilibria(above))
 
-    def leaves(self, one: Critical) -> bool:
+    def leaves(self, at: Cell) -> bool:
         """Whether equilibria go to infinity or to a border: what is found there does not account for the counts."""
+        one = self.critical(at)
         if not one.border or one.meetings is None:
             return one.border
-        sides = zip(self.sides(one), ("below", "above"), strict=True)
-        for k, side in sides:
-            near = [getattr(x.named, side) for x in one.meetings]
-            if k is not None and (None in near or sum(near) != len(self.intervals[k].equilibria)):
+        for side, name in zip(self.sides(at), ("below", "above"), strict=True):
+            near = [getattr(x.named, name) for x in one.meetings]
+            if side is not None and (None in near or sum(near) != len(self.equilibria(side))):
                 return True
         return False
 
-    def verdict_changes(self, one: Critical) -> bool:
+    def verdict_changes(self, at: Cell) -> bool:
         """Whether a branch that goes on regularly has other verdicts on the two sides, or cannot be told apart."""
-        below, above = self.sides(one)
+        below, above = self.sides(at)
         if below is None or above is None:
             return False
-        words = [Counter(x.verdict.word for x in self.intervals[k].equilibria) for k in (below, above)]
+        words = [Counter(x.verdict.word for x in self.equilibria(side)) for side in (below, above)]
         if words[0] != words[1]:
             return True
-        on = self.criticals.index(one)
-        pairs = [
-            (a, b)
+        meetings = self.critical(at).meetings or ()
+        return any(
+            self.verdict(a).word is not self.verdict(b).word
             for a in self.pieces
             for b in self.pieces
-            if a.interval == below and b.interval == above and a.end is not None and a.end == b.start
-        ]
-        regular = [
-            (a, b) for a, b in pairs if (self.criticals[on].meetings or ())[a.end or 0].named.event is Event.REGULAR
-        ]
-        return any(self.verdict(a).word is not self.verdict(b).word for a, b in regular)
+            if (a.interval, b.interval) == (below.number, above.number)
+            and a.end is not None
+            and a.end == b.start
+            and meetings[a.end].named.event is Event.REGULAR
+        )
 
     def verdict(self, piece: Piece) -> Verdict:
         """The verdict at the sample of a piece's interval."""
-        return self.intervals[piece.interval].equilibria[piece.number].verdict
+        return self.equilibria(self.regions[piece.interval])[piece.number].verdict
 
-    def certain(self, one: Critical) -> bool:
+    def certain(self, at: Cell) -> bool:
         """Whether the verdicts on both sides are proved up to a critical value."""
-        sides = self.sides(one)
+        sides = [one.number for one in self.sides(at) if one is not None]
         return all(x.throughout for x in self.pieces if x.interval in sides)
 
-    def happens(self, one: Critical) -> bool:
+    def happens(self, at: Cell) -> bool:
         """Whether anything is to be told of a critical value."""
-        changed = None not in self.sides(one) and self.count_changes(one)
-        changed = changed or self.leaves(one) or self.verdict_changes(one)
+        one = self.critical(at)
+        changed = None not in self.sides(at) and self.count_changes(at)
+        changed = changed or self.leaves(at) or self.verdict_changes(at)
         return bool(one.events) or one.balance is False or changed
 
-    def spans(self) -> list[tuple[Interval, Interval]]:
+    def between(self, interval: Cell) -> tuple[Cell | None, Cell | None]:
+        """The critical values at which an interval starts and ends, where they were reached."""
+        first, last = (
+            None if k is None or self.corners[k].said is None else self.corners[k] for k in self.place(interval).ends
+        )
+        return first, last
+
+    def spans(self) -> list[tuple[Cell, Cell]]:
         """The first and last of the intervals between which nothing happens, in their order."""
-        found: list[tuple[Interval, Interval]] = []
+        found: list[tuple[Cell, Cell]] = []
         for one in self.intervals:
-            between = next((c for c in self.criticals if compare(c.number, one.low) == 0), None)
-            if found and between is not None and not self.happens(between):
+            start = self.between(one)[0]
+            if found and start is not None and not self.happens(start):
                 found[-1] = found[-1][0], one
             else:
                 found.append((one, one))
@@ -198,4 +199,4 @@ class Branches:
     @property
     def proved(self) -> bool:
         """Whether the numbers of equilibria are proved everywhere in the open intervals."""
-        return not self.interrupted and all(one.constant for one in self.intervals)
+        return not self.interrupted and all(one.certainty is Certainty.PROVED for one in self.intervals)

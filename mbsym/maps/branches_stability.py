@@ -13,12 +13,13 @@ det K vanishes nowhere between: verdicts that follow from that alone need no mor
 
 from __future__ import annotations
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.characteristic import characteristic_polynomial, discriminant, hurwitz_minors
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.matrices import ScalarMatrix
 from mbsym.algebra.ring import Polynomial
 from mbsym.maps.branches_curve import Curve, Found, joined
-from mbsym.maps.branches_result import Interval
+from mbsym.maps.result import Cell
 from mbsym.problems.relative_equilibria.equilibria import _ChartSearch
 from mbsym.problems.relative_equilibria.verdict import LinearAtRest
 
@@ -85,15 +86,15 @@ def _polynomial(curve: Curve, coefficients: object) -> bool:
     return all(not curve.ring.fraction(x)[1] for x in coefficients)  # type: ignore[attr-defined]
 
 
-def decided_throughout(interval: Interval, number: int, solved: bool, undamped: bool) -> bool:
+def decided_throughout(interval: Cell, number: int, solved: bool, undamped: bool) -> bool:
     """Whether the verdict at the sample is proved for the whole interval.
 
     ``solved``: all changes of stability are solved; ``undamped``: D = 0 everywhere, so that the inertia of K decides
     what Lagrange, Dirichlet, Kelvin and Chetaev's theorems say.
     """
-    if not interval.constant:
+    if interval.counted is None or interval.certainty is not Certainty.PROVED:
         return False
-    verdict = interval.equilibria[number].verdict
+    verdict = interval.counted.equilibria[number].verdict
     if verdict.word.open:
         return False
     return solved or (undamped and verdict.theorem in BY_INERTIA)

@@ -10,29 +10,29 @@ Another number in the list, or more solutions than listed, and what is said of t
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from enum import StrEnum
 from fractions import Fraction
 from random import Random
 from typing import Any
 
 from flint import fmpq
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
-from mbsym.algebra.plane import Arrangement, areas, decompose
+from mbsym.algebra.plane import Arrangement, Point, areas, decompose
 from mbsym.algebra.plane.arrangement import Region
 from mbsym.algebra.plane.drawing import Branches as Drawn
 from mbsym.algebra.polynomial_systems import Limits
+from mbsym.maps.boundaries import Boundaries, Condition, Origin, factored
 from mbsym.maps.branches_stability import BY_INERTIA, is_undamped
 from mbsym.maps.equilibria_projection import Projected, Surface, surfaces
-from mbsym.maps.mapping import box_of
+from mbsym.maps.mapping import Watch, box_of, places
+from mbsym.maps.result import Cell, Counted, Lack, Map, Of, Shape
 from mbsym.maps.section import Axis
 from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.model.system import System
-from mbsym.problems.relative_equilibria.equilibria import RelativeEquilibrium, equilibria
-
-Watch = Callable[[str, int, int], None]
+from mbsym.problems.relative_equilibria.equilibria import equilibria
 
 #: So many random points are tried until one lies in a region.
 TRIED = 60
@@ -40,77 +40,11 @@ TRIED = 60
 _NOT_EXACTLY = Limits(branches=0)
 
 
-class Standing(StrEnum):
-    """What is known of a region."""
+@dataclass(frozen=True, kw_only=True)
+class EquilibriaMap(Map):
+    """``unfinished``: why curves may be missing (then nothing is proved between samples)."""
 
-    PROVED = "proved"
-    SAMPLE = "at the sample only"
-    INCOMPLETE = "the list may be incomplete"
-    FAMILIES = "infinitely many"
-    WITHDRAWN = "withdrawn: the check failed"
-    NOT_REACHED = "not reached"
-
-
-class Origin(StrEnum):
-    """Where a curve comes from."""
-
-    SINGULAR = "singular equilibria"
-    LEAVING = "at infinity or at a border"
-
-
-@dataclass(frozen=True)
-class Cell:
-    """A region by its ``number``: ``equilibria`` at the rational point ``sample``; ``standing`` is of their number.
-
-    ``confirmed``: how many the second route found at another point (None: it was not asked).  ``throughout``: those
-    stable at the sample are proved to be so in the whole region, by the signs of K, which do not change there.
-    """
-
-    number: int
-    sample: tuple[Fraction, Fraction]
-    standing: Standing
-    equilibria: tuple[RelativeEquilibrium, ...] = ()
-    confirmed: int | None = None
-    throughout: bool = False
-
-    @property
-    def counted(self) -> bool:
-        return self.standing in (Standing.PROVED, Standing.SAMPLE)
-
-    @property
-    def count(self) -> int:
-        return len(self.equilibria)
-
-    @property
-    def stable(self) -> int:
-        """Stable ones at the sample."""
-        return sum(one.verdict.stable for one in self.equilibria)
-
-    @property
-    def undecided(self) -> int:
-        """Those at the sample of which nothing decides whether they are stable."""
-        return sum(one.verdict.word.open for one in self.equilibria)
-
-
-@dataclass(frozen=True)
-class EquilibriaMap:
-    """``cells`` in the order of the arrangement's regions; ``curves`` with their origins, in that of its factors.
-
-    ``unfinished``: why curves may be missing (then nothing is proved between samples).
-    """
-
-    axes: tuple[Axis, Axis]
-    given: Mapping[str, Fraction]
-    arrangement: Arrangement
-    origins: tuple[tuple[Origin, ...], ...]
-    cells: tuple[Cell, ...]
-    areas: tuple[tuple[float, float], ...]
     unfinished: tuple[str, ...]
-    interrupted: bool = False
-
-    def look(self, cell: Cell) -> tuple[object, ...]:
-        """What a picture tells apart."""
-        return (cell.count, cell.stable, cell.undecided) if cell.counted else (cell.standing,)
 
 
 def equilibria_map(
@@ -126,8 +60,8 @@ def equilibria_map(
     names = axes[0].name, axes[1].name
     limits = Limits()
     parts = surfaces(system, names, values, limits)
-    factors, origins, unfinished = _curves(parts)
-    made = decompose(factors, box_of(axes), progress=watch)
+    found, unfinished = _curves(parts)
+    made = decompose(found.factors, box_of(axes), progress=watch)
     undamped = all(is_undamped(one.search) for one in parts)
     source = Random(20261123)
     drawn = Drawn(made)
@@ -141,39 +75,31 @@ def equilibria_map(
                 continue
         except KeyboardInterrupt:
             interrupted = True
-        cells.append(Cell(region.id, _fractions(region.sample), Standing.NOT_REACHED))
+        cells.append(Cell(Shape.REGION, region.id, Point(*region.sample), lack=Lack.NOT_REACHED))
+    others = [Cell(*place, lack=Lack.UNCOUNTED) for place in places(made)]
+    arcs, corners = (tuple(x for x in others if x.shape is shape) for shape in (Shape.ARC, Shape.CORNER))
     related = {item.name for item in system.relations}
     given = {name: x for name, x in values.items() if name not in names and name not in related}
     return EquilibriaMap(
-        axes, given, made, tuple(map(tuple, origins)), tuple(cells), areas(made), unfinished, interrupted
-    )
+        Of.EQUILIBRIA, axes, given, made, found, tuple(cells), arcs, corners, areas(made),
+        interrupted=interrupted, unfinished=unfinished,
+    )  # fmt: skip
 
 
-def _curves(parts: Sequence[Surface]) -> tuple[list[Any], list[list[Origin]], tuple[str, ...]]:
-    """Irreducible polynomials, each once, with where they come from."""
+def _curves(parts: Sequence[Surface]) -> tuple[Boundaries, tuple[str, ...]]:
+    """Irreducible polynomials, each once, with where they come from; why some may be missing."""
     found: list[tuple[Origin, Projected]] = []
     for part in parts:
         found.append((Origin.SINGULAR, part.over([part.singular])))
         found += [(Origin.LEAVING, one) for one in part.leaving()]
-    factors: list[Any] = []
-    origins: list[list[Origin]] = []
-    places: dict[str, int] = {}
     unfinished: list[str] = []
     for origin, projected in found:
         unfinished += projected.unfinished
         if projected.everywhere:
             told = "equilibria are singular" if origin is Origin.SINGULAR else "solutions leave"
             unfinished.append(f"{told} over a whole region, or that is not excluded")
-        for polynomial in projected.polynomials:
-            for factor, _ in polynomial.factor()[1]:
-                key = str(factor if factor.leading_coefficient() > 0 else -factor)
-                if key not in places:
-                    places[key] = len(factors)
-                    factors.append(factor)
-                    origins.append([])
-                if origin not in origins[places[key]]:
-                    origins[places[key]].append(origin)
-    return factors, origins, tuple(dict.fromkeys(unfinished))
+    conditions = [Condition(origin, p) for origin, projected in found for p in projected.polynomials]
+    return factored(conditions), tuple(dict.fromkeys(unfinished))
 
 
 def _cell(
@@ -190,15 +116,16 @@ def _cell(
     sample = _fractions(region.sample)
     if 0 in sample:  # a parameter that vanishes may make the equations others
         sample = inside(made, drawn, region, source) or sample
+    place = Shape.REGION, region.id, Point(*(fmpq(x.numerator, x.denominator) for x in sample))
     try:
         found = equilibria(system, {**values, names[0]: sample[0], names[1]: sample[1]})
     except Failure:
-        return Cell(region.id, sample, Standing.INCOMPLETE)
+        return Cell(*place, lack=Lack.INCOMPLETE)
     if found.families:
-        return Cell(region.id, sample, Standing.FAMILIES)
+        return Cell(*place, lack=Lack.FAMILIES)
     if not found.complete:
-        return Cell(region.id, sample, Standing.INCOMPLETE, found.equilibria)
-    standing = Standing.SAMPLE if doubtful else Standing.PROVED
+        return Cell(*place, Counted(found.equilibria), lack=Lack.INCOMPLETE)
+    surely = Certainty.UNDECIDED if doubtful else Certainty.PROVED
     throughout = (
         not doubtful
         and undamped
@@ -206,21 +133,16 @@ def _cell(
     )
     other = inside(made, drawn, region, source)
     if other is None:
-        return Cell(region.id, sample, standing, found.equilibria, None, throughout)
+        return Cell(*place, Counted(found.equilibria, throughout), surely)
     there = {**values, names[0]: other[0], names[1]: other[1]}
     again = equilibria(system, there)
     confirmed = many_starts(system, there)
     wrong = confirmed > len(again.equilibria) or (
         not doubtful and again.complete and len(again.equilibria) != len(found.equilibria)
     )
-    return Cell(
-        region.id,
-        sample,
-        Standing.WITHDRAWN if wrong else standing,
-        found.equilibria,
-        confirmed,
-        throughout and not wrong,
-    )
+    if wrong:
+        return Cell(*place, Counted(found.equilibria, False, confirmed), lack=Lack.WITHDRAWN)
+    return Cell(*place, Counted(found.equilibria, throughout, confirmed), surely)
 
 
 def many_starts(system: System, values: Mapping[str, Fraction]) -> int:

@@ -1,9 +1,9 @@
-"""From an analysis to its map: boundaries, their exact arrangement, a proved verdict in every region, on every arc
-and at every corner."""
+"""From an analysis to its map: boundaries, their exact arrangement, a proved verdict in every region (or interval), on
+every arc and at every corner."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
@@ -11,9 +11,12 @@ from typing import Any
 
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.characteristic import leading_minors
 from mbsym.algebra.failures import TooLargeError
-from mbsym.algebra.plane import Arrangement, Box, Point, areas, decompose
+from mbsym.algebra.plane import AlgebraicNumber, Arrangement, Box, Point, areas, decompose
+from mbsym.algebra.plane.line import Line, decompose_line, univariate
+from mbsym.algebra.plane.numbers import sign
 from mbsym.analysis import Analysis
 from mbsym.maps.admissible import Admissibility, admissibility
 from mbsym.maps.boundaries import Boundaries, Condition, Origin, boundaries
@@ -21,7 +24,7 @@ from mbsym.maps.check import Check, check
 from mbsym.maps.constant_points import beside
 from mbsym.maps.given import Complaint, Fault, Unfit
 from mbsym.maps.on_curves import ExactVerdicts
-from mbsym.maps.result import Of, PlaneMap, Shape, Standing, Stratum
+from mbsym.maps.result import Cell, Ground, Lack, Map, Of, Shape
 from mbsym.maps.section import Axis, Section, section
 from mbsym.maps.soft_borders import Onset, SoftBorders, SoftOrHard, lost
 from mbsym.maps.verdicts import Judged, matrix_at, verdict_at
@@ -35,14 +38,14 @@ def unwatched(_: str, done: int, whole: int) -> None:
     """Tells nobody."""
 
 
-def plane_map(
+def exact_map(
     analysis: Analysis,
     axes: Sequence[Axis],
     settings: Mapping[str, Fraction],
     of: Of = Of.STABILITY,
     watch: Watch = unwatched,
-) -> PlaneMap:
-    """The map of a description over two axes.
+) -> Map:
+    """The map of a description over one or two axes.
 
     Raises Unfit for axes or values that do not fit, Unavailable where there is no first approximation to judge,
     TooLargeError where the arrangement is beyond its budget.  KeyboardInterrupt while verdicts are found ends the work:
@@ -50,108 +53,122 @@ def plane_map(
     """
     watch("first approximation", 0, 1)
     there = section(analysis, axes, settings)
+    kept = kept_in(analysis, there)
+    watch("boundaries", 0, 1)
+    return with_onsets(mapped(there, kept, bounded(there, kept), of, watch), SoftBorders(analysis, there), watch)
+
+
+def kept_in(analysis: Analysis, there: Section) -> Admissibility:
+    """What points of a section have to keep.  Raises Unfit where none does."""
     kept = admissibility(analysis, there)
     if kept.broken:
         raise Unfit([Complaint(Fault.OUTSIDE, "", one.condition.about) for one in kept.broken])
-    watch("boundaries", 0, 1)
-    found = boundaries(there, [*(one.condition for one in kept.demands), *asked(there)], kept.known)
-    return with_borders(mapped(there, kept, found, of, watch), SoftBorders(analysis, there), watch)
+    return kept
 
 
-def with_borders(found: PlaneMap, borders: SoftBorders, watch: Watch) -> PlaneMap:
+def bounded(there: Section, kept: Admissibility) -> Boundaries:
+    """All boundaries of a section: of verdicts, of what is kept, and the axes' zeros where the energy asks for them."""
+    asked = [Condition(Origin.ENERGY, x, about=str(x)) for x in there.asked]
+    return boundaries(there, [*(one.condition for one in kept.demands), *asked], kept.known)
+
+
+def with_onsets(found: Map, onsets: SoftBorders, watch: Watch) -> Map:
     """The map with what terms of higher order say of arcs and corners where a pair of roots is imaginary.
 
     They say it where stability is lost: of the cells beside one has roots to the right, the other none.
     """
     if found.of is not Of.STABILITY or found.interrupted:
         return found
+
+    def told(cell: Cell) -> Cell:
+        if not cell.imaginary:
+            return cell
+        near = found.beside(cell) if cell.shape is Shape.ARC else found.around(cell)
+        why = lost([None if x is None else x.right for x in near])
+        if why:
+            return replace(cell, soft=SoftOrHard(Onset.NEITHER, why))
+        if isinstance(found.ground, Arrangement) and cell.shape is Shape.ARC:
+            return replace(cell, soft=onsets.along(found.ground, found.place(cell)))
+        return replace(cell, soft=onsets.at(cell.sample))
+
     arcs, corners = list(found.arcs), list(found.corners)
     interrupted = False
     try:
-        for k, one in enumerate(arcs):
-            if one.imaginary:
-                watch("soft or hard", k, len(arcs))
-                why = lost([None if x is None else x.right for x in found.beside(one)])
-                made = found.arrangement
-                told = SoftOrHard(Onset.NEITHER, why) if why else borders.along(made, made.arcs[one.number])
-                arcs[k] = replace(one, soft=told)
-        for k, one in enumerate(corners):
-            if one.imaginary:
-                why = lost(list(_about(found, one)))
-                told = SoftOrHard(Onset.NEITHER, why) if why else borders.at(found.point_of(one))
-                corners[k] = replace(one, soft=told)
+        for cells in (arcs, corners):
+            for k, one in enumerate(cells):
+                if one.imaginary:
+                    watch("soft or hard", k, len(cells))
+                cells[k] = told(one)
     except KeyboardInterrupt:
         interrupted = True
-    return replace(found, arcs=tuple(arcs), corners=tuple(corners), interrupted=interrupted, borders=borders)
-
-
-def _about(found: PlaneMap, corner: Stratum) -> Iterator[int | None]:
-    """Roots to the right in the regions around a corner."""
-    around = [found.beside(found.arcs[k]) for k in found.arrangement.corners[corner.number].arcs]
-    for one in dict.fromkeys(x if x is None else x.number for pair in around for x in pair):
-        yield None if one is None else found.regions[one].right
+    return replace(found, arcs=tuple(arcs), corners=tuple(corners), interrupted=interrupted, onsets=onsets)
 
 
 def mapped(
     there: Section, kept: Admissibility, found: Boundaries, of: Of = Of.STABILITY, watch: Watch = unwatched
-) -> PlaneMap:
-    """The map of a section of two axes with these boundaries, judged and checked; fails as ``plane_map`` does."""
-    if there.constant is not None:
-        plane = fmpq_mpoly_ctx.get([axis.name for axis in there.axes], Ordering.lex)
-        found = replace(found, factors=tuple(x.project_to_context(plane) for x in found.factors))
-    made = decompose(found.factors, box_of(there.axes), progress=watch)
-    judge = Judge(there, kept)
-    places = _places(made)
-    strata: list[Stratum] = []
-    interrupted = False
-    for done, (shape, number, point) in enumerate(places):
-        if not interrupted:
-            try:
-                watch("verdicts", done, len(places))
-                strata.append(judge(shape, number, point))
-                continue
-            except KeyboardInterrupt:
-                interrupted = True
-        strata.append(Stratum(shape, number, Standing.NOT_REACHED))
-    split = len(made.regions), len(made.regions) + len(made.arcs)
-    parts = strata[: split[0]], strata[split[0] : split[1]], strata[split[1] :]
+) -> Map:
+    """The map of a section of one or two axes with these boundaries, judged and checked; fails as ``exact_map``."""
+    found = without_constant(there, found)
+    line = len(there.axes) == 1
+    ground: Arrangement | Line
+    if line:
+        ground = decompose_line(found.factors, *ends(there.axes[0]))
+    else:
+        ground = decompose(found.factors, box_of(there.axes), progress=watch)
+    cells, interrupted = _judged(Judge(there, kept), places(ground), watch)
+    regions, arcs, corners = ([x for x in cells if x.shape in shapes] for shapes in _PARTS)
     checked = None
     if not interrupted:
         try:
-            cells, arcs, points = ([x.judged for x in part] for part in parts)
-            checked = check(there, made, cells, arcs, points, progress=watch)
-            parts = withdrawn(parts, checked)
+            of_regions, of_arcs, of_corners = ([x.judged for x in part] for part in (regions, arcs, corners))
+            checked = check(there, ground, of_regions, of_arcs, of_corners, progress=watch)
+            regions, arcs, corners = (withdrawn(x, k, checked) for k, x in enumerate((regions, arcs, corners)))
         except KeyboardInterrupt:
             interrupted = True
-    regions, curved, corners = (tuple(part) for part in parts)
-    return PlaneMap(of, there, kept, found, made, regions, curved, corners, areas(made), interrupted, checked)
+    sizes = lengths(ground) if isinstance(ground, Line) else areas(ground)
+    return Map(
+        of, there.axes, there.told, ground, found, tuple(regions), tuple(arcs), tuple(corners), sizes,
+        section=there, admissibility=kept, interrupted=interrupted, check=checked,
+    )  # fmt: skip
 
 
-Strata = list[Stratum]
+#: Regions, arcs and corners.
+_PARTS = ((Shape.REGION, Shape.INTERVAL), (Shape.ARC,), (Shape.CORNER, Shape.ZERO))
 
 
-def withdrawn(parts: tuple[Strata, Strata, Strata], checked: Check) -> tuple[Strata, Strata, Strata]:
-    """Regions, arcs and corners without the verdicts that the check does not confirm.
+def _judged(judge: Judge, where: Sequence[tuple[Shape, int, Any]], watch: Watch) -> tuple[list[Cell], bool]:
+    """A cell for each place, and whether Ctrl-C ended that."""
+    cells: list[Cell] = []
+    interrupted = False
+    for done, place in enumerate(where):
+        try:
+            if not interrupted:
+                watch("verdicts", done, len(where))
+                cells.append(judge(*place))
+                continue
+        except KeyboardInterrupt:
+            interrupted = True
+        cells.append(Cell(*place, lack=Lack.NOT_REACHED))
+    return cells, interrupted
+
+
+def withdrawn(cells: list[Cell], part: int, checked: Check) -> list[Cell]:
+    """Regions, arcs or corners (``part`` 0, 1, 2) without the verdicts that the check does not confirm.
 
     What is wrong with the arrangement as a whole takes all verdicts with it.
     """
-    if checked.holds:
-        return parts
-    places = [(one.region, one.arc, one.corner) for one in checked.findings if one.breach is None]
-    lone = len(places) == len(checked.findings) and all(place != (None, None, None) for place in places)
-    regions = {one.region for one in checked.findings}
-    arcs = {one.arc for one in checked.findings}
-    corners = {one.corner for one in checked.findings}
+    found = [(one.region, one.arc, one.corner) for one in checked.findings]
+    lone = all(one.breach is None for one in checked.findings) and all(any(k is not None for k in x) for x in found)
+    doubted = {one[part] for one in found}
+    return [one.withdrawn if one.said is not None and (one.number in doubted or not lone) else one for one in cells]
 
-    def kept(stratum: Stratum, doubted: bool) -> Stratum:
-        falls = stratum.judged is not None and (doubted or not lone)
-        return replace(stratum, standing=Standing.WITHDRAWN, judged=None) if falls else stratum
 
-    return (
-        [kept(one, one.number in regions) for one in parts[0]],
-        [kept(one, one.number in arcs) for one in parts[1]],
-        [kept(one, one.number in corners) for one in parts[2]],
-    )
+def without_constant(there: Section, found: Boundaries) -> Boundaries:
+    """Boundaries as polynomials in the axes alone."""
+    if there.constant is None:
+        return found
+    plane = fmpq_mpoly_ctx.get([axis.name for axis in there.axes], Ordering.lex)
+    return replace(found, factors=tuple(x.project_to_context(plane) for x in found.factors))
 
 
 def ends(axis: Axis) -> tuple[Any, Any]:
@@ -165,62 +182,87 @@ def box_of(axes: Sequence[Axis]) -> Box:
     return Box(*ends(across), *ends(up))
 
 
-def asked(there: Section) -> list[Condition]:
-    """The axes' own zeros, where the law of the energy may depend on their signs."""
-    return [Condition(Origin.ENERGY, x, about=str(x)) for x in there.asked]
+def lengths(line: Line) -> tuple[tuple[float, float], ...]:
+    """Of the intervals, and their errors, which are those of rounding."""
+    marks = [line.low if x is None else line.zeros[x].number for one in line.intervals for x in one.ends[:1]]
+    last = [line.high if x is None else line.zeros[x].number for one in line.intervals for x in one.ends[1:]]
+    return tuple((float_of(b) - float_of(a), 1e-15 * abs(float_of(b))) for a, b in zip(marks, last, strict=True))
 
 
-def _places(made: Arrangement) -> list[tuple[Shape, int, Point]]:
-    regions = [(Shape.REGION, one.id, Point(*one.sample)) for one in made.regions]
-    arcs = [(Shape.ARC, one.id, one.point) for one in made.arcs]
-    return [*regions, *arcs, *((Shape.CORNER, one.id, one.point) for one in made.corners)]
+def float_of(x: Any) -> float:
+    """A rational or algebraic number in floats."""
+    return float(x.p) / float(x.q) if isinstance(x, fmpq) else float(x)
+
+
+def places(ground: Ground) -> list[tuple[Shape, int, Any]]:
+    """(shape, number, exact sample) of all cells of an arrangement or a line: regions, arcs, corners."""
+    if isinstance(ground, Line):
+        intervals = [(Shape.INTERVAL, one.id, one.sample) for one in ground.intervals]
+        return [*intervals, *((Shape.ZERO, one.id, one.number) for one in ground.zeros)]
+    assert isinstance(ground, Arrangement)
+    regions = [(Shape.REGION, one.id, Point(*one.sample)) for one in ground.regions]
+    arcs = [(Shape.ARC, one.id, one.point) for one in ground.arcs]
+    return [*regions, *arcs, *((Shape.CORNER, one.id, one.point) for one in ground.corners)]
 
 
 class Judge:
-    """Judges exact points of a section, one by one."""
+    """Judges exact points of a section with one or two axes, one by one: a Point, or a number."""
 
     def __init__(self, there: Section, kept: Admissibility) -> None:
         self.section, self.kept = there, kept
 
-    def __call__(self, shape: Shape, number: int, point: Point) -> Stratum:
+    def __call__(self, shape: Shape, number: int, point: Any) -> Cell:
         """What is proved at a point."""
         try:
             return self._at(shape, number, point)
         except TooLargeError:
-            return Stratum(shape, number, Standing.TOO_LARGE)
+            return Cell(shape, number, point, lack=Lack.TOO_LARGE)
 
-    def _at(self, shape: Shape, number: int, point: Point) -> Stratum:
+    def _at(self, shape: Shape, number: int, point: Any) -> Cell:
         place = beside(point, self.section.constant)
-        broken = tuple(one for one in self.kept.demands if not one.kept(place.sign(one.condition.polynomial)))
+        broken = tuple(one for one in self.kept.demands if not one.kept(_sign(place, one.condition.polynomial)))
         if broken:
-            return Stratum(shape, number, Standing.OUTSIDE, None, broken)
-        if any(place.sign(x) == 0 for x in self.section.undefined):
-            return Stratum(shape, number, Standing.UNDEFINED)
+            return Cell(shape, number, point, lack=Lack.OUTSIDE, broken=broken)
+        if any(_sign(place, x) == 0 for x in self.section.undefined):
+            return Cell(shape, number, point, lack=Lack.UNDEFINED)
         if not self.positive(point, place):
-            return Stratum(shape, number, Standing.MASSLESS)
-        return Stratum(shape, number, Standing.JUDGED, self.judged(shape, point, place))
+            return Cell(shape, number, point, lack=Lack.MASSLESS)
+        # boundary polynomials bound verdicts in regions; on an arc a verdict is that of the point
+        surely = Certainty.UNDECIDED if shape is Shape.ARC else Certainty.PROVED
+        return Cell(shape, number, point, self.judged(shape, point, place), surely)
 
-    def judged(self, shape: Shape, point: Point, place: Any) -> Judged:
+    def judged(self, shape: Shape, point: Any, place: Any) -> Judged:
         """The verdict at a point, ``place`` being the same with the section's constant."""
-        if shape is not Shape.REGION:
+        if shape not in (Shape.REGION, Shape.INTERVAL, Shape.BOX):
             return self._on_curves(place)
         if self.section.constant is None:
-            return verdict_at(self.section, (point.x, point.y))
+            return verdict_at(self.section, _coordinates(point))
         return replace(self._on_curves(place), border=None)
 
     @cached_property
     def _on_curves(self) -> ExactVerdicts:
         return ExactVerdicts(self.section)
 
-    def positive(self, point: Point, place: Any) -> bool:
+    def positive(self, point: Any, place: Any) -> bool:
         """Whether M of every part is positive definite: its leading minors are."""
-        if point.rational and self.section.constant is None:
-            place = (point.x, point.y)
+        if self.section.constant is None and all(isinstance(x, fmpq) for x in _coordinates(point)):
+            at = _coordinates(point)
             return all(
-                inertia(matrix_at(m, place))[0] == len(m) for m in (x.kinetic for x in self.section.parts if x.kinetic)
+                inertia(matrix_at(m, at))[0] == len(m) for m in (x.kinetic for x in self.section.parts if x.kinetic)
             )
-        return all(place.sign(minor) > 0 for minors in self._minors for minor in minors)
+        return all(_sign(place, minor) > 0 for minors in self._minors for minor in minors)
 
     @cached_property
     def _minors(self) -> list[tuple[Any, ...]]:
         return [leading_minors(part.kinetic) for part in self.section.parts if part.kinetic]
+
+
+def _coordinates(point: Any) -> tuple[Any, ...]:
+    return (point.x, point.y) if isinstance(point, Point) else (point,)
+
+
+def _sign(place: Any, p: Any) -> int:
+    """The sign of a polynomial of the section's context at an exact point."""
+    if isinstance(place, AlgebraicNumber):
+        return place.sign(univariate(p))
+    return sign(fmpq(p(place))) if isinstance(place, fmpq) else int(place.sign(p))

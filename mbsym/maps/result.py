@@ -1,21 +1,35 @@
-"""A map as a value: its regions, arcs and corners, each with what was proved there."""
+"""A map as a value: cells of dimension 0, 1 and 2, each with an exact sample, what is said there, and how surely.
+
+Over one parameter cells are intervals and the points between them; over two they are regions, arcs and corners, or
+boxes; over three a stack of slices, each a map of its own.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import KW_ONLY, dataclass, field, replace
 from enum import StrEnum
-from itertools import pairwise
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any, TypeAlias
 
-from mbsym.algebra.plane import Arrangement, Point
-from mbsym.algebra.plane.line import Line
+from flint import fmpq
+
+from mbsym.algebra.certainty import Certainty
+from mbsym.algebra.plane import Arc, Arrangement, Corner
+from mbsym.algebra.plane.line import Line, Zero
 from mbsym.maps.admissible import Admissibility, Demand
-from mbsym.maps.boundaries import Boundaries
+from mbsym.maps.axis import Axis
+from mbsym.maps.boundaries import Boundaries, Condition
 from mbsym.maps.check import Check
 from mbsym.maps.section import Section
 from mbsym.maps.soft_borders import SoftBorders, SoftOrHard
+from mbsym.maps.subdivision import Subdivision
 from mbsym.maps.verdicts import Border, Judged
 from mbsym.problems.stability.word import Word
+
+if TYPE_CHECKING:
+    from mbsym.maps.branches_result import Critical
+    from mbsym.problems.relative_equilibria.equilibria import RelativeEquilibrium
 
 
 class Of(StrEnum):
@@ -23,47 +37,102 @@ class Of(StrEnum):
 
     STABILITY = "stability"
     SIGNATURE = "signature"
+    EQUILIBRIA = "equilibria"
 
 
 class Shape(StrEnum):
-    """What a place of a map is."""
+    """What a cell is: of a plane, of a line, of a plane without an arrangement."""
 
     REGION = "region"
     ARC = "arc"
     CORNER = "corner"
-    #: Of a line.
     INTERVAL = "interval"
     ZERO = "point"
-    #: Of a plane without an arrangement.
     BOX = "box"
 
 
-class Standing(StrEnum):
-    """Whether there is a verdict at a place, and if not, why."""
+class Lack(StrEnum):
+    """Why nothing is said of a cell."""
 
-    JUDGED = "judged"
     OUTSIDE = "outside of the assumptions"
     MASSLESS = "the mass matrix is not positive definite"
     UNDEFINED = "formulas divide by zero"
     TOO_LARGE = "too large to be decided"
-    WITHDRAWN = "withdrawn: the map's own check failed"
+    WITHDRAWN = "withdrawn: the check failed"
     NOT_REACHED = "not reached"
+    #: Of slices.
+    IRRATIONAL = "at an irrational value: not looked at"
+    #: Of boxes.
+    UNPROVED = "nothing is proved"
+    #: Of numbers of equilibria.
+    INCOMPLETE = "the list may be incomplete"
+    FAMILIES = "infinitely many"
+    UNCOUNTED = "not counted"
+
+
+#: Nothing is told by these: a border with one of them does not stand out.
+UNKNOWN = frozenset({Lack.TOO_LARGE, Lack.WITHDRAWN, Lack.NOT_REACHED, Lack.UNCOUNTED})
 
 
 @dataclass(frozen=True)
-class Stratum:
-    """A region, an arc of a curve, or a corner: ``number`` is its place in the arrangement's list.
+class Counted:
+    """The relative ``equilibria`` at a sample.
 
-    ``judged`` is None but where ``standing`` is JUDGED; ``broken``: the demands that are not kept there.
-    ``soft``: of arcs, corners and zeros at which one pair of roots is imaginary and none to the right; None elsewhere.
+    ``throughout``: those stable there are proved to be so in the whole cell, by the signs of K, which do not change.
+    ``confirmed``: how many a second route found at another point (None: it was not asked).
+    """
+
+    equilibria: tuple[RelativeEquilibrium, ...]
+    throughout: bool = False
+    confirmed: int | None = None
+
+    @property
+    def count(self) -> int:
+        return len(self.equilibria)
+
+    @property
+    def stable(self) -> int:
+        """Stable ones at the sample."""
+        return sum(one.verdict.stable for one in self.equilibria)
+
+    @property
+    def undecided(self) -> int:
+        """Those at the sample of which nothing decides whether they are stable."""
+        return sum(one.verdict.word.open for one in self.equilibria)
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A cell: ``number`` is its place among those of its shape, ``sample`` the exact point at which it was judged.
+
+    ``said`` holds at the sample exactly, ``certainty`` is how surely it holds in the whole cell (of counted equilibria:
+    their number).  Where nothing is said ``lack`` says why; ``broken``: the demands that are not kept there.
+    ``soft``: of borders at which one pair of roots is imaginary and none to the right; None elsewhere.
     """
 
     shape: Shape
     number: int
-    standing: Standing
-    judged: Judged | None = None
+    sample: Any = None
+    said: Judged | Counted | Critical | None = None
+    certainty: Certainty = Certainty.UNDECIDED
+    lack: Lack | None = None
     broken: tuple[Demand, ...] = ()
     soft: SoftOrHard | None = None
+
+    @property
+    def judged(self) -> Judged | None:
+        """The verdict on the one motion that a map is of."""
+        return self.said if isinstance(self.said, Judged) and self.lack is None else None
+
+    @property
+    def counted(self) -> Counted | None:
+        """The equilibria there; those of a list that is not complete, or withdrawn, are ``said``, but not counted."""
+        return self.said if isinstance(self.said, Counted) and self.lack is None else None
+
+    @property
+    def withdrawn(self) -> Cell:
+        """The cell without what was said, which a check did not confirm."""
+        return replace(self, said=None, certainty=Certainty.UNDECIDED, lack=Lack.WITHDRAWN)
 
     @property
     def right(self) -> int | None:
@@ -81,31 +150,172 @@ class Stratum:
 
     @property
     def kind(self) -> tuple[object, ...]:
-        """What strata have in common that look alike in every respect that a map shows."""
+        """What cells have in common that look alike in every respect that a map shows."""
         if self.judged is None:
-            return (self.standing,)
+            return (self.lack,)
         found = self.judged
         return (found.verdict.word, found.verdict.theorems, found.right, found.real_right, found.degree)
 
 
-class Shown:
-    """What maps of planes and of lines have in common."""
+#: How the space of parameters is divided.
+Ground: TypeAlias = Arrangement | Line | Subdivision[Any]
+
+
+@dataclass(frozen=True)
+class Map:
+    """``regions`` are the cells that fill the space (intervals of a line, boxes), in the order of the ``ground``.
+
+    ``values``: the numbers that were put in.  ``boundaries``: the curves, or points, that bound cells, with the
+    conditions they come from.  ``areas``: of the regions (lengths), with estimates of their errors.  ``check``: more
+    points judged by another route; None where it was not carried out.  ``section``, ``admissibility``: of maps of one
+    motion.  ``onsets`` tells of further points whether a border is soft or hard; None where that was not asked.
+    """
 
     of: Of
+    axes: tuple[Axis, ...]
+    values: Mapping[str, Fraction]
+    ground: Ground
+    boundaries: Boundaries
+    regions: tuple[Cell, ...] = ()
+    arcs: tuple[Cell, ...] = ()
+    corners: tuple[Cell, ...] = ()
+    areas: tuple[tuple[float, float], ...] = ()
+    _: KW_ONLY
+    section: Section | None = None
+    admissibility: Admissibility = Admissibility((), (), ())
+    interrupted: bool = False
+    check: Check | None = None
+    onsets: SoftBorders | None = field(default=None, repr=False, compare=False)
 
     @property
-    def partial(self) -> bool:
-        """Whether Ctrl-C ended the work."""
-        return bool(getattr(self, "interrupted", False))
+    def arrangement(self) -> Arrangement:
+        """The ground of an exact map over a plane."""
+        assert isinstance(self.ground, Arrangement)
+        return self.ground
 
-    def look(self, stratum: Stratum) -> tuple[object, ...]:
+    @property
+    def line(self) -> Line:
+        """The ground of a map over one parameter; of a stack, the critical values of the third."""
+        assert isinstance(self.ground, Line)
+        return self.ground
+
+    @property
+    def cells(self) -> Iterator[Cell]:
+        yield from self.regions
+        yield from self.arcs
+        yield from self.corners
+
+    @property
+    def borders(self) -> tuple[Cell, ...]:
+        """The cells between regions."""
+        return self.corners if isinstance(self.ground, Line) else self.arcs
+
+    @property
+    def whole(self) -> float:
+        """The length of the interval, the area of the plane."""
+        return float(self.ground.high - self.ground.low if isinstance(self.ground, Line) else self.ground.box.area)
+
+    @property
+    def sound(self) -> bool:
+        """Whether no check of the map fails."""
+        return self.check is None or self.check.holds
+
+    def place(self, cell: Cell) -> Any:
+        """What of the ground a cell stands on."""
+        ground: Any = self.ground
+        match cell.shape:
+            case Shape.REGION:
+                return ground.regions[cell.number]
+            case Shape.ARC:
+                return ground.arcs[cell.number]
+            case Shape.CORNER:
+                return ground.corners[cell.number]
+            case Shape.INTERVAL:
+                return ground.intervals[cell.number]
+            case Shape.ZERO:
+                return ground.zeros[cell.number]
+            case Shape.BOX:
+                return ground.tiles[cell.number]
+
+    def at(self, *values: Fraction) -> Cell | None:
+        """The cell of a rational point, exactly; None outside.  Of boxes that meet there, one of which more is said."""
+        x = tuple(fmpq(value.numerator, value.denominator) for value in values)
+        ground = self.ground
+        if isinstance(ground, Line):
+            if not ground.low <= x[0] <= ground.high:
+                return None
+            there = ground.locate(x[0])
+            return self.corners[there.id] if isinstance(there, Zero) else self.regions[there.id]
+        point = x[0], x[1]
+        if point not in ground.box:
+            return None
+        if isinstance(ground, Subdivision):
+            around = (self.regions[k] for k, tile in enumerate(ground.tiles) if point in tile.box)
+            return min(around, key=lambda cell: cell.lack is Lack.UNPROVED)
+        place = ground.locate(*point)
+        if isinstance(place, Arc):
+            return self.arcs[place.id]
+        return self.corners[place.id] if isinstance(place, Corner) else self.regions[place.id]
+
+    # --- what is shown ---
+
+    def look(self, cell: Cell) -> tuple[object, ...]:
         """What a picture tells apart."""
-        found = stratum.judged
-        if found is None:
-            return (stratum.standing,)
+        if (counted := cell.counted) is not None:
+            return (counted.count, counted.stable, counted.undecided)
+        if (judged := cell.judged) is None:
+            return (cell.lack,)
         if self.of is Of.SIGNATURE:
-            return (found.degree, found.null)
-        return (found.verdict.word, found.right, found.real_right)
+            return (judged.degree, judged.null)
+        return (judged.verdict.word, judged.right, judged.real_right)
+
+    def beside(self, border: Cell) -> tuple[Cell | None, Cell | None]:
+        """The regions below and above an arc or a point (left and right of a vertical arc); None is outside."""
+        if isinstance(self.ground, Line):
+            ends = ([x.id for x in self.ground.intervals if x.ends[k] == border.number] for k in (1, 0))
+            below, above = (found[0] if found else None for found in ends)
+        else:
+            below, above = self.place(border).regions
+        return None if below is None else self.regions[below], None if above is None else self.regions[above]
+
+    def around(self, corner: Cell) -> list[Cell | None]:
+        """The regions that meet at a corner, each once; None is outside."""
+        if isinstance(self.ground, Line):
+            return list(self.beside(corner))
+        pairs = [self.beside(self.arcs[k]) for k in self.place(corner).arcs]
+        return list({None if x is None else x.number: x for pair in pairs for x in pair}.values())
+
+    def separates(self, border: Cell) -> bool:
+        """Whether what is shown differs between the two sides of a border."""
+        below, above = self.beside(border)
+        return below is not None and above is not None and self.look(below) != self.look(above)
+
+    def singles_out(self, border: Cell) -> bool:
+        """Whether what is shown on a border differs from both of its sides, which are alike."""
+        sides = {self.look(x) for x in self.beside(border) if x is not None}
+        return (
+            border.lack not in UNKNOWN and not self.separates(border) and bool(sides) and self.look(border) not in sides
+        )
+
+    def drawn(self, border: Cell) -> bool:
+        """Whether a border is part of the picture: another look on its two sides, or on it alone."""
+        sides = [one for one in self.beside(border) if one is not None]
+        if len(sides) < 2:
+            return False
+        return self.separates(border) or (
+            self.singles_out(border) and any(one.lack is None for one in (*sides, border))
+        )
+
+    @property
+    def together(self) -> tuple[int, ...]:
+        """For each region the first of those that it makes one with, as no border between them changes anything."""
+        pairs = [(a.number, b.number) for one in self.borders for a, b in [self.beside(one)] if a and b
+                 and self.look(a) == self.look(one) == self.look(b)]  # fmt: skip
+        return _together(len(self.regions), pairs)
+
+    def conditions(self, cell: Cell) -> list[Condition]:
+        """The conditions that are equalities on a border."""
+        return [condition for k in self.place(cell).factors for condition in self.boundaries.conditions[k]]
 
 
 def _together(count: int, alike: Iterable[tuple[int, int]]) -> tuple[int, ...]:
@@ -121,116 +331,3 @@ def _together(count: int, alike: Iterable[tuple[int, int]]) -> tuple[int, ...]:
         low, high = sorted((of(a), of(b)))
         first[high] = low
     return tuple(of(k) for k in range(count))
-
-
-@dataclass(frozen=True)
-class LineMap(Shown):
-    """A map over one axis: ``regions`` are the intervals of ``line``, ``corners`` its zeros, ``areas`` lengths."""
-
-    of: Of
-    section: Section
-    admissibility: Admissibility
-    boundaries: Boundaries
-    line: Line
-    regions: tuple[Stratum, ...]
-    corners: tuple[Stratum, ...]
-    areas: tuple[tuple[float, float], ...]
-    interrupted: bool = False
-    check: Check | None = None
-    arcs: tuple[Stratum, ...] = ()
-    borders: SoftBorders | None = field(default=None, repr=False, compare=False)
-
-    @property
-    def strata(self) -> Iterator[Stratum]:
-        yield from self.regions
-        yield from self.corners
-
-    @property
-    def whole(self) -> float:
-        """The length of the interval."""
-        return float(self.line.high - self.line.low)
-
-    @property
-    def together(self) -> tuple[int, ...]:
-        """For each interval the first of those that it makes one with: no zero between them changes what is shown."""
-        pairs: list[tuple[int, int]] = []
-        for one in self.corners:
-            beside = [x.id for x in self.line.intervals if one.number in x.ends]
-            if {self.look(self.regions[k]) for k in beside} == {self.look(one)}:
-                pairs += pairwise(beside)
-        return _together(len(self.regions), pairs)
-
-    def changes(self, corner: Stratum) -> bool:
-        """Whether what is shown differs at a zero from one of its sides."""
-        beside = [x for x in self.line.intervals if corner.number in x.ends]
-        looks = {self.look(self.regions[x.id]) for x in beside}
-        undecided = corner.standing in (Standing.TOO_LARGE, Standing.WITHDRAWN, Standing.NOT_REACHED)
-        return len(looks) > 1 or (not undecided and len(beside) > 1 and self.look(corner) not in looks)
-
-
-@dataclass(frozen=True)
-class PlaneMap(Shown):
-    """``regions``, ``arcs`` and ``corners`` in the order of ``arrangement``; ``interrupted``: some were not reached.
-
-    ``areas``: of the regions, with estimates of their errors.  ``check``: more points in every cell and on every arc,
-    judged by a route without the boundary polynomials; None where it was not carried out.  ``borders`` tells of further
-    points whether they are soft or hard; None where that was not asked.
-    """
-
-    of: Of
-    section: Section
-    admissibility: Admissibility
-    boundaries: Boundaries
-    arrangement: Arrangement
-    regions: tuple[Stratum, ...]
-    arcs: tuple[Stratum, ...]
-    corners: tuple[Stratum, ...]
-    areas: tuple[tuple[float, float], ...]
-    interrupted: bool = False
-    check: Check | None = None
-    borders: SoftBorders | None = field(default=None, repr=False, compare=False)
-
-    @property
-    def strata(self) -> Iterator[Stratum]:
-        yield from self.regions
-        yield from self.arcs
-        yield from self.corners
-
-    def beside(self, arc: Stratum) -> tuple[Stratum | None, Stratum | None]:
-        """The regions below and above an arc (left and right of a vertical one); None is outside of the box."""
-        below, above = self.arrangement.arcs[arc.number].regions
-        return None if below is None else self.regions[below], None if above is None else self.regions[above]
-
-    @property
-    def together(self) -> tuple[int, ...]:
-        """For each region the first of those that it makes one with, as no arc between them changes what is shown."""
-        pairs = []
-        for arc in self.arcs:
-            a, b = self.beside(arc)
-            if a is not None and b is not None and self.look(a) == self.look(arc) == self.look(b):
-                pairs.append((a.number, b.number))
-        return _together(len(self.regions), pairs)
-
-    def separates(self, arc: Stratum) -> bool:
-        """Whether what is shown differs between the two sides of an arc."""
-        below, above = self.beside(arc)
-        return below is not None and above is not None and self.look(below) != self.look(above)
-
-    def singles_out(self, arc: Stratum) -> bool:
-        """Whether what is shown on an arc differs from both of its sides, which are alike."""
-        sides = {self.look(x) for x in self.beside(arc) if x is not None}
-        undecided = arc.standing in (Standing.TOO_LARGE, Standing.WITHDRAWN, Standing.NOT_REACHED)
-        return not undecided and not self.separates(arc) and bool(sides) and self.look(arc) not in sides
-
-    @property
-    def whole(self) -> float:
-        """The area of the plane."""
-        return float(self.arrangement.box.area)
-
-    def point_of(self, stratum: Stratum) -> Point:
-        """The exact point at which a stratum was judged."""
-        if stratum.shape is Shape.REGION:
-            return Point(*self.arrangement.regions[stratum.number].sample)
-        if stratum.shape is Shape.ARC:
-            return self.arrangement.arcs[stratum.number].point
-        return self.arrangement.corners[stratum.number].point

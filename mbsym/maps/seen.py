@@ -6,9 +6,9 @@ lines are one where only such a curve crosses them.
 
 from __future__ import annotations
 
-from mbsym.algebra.plane.arrangement import CornerKind
+from mbsym.algebra.plane.arrangement import Arrangement, CornerKind
 from mbsym.algebra.plane.likeness import Graph
-from mbsym.maps.result import PlaneMap, Stratum
+from mbsym.maps.result import Cell, Map
 
 
 class _Joined:
@@ -28,57 +28,52 @@ class _Joined:
         self._above[max(a, b)] = min(a, b)
 
 
-def seen(found: PlaneMap) -> Graph:
+def seen(found: Map) -> Graph:
     """Areas, lines and points with their looks; lines have edges to the areas beside them and to their end points."""
     there = found.arrangement
     areas, lines = _Joined(len(there.regions)), _Joined(len(there.arcs))
-    shown = [drawn(found, arc) for arc in found.arcs]
+    shown = [found.drawn(arc) for arc in found.arcs]
     for arc, kept in zip(there.arcs, shown, strict=True):
         below, above = arc.regions
         if not kept and below is not None and above is not None:
             areas.join(below, above)
     told = [_line(found, arc) for arc in found.arcs]
     points: list[tuple[object, list[int]]] = []
-    for corner, stratum in zip(there.corners, found.corners, strict=True):
+    for corner, cell in zip(there.corners, found.corners, strict=True):
         ends = [k for k in corner.arcs if shown[k] for end in there.arcs[k].corners if end == corner.id]
-        differs = stands_out(found, stratum)
+        differs = stands_out(found, cell)
         plain = not differs and corner.kind is not CornerKind.SINGULAR
         if plain and len(ends) == 2 and told[ends[0]] == told[ends[1]]:
             lines.join(*ends)
         elif ends or differs:
-            points.append((("point", corner.kind is CornerKind.EDGE, found.look(stratum) if differs else None), ends))
+            points.append((("point", corner.kind is CornerKind.EDGE, found.look(cell) if differs else None), ends))
     return _graph(found, areas, lines, [k for k, kept in enumerate(shown) if kept], told, points)
 
 
-def drawn(found: PlaneMap, arc: Stratum) -> bool:
-    """Whether an arc is part of the picture: another look on its two sides, or on it alone."""
-    sides = [one for one in found.beside(arc) if one is not None]
-    if len(sides) < 2:
-        return False
-    return found.separates(arc) or (found.singles_out(arc) and any(one.judged is not None for one in sides))
-
-
-def stands_out(found: PlaneMap, corner: Stratum) -> bool:
+def stands_out(found: Map, corner: Cell) -> bool:
     """Whether an isolated point has another verdict than the region around it."""
-    there = found.arrangement.corners[corner.number]
-    if corner.judged is None or there.kind is not CornerKind.ISOLATED:
+    ground = found.ground
+    if not isinstance(ground, Arrangement) or corner.judged is None:
+        return False
+    there = ground.corners[corner.number]
+    if there.kind is not CornerKind.ISOLATED:
         return False
     at, j = there.place
-    intervals = found.arrangement.places.intervals
+    intervals = ground.places.intervals
     around = intervals.get((at, j), intervals.get((at, j - 1)))
     if around is None or found.regions[around].judged is None:
         return False
     return found.look(corner) != found.look(found.regions[around])
 
 
-def _line(found: PlaneMap, arc: Stratum) -> object:
+def _line(found: Map, arc: Cell) -> object:
     """How an arc is drawn."""
     alone = not found.separates(arc)
-    return found.arrangement.arcs[arc.number].factors, found.look(arc) if alone else None
+    return found.place(arc).factors, found.look(arc) if alone else None
 
 
 def _graph(
-    found: PlaneMap,
+    found: Map,
     areas: _Joined,
     lines: _Joined,
     kept: list[int],
@@ -87,17 +82,17 @@ def _graph(
 ) -> Graph:
     labels: list[object] = []
     nodes: dict[tuple[str, int], int] = {}
-    for k, stratum in enumerate(found.regions):
+    for k, cell in enumerate(found.regions):
         if areas(k) == k:
             nodes["area", k] = len(labels)
-            labels.append(("area", found.look(stratum)))
+            labels.append(("area", found.look(cell)))
     beside: dict[int, set[int]] = {}
     for k in kept:
         if lines(k) not in beside:
             nodes["line", lines(k)] = len(labels)
             labels.append(("line", told[lines(k)]))
         sides = beside.setdefault(lines(k), set())
-        sides |= {areas(r) for r in found.arrangement.arcs[k].regions if r is not None}
+        sides |= {areas(x.number) for x in found.beside(found.arcs[k]) if x is not None}
     edges = [(nodes["line", k], nodes["area", r]) for k, sides in beside.items() for r in sorted(sides)]
     for label, ends in points:
         edges += [(nodes["line", lines(k)], len(labels)) for k in ends]

@@ -19,7 +19,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from enum import StrEnum
 from fractions import Fraction
 from typing import Any
 
@@ -32,11 +31,10 @@ from mbsym.algebra.plane.line import Line
 from mbsym.algebra.plane.numbers import Number, between_simply, sign
 from mbsym.algebra.plane.space import critical_levels, flattened, levels_of
 from mbsym.analysis import Analysis
-from mbsym.maps.admissible import Admissibility, Demand, admissibility
-from mbsym.maps.boundaries import Boundaries, boundaries, norm_of_factors
-from mbsym.maps.given import Complaint, Fault, Unfit
-from mbsym.maps.mapping import Judge, Watch, asked, box_of, ends, mapped, unwatched, with_borders
-from mbsym.maps.result import Of, PlaneMap, Shape, Shown
+from mbsym.maps.admissible import Admissibility, Demand
+from mbsym.maps.boundaries import Boundaries, norm_of_factors
+from mbsym.maps.mapping import Judge, Watch, bounded, box_of, ends, kept_in, mapped, unwatched, with_onsets
+from mbsym.maps.result import Lack, Map, Of, Shape
 from mbsym.maps.section import Axis, Law, Section, section
 from mbsym.maps.seen import seen
 from mbsym.maps.soft_borders import SoftBorders
@@ -48,20 +46,11 @@ MOST_LEVELS = 120
 MOST_DEGREE = 4
 
 
-class Missing(StrEnum):
-    """Why there is no map of a slice."""
-
-    IRRATIONAL = "at an irrational value: not looked at"
-    OUTSIDE = "outside of the assumptions"
-    TOO_LARGE = "too large to be decided"
-    NOT_REACHED = "not reached"
-
-
 @dataclass(frozen=True)
 class Layer:
     """The slice at one value of the third axis.
 
-    ``critical``: the picture may be another one on its two sides.  ``plane`` is its map, ``missing`` says why there is
+    ``critical``: the picture may be another one on its two sides.  ``plane`` is its map, ``lack`` says why there is
     none; ``broken``: what no point of the slice keeps.  ``second``: of one that is not critical, another value up to
     the same critical ones, at which the slice was compared; ``confirmed``: whether it corresponds.
     """
@@ -69,8 +58,8 @@ class Layer:
     number: int
     z: Number
     critical: bool
-    plane: PlaneMap | None = None
-    missing: Missing | None = None
+    plane: Map | None = None
+    lack: Lack | None = None
     broken: tuple[Demand, ...] = ()
     second: Any = None
     confirmed: bool = True
@@ -88,28 +77,27 @@ class Picture:
     unseen: tuple[int, ...] = ()
 
 
-@dataclass(frozen=True)
-class Stack(Shown):
-    """A map over three axes: ``line`` has the critical values of the third, ``layers`` ascend along it."""
+@dataclass(frozen=True, kw_only=True)
+class Stack(Map):
+    """A map over three axes: its ground is the line of the critical values of the third; ``layers`` ascend along it."""
 
-    of: Of
-    section: Section
-    admissibility: Admissibility
-    boundaries: Boundaries
-    line: Line
     layers: tuple[Layer, ...]
     pictures: tuple[Picture, ...]
-    interrupted: bool = False
 
     @property
     def axis(self) -> Axis:
         """The third axis."""
-        return self.section.axes[2]
+        return self.axes[2]
+
+    @property
+    def planes(self) -> list[Map]:
+        """The slices that there are maps of."""
+        return [one.plane for one in self.layers if one.plane is not None]
 
     @property
     def sound(self) -> bool:
         """Whether all checks of all slices hold."""
-        return all(one.confirmed and (one.plane is None or _holds(one.plane)) for one in self.layers)
+        return all(one.confirmed for one in self.layers) and all(one.sound for one in self.planes)
 
     def ends(self, picture: Picture) -> tuple[Number, bool, Number, bool]:
         """(from, whether that belongs to it, to, whether that does), values of the third axis."""
@@ -122,10 +110,6 @@ class Stack(Shown):
         return low, first.critical or not first.number, high, last.critical or last.number + 1 == len(self.layers)
 
 
-def _holds(plane: PlaneMap) -> bool:
-    return plane.check is None or plane.check.holds
-
-
 def stack(
     analysis: Analysis,
     axes: Sequence[Axis],
@@ -135,16 +119,14 @@ def stack(
 ) -> Stack:
     """The slices of a description over three axes, at all critical values of the third and between them.
 
-    Raises what ``plane_map`` raises, TooLargeError for more than ``MOST_LEVELS`` critical values, too.
+    Raises what ``exact_map`` raises, TooLargeError for more than ``MOST_LEVELS`` critical values, too.
     KeyboardInterrupt ends the work once a slice is judged: what was not reached says so.
     """
     watch("first approximation", 0, 1)
     there = section(analysis, axes, settings)
-    kept = admissibility(analysis, there)
-    if kept.broken:
-        raise Unfit([Complaint(Fault.OUTSIDE, "", one.condition.about) for one in kept.broken])
+    kept = kept_in(analysis, there)
     watch("boundaries", 0, 1)
-    found = boundaries(there, [*(one.condition for one in kept.demands), *asked(there)], kept.known)
+    found = bounded(there, kept)
     line = critical_levels(found.factors, box_of(axes), *ends(axes[2]), progress=watch)
     if len(line.zeros) > MOST_LEVELS:
         raise TooLargeError(
@@ -165,10 +147,13 @@ def stack(
                 continue
             except KeyboardInterrupt:
                 interrupted = True
-        layers.append(Layer(number, z, critical, missing=Missing.NOT_REACHED))
+        layers.append(Layer(number, z, critical, lack=Lack.NOT_REACHED))
     if interrupted and all(one.plane is None for one in layers):
         raise KeyboardInterrupt
-    return Stack(of, there, kept, found, line, tuple(layers), _pictures(layers), interrupted)
+    return Stack(
+        of, there.axes, there.told, line, found, section=there, admissibility=kept, interrupted=interrupted,
+        layers=tuple(layers), pictures=_pictures(layers),
+    )  # fmt: skip
 
 
 # --- one slice --------------------------------------------------------------------------------------------------------
@@ -189,20 +174,20 @@ class _Slicing:
 
         self.watch(f"slice {number + 1} of {whole}", 0, 1)
         if isinstance(z, AlgebraicNumber) and z.polynomial.degree() > MOST_DEGREE:
-            return Layer(number, z, critical, missing=Missing.IRRATIONAL)
+            return Layer(number, z, critical, lack=Lack.IRRATIONAL)
         cut, kept = at_level(self.section, self.kept, z)
         if kept.broken:
-            return Layer(number, z, critical, missing=Missing.OUTSIDE, broken=kept.broken)
+            return Layer(number, z, critical, lack=Lack.OUTSIDE, broken=kept.broken)
         try:
             plane = mapped(cut, kept, self._flat(cut, kept, z), self.of, told)
-            plane = with_borders(plane, SoftBorders(self.analysis, cut), told)
+            plane = with_onsets(plane, SoftBorders(self.analysis, cut), told)
             if critical or plane.interrupted:
                 return Layer(number, z, critical, plane)
             told("another value", 0, 1)
             second = self._second(z, line)
             return Layer(number, z, critical, plane, second=second, confirmed=self._confirmed(plane, second))
         except TooLargeError:
-            return Layer(number, z, critical, missing=Missing.TOO_LARGE)
+            return Layer(number, z, critical, lack=Lack.TOO_LARGE)
 
     def _flat(self, cut: Section, kept: Admissibility, z: Any) -> Boundaries:
         """The boundary polynomials in the slice, in their old places.
@@ -214,7 +199,7 @@ class _Slicing:
         flat = [p if p == 0 else norm_of_factors(cut, p) for p in flat]
         if all(p != 0 for p in flat):
             return Boundaries(tuple(flat), self.boundaries.conditions, self.boundaries.vanishing)
-        own = boundaries(cut, [*(one.condition for one in kept.demands), *asked(cut)], kept.known)
+        own = bounded(cut, kept)
         here = [p if p != 0 else cut.context.constant(1) for p in flat]
         further = [
             (p, conditions)
@@ -234,7 +219,7 @@ class _Slicing:
         last = line.high if interval.ends[1] is None else line.zeros[interval.ends[1]].number
         return between_simply(z, last)
 
-    def _confirmed(self, plane: PlaneMap, z: Any) -> bool:
+    def _confirmed(self, plane: Map, z: Any) -> bool:
         """Whether the slice at another value corresponds to a map, with the verdicts of regions."""
         cut, kept = at_level(self.section, self.kept, z)
         flat = [flattened(p, z, cut.context) for p in self.boundaries.factors]
@@ -323,7 +308,7 @@ def _pictures(layers: Sequence[Layer]) -> tuple[Picture, ...]:
     found: list[Picture] = []
     open_levels: list[Layer] = []
     for layer in layers:
-        if layer.critical and layer.missing in (Missing.IRRATIONAL, Missing.TOO_LARGE):
+        if layer.critical and layer.lack in (Lack.IRRATIONAL, Lack.TOO_LARGE):
             open_levels.append(layer)
             continue
         between = tuple(one.number for one in open_levels)
@@ -348,7 +333,7 @@ def _same(one: Layer, other: Layer) -> bool:
     """Whether two slices are one picture."""
     if one.plane is None or other.plane is None:
         told = [[x.condition.about for x in layer.broken] for layer in (one, other)]
-        return one.missing is other.missing and one.missing is not None and told[0] == told[1]
+        return one.lack is other.lack and one.lack is not None and told[0] == told[1]
     if one.plane.interrupted or other.plane.interrupted or not (one.confirmed and other.confirmed):
         return False
     return corresponding(seen(one.plane), seen(other.plane))

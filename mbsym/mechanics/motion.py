@@ -8,12 +8,13 @@ not steady).
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from weakref import WeakKeyDictionary
 
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.expressions.tree import ZERO, Expression, divide, number
+from mbsym.expressions.tree import ZERO, Expression, Name, add, divide, multiply, number, subtract
 from mbsym.mechanics.kinematics import Scene
 from mbsym.model.system import System
 
@@ -27,6 +28,7 @@ def motion_values(system: System) -> dict[str, tuple[Expression, Expression]]:
 #: What was found scene by scene: it is asked for again and again.
 _TURNING: WeakKeyDictionary[Scene, tuple[str, ...]] = WeakKeyDictionary()
 _RELATIONS: WeakKeyDictionary[Scene, dict[int, Polynomial]] = WeakKeyDictionary()
+_CARRIED: WeakKeyDictionary[Scene, dict[int, Polynomial]] = WeakKeyDictionary()
 
 
 def turning(scene: Scene) -> tuple[str, ...]:
@@ -59,7 +61,46 @@ def unperturbed(scene: Scene, velocities: bool = True) -> dict[int, Polynomial]:
         if name in spinning:
             continue
         images |= _standing(scene, "coordinate", name, value)
-    return images
+    return images | carried(scene)
+
+
+def in_step(ring: Ring, rates: Mapping[str, Polynomial]) -> dict[str, tuple[str, int]]:
+    """Angles that turn k times as fast as a slower one, by name: that one, and the whole number k, where k is known.
+
+    Two wheels of one size, two pendulums that turn over together: the angle between them does not vary.
+    """
+    found: dict[str, tuple[str, int]] = {}
+    own: list[str] = []
+    turning = [(name, rate) for name, rate in rates.items() if name in ring.angles and not rate.is_zero()]
+    for name, rate in sorted(turning, key=lambda item: abs(item[1].leading_coefficient())):
+        for other in own:
+            ratio = rate.leading_coefficient() / rates[other].leading_coefficient()
+            if ratio.q == 1 and ring.is_zero(rate - ratio * rates[other]):
+                found[name] = (other, int(ratio))
+                break
+        else:
+            own.append(name)
+    return found
+
+
+def carried(scene: Scene, rates: Mapping[str, Polynomial] | None = None) -> dict[int, Polynomial]:
+    """The generators of angles ``in_step`` with another one, q = value + k (q_1 - value_1), and what they are.
+
+    ``rates`` are those of the motion where they are not all given.
+    """
+    if rates is None:
+        if scene not in _CARRIED:
+            values, images = motion_values(scene.system), relations(scene)
+            own = {name: scene.ring.substitute(scene.lower(values[name][1]), images) for name in turning(scene)}
+            _CARRIED[scene] = carried(scene, own)
+        return dict(_CARRIED[scene])
+    values = motion_values(scene.system)
+    found: dict[int, Polynomial] = {}
+    for name, (first, ratio) in in_step(scene.ring, rates).items():
+        way = multiply(number(ratio), subtract(Name(first), values[first][0]))
+        with suppress(Failure):  # a part of an angle that the ring does not know
+            found |= _standing(scene, "coordinate", name, add(values[name][0], way))
+    return found
 
 
 def _standing(scene: Scene, kind: str, name: str, value: Expression) -> dict[int, Polynomial]:
@@ -142,6 +183,8 @@ def steadied(scene: Scene, x: Polynomial) -> Polynomial:
     """
     ring: Ring = scene.ring
     running = {*turning(scene), *(item.name for item in scene.system.prescribed), "t"}
+    together = carried(scene)
+    x = ring.substitute(x, together) if together else x
     varying = unsteady(scene, x)
     turned = {ring.index(kind, name) for name in {*varying} & {*ring.angles} for kind in ("sine", "cosine")}
     if not varying or not running.issuperset(varying) or turned & {*occurring([x])} or not is_steady(scene, x):

@@ -19,7 +19,7 @@ Spans point back into the description; they take no part in equality, so two spe
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -344,3 +344,19 @@ class System(GuessesNames):
         while path[-1] != INERTIAL:
             path.append(self.body(path[-1]).attached_to)
         return tuple(reversed(path))
+
+
+def with_values(system: System, overrides: Mapping[str, Expression]) -> System:
+    """The description with these values of parameters; what its relations give follows from them."""
+    changed = {*overrides}
+    stale: set[str] = set()
+    for _ in system.relations:
+        for item in system.relations:
+            if item.name not in overrides and names(item.value) & changed:
+                stale.add(item.name)
+                changed.add(item.name)
+    parameters = tuple(
+        replace(item, value=overrides.get(item.name, None if item.name in stale else item.value))
+        for item in system.parameters
+    )
+    return replace(system, parameters=parameters)

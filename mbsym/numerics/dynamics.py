@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mbsym.algebra.derivative import gradient, jacobian
-from mbsym.algebra.increment import Increment, Increments
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
 from mbsym.algebra.stable import stabilised
@@ -258,20 +257,6 @@ class Dynamics:
         for name, momentum in zip(self.system.velocities, momenta, strict=True):
             total = total + fresh.product(fresh.input(name), momentum)
         return total
-
-    def energy_change(self, reference: Sequence[Fraction]) -> Code:
-        """(t, q, q') -> h(t, q, q') - h(0, reference), where ``reference`` holds exact numbers (q, q').
-
-        No nearly equal values are subtracted (``mbsym.algebra.increment``): near an equilibrium it keeps its digits.
-        """
-        fresh = self._specialised
-        start = (Fraction(0), *reference)
-        pairs: dict[str, Increment] = {}
-        for name, value in zip(self.inputs, start, strict=True):
-            base = fresh.number(value)
-            pairs[name] = Increment(fresh, base, fresh.difference(fresh.input(name), base))
-        found = fresh.evaluate(self.relative_energy.outputs[:1], pairs, Increments(fresh, pairs))
-        return self._code([found[0].change], thorough=True)
 
 
 class Frozen(Dynamics):

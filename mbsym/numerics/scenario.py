@@ -153,6 +153,13 @@ def scenario(
     return Scenario(system, parameters, tuple(positions), tuple(velocities), prescribed, typed, became, unstated)
 
 
+def contradictions_of(system: System, overrides: Mapping[str, Expression]) -> tuple[Contradiction, ...]:
+    """Where values of parameters, some of them replaced, contradict signs, relations or assumptions."""
+    numbers = _Numbers()
+    _parameters(system, overrides, numbers, assumed=True)
+    return tuple(numbers.contradictions)
+
+
 def own_values(system: System, overrides: Mapping[str, Expression]) -> dict[str, Expression]:
     """What the description and the overrides say of declared variables at t = 0."""
     given = {one.coordinate: one.position for one in system.start if one.position is not None}

@@ -8,26 +8,27 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from math import pi
 from typing import Any
 
 import numpy as np
 
+from mbsym.algebra.failures import Failure
 from mbsym.algebra.program import Node
 from mbsym.expressions.tree import Expression, names
 from mbsym.mechanics.loads.kinds import KINDS
 from mbsym.mechanics.programs import scene_without_accelerations
-from mbsym.mechanics.variables import program_environment, ring_of
+from mbsym.mechanics.variables import angles_of, program_environment, ring_of
 from mbsym.model.constraints import is_holonomic
-from mbsym.model.quantities import length_unit, time_unit
+from mbsym.model.quantities import length_unit, time_unit, unit_of
 from mbsym.model.system import System
 from mbsym.numerics.positions import COMPACT, frames
-from mbsym.numerics.scenario import Scenario
+from mbsym.numerics.scenario import Scenario, exact
 from mbsym.numerics.specialise import bound
 from mbsym.picture import acting, loops
-from mbsym.picture.coordinates import coordinates
 from mbsym.picture.looks import ellipsoid, shapes
 from mbsym.picture.placing import Places, Triple
-from mbsym.picture.program import PoseProgram, flattened
+from mbsym.picture.program import flattened
 from mbsym.picture.room import Room, first_look, samples
 from mbsym.picture.start import Start, start
 from mbsym.picture.values import (
@@ -38,6 +39,7 @@ from mbsym.picture.values import (
     Hinge,
     Joint,
     Line,
+    Measure,
     Notes,
     Operands,
     Picture,
@@ -212,4 +214,30 @@ class _Made:
         return tuple(x for x in self.system.coordinates if x in found)
 
 
-__all__ = ["PoseProgram", "picture", "picture_at"]
+def coordinates(scenario: Scenario) -> tuple[Coordinate, ...]:
+    """In the order of the system.  An angle goes half a turn either way of its start, a length as far as it is long."""
+    system = scenario.system
+    limits = {item.coordinate: item for item in system.limits}
+    found = []
+    for name, position, velocity in zip(system.coordinates, scenario.positions, scenario.velocities, strict=True):
+        kind, value = measure(system, name), float(position)
+        far = pi if kind is Measure.ANGLE else max(1.0, abs(value))
+        low, high, limited = value - far, value + far, False
+        if name in limits:
+            try:
+                bounds = [float(exact(x, scenario.parameters)) for x in (limits[name].lower, limits[name].upper)]
+            except (Failure, KeyError):
+                bounds = []
+            if bounds and bounds[0] < bounds[1]:
+                low, high, limited = min(bounds[0], value), max(bounds[1], value), True
+        unit = unit_of(system, name) or ""
+        found.append(Coordinate(name, kind, unit, value, float(velocity), low, high, limited))
+    return tuple(found)
+
+
+def measure(system: System, name: str) -> Measure:
+    """An angle stands under a sine or turns a body; a length moves a connection point and is none."""
+    if any(name in names(angle) for angle in angles_of(system)):
+        return Measure.ANGLE
+    moving = (x for body in system.bodies for x in body.connection_point)
+    return Measure.LENGTH if any(name in names(x) for x in moving) else Measure.OTHER

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
 from mbsym.algebra.failures import Failure
 from mbsym.analysis import Analysis
-from mbsym.expressions.tree import Expression, names, substitute
-from mbsym.model.system import System, rational
+from mbsym.expressions.tree import Expression, substitute
+from mbsym.model.system import System, rational, with_values
 from mbsym.picture.build import picture
 from mbsym.picture.encode import as_json
 from mbsym.picture.modes import modes, modes_json
@@ -47,22 +46,6 @@ def equilibria_part(system: System, overrides: Values) -> dict[str, Any]:
         return at_rest_json(at_rest(with_values(system, overrides), exact_values(system, overrides)))
     except Failure as reason:
         return {"why": f"{reason}"}
-
-
-def with_values(system: System, overrides: Values) -> System:
-    """The description with these values of parameters; what its relations give follows from them."""
-    changed = {*overrides}
-    stale: set[str] = set()
-    for _ in system.relations:
-        for item in system.relations:
-            if item.name not in overrides and names(item.value) & changed:
-                stale.add(item.name)
-                changed.add(item.name)
-    parameters = tuple(
-        replace(item, value=overrides.get(item.name, None if item.name in stale else item.value))
-        for item in system.parameters
-    )
-    return replace(system, parameters=parameters)
 
 
 def exact_values(system: System, overrides: Values) -> dict[str, Fraction]:

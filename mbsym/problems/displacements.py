@@ -72,7 +72,7 @@ def displacements(
     ``moving`` are all coordinates and velocities, ``rows`` pairs of g and of the partials J along ``coordinates``.
     Raises NoClosedForm beyond the bounds.
     """
-    from mbsym.problems.symmetries.kernel import kernel  # most systems have no zero roots to be explained
+    from mbsym.algebra.kernel import kernel  # most systems have no zero roots to be explained
 
     none = Displacements(tuple(coordinates))
     if len(kinetic) + sum(map(len, forces)) > MOST_TERMS:
@@ -108,7 +108,7 @@ def _along(ring: Ring, direction: Direction, forces: Sequence[Polynomial]) -> Po
 
 def _completing(ring: Ring, basis: Sequence[Direction], directions: Sequence[Direction]) -> list[Direction]:
     """Those of the directions that enlarge what a basis spans."""
-    from mbsym.problems.symmetries.kernel import kernel
+    from mbsym.algebra.kernel import kernel
 
     found: list[Direction] = []
     for c in directions:
@@ -184,7 +184,7 @@ def symmetries(
     one description, so that Routh's reduction is not theirs; energies and families of equilibria ask for less.
     Raises NoClosedForm beyond the bounds.
     """
-    from mbsym.problems.symmetries.kernel import kernel
+    from mbsym.algebra.kernel import kernel
 
     units = [tuple(ring.one if k == i else ring.zero for k in range(len(coordinates))) for i in range(len(coordinates))]
     tried = [*units, *fields][:MOST_FIELDS]

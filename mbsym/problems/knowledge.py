@@ -44,8 +44,8 @@ def signs(scene: Scene) -> Signs:
             definition = ring.substitute(definitions[item.name], dependent)
         except Failure:
             continue
-        words = list(_with_reciprocals(scene, Signs(ring.context, tuple(words))).words)
-        word = Signs(ring.context, tuple(words)).sign(definition)
+        words = list(_with_reciprocals(scene, Signs(ring.context, tuple(words), numbers=numbers)).words)
+        word = Signs(ring.context, tuple(words), numbers=numbers).sign(definition)
         if word not in ("unknown", "zero"):
             words[ring.index("parameter", item.name)] = word
     plain = Signs(ring.context, tuple(words), numbers=numbers)
@@ -54,9 +54,8 @@ def signs(scene: Scene) -> Signs:
 
 
 def _numbers(ring: Ring) -> dict[int, arb]:
-    """Enclosures of the adjoined generators that are numbers, such as sqrt(2), sin(3/10) and 1/sin(3/10)."""
-    adjoined = [k for k, g in enumerate(ring.generators[: ring.spare]) if g.argument is not None]
-    values = {k: ring.constant_value(ring.context.gen(k)) for k in adjoined}
+    """Enclosures of the generators that are numbers, such as pi, sqrt(2), sin(pi/7), sin(3/10) and 1/sin(3/10)."""
+    values = {k: ring.constant_value(ring.context.gen(k)) for k in range(len(ring.generators))}
     return {k: value for k, value in values.items() if value is not None}
 
 

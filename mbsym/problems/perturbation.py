@@ -26,6 +26,7 @@ from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.tree import ZERO, Expression
 from mbsym.formulas.formula import Formula
+from mbsym.mechanics.motion import in_step
 from mbsym.mechanics.oracle import Dual, FirstOrder, Oracle, State, TaylorSeries
 from mbsym.mechanics.programs import Programs, accelerated
 from mbsym.mechanics.states import SEED, Oracles, drawn
@@ -34,6 +35,10 @@ from mbsym.model.system import System, acceleration_name, velocity_name
 from mbsym.problems.checks import D_ALEMBERT, Check, Pair, compare, decide
 from mbsym.problems.integrals import Integral
 from mbsym.problems.linearisation import Linearisation
+
+#: Rates of the motion by coordinates.
+Rates = Mapping[str, Polynomial]
+NONE: Rates = {}
 
 #: Integrals longer than this are left to their proof.
 MOST_TERMS = 3000
@@ -138,33 +143,35 @@ def _given_motion(system: System) -> dict[str, tuple[Expression, Expression]]:
     return motion | {entry.coordinate: (entry.value, entry.rate) for entry in system.motion}
 
 
-def has_rational_states(system: System, ring: Ring, dependent: Dependent) -> bool:
-    """Whether all sines can be rational: no coordinate rests elsewhere, no angle is determined by others."""
+def has_rational_states(system: System, ring: Ring, dependent: Dependent, rates: Rates = NONE) -> bool:
+    """Whether all sines can be rational: no coordinate rests elsewhere, no angle is determined by others.
+
+    ``rates`` of the motion are those that the description does not name.
+    """
+    if in_step(ring, {**_rates(system, ring, dependent), **rates}):
+        return False
     at_zero = all(value == ZERO for value, _ in _given_motion(system).values())
     at_zero = at_zero and not any(one.name in ring.angles for one in system.inputs)
     return at_zero and not dependent.parameters.keys() & ring.angles.keys()
 
 
-def _at_rest(
-    system: System, ring: Ring, motion: Mapping[str, tuple[Expression, Expression]], dependent: Dependent
-) -> list[str]:
-    """The coordinates whose rate is zero, however that is written (-0, w - w, a parameter that is related to 0)."""
+def _rates(system: System, ring: Ring, dependent: Dependent) -> dict[str, Polynomial]:
+    """The given rates; zero is zero, however that is written (-0, w - w, a parameter that is related to 0)."""
     lower = Lowering(ring, ring_environment(system, ring))
     images = {ring.index("parameter", name): value for name, value in dependent.parameters.items()}
-    return [name for name, (_, rate) in motion.items() if ring.substitute(lower(rate), images).is_zero()]
+    return {name: ring.substitute(lower(rate), images) for name, (_, rate) in _given_motion(system).items()}
 
 
-def unperturbed_state(
-    system: System, ring: Ring, dependent: Dependent, balls: bool, turning: Sequence[str] = ()
-) -> State:
-    """The motion at random values of the parameters; ``turning`` coordinates turn although none says how fast."""
+def unperturbed_state(system: System, ring: Ring, dependent: Dependent, balls: bool, turning: Rates = NONE) -> State:
+    """The motion at random values of the parameters; ``turning`` are rates that it does not name."""
     source = random.Random(SEED)
     kind: Any = arb if balls else fmpq
     values: dict[str, Scalar] = {name: kind(value) for name, value in drawn(system, ring, source).items()}
     values["pi"] = arb.pi() if balls else fmpq(355, 113)
     motion = _given_motion(system)
     tangents = {name: fmpq(source.randint(1, 9), source.randint(1, 9)) for name in ring.angles}
-    at_rest = [name for name in _at_rest(system, ring, motion, dependent) if name not in turning]
+    given = _rates(system, ring, dependent)
+    at_rest = [name for name in system.coordinates if given[name].is_zero() and name not in turning]
     numbers: Algebra
     if balls:
         numbers = Balls(values)  # reads the values below as they are filled in
@@ -175,9 +182,12 @@ def unperturbed_state(
     lower = Lowering(numbers, dict(values))
     values |= {one.name: lower(one.held) for one in system.inputs}
     running = {one.name: (one.initial or ZERO, one.rate) for one in system.prescribed}
-    running |= {name: motion[name] for name in system.coordinates if name not in (*at_rest, *turning)}
+    running |= {name: motion[name] for name in system.coordinates if not given[name].is_zero()}
     for name, (value, rate) in running.items():  # sines and cosines of rational states are any, whatever the time
         values[name] = lower(value) + lower(rate) * values["t"]
+    for name, x in turning.items():
+        if not ring.dependencies(x, system.coordinates):  # else the motion is not steady, and any place is as good
+            values[name] = lower(motion[name][0]) + carry(x) * values["t"]
     for name, (value, rate) in motion.items():
         if name in at_rest:
             values[name] = lower(value)

@@ -72,6 +72,11 @@ class Reduction(Shown):
         """The coordinates of the first approximation: those of the speeds, then those that follow."""
         return (*self.speeds, *self.following)
 
+    @property
+    def rates_by_name(self) -> dict[str, Polynomial]:
+        """``rates`` as a mapping."""
+        return {name: rate.polynomial for name, rate in self.rates}
+
     def dimension(self, places: Sequence[int], signs: Signs) -> int:
         """In how many dimensions the motions of the family differ in these coordinates and their speeds, at least.
 

@@ -52,7 +52,7 @@ def check_reduced_motion(
         zero = place.state.numbers.zero
         return found + [(f"{label} on the motion", x, zero) for label, x in place.left_over if satisfied]
 
-    exact = has_rational_states(system, ring, dependent)
+    exact = has_rational_states(system, ring, dependent, about.rates_by_name)
     return decide("equilibrium", ("equations projected on the motion", ROUTE), exact, pairs)
 
 
@@ -69,7 +69,7 @@ def check_reduced_perturbation(system: System, ring: Ring, linear: Linearisation
         direction = [place.direction[name] for name in about.about]
         return matrix_pairs(ring, linear, dependent, place.state, direction, place.pushes, rows)
 
-    exact = has_rational_states(system, ring, dependent)
+    exact = has_rational_states(system, ring, dependent, about.rates_by_name)
     return decide("perturbed motion", ("matrices of the first approximation", f"{ROUTE}, disturbed"), exact, pairs)
 
 
@@ -78,8 +78,7 @@ class _Disturbed:
 
     def __init__(self, system: System, ring: Ring, about: Reduction, dependent: Dependent, balls: bool) -> None:
         self.system, self.ring, self.about = system, ring, about
-        turning = [name for name, _ in about.rates]
-        self.state = unperturbed_state(system, ring, dependent, balls, turning)
+        self.state = unperturbed_state(system, ring, dependent, balls, about.rates_by_name)
         numbers = self.state.numbers
         carry = Carrier(ring, numbers, self.state.values)
         values = dict(self.state.values)

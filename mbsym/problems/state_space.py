@@ -30,7 +30,7 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Matrix
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.motion import unsteady
+from mbsym.mechanics.motion import steadied, unsteady
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.linearisation import Linearisation
 
@@ -74,7 +74,9 @@ def state_space(scene: Scene, expanded: Scene, linear: Linearisation, equilibriu
     upper = [[ring.one if j == n + i else ring.zero for j in range(2 * n)] for i in range(n)]
     images = equilibrium.determined(scene)
     slopes = [expanded.lower(one.value).first for one in system.outputs]
-    measured = [[ring.substitute(row.get(k, ring.zero), images) for k in range(2 * n + m)] for row in slopes]
+    measured = [
+        [steadied(scene, ring.substitute(row.get(k, ring.zero), images)) for k in range(2 * n + m)] for row in slopes
+    ]
     found = StateSpace(
         states=(*system.coordinates, *system.velocities),
         inputs=linear.inputs,

@@ -175,7 +175,7 @@ class Reference:
     relation: str
 
 
-_OPPOSITE = {">": "<", "<": ">", ">=": "<=", "<=": ">="}
+OPPOSITE = {">": "<", "<": ">", ">=": "<=", "<=": ">="}
 
 
 class Shown:
@@ -202,7 +202,7 @@ class Shown:
             return None
         label, polynomial, relation = statement.label, statement.formula.polynomial, statement.relation
         if _is_opposite(label):
-            label, polynomial, relation = _bare(label), -polynomial, _OPPOSITE.get(relation, relation)
+            label, polynomial, relation = _bare(label), -polynomial, OPPOSITE.get(relation, relation)
         for own in (True, False):
             for under, formula in self._shown:
                 bare, shown = _bare(under), -formula.polynomial if _is_opposite(under) else formula.polynomial
@@ -210,14 +210,14 @@ class Shown:
                     continue
                 ratio = rational_ratio(polynomial, shown)
                 if ratio is not None and (ratio > 0 or not own):
-                    return Reference(label, bare, relation if ratio > 0 else _OPPOSITE.get(relation, relation))
+                    return Reference(label, bare, relation if ratio > 0 else OPPOSITE.get(relation, relation))
         return None
 
 
 _HELD = (
-    "while the inputs are held at constant values",
-    "while the inputs are held at constant values for which the condition of problem 4 holds",
-    "while the inputs are held at constant values for which the conditions of problem 4 hold",
+    "while the inputs keep their values on the unperturbed motion",
+    "while the inputs keep their values on the unperturbed motion, for which the condition of problem 4 holds",
+    "while the inputs keep their values on the unperturbed motion, for which the conditions of problem 4 hold",
 )
 
 

@@ -406,10 +406,18 @@ class Table:
 
 
 @dataclass(frozen=True)
-class Facts:
-    """A list of what was found: of each the name, and what is said of it."""
+class Fact:
+    """Something that was found: its name, and what is said of it, in lines."""
 
-    items: tuple[tuple[tuple[Inline, ...], tuple[Inline, ...]], ...]
+    name: Inline
+    lines: tuple[Inline, ...]
+
+
+@dataclass(frozen=True)
+class Facts:
+    """A list of what was found."""
+
+    items: tuple[Fact, ...]
 
 
 @dataclass(frozen=True)

@@ -29,15 +29,21 @@ TITLE = "bold cyan"
 MOST_DEFINITIONS = 24
 #: Longer formulas (in letters) are counted on the terminal: four lines of it.
 LONGEST = 320
+#: Longer relations may be broken, in letters.
+MOST_UNBROKEN = 40
 #: What is no longer stands in one line with the sign behind it.
 _SHORT = 16
 
 
 class Line(NamedTuple):
-    """A line of a document: parts with their styles; one that is ``whole`` is drawn and never broken."""
+    """A line of a document: parts with their styles; one that is ``whole`` is drawn and never broken.
+
+    ``margin``: where it goes on if it is broken.
+    """
 
     parts: tuple[tuple[str, str], ...]
     whole: bool = False
+    margin: int | None = None
 
     @property
     def text(self) -> str:
@@ -62,16 +68,30 @@ class Writer:
 
     def said(self, sentence: Said) -> str:
         """A sentence with its gaps filled."""
-        parts = (
-            _notation(x, self._power) if inside else x.replace("---", "\u2014")
-            for inside, x in content.pieces(self.language.sentence(sentence.text))
-        )
-        return re.sub(r"\[\[(\w+)\]\]", lambda m: self._gap(sentence.gaps[m[1]]), "".join(parts))
+        return "".join(text for text, _ in self.pieces(sentence))
 
-    def _gap(self, value: Inline | Sequence[Inline]) -> str:
-        if isinstance(value, Sequence) and not isinstance(value, str):
-            return ", ".join(map(self.inline, value))
-        return self.inline(value)
+    def pieces(self, value: Inline) -> Iterator[tuple[str, Inline]]:
+        """What stands one after the other, each with the value that it is of: a screen may show them differently."""
+        if isinstance(value, content.Phrase):
+            for part in value.parts:
+                yield from self.pieces(part)
+        elif isinstance(value, content.Link):
+            yield from self.pieces(value.text)
+        elif isinstance(value, Said):
+            parts = (
+                _notation(x, self._power) if inside else x.replace("---", "\u2014")
+                for inside, x in content.pieces(self.language.sentence(value.text))
+            )
+            for k, text in enumerate(re.split(r"\[\[(\w+)\]\]", "".join(parts))):
+                if k % 2 == 0:
+                    yield text, text
+                    continue
+                filled = value.gaps[text]
+                if isinstance(filled, Sequence) and not isinstance(filled, str):
+                    filled = content.joined(filled, ", ")
+                yield from self.pieces(filled)
+        else:
+            yield self.inline(value), value
 
     @property
     def _power(self) -> str:
@@ -115,10 +135,13 @@ class Writer:
     def _(self, value: Said) -> str:
         return self.said(value)
 
-    @inline.register(content.Text)
-    @inline.register(content.Phrase)
-    def _(self, value: content.Text | content.Phrase) -> str:
+    @inline.register
+    def _(self, value: content.Text) -> str:
         return "".join(map(self.inline, value.parts))
+
+    @inline.register
+    def _(self, value: content.Phrase) -> str:
+        return "".join(text for text, _ in self.pieces(value))
 
     @inline.register
     def _(self, value: content.Words) -> str:
@@ -210,8 +233,17 @@ class Writer:
             yield from self.block(one)
 
     def _line(self, *parts: Inline, indent: int = 0, style: str = "") -> Line:
-        shown = ((self.inline(x), _style(x) or style) for x in parts)
-        return Line(((" " * indent, ""), *shown) if indent else tuple(shown), bool(indent) and not self.readable)
+        shown = self._shown(parts, style)
+        return Line(((" " * indent, ""), *shown) if indent else shown, bool(indent) and not self.readable)
+
+    def _shown(self, parts: Iterable[Inline], style: str = "") -> tuple[tuple[str, str], ...]:
+        """Parts with their styles; a short relation stands in one line."""
+        pieces = [piece for part in parts for piece in self.pieces(part)]
+        return tuple((self._unbroken(text, value), _style(value) or style) for text, value in pieces)
+
+    def _unbroken(self, text: str, value: Inline) -> str:
+        short = self.readable and isinstance(value, content.Relation) and len(text) <= MOST_UNBROKEN
+        return text.replace(" ", UNBROKEN) if short else text
 
     @singledispatchmethod
     def block(self, value: Any) -> Iterator[Line]:
@@ -309,8 +341,13 @@ class Writer:
 
     @block.register
     def _(self, value: content.Facts) -> Iterator[Line]:
-        for name, said in value.items:
-            yield Line((("".join(map(self.inline, name)) + ": ", TITLE), *((self.inline(x), _style(x)) for x in said)))
+        """Names in a column, and beside it what is said."""
+        labels = [self.inline(fact.name) for fact in value.items]
+        width = max(map(len, labels), default=0) + 2
+        for label, fact in zip(labels, value.items, strict=True):
+            for k, said in enumerate(fact.lines):
+                name = (label.ljust(width), TITLE) if k == 0 else (" " * width, "")
+                yield Line((name, *self._shown((said,))), margin=width + 2)
 
     @block.register
     def _(self, value: content.Cited) -> Iterator[Line]:
@@ -351,8 +388,6 @@ class Writer:
 
 def _style(value: object) -> str:
     """That of a verdict or an outcome."""
-    while isinstance(value, content.Link):
-        value = value.text
     return STYLES.get(value.grade, "") if isinstance(value, content.Strong | content.Graded) else ""
 
 
@@ -383,6 +418,7 @@ def _is_sum(text: str) -> bool:
     return False
 
 
+_ACCENTS = {"ddot": "''", "dot": "'", "bar": "bar"}
 #: What is read in notation, and what stands for it, one after the other.
 _NOTATION = (
     (r"\\varphi", r"\\phi"),
@@ -400,7 +436,6 @@ _NOTATION = (
     (r"[{}]", ""),
     (r" {2,}", " "),
 )  # fmt: skip
-_ACCENTS = {"ddot": "''", "dot": "'", "bar": "bar"}
 
 
 def _notation(tex: str, power: str) -> str:

@@ -20,6 +20,7 @@ from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin
 
 from msgspec import Meta, Struct, UnsetType
 
+from mbsym.algebra.parts import missing
 from mbsym.report.documents.base import Named
 from mbsym.report.documents.writer import headed
 
@@ -67,8 +68,20 @@ def document(name: str) -> type[Struct]:
     if name not in TITLES:
         raise KeyError(name)
     module = import_module(f"mbsym.report.documents.{name}")
+    for kind, where in getattr(module, "LATER", {}).items():
+        setattr(module, kind, _later(f"{module.__name__}.{where}", kind))
     found: type[Struct] = getattr(module, "".join(word.title() for word in name.split("_")))
     return found
+
+
+def _later(module: str, kind: str) -> Any:
+    """A type of a section; anything may stand there whose problem is not installed."""
+    try:
+        return getattr(import_module(module), kind)
+    except ImportError as error:
+        if not missing(error):
+            raise
+        return Any
 
 
 def schema(name: str) -> Schema:

@@ -30,9 +30,6 @@ from mbsym.report.first_order import first_order
 from mbsym.report.lengths import COUNTED, FILE, FILE_PROGRAM, formulas, not_printed, program_not_printed, withheld
 from mbsym.report.plain_writer import LONGEST, Writer
 from mbsym.report.results import contents, results
-from mbsym.report.words import oscillation_words
-from mbsym.report.words.expansion_measured import averages
-from mbsym.report.words.expansion_words import coefficients
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -109,6 +106,10 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
 
 def _of_small_parameters(found: SmallParameters, system: System) -> Iterator[tuple[str, str]]:
     """Definitions: coefficients as {variable, power, formula}, effective potentials by phase."""
+    from mbsym.report.words import oscillation_words
+    from mbsym.report.words.expansion_measured import averages
+    from mbsym.report.words.expansion_words import coefficients
+
     if found.slow is not None:
         listed_ones = list(coefficients(found.slow))
         for name, rate in (("slowManifold", False), ("slowFlow", True)):

@@ -19,13 +19,14 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, Response, StreamingResponse
 from starlette.routing import Route
 
-from mbsym.serving import examples, looking
+from mbsym.serving import looking
 from mbsym.serving.answers import Work, posted, refused, safely
 from mbsym.serving.events import Events, encoded
 from mbsym.serving.guard import Guard
 from mbsym.serving.jobs import Jobs
 from mbsym.serving.requests import Wrong, flag, listed, mapping, text_of, whole
 from mbsym.serving.storage import Conflict, Storage, Unreadable
+from mbsym.source.examples import example_text, example_titles
 
 #: Seconds between two looks whether somebody else wrote the file.
 WATCHING = 0.5
@@ -178,7 +179,7 @@ class Editor:
             "languages": list(LANGUAGES),
             "formats": [{"name": name, "title": FORMATS[name].title} for name in FORMATS],
             "problems": _problems(),
-            "examples": examples.listed(),
+            "examples": example_titles(),
         }
 
     async def digest(self, request: Request) -> Response:
@@ -204,7 +205,7 @@ class Editor:
             text = looking.empty(path.name, path.stem)
         else:
             try:
-                text = await asyncio.to_thread(examples.text, str(name))
+                text = await asyncio.to_thread(example_text, str(name))
             except KeyError as error:
                 raise Wrong(f"there is no example called {str(name)[:80]!r}") from error
         return {"text": text, "format": looking.spelling(text, "new.yaml" if name else path.name)}

@@ -246,13 +246,10 @@ def _numbers(task: Task) -> dict[str, Fraction]:
 def _map(task: Task, system: System) -> Iterator[Message]:
     """``x`` and ``y`` are {name, low, high}; without y a line of verdicts."""
     from mbsym.analysis import Analysis
-    from mbsym.maps.line_map import line_map
-    from mbsym.maps.mapping import plane_map
-    from mbsym.maps.result import LineMap, Of, PlaneMap
+    from mbsym.maps.mapping import exact_map
     from mbsym.maps.section import Axis, usable
     from mbsym.report.language import Language
     from mbsym.report.maps.figure import map_figure
-    from mbsym.report.maps.line_figure import line_figure
 
     axes = []
     for key in ("x", "y"):
@@ -273,13 +270,8 @@ def _map(task: Task, system: System) -> Iterator[Message]:
         raise Refused("a map has an axis or two")
     yield {"kind": "progress", "words": "the plane is divided" if len(axes) == 2 else "the line is divided"}
     analysis, settings, language = Analysis(system), _numbers(task), Language(task.get("language") or "")
-    found: PlaneMap | LineMap
-    if len(axes) == 1:
-        found = line_map(analysis, axes[0], settings, Of.STABILITY)
-        image = next(iter(line_figure(system, found, language, ("png",)).values()))
-    else:
-        found = plane_map(analysis, tuple(axes), settings, Of.STABILITY)
-        image = next(iter(map_figure(system, found, language, ("png",)).values()))
+    found = exact_map(analysis, axes, settings)
+    image = next(iter(map_figure(system, found, language, ("png",)).values()))
     words = []
     if found.check is not None and not found.check.holds:
         words = [f"withdrawn, as the map's own check fails: {one.mistake}" for one in found.check.findings[:20]]

@@ -15,7 +15,7 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.expressions.tree import Expression, number
 from mbsym.model.system import System, velocity_name
 from mbsym.numerics.scenario import Scenario, scenario
-from mbsym.problems.averaging import Averaged
+from mbsym.problems.small_parameter.averaging import Averaged
 from mbsym.simulation.request import Request
 from mbsym.simulation.run import simulate
 

@@ -2,18 +2,43 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import ceil, pi
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 
 from mbsym.model.system import System
 from mbsym.numerics.columns import most_rows
-from mbsym.numerics.grid import Grid
 from mbsym.simulation.request import Request
 
 #: Rows unless asked for otherwise (more of them where the motion is fast), and rows a period of the fastest motion.
 SAMPLES, MOST_SAMPLES, SAMPLES_A_PERIOD = 2001, 20_001, 100
+
+
+@dataclass(frozen=True)
+class Grid:
+    """The times k ``spacing`` for k = 0 .. ``count`` - 2, then ``end``; indexed and cut as an array of them is."""
+
+    count: int
+    spacing: float
+    end: float
+
+    def __len__(self) -> int:
+        return self.count
+
+    @overload
+    def __getitem__(self, place: int) -> float: ...
+
+    @overload
+    def __getitem__(self, place: slice) -> Any: ...
+
+    def __getitem__(self, place: int | slice) -> Any:
+        if isinstance(place, slice):
+            numbers = np.arange(*place.indices(self.count))
+            return np.where(numbers == self.count - 1, self.end, numbers * self.spacing)
+        number = range(self.count)[place]
+        return self.end if number == self.count - 1 else number * self.spacing
 
 
 def sample_times(request: Request, frequency: float, system: System) -> Any:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from importlib.resources import files
 
 _PACKAGE = "mbsym_systems"
 _SUFFIX = ".yaml"
+_NAME = re.compile(r"^name:[ \t]*[\"']?(.*?)[\"']?[ \t]*$", re.MULTILINE)
 
 
 @cache
@@ -33,3 +35,13 @@ def example_like(word: str) -> str | None:
     if wanted == "pendulum":
         return "simple-pendulum"  # the shortest name would be the pendulum on a cart
     return next(iter(ending or [name for name in names if wanted and wanted in name]), None)
+
+
+@cache
+def example_titles() -> list[dict[str, str]]:
+    """``name`` and ``title`` of each, as it is written there, for a list to begin with."""
+    found = []
+    for name in example_names():
+        title = _NAME.search(example_text(name))
+        found.append({"name": name, "title": title[1] if title else name})
+    return found

@@ -23,7 +23,7 @@ from mbsym.studies.study import (
 if TYPE_CHECKING:
     from mbsym.algebra.failures import Failure
     from mbsym.model.system import System
-    from mbsym.problems.averaging import Averaged
+    from mbsym.problems.small_parameter.averaging import Averaged
     from mbsym.simulation.averaged import Measured
 
 ORDER = (

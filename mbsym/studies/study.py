@@ -71,7 +71,7 @@ def told(blocks: Iterable[Block], system: System) -> Iterator[Line]:
     from mbsym.report.language import Language
     from mbsym.report.plain_writer import Writer
 
-    for parts, whole in Writer(Language(system.language)).document(blocks):
+    for parts, whole, _ in Writer(Language(system.language)).document(blocks):
         yield line("  ", *parts, whole=whole)
 
 

@@ -136,6 +136,10 @@ def _lines(request: Request, found: trade_study.Study) -> Iterator[Line | Rows]:
             )
     for name, reason in trade.unusable:
         yield line((f"  {name}: not used: {reason}", "yellow"))
+    yield line(
+        f"  cost: {truth.cost:.2g} for the reference, {trade.spent:.2g} for the runs, of a budget of "
+        f"{request.budget:g}; counted work, in seconds of a usual machine, as in the column cost"
+    )
     if models:
         yield _models(found)
     yield line((f"{advice(trade, target)} {model_advice(models, target)}".rstrip(), "bold"), always=True)
@@ -148,7 +152,7 @@ def _runs(request: Request, found: trade_study.Study) -> Rows:
     near = [row for row in found.trade.rows if row.front or _near(row, request.target)]
     rows = found.trade.rows if request.all_rows else near
     strayed = ("constraints",) if constrained(rows) else ()
-    names = ("method", "setting", "error", "drift", *strayed, "evaluations", "steps", "time", "front")
+    names = ("method", "setting", "error", "drift", *strayed, "evaluations", "steps", "time", "cost", "front")
     columns = [Column(name, right=name not in ("method", "setting", "front")) for name in names]
     told = shown(rows, found.trade.smallest_judged)
     return Rows(columns, [[(cell, "" if cells[-1] else "dim") for cell in cells] for cells in told])
@@ -178,8 +182,10 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
 def _without_reference(error: Breakdown, request: Request) -> str:
     """A solution that ends is one thing, one that takes too long another."""
     from mbsym.numerics.methods.interface import STEP_LIMIT
-    from mbsym.numerics.trade.reference_search import DISAGREE
+    from mbsym.numerics.trade.reference_search import BROKEN, DISAGREE
 
+    if error.kind == BROKEN:
+        return f"no reference solution up to t = {request.time:g} was found: {error.message}"
     if error.kind == DISAGREE:
         why = f"no two solutions agree, {error.message}: the motion may be chaotic over such a time"
         return f"there is no reference solution up to t = {request.time:g}: {why}; a shorter --time helps"

@@ -20,9 +20,8 @@ from mbsym.algebra.plane import Point
 from mbsym.analysis import Analysis
 from mbsym.maps.admissible import admissibility
 from mbsym.maps.given import Complaint, Fault, Unfit
-from mbsym.maps.line_map import LineJudge
 from mbsym.maps.mapping import Judge
-from mbsym.maps.result import Shape, Standing, Stratum
+from mbsym.maps.result import Cell, Lack, Shape
 from mbsym.maps.section import Section
 from mbsym.maps.verdicts import matrix_at, verdict_at
 from mbsym.numerics.kernels import llvm
@@ -34,6 +33,7 @@ from mbsym.sweeps.measure import Column
 #: What may stand in place of a verdict, before the words of verdicts.
 OUTSIDE, UNDEFINED, MASSLESS = "not admissible", "not defined", "kinetic energy not positive definite"
 NO_VERDICT = (OUTSIDE, UNDEFINED, MASSLESS)
+NO_WORDS: Mapping[Lack | None, str] = {Lack.OUTSIDE: OUTSIDE, Lack.MASSLESS: MASSLESS}
 WORDS = (*NO_VERDICT, *(word.value for word in Word))
 
 VERDICT = Column(
@@ -68,14 +68,11 @@ class StabilityMeasure:
         ]
         self._deciding = deciding(section.parts, further, [axis.name for axis in section.axes], section.constant)
         #: Judges one point in a field of algebraic numbers, where a constant is irrational.
-        self._judge: Callable[[Sequence[Any]], Stratum] | None = None
+        self._judge: Callable[[Sequence[Any]], Cell] | None = None
         if section.constant is not None:
-            if len(section.axes) == 1:
-                line = LineJudge(section, self.admissibility)
-                self._judge = lambda point: line(Shape.INTERVAL, 0, point[0])
-            else:
-                plane = Judge(section, self.admissibility)
-                self._judge = lambda point: plane(Shape.REGION, 0, Point(*point))
+            judge, line = Judge(section, self.admissibility), len(section.axes) == 1
+            shape = Shape.INTERVAL if line else Shape.REGION
+            self._judge = lambda point: judge(shape, 0, point[0] if line else Point(*point))
         self._kernel = llvm.kernels({"signs": self._deciding.code}, wide=True)["signs"]
         self._known: dict[tuple[int, ...], tuple[int, int]] = {}
         self._lock = Lock()
@@ -122,10 +119,10 @@ class StabilityMeasure:
             return WORDS.index(UNDEFINED), -1
         return WORDS.index(found.verdict.word.value), -1 if found.right is None else found.right
 
-    def _irrationally(self, found: Stratum) -> tuple[int, int]:
+    def _irrationally(self, found: Cell) -> tuple[int, int]:
         """The same of a point that was judged in a field of algebraic numbers."""
         if found.judged is None:
-            word = {Standing.OUTSIDE: OUTSIDE, Standing.MASSLESS: MASSLESS}.get(found.standing, UNDEFINED)
+            word = NO_WORDS.get(found.lack, UNDEFINED)
             return WORDS.index(word), -1
         right = found.judged.right
         return WORDS.index(found.judged.verdict.word.value), -1 if right is None else right

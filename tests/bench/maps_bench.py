@@ -24,7 +24,7 @@ import numpy as np
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT))
 
-from tests.maps.test_map import SATELLITE, mapped, paper_matrices, roots_to_the_right, stratum_at  # noqa: E402
+from tests.maps.test_map import SATELLITE, mapped, paper_matrices, roots_to_the_right  # noqa: E402
 
 POINTS = 20_000
 
@@ -39,7 +39,7 @@ def growth() -> None:
     """Seconds of maps over the number and degree of conditions, beside those of a grid of the same resolution."""
     import mbsym
     from mbsym.algebra.failures import Failure
-    from mbsym.maps.mapping import plane_map
+    from mbsym.maps.mapping import exact_map
     from mbsym.maps.section import Axis
 
     print("conditions  degree  map s  regions  grid points  grid s  grid/map")
@@ -60,7 +60,7 @@ def growth() -> None:
         text += "".join(f"  {key}: {str(matrix).replace(chr(39), chr(34))}\n" for key, matrix in rows.items())
         started = time.perf_counter()
         try:
-            found = plane_map(mbsym.loads(text), [Axis(name, Fraction(-1), Fraction(1)) for name in "ab"], {})
+            found = exact_map(mbsym.loads(text), [Axis(name, Fraction(-1), Fraction(1)) for name in "ab"], {})
         except Failure as failure:
             print(f"{2 * count:10}  {degree:6}  {time.perf_counter() - started:5.2f}  {failure}")
             continue
@@ -89,7 +89,7 @@ def main() -> None:
         (Fraction(random.randint(-9999, 9999), 10000), Fraction(random.randint(1, 9999), 10000)) for _ in range(POINTS)
     ]
     started = time.perf_counter()
-    strata = [stratum_at(found, *point) for point in points]
+    strata = [found.at(*point) for point in points]
     locating = time.perf_counter() - started
     p1, p2 = Fraction(2, 5), Fraction(1, 5)
     wrong = 0

@@ -68,7 +68,7 @@ def test_a_run_ends_in_results_or_in_a_reason(path: Path, tmp_path: Path) -> Non
     assert not CONTROL.search(done.output)
     said = [line for line in done.stderr.splitlines() if not re.match(r" *\d+ \| ", line)]  # no quoted lines
     assert not [line for line in said if line.rstrip().endswith(":")]
-    assert not [line for line in done.stdout.splitlines() if re.search(r"  \(|from \(", line.strip())]
+    assert not [line for line in done.stdout.splitlines() if re.search(r"\S  \(|from \(", line.strip())]
     if done.exit_code == 0:
         check_json((tmp_path / "results.json").read_text(encoding="utf-8"))
         check_c(tmp_path)

@@ -14,7 +14,7 @@ from click.testing import CliRunner
 from conftest import SHIPPED
 
 from mbsym.numerics import stored
-from mbsym.numerics.grid import Grid
+from mbsym.simulation.sampling import Grid
 from mbsym_cli.main import main
 
 

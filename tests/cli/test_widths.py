@@ -86,8 +86,8 @@ def test_complaints_are_wrapped_but_what_they_quote(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("language", "said"),
     [
-        ("ru", "Тела и системы координат: 1; степени свободы: 1: x"),
-        ("es", "Cuerpos y sistemas de referencia: 1; grados de libertad: 1: x"),
+        ("ru", "Координаты: x; тела и системы координат: 1"),
+        ("es", "Coordenadas: x; cuerpos y sistemas de referencia: 1"),
     ],
 )
 def test_check_speaks_the_language_of_the_description(language: str, said: str, tmp_path: Path) -> None:

@@ -21,14 +21,13 @@ from flint import arb, ctx
 
 from mbsym.analysis import approximation
 from mbsym.analysis.pipeline import Analysis
-from mbsym.maps.mapping import plane_map
+from mbsym.maps.mapping import exact_map
 from mbsym.maps.section import Axis
 from mbsym.problems.checks import EXACT, FAILED
 from mbsym.problems.stability.linear_form import NonholonomicForm
 from mbsym.problems.stability.nonholonomic import enclosed
 from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.word import Word
-from mbsym.report.maps.located import stratum_at
 from mbsym.source import read
 
 TEXT = (Path(__file__).parent / "pulled-sleigh.yaml").read_text(encoding="utf-8")
@@ -121,12 +120,12 @@ def test_a_wrong_row_of_what_follows_is_found(part: str, monkeypatch: pytest.Mon
 def test_a_map_has_the_region_of_hurwitz(sleigh: Analysis) -> None:
     """b > a + 2/a in the plane of a and b at m = 1, J = 2: judged at random points against the condition by hand."""
     axes = [Axis("b", Fraction(1), Fraction(6)), Axis("a", Fraction(1, 5), Fraction(3))]
-    found, source, seen = plane_map(described(), axes, {}), Random(4), set()
+    found, source, seen = exact_map(described(), axes, {}), Random(4), set()
     for _ in range(12):
         b, a = Fraction(source.randint(101, 599), 100), Fraction(source.randint(21, 299), 100)
         stable = b > a + 2 / a
         seen.add(stable)
-        word = stratum_at(found, b, a).judged.verdict.word
+        word = found.at(b, a).judged.verdict.word
         assert word is (Word.ASYMPTOTIC_BUT_STEADY if stable else Word.UNSTABLE)
     assert seen == {True, False}
 

@@ -151,7 +151,7 @@ motion: {{x: 0, u: {held}}}
     assert analysis.stability.verdict.stable == stable
     assert analysis.integrals == ()
     verdict = next(text for text in told(analysis, 6) if text.startswith("Verdict"))
-    assert verdict.startswith("Verdict, while the inputs are held at constant values: ")
+    assert verdict.startswith("Verdict, while the inputs keep their values on the unperturbed motion: ")
 
 
 BODY = """mbsym: 1

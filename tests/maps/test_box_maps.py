@@ -20,7 +20,7 @@ from mbsym.algebra.failures import Limit, TooLargeError
 from mbsym.maps import boxes
 from mbsym.maps.boxes import BoxMap, Method, box_map
 from mbsym.maps.mapping import Judge
-from mbsym.maps.result import Of, Standing
+from mbsym.maps.result import Lack, Of
 from mbsym.maps.section import Axis
 from mbsym.maps.subdivision import ByBoundaries, End
 from mbsym.problems.stability.word import Word
@@ -70,7 +70,7 @@ def test_what_is_proved_is_true_and_the_rest_is_white(tmp_path: Path) -> None:
     assert found.method is Method.BOUNDARIES
     assert found.subdivision.end is End.DONE
     assert found.subdivision.white == fmpq(60, 256)
-    for tile in found.tiles:
+    for tile in found.subdivision.tiles:
         box = tile.box
         if tile.proved is not None:
             assert tile.proved.word is (Word.STABLE if box.x0 > 0 and box.y0 > 0 else Word.UNSTABLE)
@@ -92,7 +92,8 @@ def test_a_lost_boundary_is_caught(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     found = mapped(path, depth=8)
     assert found.check is not None
     assert not found.check.holds
-    assert all(one.standing is Standing.WITHDRAWN for one in found.strata)
+    assert {one.lack for one in found.cells} <= {Lack.WITHDRAWN, Lack.UNPROVED}
+    assert Lack.WITHDRAWN in {one.lack for one in found.cells}
     done = called(path, "--by", "boxes", "--format", "json")
     assert done.exit_code == 1
     assert "withdrawn, as the map's own check fails in box" in done.output
@@ -140,8 +141,8 @@ def test_ctrl_c_keeps_the_boxes_that_are_proved(tmp_path: Path) -> None:
     assert found.interrupted
     assert found.check is None
     assert 0 < found.subdivision.white < 1
-    assert sum(tile.box.area for tile in found.tiles) == 4
-    assert any(one.word is Word.STABLE for one in found.strata)
+    assert sum(tile.box.area for tile in found.subdivision.tiles) == 4
+    assert any(one.word is Word.STABLE for one in found.cells)
 
 
 def test_enclosures_where_boundaries_are_too_large(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -150,17 +151,17 @@ def test_enclosures_where_boundaries_are_too_large(tmp_path: Path, monkeypatch: 
     def refused(*_: object) -> None:
         raise TooLargeError("a determinant of many terms", limit=Limit.TERMS)
 
-    monkeypatch.setattr(boxes, "boundaries", refused)
+    monkeypatch.setattr(boxes, "bounded", refused)
     path = described(tmp_path, "[[a, 0], [0, b]]", "D: [[1, 0], [0, 1]]", sign="positive")
     found = mapped(path, depth=8)
     assert found.method is Method.ENCLOSURES
     assert found.because == "a determinant of many terms"
-    for tile in found.tiles:
+    for tile in found.subdivision.tiles:
         box, proved = tile.box, tile.proved
         if proved is None:
             assert box.x0 <= 0 <= box.x1 or box.y0 <= 0 <= box.y1
         elif box.x1 < 0:
-            assert proved.standing is Standing.OUTSIDE
+            assert proved.lack is Lack.OUTSIDE
         else:
             assert proved.word is (Word.ASYMPTOTIC if box.y0 > 0 else Word.UNSTABLE)
     with pytest.raises(TooLargeError):
@@ -192,7 +193,7 @@ def test_files_and_words(tmp_path: Path, language: str) -> None:
 def test_signature_in_boxes(tmp_path: Path) -> None:
     """K = diag(a, b): as many negative eigenvalues as a and b are negative."""
     found = mapped(described(tmp_path, "[[a, 0], [0, b]]"), depth=6, of=Of.SIGNATURE)
-    for tile in found.tiles:
+    for tile in found.subdivision.tiles:
         if tile.proved is not None and tile.proved.judged is not None:
             assert tile.proved.judged.degree == (tile.box.x1 < 0) + (tile.box.y1 < 0)
 

@@ -26,7 +26,7 @@ from mbsym.maps.branches_result import Branches, Doubt
 from mbsym.maps.section import Axis
 from mbsym.mechanics.rest import given_values
 from mbsym.report.latex.reading import read_latex
-from mbsym.report.maps.branch_words import EVENTS, remark_words
+from mbsym.report.maps.words import EVENTS, remark_words
 from mbsym.report.messages import messages
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main
@@ -75,11 +75,12 @@ def found(path: Path, name: str, low: str, high: str, **given: str) -> Branches:
 
 
 def told(one: Branches) -> list[tuple[float, tuple[Event, ...]]]:
-    return [(round(float(enclosure(x.number).mid()), 9), x.events) for x in one.criticals if one.happens(x)]
+    happening = [x for x in one.criticals if one.happens(x)]
+    return [(round(float(enclosure(x.sample).mid()), 9), one.critical(x).events) for x in happening]
 
 
 def counts(one: Branches) -> list[tuple[int, int]]:
-    return [(len(first.equilibria), first.stable) for first, _ in one.spans()]
+    return [(x.counted.count, x.counted.stable) for x, _ in one.spans() if x.counted is not None]
 
 
 def invoke(*words: object) -> Result:
@@ -112,7 +113,7 @@ def test_normal_forms_are_named_and_counted(f: str, tmp_path: Path) -> None:
     there = found(ball(tmp_path, f), "p", "-1", "1")
     assert (told(there), counts(there)) == NORMAL_FORMS[f]
     assert there.proved
-    assert all(one.balance is not False for one in there.criticals)
+    assert all(there.critical(one).balance is not False for one in there.criticals)
 
 
 def test_two_unfoldings_at_once_are_not_named(tmp_path: Path) -> None:
@@ -141,7 +142,7 @@ def test_a_rotating_pendulum_splits_at_the_rate_that_gravity_allows(tmp_path: Pa
     path.write_text(HOOP.format(torque="0"))
     there = found(path, "Omega", "0", "5")  # Omega^2 = g/l = 4
     assert told(there) == [(2.0, (Event.PITCHFORK,))]
-    assert there.criticals[0].number == fmpq(2)
+    assert there.criticals[0].sample == fmpq(2)
     assert counts(there) == [(2, 1), (4, 2)]
     assert all(piece.throughout for piece in there.pieces)
     # cos(theta) = g/(l Omega^2) on the branches that split off, at all points that are drawn
@@ -176,12 +177,14 @@ def test_a_torque_beyond_that_of_gravity_leaves_no_equilibrium(tmp_path: Path) -
 def test_what_comes_out_of_singular_coordinates_is_no_event_with_a_name() -> None:
     # the conical pendulum leaves the vertical, where its azimuth is singular, at l Omega^2 = g
     conical = found(SHIPPED / "spherical-pendulum.yaml", "Omega", "1", "5")
-    assert [x.number.polynomial.coeffs() for x in conical.criticals] == [[-981, 0, 100]]
-    assert [(x.balance, x.events, conical.leaves(x)) for x in conical.criticals] == [(None, (), True)]
+    assert [x.sample.polynomial.coeffs() for x in conical.criticals] == [[-981, 0, 100]]
+    assert [
+        (conical.critical(x).balance, conical.critical(x).events, conical.leaves(x)) for x in conical.criticals
+    ] == [(None, (), True)]
     assert counts(conical) == [(0, 0), (2, 2)]
     # the spring stands upright with the length l0 - m g/k, which is positive for k > m g/l0 = 9.81
     upright = found(SHIPPED / "spring-pendulum.yaml", "k", "1", "20")
-    assert [x.number for x in upright.criticals if upright.happens(x)] == [fmpq(981, 100)]
+    assert [x.sample for x in upright.criticals if upright.happens(x)] == [fmpq(981, 100)]
     assert counts(upright) == [(1, 1), (2, 1)]
 
 
@@ -202,7 +205,7 @@ def test_the_gyrostat_with_its_rotor_along_the_normal_of_the_orbit() -> None:
     # With n the normal and e the radius in body axes: 3 e2 e3 = n3 (n2 + h/2), 3 e1 e2 = n1 (n2 + h), 3 e1 e3 = n1 n3.
     # If none of them vanishes, P = n1^2/(n2 + h/2) and Q = n3^2/(n2 + h) give P + Q = -n2 by n.e = 0, P + 2 Q = 2/h by
     # n.n = 1, and e.e = 1 becomes h^2 = 8: n2 is left open.
-    assert [x.number.polynomial.coeffs() for x in there.criticals if x.continuum] == [[-8, 0, 1]]
+    assert [x.sample.polynomial.coeffs() for x in there.criticals if there.critical(x).continuum] == [[-8, 0, 1]]
 
 
 # --- planted mistakes -------------------------------------------------------------------------------------------------
@@ -211,7 +214,7 @@ def test_the_gyrostat_with_its_rotor_along_the_normal_of_the_orbit() -> None:
 def test_an_event_of_the_wrong_name_contradicts_the_counts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "named", lambda point: Named(Event.FOLD, 0, 2))
     there = found(ball(tmp_path, "p*x - x**3"), "p", "-1", "1")
-    assert [one.balance for one in there.criticals] == [False]
+    assert [there.critical(one).balance for one in there.criticals] == [False]
     assert [one.doubt for one in there.remarks] == [Doubt.MISMATCH]
     done = invoke("equilibria", tmp_path / "ball.yaml", "--vary", "p=-1:1", "--format", "json", "--out", tmp_path / "o")
     assert done.exit_code == 1

@@ -13,7 +13,7 @@ import mbsym
 from mbsym.algebra.plane import Arrangement, Box, Point, decompose, decompose_line
 from mbsym.maps.boundaries import boundaries
 from mbsym.maps.check import Check, Mistake, check
-from mbsym.maps.line_map import line_map
+from mbsym.maps.mapping import exact_map
 from mbsym.maps.on_curves import ExactVerdicts
 from mbsym.maps.section import Axis, Section, section
 from mbsym.maps.verdicts import Judged
@@ -132,7 +132,7 @@ def test_balls_confirm_counts_where_zero_roots_have_blocks(
 ) -> None:
     """Idle coordinates, whose roots are zero in blocks, do not keep balls from deciding the others: at every point."""
     values = dict.fromkeys(settings, Fraction(1))
-    found = line_map(mbsym.load(f"systems/{name}.yaml"), Axis(axis, Fraction(low), Fraction(high)), values)
+    found = exact_map(mbsym.load(f"systems/{name}.yaml"), [Axis(axis, Fraction(low), Fraction(high))], values)
     assert found.check is not None
     assert found.check.holds
     assert found.check.enclosed == found.check.points > 90
@@ -141,7 +141,7 @@ def test_balls_confirm_counts_where_zero_roots_have_blocks(
 def test_a_wrong_count_beside_zero_roots_is_excluded_by_balls() -> None:
     """The disc falls where w^2 < g/(3 r): with no root to the right planted there, balls exclude that."""
     values = dict.fromkeys("mrg", Fraction(1))
-    found = line_map(mbsym.load("systems/rolling-disc.yaml"), Axis("w", Fraction(1, 10), Fraction(1, 2)), values)
+    found = exact_map(mbsym.load("systems/rolling-disc.yaml"), [Axis("w", Fraction(1, 10), Fraction(1, 2))], values)
     planted = [replace(one.judged, right=0) if one.judged else None for one in found.regions]
     wrong = check(found.section, found.line, planted)
     assert Mistake.BALLS in {one.mistake for one in wrong.findings}

@@ -12,8 +12,8 @@ import mbsym
 from mbsym.maps import mapping
 from mbsym.maps.check import Mistake
 from mbsym.maps.continuity import jumps
-from mbsym.maps.mapping import plane_map
-from mbsym.maps.result import Shape, Standing
+from mbsym.maps.mapping import exact_map
+from mbsym.maps.result import Lack, Shape
 from mbsym.maps.section import Axis
 
 #: With b2 = 2/23 the discriminant of the follower force has an isolated point in the stable region.
@@ -23,7 +23,7 @@ VALUES = {"b2": Fraction(2, 23)}
 
 def test_more_roots_to_the_right_at_an_isolated_point_are_not_believed(monkeypatch: pytest.MonkeyPatch) -> None:
     analysis = mbsym.load("systems/ziegler-damped.yaml")
-    found = plane_map(analysis, AXES, VALUES)
+    found = exact_map(analysis, AXES, VALUES)
     assert found.check is not None
     assert found.check.holds
     isolated = next(one.id for one in found.arrangement.corners if one.kind == "isolated")
@@ -39,16 +39,16 @@ def test_more_roots_to_the_right_at_an_isolated_point_are_not_believed(monkeypat
         return replace(told, right=1) if shape is Shape.CORNER and told.right == 0 and told.border is None else told
 
     monkeypatch.setattr(mapping.Judge, "judged", lying)
-    wrong = plane_map(analysis, AXES, VALUES)
+    wrong = exact_map(analysis, AXES, VALUES)
     assert wrong.check is not None
     assert {(one.mistake, one.region, one.arc) for one in wrong.check.findings} == {(Mistake.JUMP, None, None)}
     assert isolated in {one.corner for one in wrong.check.findings}
-    assert wrong.corners[isolated].standing is Standing.WITHDRAWN
-    assert all(one.standing is not Standing.WITHDRAWN for one in (*wrong.regions, *wrong.arcs))
+    assert wrong.corners[isolated].lack is Lack.WITHDRAWN
+    assert all(one.lack is not Lack.WITHDRAWN for one in (*wrong.regions, *wrong.arcs))
 
 
 def test_negative_eigenvalues_of_k_on_a_curve_fit_both_sides() -> None:
-    found = plane_map(mbsym.load("systems/ziegler-damped.yaml"), AXES, VALUES)
+    found = exact_map(mbsym.load("systems/ziegler-damped.yaml"), AXES, VALUES)
     regions, arcs = ([one.judged for one in part] for part in (found.regions, found.arcs))
     at = next(k for k, one in enumerate(arcs) if one is not None and one.null == 0)
     one = arcs[at]

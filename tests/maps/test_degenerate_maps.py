@@ -12,11 +12,11 @@ import numpy as np
 from click.testing import CliRunner, Result
 
 import mbsym
-from mbsym.maps.mapping import plane_map
-from mbsym.maps.result import Of, PlaneMap, Shape
+from mbsym.maps.mapping import exact_map
+from mbsym.maps.result import Map, Of, Shape
 from mbsym.maps.section import Axis
 from mbsym.maps.verdicts import Border
-from mbsym.report.maps.located import located, stratum_at
+from mbsym.report.maps.located import Locating
 from mbsym_cli.main import main
 
 HEAD = "mbsym: 1\nname: {}\nparameters: {{a: {{sign: real}}, b: {{sign: real}}}}\nlinear system:\n  coordinates: [x]\n"
@@ -29,8 +29,8 @@ def described(folder: Path, stiffness: str, damping: str = "") -> Path:
     return path
 
 
-def mapped(path: Path) -> PlaneMap:
-    return plane_map(mbsym.load(path), [Axis(name, Fraction(-1), Fraction(1)) for name in "ab"], {})
+def mapped(path: Path) -> Map:
+    return exact_map(mbsym.load(path), [Axis(name, Fraction(-1), Fraction(1)) for name in "ab"], {})
 
 
 def called(path: Path) -> Result:
@@ -44,7 +44,7 @@ def test_an_isolated_point(tmp_path: Path) -> None:
     assert len(found.regions) == 1
     assert found.regions[0].judged is not None
     assert found.regions[0].judged.right == 0
-    point = stratum_at(found, Fraction(0), Fraction(0))
+    point = found.at(Fraction(0), Fraction(0))
     assert point is not None
     assert point.shape is Shape.CORNER
     assert point.judged is not None
@@ -56,7 +56,7 @@ def test_a_double_line(tmp_path: Path) -> None:
     found = mapped(described(tmp_path, "(a - b)**2"))
     assert len(found.regions) == 2
     assert len({found.look(one) for one in found.regions}) == 1
-    on = stratum_at(found, Fraction(1, 3), Fraction(1, 3))
+    on = found.at(Fraction(1, 3), Fraction(1, 3))
     assert on is not None
     assert on.shape is Shape.ARC
     assert on.judged is not None
@@ -97,10 +97,10 @@ def test_where_a_squared_determinant_vanishes_the_other_roots_are_looked_at(tmp_
     """
     path = tmp_path / "system.yaml"
     path.write_text(HEAD.format("squared").replace("[x]", "[x, y]") + "  K: [[b+1, -2*a], [-2*a, 0]]\n")
-    found = plane_map(
+    found = exact_map(
         mbsym.load(path), [Axis("a", Fraction(-2), Fraction(2)), Axis("b", Fraction(-2), Fraction(2))], {}
     )
-    below, above = (stratum_at(found, Fraction(0), b) for b in (Fraction(-3, 2), Fraction(1, 2)))
+    below, above = (found.at(Fraction(0), b) for b in (Fraction(-3, 2), Fraction(1, 2)))
     assert below is not None
     assert above is not None
     assert below.judged is not None
@@ -109,7 +109,7 @@ def test_where_a_squared_determinant_vanishes_the_other_roots_are_looked_at(tmp_
     assert below.word == "unstable"
     assert (above.judged.right, above.judged.degree) == (0, 0)
     assert above.word == "unstable"
-    corner = stratum_at(found, Fraction(0), Fraction(-1))
+    corner = found.at(Fraction(0), Fraction(-1))
     assert corner is not None
     assert corner.shape is Shape.CORNER
 
@@ -123,7 +123,7 @@ def test_two_damped_coordinates_with_a_discriminant_of_degree_17(tmp_path: Path)
         "mbsym: 1\nname: plane\nparameters: {a: {sign: real}, b: {sign: real}}\nlinear system:\n"
         f"  coordinates: [x, y]\n  M: [[1, 0], [0, 1]]\n  D: {rows}\n  K: [[a+b, 0], [0, -b-1]]\n"
     )
-    found = plane_map(mbsym.load(path), [Axis(name, Fraction(-2), Fraction(2)) for name in "ab"], {})
+    found = exact_map(mbsym.load(path), [Axis(name, Fraction(-2), Fraction(2)) for name in "ab"], {})
     assert found.check is not None
     assert found.check.holds
     assert all(one.judged is not None for one in (*found.regions, *found.arcs))
@@ -134,7 +134,7 @@ def test_two_damped_coordinates_with_a_discriminant_of_degree_17(tmp_path: Path)
         first = np.block([[np.zeros((2, 2)), np.eye(2)], [-np.array(k, float), -np.array(d, float)]])
         roots = np.linalg.eigvals(first).real
         if min(abs(roots)) > 1e-6:
-            there = stratum_at(found, a, b)
+            there = found.at(a, b)
             assert there is not None
             assert there.judged is not None
             assert there.judged.right == sum(roots > 0)
@@ -147,10 +147,10 @@ def test_the_signature_of_a_diagonal_stiffness(tmp_path: Path) -> None:
     path = tmp_path / "system.yaml"
     path.write_text(HEAD.format("signature").replace("[x]", "[x, y]") + "  K: [[a, 0], [0, b]]\n")
     axes = [Axis(name, Fraction(-1), Fraction(1)) for name in "ab"]
-    found = plane_map(mbsym.load(path), axes, {}, Of.SIGNATURE)
+    found = exact_map(mbsym.load(path), axes, {}, Of.SIGNATURE)
     for a in (Fraction(-1, 2), Fraction(0), Fraction(1, 2)):
         for b in (Fraction(-1, 3), Fraction(0), Fraction(1, 3)):
-            there = stratum_at(found, a, b)
+            there = found.at(a, b)
             assert there is not None
             assert there.judged is not None
             assert (there.judged.degree, there.judged.null) == ((a < 0) + (b < 0), (a == 0) + (b == 0))
@@ -182,7 +182,7 @@ def test_a_region_without_inner_points(tmp_path: Path) -> None:
     """D = 1, K = -(a - b)^2: unstable everywhere but on a = b, where x'' + x' = 0 is stable."""
     found = mapped(described(tmp_path, "-(a - b)**2", "1"))
     assert {one.word for one in found.regions} == {"unstable"}
-    on = stratum_at(found, Fraction(1, 3), Fraction(1, 3))
+    on = found.at(Fraction(1, 3), Fraction(1, 3))
     assert on is not None
     assert on.word == "stable"
     assert found.singles_out(on)
@@ -191,7 +191,7 @@ def test_a_region_without_inner_points(tmp_path: Path) -> None:
 def test_a_located_point_of_an_arc_is_judged_at_itself(tmp_path: Path) -> None:
     """K = a, D = 1: on a = 0 a root is zero. With another verdict planted on the arc, its points keep their own."""
     found = mapped(described(tmp_path, "a", "1"))
-    own = located(found, Fraction(0), Fraction(1, 3))
-    planted = replace(found, arcs=tuple(replace(one, judged=found.regions[1].judged) for one in found.arcs))
-    assert located(planted, Fraction(0), Fraction(1, 3)) == own
+    own = Locating(found)(Fraction(0), Fraction(1, 3))
+    planted = replace(found, arcs=tuple(replace(one, said=found.regions[1].judged) for one in found.arcs))
+    assert Locating(planted)(Fraction(0), Fraction(1, 3)) == own
     assert own == ("arc 0", "stable")

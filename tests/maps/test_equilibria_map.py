@@ -6,21 +6,23 @@ import json
 from fractions import Fraction
 from pathlib import Path
 from random import Random
-from typing import Any
 
 import pytest
 from click.testing import CliRunner, Result
 from conftest import SHIPPED
-from flint import fmpq
 from jsonschema import Draft202012Validator
 
 import mbsym
 import mbsym.maps.equilibria_map as module
-from mbsym.maps.equilibria_map import EquilibriaMap, Origin, Standing, equilibria_map
+from mbsym.algebra.certainty import Certainty
+from mbsym.maps.boundaries import Boundaries, Origin
+from mbsym.maps.equilibria_map import EquilibriaMap, equilibria_map
+from mbsym.maps.result import Cell, Counted, Lack
 from mbsym.maps.section import Axis
 from mbsym.mechanics.rest import given_values
+from mbsym.report.documents.equilibria_map import STANDINGS
 from mbsym.report.latex.reading import read_latex
-from mbsym.report.maps.equilibria_map_words import ORIGINS, STANDINGS
+from mbsym.report.maps.words import _CONDITIONS, LACKS
 from mbsym.report.messages import messages
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main
@@ -49,10 +51,15 @@ def mapped(path: Path, x: tuple[str, str, str], y: tuple[str, str, str]) -> Equi
 
 
 def counts_at(found: EquilibriaMap, x: Fraction, y: Fraction) -> tuple[int, int]:
-    place: Any = found.arrangement.locate(*(fmpq(z.numerator, z.denominator) for z in (x, y)))
-    cell = found.cells[place.id]
-    assert cell.standing is Standing.PROVED
-    return cell.count, cell.stable
+    cell = found.at(x, y)
+    assert cell is not None
+    assert cell.certainty is Certainty.PROVED
+    return counted(cell).count, counted(cell).stable
+
+
+def counted(cell: Cell) -> Counted:
+    assert cell.counted is not None
+    return cell.counted
 
 
 UNIT = ("p", "-1", "1"), ("q", "-1", "1")
@@ -65,12 +72,14 @@ def test_a_cusp(tmp_path: Path) -> None:
     for _ in range(50):
         p, q = (Fraction(source.randint(-999, 999), 1000) for _ in range(2))
         assert counts_at(found, p, q) == ((3, 2) if 4 * p**3 > 27 * q**2 else (1, 1))
-    assert all(cell.throughout and cell.confirmed == cell.count for cell in found.cells)
+    known = [counted(cell) for cell in found.regions]
+    assert all(one.throughout and one.confirmed == one.count for one in known)
 
 
 def test_roots_that_come_from_infinity(tmp_path: Path) -> None:
     found = mapped(ball(tmp_path, "p*x**2 + x + q"), *UNIT)  # discriminant 1 - 4 p q; at p = 0 one root is at infinity
-    assert {str(p): of for p, of in zip(found.arrangement.factors, found.origins, strict=True)} == {
+    origins = [tuple(x.origin for x in of) for of in found.boundaries.conditions]
+    assert {str(p): of for p, of in zip(found.arrangement.factors, origins, strict=True)} == {
         "4*p*q - 1": (Origin.SINGULAR,),
         "p": (Origin.LEAVING,),
     }
@@ -92,13 +101,13 @@ def test_two_unknowns(tmp_path: Path) -> None:
 def test_singular_everywhere_is_no_proof(tmp_path: Path) -> None:
     found = mapped(ball(tmp_path, "x**2*(x - p - 2*q)"), *UNIT)
     assert found.unfinished
-    assert {cell.standing for cell in found.cells} == {Standing.SAMPLE}
-    assert not any(cell.throughout for cell in found.cells)
+    assert {(cell.certainty, cell.lack) for cell in found.regions} == {(Certainty.UNDECIDED, None)}
+    assert not any(counted(cell).throughout for cell in found.regions)
 
 
 def test_infinitely_many_are_not_counted(tmp_path: Path) -> None:
     found = mapped(ball(tmp_path, "(p + 3)*x + y*(q + 3)", "(p + 3)*x + y*(q + 3)"), *UNIT)
-    assert {cell.standing for cell in found.cells} == {Standing.FAMILIES}
+    assert {cell.lack for cell in found.regions} == {Lack.FAMILIES}
 
 
 def test_the_gyrostat_has_eight_to_twenty_four() -> None:
@@ -107,25 +116,23 @@ def test_the_gyrostat_has_eight_to_twenty_four() -> None:
     a = Fraction(13, 2)
     for h in map(Fraction, ("3/5", "7/4", "5", "7", "17/2")):
         expected = 24 - 4 * sum(h > x for x in (a - 5, 2, 4 * (a - 5), 8))
-        place: Any = found.arrangement.locate(fmpq(h.numerator, h.denominator), fmpq(13, 2))
-        assert found.cells[place.id].count == expected
-        assert found.cells[place.id].standing is Standing.PROVED
+        assert counts_at(found, h, Fraction(13, 2))[0] == expected
 
 
 # --- planted mistakes -------------------------------------------------------------------------------------------------
 
 
 def test_a_lost_curve_is_found_by_another_point(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "_curves", lambda parts: ([], [], ()))
+    monkeypatch.setattr(module, "_curves", lambda parts: (Boundaries((), (), ()), ()))
     path = ball(tmp_path, "p - x**2 + 0*q")
     done = [mapped(path, ("p", "-1", "1"), ("q", str(-k), "1")) for k in range(1, 5)]
-    assert Standing.WITHDRAWN in {cell.standing for one in done for cell in one.cells}
+    assert Lack.WITHDRAWN in {cell.lack for one in done for cell in one.cells}
 
 
 def test_a_lost_equilibrium_is_found_by_newton(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "many_starts", lambda system, values: 4)
     found = mapped(ball(tmp_path, "p*x - x**3 + q"), *UNIT)
-    assert {cell.standing for cell in found.cells} == {Standing.WITHDRAWN}
+    assert {cell.lack for cell in found.regions} == {Lack.WITHDRAWN}
     done = invoke(ball(tmp_path, "p*x - x**3 + q"), "--x", "p=-1:1", "--y", "q=-1:1", "-o", tmp_path / "o")
     assert done.exit_code == 1
     assert "withdrawn" in done.output
@@ -170,14 +177,14 @@ def test_what_does_not_fit_is_complained_about(words: list[str], code: str, tmp_
 
 
 def test_options_of_maps_of_one_motion_are_refused_by_name(tmp_path: Path) -> None:
-    words = ["--x", "h=0:1", "--y", "A=2:3", "--z", "B=1:2", "--locate", tmp_path / "none.csv", "--by", "boxes"]
+    words = ["--x", "h=0:1", "--y", "A=2:3", "--z", "B=1:2", "--by", "boxes"]
     done = invoke(SHIPPED / "orbital-gyrostat.yaml", *words, "--out", tmp_path / "out")
     assert done.exit_code == 2
     lines = done.output.splitlines()
     guilty = [line.partition(":")[0] for line in lines if "error[not-of-equilibria]" in line]
-    assert guilty == ["--z", "--by boxes", "--locate"]
-    assert sum("error[" in line for line in lines) == 3
-    assert sum("hint: leave it out" in line for line in lines) == 3
+    assert guilty == ["--z", "--by boxes"]
+    assert sum("error[" in line for line in lines) == 2
+    assert sum("hint: leave it out" in line for line in lines) == 2
 
 
 def test_what_is_no_polynomial_is_refused(tmp_path: Path) -> None:
@@ -188,6 +195,6 @@ def test_what_is_no_polynomial_is_refused(tmp_path: Path) -> None:
 
 def test_every_word_is_translated() -> None:
     for language in ("ru", "es"):
-        assert {("", text) for text in (*STANDINGS.values(), *ORIGINS.values())} <= messages(language).keys()
+        assert {("", text) for text in (*LACKS.values(), *_CONDITIONS.values())} <= messages(language).keys()
     told = schema("equilibria_map")["properties"]["regions"]["items"]["properties"]["standing"]["enum"]
-    assert told == [one.value for one in Standing]
+    assert told == [str(one) for one in STANDINGS]

@@ -13,12 +13,10 @@ from typing import Any
 import pytest
 
 import mbsym
-from mbsym.maps.line_map import line_map
-from mbsym.maps.mapping import plane_map
-from mbsym.maps.result import PlaneMap, Shape
+from mbsym.maps.mapping import exact_map
+from mbsym.maps.result import Map, Shape
 from mbsym.maps.section import Axis
 from mbsym.problems.stability.word import Word
-from mbsym.report.maps.located import stratum_at
 from tests.maps.test_maps_against_models import Polynomial, Values, product, to_the_right, total
 
 
@@ -83,8 +81,8 @@ def two(v: Values) -> Polynomial:
 BODY = {"A": F(4), "B": F(5), "C": F(3), "Jx": F(1, 5), "Jy": F(1, 5), "Jz": F(1, 10)}
 
 
-def mapped(name: str, axes: list[Axis], **settings: Any) -> PlaneMap:
-    return plane_map(mbsym.load(f"systems/{name}.yaml"), axes, {k: F(v) for k, v in settings.items()})
+def mapped(name: str, axes: list[Axis], **settings: Any) -> Map:
+    return exact_map(mbsym.load(f"systems/{name}.yaml"), axes, {k: F(v) for k, v in settings.items()})
 
 
 def test_two_gyroscopes_against_the_matrices_by_hand() -> None:
@@ -94,11 +92,11 @@ def test_two_gyroscopes_against_the_matrices_by_hand() -> None:
     """
     fixed = {**BODY, "h1": F(9, 5), "h2": F(-1), "k1": F(1), "d1": F(3, 10), "d2": F(1, 5)}
     analysis = mbsym.load("systems/satellite-with-two-gyroscopes.yaml")
-    found = line_map(analysis, Axis("k2", F(0), F(2)), {"h1": F(9, 5), "h2": F(-1)})
+    found = exact_map(analysis, [Axis("k2", F(0), F(2))], {"h1": F(9, 5), "h2": F(-1)})
     random, words = Random(5), set()
     for _ in range(150):
         place = 2 * F(random.randint(1, 10_006), 10_007)
-        stratum = stratum_at(found, place)
+        stratum = found.at(place)
         assert stratum is not None
         assert stratum.judged is not None
         right = to_the_right(two({**fixed, "k2": place}))
@@ -108,20 +106,20 @@ def test_two_gyroscopes_against_the_matrices_by_hand() -> None:
 
 
 @pytest.fixture(scope="module")
-def friction() -> PlaneMap:
+def friction() -> Map:
     """A satellite whose K has two negative eigenvalues where h < 0 is large: its rotor alone holds it."""
     axes = [Axis("h", F(-20), F(0)), Axis("d", F(0), F(1))]
     return mapped("satellite-with-gyroscope", axes, A=6, B=6, C=4, k=40)
 
 
-def test_friction_in_the_gimbal_ends_what_the_rotor_holds(friction: PlaneMap) -> None:
+def test_friction_in_the_gimbal_ends_what_the_rotor_holds(friction: Map) -> None:
     """Kelvin-Chetaev, exactly: on d = 0 and at d = 1e-9 beside it, by roots of the matrices by hand."""
     body, random, words = {**BODY, "A": F(6), "B": F(6), "C": F(4), "k": F(40)}, Random(9), set()
     for _ in range(60):
         h = -20 * F(random.randint(1, 10_006), 10_007)
         for d in (F(0), F(1, 10**9), F(random.randint(1, 10_000), 10_007)):
             right = to_the_right(one({**body, "h": h, "d": d}))
-            stratum = stratum_at(friction, h, d)
+            stratum = friction.at(h, d)
             assert stratum is not None
             assert stratum.judged is not None
             assert stratum.judged.right == right
@@ -134,7 +132,7 @@ def test_friction_in_the_gimbal_ends_what_the_rotor_holds(friction: PlaneMap) ->
     assert words == {Word.GYROSCOPIC, Word.UNSTABLE}
 
 
-def test_a_mistake_in_the_matrices_is_met(friction: PlaneMap) -> None:
+def test_a_mistake_in_the_matrices_is_met(friction: Map) -> None:
     """With the gyroscopic term of the satellite's own frame, A + C - B, of the other sign, the border moves."""
     values = {**BODY, "A": F(6), "B": F(6), "C": F(4), "k": F(40), "d": F(0)}
     wrong = 0
@@ -147,7 +145,7 @@ def test_a_mistake_in_the_matrices_is_met(friction: PlaneMap) -> None:
             [4 * (B - C), 4 * (Jz - Jy) + h, B + Jz - A - Jx + h],
             [(0, 1, values["k"], values["d"])],
         )
-        stratum = stratum_at(friction, h, F(0))
+        stratum = friction.at(h, F(0))
         assert stratum is not None
         assert stratum.judged is not None
         wrong += stratum.judged.right != to_the_right(mistaken)

@@ -13,7 +13,7 @@ from click.testing import CliRunner, Result
 import mbsym
 from mbsym.maps.boxes import BoxMap, Method, box_map
 from mbsym.maps.given import Fault, Unfit
-from mbsym.maps.result import Of, Standing
+from mbsym.maps.result import Lack, Of
 from mbsym.maps.section import Axis
 from mbsym.problems.stability.word import Word
 from mbsym_cli.main import main
@@ -53,7 +53,7 @@ def test_sines_of_the_axes(tmp_path: Path) -> None:
     assert found.check.points > 100
     assert float(found.subdivision.white) < 0.4
     random, words = Random(1), set()
-    for tile in found.tiles:
+    for tile in found.subdivision.tiles:
         if tile.proved is None:
             continue
         words.add(tile.proved.word)
@@ -68,20 +68,20 @@ def test_sines_of_the_axes(tmp_path: Path) -> None:
 def test_roots_that_are_not_real_are_no_statement(tmp_path: Path) -> None:
     """K = diag(sqrt(a) - 1/2, 1): unstable for 0 <= a < 1/4, stable beyond, and nothing is said for a < 0."""
     found = mapped(described(tmp_path, "[[sqrt(a) - 1/2, 0], [0, 1]]"), -1, 1)
-    for tile in found.tiles:
+    for tile in found.subdivision.tiles:
         if tile.box.x0 < 0:
             assert tile.proved is None
         elif tile.proved is not None:
             assert tile.proved.word is (Word.ASYMPTOTIC if float(tile.box.x0) >= 0.25 else Word.UNSTABLE)
-    assert any(tile.proved is not None for tile in found.tiles)
+    assert any(tile.proved is not None for tile in found.subdivision.tiles)
 
 
 def test_declared_signs_are_kept(tmp_path: Path) -> None:
     found = mapped(described(tmp_path, "[[exp(a) + b, 0], [0, 1]]", "positive"), -1, 1)
-    outside = [tile for tile in found.tiles if tile.proved and tile.proved.standing is Standing.OUTSIDE]
+    outside = [tile for tile in found.subdivision.tiles if tile.proved and tile.proved.lack is Lack.OUTSIDE]
     assert outside
     assert all(tile.box.x1 <= 0 for tile in outside)
-    assert all(tile.proved is None or tile.box.x1 <= 0 or tile.box.x0 >= 0 for tile in found.tiles)
+    assert all(tile.proved is None or tile.box.x1 <= 0 or tile.box.x0 >= 0 for tile in found.subdivision.tiles)
 
 
 def test_a_wrong_enclosure_is_caught(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -99,7 +99,7 @@ def test_a_wrong_enclosure_is_caught(tmp_path: Path, monkeypatch: pytest.MonkeyP
     found = mapped(described(tmp_path, "[[cos(a) + b, sin(b)], [sin(b), 1]]"), -3, 3)
     assert found.check is not None
     assert not found.check.holds
-    assert all(one.judged is None for one in found.strata)
+    assert all(one.judged is None for one in found.cells)
 
 
 def test_the_command_and_what_it_refuses(tmp_path: Path) -> None:

@@ -12,16 +12,13 @@ import pytest
 
 import mbsym
 from mbsym.algebra.failures import TooLargeError
-from mbsym.maps import line_map as lines
 from mbsym.maps import mapping
 from mbsym.maps.boundaries import Origin
-from mbsym.maps.line_map import line_map
-from mbsym.maps.mapping import plane_map
-from mbsym.maps.result import LineMap, PlaneMap, Standing
+from mbsym.maps.mapping import exact_map
+from mbsym.maps.result import Lack, Map
 from mbsym.maps.section import Axis
 from mbsym.maps.verdicts import Border
 from mbsym.problems.stability.word import Word
-from mbsym.report.maps.located import stratum_at
 
 HEAD = "mbsym: 1\nname: constants\nparameters: [x, y]\nlinear system:\n  coordinates: [s, u]\n  M: [[1, 0], [0, 1]]\n"
 SPRINGS = HEAD + "  K: [[x + sqrt(2)*y, 1], [1, x]]\n"
@@ -37,10 +34,10 @@ linear system:
 """
 
 
-def plane(text: str, folder: Path, *axes: tuple[str, Any, Any]) -> PlaneMap:
+def plane(text: str, folder: Path, *axes: tuple[str, Any, Any]) -> Map:
     (folder / "system.yaml").write_text(text)
     listed = [Axis(name, Fraction(low), Fraction(high)) for name, low, high in axes]
-    return plane_map(mbsym.load(folder / "system.yaml"), listed, {})
+    return exact_map(mbsym.load(folder / "system.yaml"), listed, {})
 
 
 def sign_with_root(a: Fraction, b: Fraction) -> int:
@@ -62,7 +59,7 @@ def test_a_plane_with_a_square_root(tmp_path: Path) -> None:
     for _ in range(200):
         x, y = (Fraction(random.randint(-199, 199), 100) for _ in range(2))
         definite = sign_with_root(2 * x, y) > 0 and sign_with_root(x * x - 1, x * y) > 0
-        word = stratum_at(found, x, y).word  # type: ignore[union-attr]
+        word = found.at(x, y).word  # type: ignore[union-attr]
         assert word is (Word.STABLE if definite else Word.UNSTABLE)
         seen.add(word)
     assert len(seen) == 2
@@ -85,7 +82,7 @@ def test_rouths_curve_in_a_plane(tmp_path: Path) -> None:
         mu, w = Fraction(random.randint(1, 499), 1000), Fraction(random.randint(500, 2000), 1000)
         bound = 4 * w**2 - 3
         right = not (bound > 0 and bound**2 > 27 * mu * (1 - mu))
-        word = stratum_at(found, mu, w).word  # type: ignore[union-attr]
+        word = found.at(mu, w).word  # type: ignore[union-attr]
         assert (word is Word.UNSTABLE) == right
     blocks = [one for one in found.arcs if one.judged is not None and one.judged.border is Border.JORDAN]
     assert any(found.separates(one) for one in blocks)
@@ -133,11 +130,11 @@ def test_a_lost_boundary_is_found_in_a_plane(monkeypatch: pytest.MonkeyPatch, tm
     found = plane(SPRINGS, tmp_path, ("x", -2, 2), ("y", -2, 2))
     assert found.check is not None
     assert not found.check.holds
-    assert any(one.standing is Standing.WITHDRAWN for one in found.regions)
+    assert any(one.lack is Lack.WITHDRAWN for one in found.regions)
 
 
-def on_line() -> LineMap:
-    return line_map(mbsym.load("systems/triangular-points.yaml"), Axis("mu", Fraction(0), Fraction(1, 2)), {})
+def on_line() -> Map:
+    return exact_map(mbsym.load("systems/triangular-points.yaml"), [Axis("mu", Fraction(0), Fraction(1, 2))], {})
 
 
 def test_lines_with_a_constant_are_checked_too(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -145,7 +142,7 @@ def test_lines_with_a_constant_are_checked_too(monkeypatch: pytest.MonkeyPatch) 
     assert found.check is not None
     assert found.check.holds
     assert found.check.enclosed == found.check.points >= 96
-    lossy(lines, monkeypatch, {Origin.DISCRIMINANT})
+    lossy(mapping, monkeypatch, {Origin.DISCRIMINANT})
     wrong = on_line()
     assert wrong.check is not None
     assert not wrong.check.holds

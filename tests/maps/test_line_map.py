@@ -14,20 +14,20 @@ from flint import fmpq, fmpz_poly
 from jsonschema import Draft202012Validator
 
 import mbsym
-from mbsym.maps.line_map import line_map
-from mbsym.maps.result import LineMap, Standing
+from mbsym.maps.mapping import exact_map
+from mbsym.maps.result import Lack, Map
 from mbsym.maps.section import Axis
 from mbsym.maps.verdicts import Border
 from mbsym.problems.stability.constant import constant_of
 from mbsym.problems.stability.word import Word
-from mbsym.report.maps.located import located, stratum_at
+from mbsym.report.maps.located import Locating
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main
 
 
-def mapped(name: str, axis: str, low: Any, high: Any, **settings: Any) -> LineMap:
+def mapped(name: str, axis: str, low: Any, high: Any, **settings: Any) -> Map:
     found = Axis(axis, Fraction(low), Fraction(high))
-    return line_map(mbsym.load(f"systems/{name}.yaml"), found, {k: Fraction(v) for k, v in settings.items()})
+    return exact_map(mbsym.load(f"systems/{name}.yaml"), [found], {k: Fraction(v) for k, v in settings.items()})
 
 
 def test_rouths_critical_mass_ratio_is_an_exact_root() -> None:
@@ -49,12 +49,12 @@ def test_rouths_critical_mass_ratio_is_an_exact_root() -> None:
 def test_the_bicycles_stable_speeds() -> None:
     """Meijaard et al. (2007), section 5.3 and appendix: stable from 4.2923825 to 6.0242620 m/s."""
     found = mapped("bicycle", "v", 4, 7)
-    changing = [float(found.line.zeros[one.number].number) for one in found.corners if found.changes(one)]
+    changing = [float(found.line.zeros[one.number].number) for one in found.corners if found.drawn(one)]
     assert changing == pytest.approx([4.29238253634111, 6.02426201538837], abs=1e-13)
     stable = [one for one in found.regions if one.word is not Word.UNSTABLE]
     assert {one.word for one in stable} == {Word.ASYMPTOTIC_BUT_STEADY}
-    assert stratum_at(found, Fraction(5)) in stable
-    below, above = stratum_at(found, Fraction(42, 10)), stratum_at(found, Fraction(62, 10))
+    assert found.at(Fraction(5)) in stable
+    below, above = found.at(Fraction(42, 10)), found.at(Fraction(62, 10))
     assert below is not None
     assert below.judged is not None
     assert (below.judged.right, below.judged.real_right) == (2, 0)
@@ -66,11 +66,11 @@ def test_the_bicycles_stable_speeds() -> None:
 def test_flutter_on_a_line() -> None:
     """41/28 + b^2/2 with b = 1/10 is rational: the exact number, with an imaginary pair; 0 is not admissible."""
     found = mapped("ziegler-damped", "P", 0, 4)
-    where, word = located(found, Fraction(41, 28) + Fraction(1, 200))
+    where, word = Locating(found)(Fraction(41, 28) + Fraction(1, 200))
     assert where.startswith("point")
     assert word == Word.CRITICAL
-    assert located(found, Fraction(0))[1] == Standing.OUTSIDE
-    assert located(found, Fraction(5)) == ("outside of the interval", "")
+    assert Locating(found)(Fraction(0))[1] == Lack.OUTSIDE
+    assert Locating(found)(Fraction(5)) == ("outside of the interval", "")
     assert found.check is not None
     assert found.check.holds
 

@@ -20,16 +20,15 @@ from jsonschema import Draft202012Validator
 import mbsym
 from mbsym.algebra.roots import count_roots
 from mbsym.maps.boundaries import Origin
-from mbsym.maps.line_map import line_map
-from mbsym.maps.mapping import plane_map
-from mbsym.maps.result import PlaneMap, Standing
+from mbsym.maps.mapping import exact_map
+from mbsym.maps.result import Lack, Map
 from mbsym.maps.section import Axis
 from mbsym.maps.verdicts import Border
 from mbsym.problems.stability.word import Word
 from mbsym.report.language import Language
 from mbsym.report.latex.reading import read_latex
-from mbsym.report.maps.located import located, stratum_at
-from mbsym.report.maps.words import _CONDITIONS, STANDINGS
+from mbsym.report.maps.located import Locating
+from mbsym.report.maps.words import _CONDITIONS, LACKS
 from mbsym.report.messages import messages
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main
@@ -41,13 +40,13 @@ FOLLOWER = ("ziegler-damped", (("P", 0, 4), ("b1", 0, 1)), ())
 
 
 @cache
-def mapped(name: str, axes: tuple[Any, ...], settings: tuple[Any, ...] = ()) -> PlaneMap:
+def mapped(name: str, axes: tuple[Any, ...], settings: tuple[Any, ...] = ()) -> Map:
     listed = [Axis(axis, Fraction(low), Fraction(high)) for axis, low, high in axes]
-    return plane_map(mbsym.load(f"systems/{name}.yaml"), listed, {k: Fraction(v) for k, v in settings})
+    return exact_map(mbsym.load(f"systems/{name}.yaml"), listed, {k: Fraction(v) for k, v in settings})
 
 
-def at(found: PlaneMap, x: Any, y: Any) -> Any:
-    return stratum_at(found, Fraction(x), Fraction(y))
+def at(found: Map, x: Any, y: Any) -> Any:
+    return found.at(Fraction(x), Fraction(y))
 
 
 # --- against independent models ---------------------------------------------------------------------------------------
@@ -97,7 +96,7 @@ def test_the_satellites_map_agrees_with_eigenvalues_of_the_papers_matrices(p1: s
         stratum = at(found, alpha, gamma)
         counted = [roots_to_the_right(*one) for one in paper_matrices(alpha, gamma, Fraction(p1), Fraction(p2))]
         if not all(positive for _, positive in counted):
-            assert stratum.standing is Standing.MASSLESS
+            assert stratum.lack is Lack.MASSLESS
             continue
         right = sum(count for count, _ in counted)
         assert stratum.judged is not None
@@ -120,7 +119,7 @@ def test_lagranges_and_debra_and_delps_regions() -> None:
     for one in found.regions:
         a, b = found.arrangement.regions[one.number].sample
         triangle = a + b >= 1 and b + 1 >= a and 1 + a >= b
-        assert (one.standing is Standing.JUDGED) == triangle
+        assert (one.lack is None) == triangle
 
 
 # --- curves and corners -----------------------------------------------------------------------------------------------
@@ -150,8 +149,8 @@ def test_every_place_has_a_verdict_or_a_reason() -> None:
         assert len(found.regions) == len(found.arrangement.regions)
         assert len(found.arcs) == len(found.arrangement.arcs)
         assert len(found.corners) == len(found.arrangement.corners)
-        assert all((one.judged is None) != (one.standing is Standing.JUDGED) for one in found.strata)
-        assert not any(one.standing in (Standing.TOO_LARGE, Standing.NOT_REACHED) for one in found.strata)
+        assert all((one.judged is None) != (one.lack is None) for one in found.cells)
+        assert not any(one.lack in (Lack.TOO_LARGE, Lack.NOT_REACHED) for one in found.cells)
         assert abs(sum(area for area, _ in found.areas) - float(found.arrangement.box.area)) < 1e-6
 
 
@@ -189,8 +188,8 @@ def test_a_lost_boundary_is_found_and_its_verdicts_are_withdrawn(
     assert "the map's own check fails in region" in done.stderr
     content = json.loads((tmp_path / "map.json").read_text())
     assert not list(Draft202012Validator(schema("map")).iter_errors(content))
-    assert any(x["standing"] == Standing.WITHDRAWN for x in content["regions"])
-    assert all(x["stability"] is None for x in content["regions"] if x["standing"] == Standing.WITHDRAWN)
+    assert any(x["standing"] == Lack.WITHDRAWN for x in content["regions"])
+    assert all(x["stability"] is None for x in content["regions"] if x["standing"] == Lack.WITHDRAWN)
 
 
 def test_ctrl_c_keeps_what_is_proved() -> None:
@@ -202,9 +201,9 @@ def test_ctrl_c_keeps_what_is_proved() -> None:
             raise KeyboardInterrupt
 
     axes = [Axis("P", Fraction(0), Fraction(4)), Axis("b1", Fraction(0), Fraction(1))]
-    found = plane_map(analysis, axes, {}, watch=watch)
+    found = exact_map(analysis, axes, {}, watch=watch)
     assert found.interrupted
-    assert [one.standing is Standing.NOT_REACHED for one in found.strata][:6] == [False] * 5 + [True]
+    assert [one.lack is Lack.NOT_REACHED for one in found.cells][:6] == [False] * 5 + [True]
     assert found.check is None
 
 
@@ -262,7 +261,7 @@ def test_located_points(written: Path) -> None:
     assert [row["verdict"] for row in rows] == ["stable", "undecided", "undecided", ""]
     assert [row["where"].split()[0] for row in rows] == ["region", "arc", "corner", "outside"]
     found = mapped(*SATELLITE)
-    assert located(found, Fraction(1, 2), Fraction(1, 2)) == (rows[0]["where"], "stable")
+    assert Locating(found)(Fraction(1, 2), Fraction(1, 2)) == (rows[0]["where"], "stable")
 
 
 @pytest.mark.parametrize(
@@ -310,9 +309,9 @@ def test_wrong_points_are_told_line_by_line(tmp_path: Path) -> None:
 
 
 def test_the_words_of_a_map_are_there_in_every_language() -> None:
-    wanted = {*_CONDITIONS.values(), *STANDINGS.values()}
+    wanted = {*_CONDITIONS.values(), *LACKS.values()}
     assert {*_CONDITIONS} == {*Origin}
-    assert {*STANDINGS} == {*Standing} - {Standing.JUDGED}
+    assert {*LACKS} == {*Lack}
     for name in ("ru", "es"):
         assert {("", text) for text in wanted} <= set(messages(name)), name
         assert Language(name).say(Word.STABLE) != Word.STABLE
@@ -320,6 +319,6 @@ def test_the_words_of_a_map_are_there_in_every_language() -> None:
 
 def test_one_moment_of_inertia_alone_is_that_of_plane_motion() -> None:
     """The snakeboard's bodies have a moment about the vertical only: no triangle inequality is asked of them."""
-    found = line_map(mbsym.load("systems/snakeboard.yaml"), Axis("m", Fraction(1), Fraction(2)), {})
-    assert all(one.standing is Standing.JUDGED for one in found.regions)
+    found = exact_map(mbsym.load("systems/snakeboard.yaml"), [Axis("m", Fraction(1), Fraction(2))], {})
+    assert all(one.lack is None for one in found.regions)
     assert not found.admissibility.left_out

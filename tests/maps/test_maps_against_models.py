@@ -19,12 +19,10 @@ from typing import Any
 import pytest
 
 import mbsym
-from mbsym.maps.line_map import line_map
-from mbsym.maps.mapping import plane_map
-from mbsym.maps.result import LineMap, PlaneMap, Shape, Standing
+from mbsym.maps.mapping import exact_map
+from mbsym.maps.result import Lack, Map, Shape
 from mbsym.maps.section import Axis
 from mbsym.problems.stability.word import Word
-from mbsym.report.maps.located import stratum_at
 
 #: Coefficients from the highest to the lowest.
 Polynomial = list[F]
@@ -257,12 +255,12 @@ NAMES = [case.name for case in CASES]
 
 
 @cache
-def made(name: str) -> PlaneMap | LineMap:
+def made(name: str) -> Map | Map:
     case = CASES[NAMES.index(name)]
     analysis = mbsym.load(f"systems/{name}.yaml")
     axes = [Axis(axis, F(low), F(high)) for axis, low, high in case.axes]
     settings = {k: F(v) for k, v in case.settings}
-    return plane_map(analysis, axes, settings) if len(axes) == 2 else line_map(analysis, axes[0], settings)
+    return exact_map(analysis, axes, settings)
 
 
 def random_points(case: Case, number: int, seed: int) -> list[dict[str, F]]:
@@ -279,11 +277,11 @@ def disagreements(case: Case, points: list[dict[str, F]]) -> tuple[list[Any], se
     """Points at which the map and the model differ, and the words that were met."""
     found, wrong, seen = made(case.name), [], set()
     for point in points:
-        stratum = stratum_at(found, *point.values())
+        stratum = found.at(*point.values())
         assert stratum is not None
         assert stratum.shape in (Shape.REGION, Shape.INTERVAL)
         if not case.real(point):
-            agree = stratum.standing is Standing.OUTSIDE
+            agree = stratum.lack is Lack.OUTSIDE
         elif stratum.judged is None or stratum.word is None:
             agree = False
         else:
@@ -332,6 +330,6 @@ def test_the_wedge_of_small_damping_is_the_published_one() -> None:
         for ratio in (F(1, 20), F(1, 3), F(1), F(3), F(15, 2), F(19, 2)):
             b1, b2 = scale * ratio / 10, scale / 10
             critical = (4 * b1**2 + 33 * b1 * b2 + 4 * b2**2) / (2 * (b1**2 + 7 * b1 * b2 + 6 * b2**2)) + b1 * b2 / 2
-            stratum = stratum_at(found, b1, b2)
+            stratum = found.at(b1, b2)
             assert stratum is not None
             assert stratum.word is (Word.ASYMPTOTIC if p < critical else Word.UNSTABLE)

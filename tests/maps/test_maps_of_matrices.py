@@ -15,13 +15,11 @@ from flint import fmpq, fmpq_poly
 
 import mbsym
 from mbsym.maps.boundaries import Origin
-from mbsym.maps.line_map import line_map
-from mbsym.maps.mapping import plane_map
-from mbsym.maps.result import LineMap, PlaneMap
+from mbsym.maps.mapping import exact_map
+from mbsym.maps.result import Map
 from mbsym.maps.section import Axis
 from mbsym.maps.verdicts import Border
 from mbsym.problems.stability.word import Word
-from mbsym.report.maps.located import stratum_at
 
 HARD = json.loads(Path("tests/references/hard_polynomials.json").read_text())["reference"]["routh"]
 
@@ -30,13 +28,13 @@ def described(system: str, parameters: str) -> Any:
     return mbsym.loads(f"mbsym: 1\nname: Given\nparameters: {parameters}\nlinear system: {system}\n")
 
 
-def plane(analysis: Any, x: tuple[str, Any, Any], y: tuple[str, Any, Any], **settings: Any) -> PlaneMap:
+def plane(analysis: Any, x: tuple[str, Any, Any], y: tuple[str, Any, Any], **settings: Any) -> Map:
     axes = [Axis(name, F(low), F(high)) for name, low, high in (x, y)]
-    return plane_map(analysis, axes, {name: F(value) for name, value in settings.items()})
+    return exact_map(analysis, axes, {name: F(value) for name, value in settings.items()})
 
 
-def at(found: PlaneMap | LineMap, *values: Any) -> Any:
-    stratum = stratum_at(found, *map(F, values))
+def at(found: Map | Map, *values: Any) -> Any:
+    stratum = found.at(*map(F, values))
     assert stratum is not None
     return stratum
 
@@ -63,7 +61,7 @@ def test_any_damping_ends_it() -> None:
     for damping in (F(1, 10**9), F(1, 1000), F(1, 2)):
         judged = at(found, damping, 10)
         assert (judged.word, judged.judged.right, judged.judged.real_right) == (Word.UNSTABLE, 2, 0)
-    assert Word.ASYMPTOTIC not in {one.word for one in found.strata}
+    assert Word.ASYMPTOTIC not in {one.word for one in found.cells}
 
 
 def test_complete_dissipation_leaves_the_borders_of_k_alone() -> None:
@@ -136,7 +134,7 @@ def test_hard_polynomials_beside_their_borders(case: dict[str, Any]) -> None:
     coefficients = case["coeffs"]
     names = ", ".join(f"x{k}" for k in range(len(coefficients) - 1))
     text = f"{{coordinates: [{names}], A: {companion(coefficients, 'shift')}}}"
-    found = line_map(described(text, "{shift: {}}"), Axis("shift", F(-3), F(3)), {})
+    found = exact_map(described(text, "{shift: {}}"), [Axis("shift", F(-3), F(3))], {})
     assert found.check is None or found.check.holds
     middle = at(found, 0)
     assert middle.judged.right == case["rhp"]

@@ -21,15 +21,14 @@ from jsonschema import Draft202012Validator
 import mbsym
 from mbsym.algebra.failures import TooLargeError
 from mbsym.maps import slices
-from mbsym.maps.result import Standing
+from mbsym.maps.result import Lack
 from mbsym.maps.section import Axis
-from mbsym.maps.slices import Missing, Stack, stack
+from mbsym.maps.slices import Stack, stack
 from mbsym.maps.verdicts import Border
 from mbsym.problems.stability.word import Word
 from mbsym.report.latex.reading import read_latex
-from mbsym.report.maps.located import stratum_at
-from mbsym.report.maps.slice_figure import page_names, panels
-from mbsym.report.maps.slice_located import Locating
+from mbsym.report.maps.figure import page_names, panels
+from mbsym.report.maps.located import Locating
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main
 
@@ -139,7 +138,7 @@ def test_the_swallowtail(tmp_path: Path) -> None:
         for _ in range(25):
             x, y = (Fraction(random.randint(-499, 499), 499 * k) for k in (1, 2))
             roots = np.roots([1, 0, float(layer.z), float(x), float(y)])
-            stratum = stratum_at(layer.plane, x, y)
+            stratum = layer.plane.at(x, y)
             if min(abs(p - q) for p, q in combinations(roots, 2)) < 1e-3 or min(abs(roots.real)) < 1e-6:
                 continue
             assert stratum is not None
@@ -178,7 +177,7 @@ def test_an_irrational_value_of_a_high_degree_is_told_and_not_looked_at(tmp_path
         for one in found.layers
         if not isinstance(one.z, fmpq) and str(one.z.polynomial) == "x^5 + (-1)*x + (-1)"
     )
-    assert found.layers[at].missing is Missing.IRRATIONAL
+    assert found.layers[at].lack is Lack.IRRATIONAL
     assert found.layers[at].plane is None
     assert any(at in one.unseen for one in found.pictures)
 
@@ -211,12 +210,12 @@ def test_random_points_of_the_satellite_agree_with_counts_of_the_papers_matrices
         counted = [roots_to_the_right(*one) for one in paper_matrices(alpha, gamma, p1, Fraction(1, 5))]
         layer = found.layers[int(where.split(",")[0].split()[-1])]
         if not all(positive for _, positive in counted):
-            assert verdict == Standing.MASSLESS
+            assert verdict == Lack.MASSLESS
         else:
             assert (verdict == Word.UNSTABLE) == (sum(count for count, _ in counted) > 0)
         if ", region " in where and layer.plane is not None:  # the slice's own region says the same
             region = layer.plane.regions[int(where.rpartition(" ")[2])]
-            assert (region.standing.value if region.word is None else region.word.value) == verdict
+            assert (region.lack.value if region.word is None else region.word.value) == verdict
             seen.add(verdict)
     assert len(seen) >= 3
 
@@ -227,7 +226,7 @@ def test_ziegler_with_vanishing_damping() -> None:
     So all slices with b2 > 0 are one picture, and the one at b2 = 0 is outside of what the file declares.
     """
     found = shipped("ziegler-damped", (("P", 0, 4), ("b1", 0, 1), ("b2", 0, "1/5")))
-    assert found.layers[0].missing is Missing.OUTSIDE
+    assert found.layers[0].lack is Lack.OUTSIDE
     assert found.ends(found.pictures[0])[2] == 0
     assert len(found.pictures) == 2
     locate = Locating(found)
@@ -270,9 +269,9 @@ def test_ctrl_c_keeps_the_slices_that_are_done() -> None:
     axes = [Axis(name, Fraction(low), Fraction(high)) for name, low, high in RIGID[1]]
     found = stack(mbsym.load("systems/gravity-gradient.yaml"), axes, {}, watch=watch)
     assert found.interrupted
-    reached = [one.missing is not Missing.NOT_REACHED for one in found.layers]
+    reached = [one.lack is not Lack.NOT_REACHED for one in found.layers]
     assert reached == [True] * 3 + [False] * (len(reached) - 3)
-    assert any(found.layers[one.shown].missing is Missing.NOT_REACHED for one in found.pictures)
+    assert any(found.layers[one.shown].lack is Lack.NOT_REACHED for one in found.pictures)
 
 
 # --- the command ------------------------------------------------------------------------------------------------------

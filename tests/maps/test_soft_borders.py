@@ -19,9 +19,8 @@ from jsonschema import Draft202012Validator
 
 import mbsym
 from mbsym.maps import soft_borders
-from mbsym.maps.line_map import line_map
-from mbsym.maps.mapping import plane_map
-from mbsym.maps.result import PlaneMap, Stratum
+from mbsym.maps.mapping import exact_map
+from mbsym.maps.result import Cell, Map
 from mbsym.maps.section import Axis
 from mbsym.maps.slices import stack
 from mbsym.maps.soft_borders import Missing, Onset
@@ -30,7 +29,7 @@ from mbsym.report.language import Language
 from mbsym.report.maps.figure import lettered, letters
 from mbsym.report.maps.words import onset_words
 from mbsym.report.schemas import schema
-from mbsym.studies.map.plane import borders_of_slices, remarks
+from mbsym.studies.map.answer import borders_of_slices, remarks
 from mbsym_cli.main import main
 
 TEXT = """
@@ -46,16 +45,16 @@ motion: {x: 0}
 """
 
 
-def mapped(text: str, across: str, up: str, low: int = -1, **settings: int | Fraction) -> PlaneMap:
+def mapped(text: str, across: str, up: str, low: int = -1, **settings: int | Fraction) -> Map:
     axes = [Axis(name, Fraction(low), Fraction(1)) for name in (across, up)]
-    return plane_map(mbsym.loads(text), axes, {k: Fraction(v) for k, v in settings.items()})
+    return exact_map(mbsym.loads(text), axes, {k: Fraction(v) for k, v in settings.items()})
 
 
-def borders(found: PlaneMap) -> list[Stratum]:
+def borders(found: Map) -> list[Cell]:
     return [one for one in found.arcs if one.soft is not None]
 
 
-def told(found: PlaneMap) -> set[tuple[Any, Any, Onset]]:
+def told(found: Map) -> set[tuple[Any, Any, Onset]]:
     """All stretches; the lines p = 0 and q = 0, on which the law of the energy depends, divide arcs, too."""
     strata = borders(found)
     assert strata
@@ -64,11 +63,11 @@ def told(found: PlaneMap) -> set[tuple[Any, Any, Onset]]:
 
 
 @pytest.fixture(scope="module")
-def changing() -> PlaneMap:
+def changing() -> Map:
     return mapped(TEXT, "q", "p", s=0)
 
 
-def test_where_a_border_changes_from_hard_to_soft(changing: PlaneMap) -> None:
+def test_where_a_border_changes_from_hard_to_soft(changing: Map) -> None:
     assert told(changing) == {(-1, 0, Onset.HARD), (0, fmpq(1, 3), Onset.HARD), (fmpq(1, 3), 1, Onset.SOFT)}
     for arc in borders(changing):
         q = Fraction(str(changing.arrangement.arcs[arc.number].point.x))
@@ -163,7 +162,7 @@ def test_a_wrong_formula_is_not_believed(monkeypatch: pytest.MonkeyPatch) -> Non
 def test_a_zero_of_a_line() -> None:
     """p = q^2 with q = 1/2: a = -(3 * 5/4 * 1/6)/8 = -5/64."""
     settings = {"q": Fraction(1, 2), "s": Fraction(0)}
-    found = line_map(mbsym.loads(TEXT), Axis("p", Fraction(-1), Fraction(1)), settings)
+    found = exact_map(mbsym.loads(TEXT), [Axis("p", Fraction(-1), Fraction(1))], settings)
     (zero,) = [one for one in found.corners if one.soft is not None]
     assert zero.soft is not None
     assert zero.soft.onset is Onset.SOFT
@@ -208,7 +207,7 @@ motion: {x: 0, y: 0}
 def test_a_pair_that_only_touches_the_axis_is_no_border(damping: str) -> None:
     """Damped, driven on both sides of p = 0."""
     why, text = Missing.NO_LOSS, TOUCHING.replace("-DAMPING", damping).replace("BESIDE", "1")
-    found = line_map(mbsym.loads(text), Axis("p", Fraction(-1), Fraction(1)), {"q": Fraction(0), "k": Fraction(1)})
+    found = exact_map(mbsym.loads(text), [Axis("p", Fraction(-1), Fraction(1))], {"q": Fraction(0), "k": Fraction(1)})
     (zero,) = [one for one in found.corners if one.soft is not None]
     assert zero.soft is not None
     assert (zero.soft.onset, zero.soft.why) == (Onset.NEITHER, why)
@@ -223,7 +222,7 @@ def test_a_border_between_two_unstable_cells_is_none() -> None:
     plane = mapped(text, "p", "q", k=1)
     assert len(borders(plane)) == 2
     for arc in plane.arcs:
-        there = plane.point_of(arc)
+        there = arc.sample
         sides = {x.right for x in plane.beside(arc) if x is not None}
         if arc.soft is not None:
             assert sides == {0, 2}, there
@@ -233,7 +232,8 @@ def test_a_border_between_two_unstable_cells_is_none() -> None:
 
 
 def test_a_border_at_the_end_of_a_line_has_one_side() -> None:
-    found = line_map(mbsym.loads(TEXT), Axis("p", Fraction(1, 4), Fraction(1)), {"q": Fraction(1, 2), "s": Fraction(0)})
+    settings = {"q": Fraction(1, 2), "s": Fraction(0)}
+    found = exact_map(mbsym.loads(TEXT), [Axis("p", Fraction(1, 4), Fraction(1))], settings)
     assert {one.soft.why for one in found.corners if one.soft is not None} <= {Missing.ONE_SIDE}
 
 

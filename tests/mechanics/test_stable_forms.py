@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 from flint import arb, ctx, fmpq
 
-from mbsym.algebra.increment import Increment, Increments
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.stable import stabilised
@@ -29,7 +28,7 @@ from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.balls import enclosures
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.kernels.llvm import kernels
-from mbsym.numerics.scenario import exact, scenario
+from mbsym.numerics.scenario import scenario
 from mbsym.numerics.specialise import Specialised, substituted
 from mbsym.source import load
 
@@ -222,52 +221,6 @@ def test_accelerations_keep_their_digits_near_the_singularity_of_the_angles(name
     truth = [float(x) for x in enclosures(accelerations, [Fraction(x) for x in state], 1500)]
     got = kernels({"f": accelerations})["f"](np.array(state))
     assert np.max(np.abs(got - truth)) < 1e-12 * np.max(np.abs(truth))
-
-
-# --- changes of a formula ---
-
-
-@pytest.mark.parametrize("name", ["exp", "log", "atan", "sinh", "cosh", "tanh", "sqrt", "sin", "cos", "reciprocal"])
-def test_increments_are_differences(name: str) -> None:
-    with ctx.workprec(300):
-        balls = Balls({})
-        algebra = Increments(balls, {})
-        x = Increment(balls, arb(fmpq(7, 5)), arb(fmpq(1, 9)))
-
-        def apply(numbers: Balls | Increments, value: object) -> object:
-            match name:
-                case "sqrt":
-                    return numbers.square_root(value)
-                case "sin" | "cos":
-                    return numbers.sin_cos_of(value)[0 if name == "sin" else 1]
-                case "reciprocal":
-                    return numbers.reciprocal(value)
-            return numbers.function(name, value)
-
-        found = apply(algebra, x * x + x - algebra.number(Fraction(1, 3)))
-        end = (x * x + x - algebra.number(Fraction(1, 3))).end
-        start = (x * x + x - algebra.number(Fraction(1, 3))).value
-        assert abs(found.change - (apply(balls, end) - apply(balls, start))) < arb(10) ** -80  # type: ignore[attr-defined,operator]
-        assert abs(found.value - apply(balls, start)) < arb(10) ** -80  # type: ignore[attr-defined,operator]
-
-
-@pytest.mark.parametrize("name", ["simple-pendulum", "double-pendulum", "spring-pendulum", "satellite"])
-def test_the_change_of_energy_near_the_equilibrium(name: str) -> None:
-    """A deviation of 1e-8 changes h by about 1e-16 of the terms that it is made of."""
-    dynamics = Dynamics(scenario(system(name), state=False))
-    known = dynamics.scenario.parameters
-    rest = [exact(entry.value, known) for entry in dynamics.system.motion] + [Fraction(0)] * dynamics.size
-    change = dynamics.energy_change(rest)
-    state = [0.0, *(float(x + Fraction(1e-8)) for x in rest)]
-    exact_state = [Fraction(x) for x in state]
-    energy = dynamics.relative_energy
-    direct = enclosures(energy, exact_state, 900)[0] - enclosures(energy, [0, *rest], 900)[0]
-    assert abs(float(enclosures(change, exact_state, 900)[0] / direct) - 1) < 1e-14
-    run = kernels({"change": change, "energy": energy})
-    plain = run["energy"](np.array(state))[0] - run["energy"](np.array([0.0, *map(float, rest)]))[0]
-    better = run["change"](np.array(state))[0]
-    assert abs(better / float(direct) - 1) < 1e-7
-    assert abs(plain / float(direct) - 1) > 1e-2, "the negative control"
 
 
 # --- frames that fall ---

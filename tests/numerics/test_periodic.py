@@ -17,7 +17,7 @@ import mbsym
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.orbits import lyapunov, variational
 from mbsym.numerics.orbits.lyapunov import Parting, exponents
-from mbsym.numerics.orbits.periodic import NotFound, Orbit, guessed, periodic_orbit
+from mbsym.numerics.orbits.periodic import Guess, NotFound, Orbit, periodic_orbit
 from mbsym.numerics.scenario import scenario
 from mbsym.report.runs.lyapunov_files import sentences
 from mbsym.report.schemas import schema
@@ -131,8 +131,9 @@ def test_kepler_has_no_multiplier_but_one() -> None:
 
 
 def test_rest_and_nothing_are_not_called_periodic() -> None:
+    rest = dynamics("ziegler-damped")
     with pytest.raises(NotFound, match=r"rest|no convergence|shorter periods"):
-        periodic_orbit(dynamics("ziegler-damped"), guessed(dynamics("ziegler-damped"), 2.0))
+        periodic_orbit(rest, Guess(np.array([float(x) for x in rest.scenario.state]), 2.0, {}))
 
 
 def test_a_transposed_jacobian_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:

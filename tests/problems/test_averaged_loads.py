@@ -22,7 +22,7 @@ import mbsym
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.analysis import Analysis
 from mbsym.analysis.averaged import averaged_system, averaging_of
-from mbsym.problems import averaging
+from mbsym.problems.small_parameter import averaging
 from mbsym.report.schemas import schema
 from mbsym.report.targets import TARGETS
 from mbsym.report.words.expansion_measured import averages, contradicts

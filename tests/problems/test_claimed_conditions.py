@@ -375,7 +375,7 @@ def test_where_borders_alone_are_stable_they_refute_and_nothing_else_is_told_of_
         assert Fraction(at["b"]) ** 2 < 3
     # True, as K is then indefinite or singular, but not shown: nothing is said of what makes the motion stable.
     assert found["b**2 < 3", "necessary"].outcome == UNDECIDED
-    assert "stable nowhere else" in found["b**2 < 3", "necessary"].remark
+    assert "border cases are left open" in found["b**2 < 3", "necessary"].remark
 
 
 # --- parts and wholes ---

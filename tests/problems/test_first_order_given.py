@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import mbsym
-from mbsym.maps.mapping import plane_map
+from mbsym.maps.mapping import exact_map
 from mbsym.maps.section import Axis
 from mbsym.problems.stability.word import Word
-from mbsym.report.maps.located import located
+from mbsym.report.maps.located import Locating
 from mbsym.source import read, to_yaml
 
 TEXT = """
@@ -58,13 +58,13 @@ def test_the_characteristic_polynomial_is_that_of_A():
 
 def test_the_map_agrees_with_eigenvalues_at_random_points():
     axes = [Axis(name, Fraction(-2), Fraction(2)) for name in "ab"]
-    found = plane_map(_analysis(), axes, {})
+    found = exact_map(_analysis(), axes, {})
     chance = np.random.default_rng(7)
     for a, b in chance.integers(-199, 200, size=(60, 2)):
         values = np.linalg.eigvals(np.array([[a / 100, 1], [-1, b / 100]])).real
         if min(abs(values)) < 1e-9:
             continue
-        _, verdict = located(found, Fraction(int(a), 100), Fraction(int(b), 100))
+        _, verdict = Locating(found)(Fraction(int(a), 100), Fraction(int(b), 100))
         assert verdict.startswith("asymptotically stable") == bool(max(values) < 0)
 
 

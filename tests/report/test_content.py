@@ -184,10 +184,11 @@ def test_a_program_is_a_listing_in_names_of_its_medium() -> None:
 def test_facts_links_and_grades(analysis: mbsym.Analysis) -> None:
     """A list of what was found; a bad one stands out on paper, a good one on screens alone; links are for screens."""
     held, lost = (content.Link(content.Graded(Said("Claims"), x), "claims") for x in ("good", "bad"))
-    facts = content.Facts((((Said("Stability"), ", ", Name("theta")), (held,)), ((Said("Claims"),), (lost,))))
+    facts = content.Facts((content.Fact(Said("Motion"), (Name("theta"), held)), content.Fact(Said("Claims"), (lost,))))
     written = in_latex(analysis).block(facts)
-    assert "\\item Stability, $\\theta$: Claims.\n\\item Claims: \\textbf{Claims}.\n" in written
+    assert "\\item Motion: $\\theta$;\\newline Claims.\n\\item Claims: \\textbf{Claims}.\n" in written
     page = in_html(analysis).block(facts)
+    assert "</dd>\n<dd>" in page
     assert '<dt>Claims</dt>\n<dd><a href="#claims"><span class="bad">Claims</span></a></dd>' in page
     assert '<strong id="verdict" class="good">' in in_html(analysis).inline(Strong("s", "good", "verdict"))
 

@@ -12,7 +12,7 @@ from test_reports import NASTY, loaded
 
 import mbsym
 from mbsym.analysis import PROBLEMS, Analysis
-from mbsym.report.code.formula_code import FORMULAS
+from mbsym.report.sections import section_of
 from mbsym.report.targets import TARGETS
 
 #: A system and a problem that has many formulas of it.
@@ -35,7 +35,7 @@ def test_every_formula_has_its_exact_value(name, number, tmp_path):
     if stage.failure is not None:
         assert f"There is no {PROBLEMS[number].attribute} (problem {number})" in model.__doc__
         return
-    told = list(FORMULAS[number](stage.value, analysis.system))
+    told = list(section_of(PROBLEMS[number]).formulas(stage.value, analysis.system))
     assert told
     source = random.Random(7)
     names = {x for _, formula in told for x in formula.ring.names()}

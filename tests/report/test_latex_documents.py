@@ -149,8 +149,21 @@ def test_the_foot_is_printed(tmp_path: Path) -> None:
     first = pages.split("\f")[0]
     assert meaning(mbsym.load(SHIPPED / "double-pendulum.yaml", ()).system) in first
     assert "What was found" in first
-    assert "Contents" in first
+    assert "Contents" not in first, "of four pages"
     assert all(str(number) in page.split("\n") for number, page in enumerate(pages.split("\f")[:-1], start=1))
+
+
+@needs_pdflatex
+def test_a_long_report_has_a_table_of_contents(tmp_path: Path) -> None:
+    """From seven pages on; it is whole when the runs end that LaTeX asks for."""
+    if shutil.which("pdftotext") is None:
+        pytest.skip("no pdftotext")
+    (tmp_path / "main.tex").write_text(files_of("satellite.yaml")["report.tex"])
+    complaints(tmp_path, 3)
+    first = subprocess.run(
+        ["pdftotext", "-l", "1", "main.pdf", "-"], cwd=tmp_path, capture_output=True, text=True
+    ).stdout
+    assert "Problem 6. Stability" in first.partition("Contents")[2]
 
 
 PLANTED = {

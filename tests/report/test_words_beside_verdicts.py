@@ -8,6 +8,7 @@ v by a spring through a resisting medium stays behind by c v/k: it cannot move w
 
 from __future__ import annotations
 
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
@@ -16,6 +17,11 @@ from terminal import told
 
 import mbsym
 from mbsym.algebra.failures import Failure
+from mbsym.problems.stability.reasons import Because
+from mbsym.report.content import Display, Phrase, Subheading
+from mbsym.report.plain_writer import Writer
+from mbsym.report.results import results
+from mbsym.report.sections import equilibrium, stability
 from mbsym_cli.main import main
 
 SYSTEMS = Path(__file__).parents[2] / "systems"
@@ -182,3 +188,160 @@ values: {l: 1, g: 9}
 """)
     done = CliRunner().invoke(main, ["nonlinear", str(path), "--vary", "l=1:2"])
     assert "no values listed: of systems whose energy is conserved" in " ".join(done.output.split())
+
+
+FALLING = """
+mbsym: 1
+name: falling
+parameters: {m: positive, c: positive, g: positive}
+bodies:
+  - {name: p, mass: m, connection point: [0, 0, z], coordinates: [z]}
+loads:
+  - uniform gravity: {vector: [0, 0, -g]}
+  - damper: {coordinate: z, coefficient: c}
+motion: {z: {value: 0, rate: -m*g/c}}
+values: {m: 1, c: 2, g: 3}
+"""
+
+
+def test_what_stops_again_does_not_drift_away() -> None:
+    """m z'' + c z' = -m g: the disturbance of z' dies out like exp(-c t/m), and z ends m/c times that elsewhere.  On
+    the shaft with the dragging wheel A a' + B (a' + b') is constant: disturbed, a' stays different, and a drifts."""
+    falling, wheel = mbsym.loads(FALLING).stability, mbsym.loads(WHEEL).stability
+    for verdict in (falling.verdict, falling.numerical):
+        assert verdict is not None
+        assert verdict.because(Because.ELSEWHERE)
+        assert not verdict.because(Because.DRIFT)
+    assert wheel.verdict.because(Because.DRIFT_AT_GIVEN_MOMENTA)
+    assert not wheel.verdict.because(Because.ELSEWHERE)
+    beside = mbsym.loads(
+        FALLING.replace(
+            "loads:", "  - {name: q, attached to: 0, mass: m, connection point: [x, 0, 0], coordinates: [x]}\nloads:"
+        )
+    ).stability.verdict
+    assert beside.because(Because.DRIFT_AT_GIVEN_MOMENTA)  # of x
+    assert not beside.because(Because.ELSEWHERE)
+
+
+JORDAN = """
+mbsym: 1
+name: Jordan
+parameters: {e: real, b: real}
+linear system:
+  coordinates: [u, v, q]
+  A: [[0, e, 0], [0, 0, 0], [0, 0, b]]
+values: {e: 0, b: -1}
+claims:
+  - {claim: condition, that: b <= 0, as: necessary}
+  - {claim: condition, that: e != 0, as: necessary}
+"""
+
+
+def test_matrices_of_first_order_are_no_constraints_and_have_no_stiffness() -> None:
+    """x' = A x: unstable where e != 0 or b > 0, else stable, e = 0 included: that this is a border does not mean that
+    the equations, which are all there is, say nothing there; and e != 0, which is not necessary, is 'any condition'."""
+    found = mbsym.loads(JORDAN)
+    first, second = found.stability.subsystems
+    assert first.theory.kind == second.theory.kind == "of first order"
+    assert [case.all_of[0].label for case in first.theory.cases] == ["minor of order 1 of A"]
+    assert "the first approximation says nothing" not in found.stability.verdict.explanation
+    assert not any("any condition would be necessary, and it" in one.remark for one in found.claims)
+
+
+def test_the_motion_is_that_of_all_coordinates() -> None:
+    (display,) = [
+        block for block in equilibrium.content(results(mbsym.loads(FREE), (4,))) if isinstance(block, Display)
+    ]
+    assert [line.text for line in Writer().block(display)] == ["  x = t, z = 0"]
+
+
+PUMPED = """
+mbsym: 1
+name: pumped
+parameters: {m: positive, k: positive}
+inputs: {u: {meaning: force}}
+bodies:
+  - {name: p, mass: m, connection point: [x, 0, 0], coordinates: [x]}
+loads:
+  - generalized force: {x: LOAD}
+motion: {}
+claims:
+  - {claim: first integral, equals: m*x_dot**2 + k*x**2}
+"""
+
+
+def test_a_verdict_on_inputs_at_their_values_is_not_one_at_all_constant_values() -> None:
+    """m x'' = -k u x is stable for constant u > 0 and unstable for u < 0: what is said is said at u = 0."""
+    told = "".join(map(str, results(mbsym.loads(PUMPED.replace("LOAD", "-k*u*x")), (4, 6)).presumed))
+    assert "at constant values" not in told
+    assert "keep their values on the unperturbed motion" in told
+
+
+def test_the_state_that_refutes_an_integral_names_the_input() -> None:
+    """d/dt (m x'^2 + k x^2) = 2 x' u."""
+    (claim,) = mbsym.loads(PUMPED.replace("LOAD", "u - k*x")).claims
+    assert claim.counterexample is not None
+    at = {name: Fraction(value) for name, value in claim.counterexample.at}
+    assert 2 * at["x_dot"] * at["u"] == Fraction(dict(claim.counterexample.shows)["dI/dt"])
+
+
+TWO = """
+mbsym: 1
+name: two
+parameters: {c: positive, k: positive, B: real}
+bodies:
+  - {name: p, mass: 1, connection point: [x, y, 0], coordinates: [x, y]}
+loads:
+  - LOAD
+motion: {}
+"""
+
+
+def headings_of(text: str) -> list[str]:
+    blocks = stability.content(results(mbsym.loads(text), (6,)))
+    return [Writer().inline(Phrase(x.parts)) for x in blocks if isinstance(x, Subheading)]
+
+
+def test_what_loses_energy_by_terms_of_higher_order_is_not_called_conservative() -> None:
+    """x'' + c x'^3 + k x = 0 loses energy at the rate c x'^4."""
+    oscillators = TWO.replace("LOAD", "potential: k*(x**2 + y**2)/2")
+    assert all("(conservative)" in x for x in headings_of(oscillators))
+    lossy = oscillators.replace("motion", "  - rayleigh: c*x_dot**4/4\nmotion")
+    assert all("in first approximation conservative" in x for x in headings_of(lossy))
+
+
+def test_where_everything_is_cyclic_there_is_no_stiffness_to_be_positive() -> None:
+    """x'' = B y', y'' = -B x': K = 0, and x'^2 + y'^2 is constant."""
+    found = mbsym.loads(TWO.replace("LOAD", "generalized force: {x: B*y_dot, y: -B*x_dot}"))
+    assert "K > 0" not in found.stability.verdict.explanation
+    assert "the kinetic energy of a disturbance does not grow" in found.stability.verdict.explanation
+    told = [
+        Writer().inline(note)
+        for block in stability.content(results(found, (6,)))
+        if isinstance(block, Display)
+        for note in block.notes
+    ]
+    assert not any("leaves the rest open" in note for note in told)  # B = 0 is covered, too
+
+
+DRAGGED_PAIR = """
+mbsym: 1
+name: pair
+parameters: {m: positive, k: positive, c: nonnegative}
+bodies:
+  - {name: a, mass: m, connection point: [x, 0, 0], coordinates: [x]}
+  - {name: b, attached to: 0, mass: m, connection point: [y, 0, 0], coordinates: [y]}
+loads:
+  - potential: k*(x - y)**2/2
+  - damper: {coordinate: x, coefficient: c}
+motion: {}
+claims:
+  - {claim: condition, that: c > 0, as: necessary}
+"""
+
+
+def test_with_a_zero_root_nothing_is_necessary_for_all_roots_to_the_left() -> None:
+    """m^2 l^4 + m c l^3 + 2 m k l^2 + k c l has a zero root whatever c is."""
+    (claim,) = mbsym.loads(DRAGGED_PAIR).claims
+    assert "exponential" not in claim.remark
+    assert "for all roots but the zero ones to lie to the left" in claim.remark

@@ -7,7 +7,7 @@ from serving_editor import PENDULUM
 
 from mbsym.expressions.place import Span
 from mbsym.serving import looking
-from mbsym.serving.offsets import Offsets
+from mbsym.serving.looking import Offsets
 from mbsym.source import read
 
 

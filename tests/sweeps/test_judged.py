@@ -120,19 +120,19 @@ def test_classes_partition_the_certain_points() -> None:
 
 def test_a_sweep_says_what_the_map_says() -> None:
     """At random points of the satellite's plane: the region that the map's arrangement finds, and its verdict."""
-    from mbsym.maps.mapping import plane_map
-    from mbsym.maps.result import Standing
+    from mbsym.maps.mapping import exact_map
+    from mbsym.maps.result import Lack
 
     analysis = mbsym.load(SYSTEMS / "satellite.yaml")
     measure = made(*PLANES[0])
-    whole = plane_map(analysis, measure.section.axes, {"p1": F(2, 5), "p2": F(1, 5)})
+    whole = exact_map(analysis, measure.section.axes, {"p1": F(2, 5), "p2": F(1, 5)})
     points = np.random.default_rng(11).uniform(-0.99, 0.99, (2, 500))
     found = measure.at(points)
-    words = {Standing.OUTSIDE: OUTSIDE, Standing.MASSLESS: MASSLESS}
+    words = {Lack.OUTSIDE: OUTSIDE, Lack.MASSLESS: MASSLESS}
     for place, (x, y) in enumerate(points.T):
         there = whole.arrangement.locate(fmpq(*x.as_integer_ratio()), fmpq(*y.as_integer_ratio()))
         stratum = whole.regions[there.id]
-        wanted = words.get(stratum.standing) or stratum.word
+        wanted = words.get(stratum.lack) or stratum.word
         assert WORDS[found[VERDICT.name][place]] == wanted
 
 

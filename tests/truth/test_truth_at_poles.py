@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import pytest
 from terminal import told
 
 import mbsym
+from mbsym.analysis.judge import Judge
 from mbsym.problems.normal_forms import Outcome, Why
+from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.word import Word
 from mbsym.report.language import Language
 from mbsym.report.words.normal_form_words import REASONS
@@ -31,7 +35,7 @@ def test_at_a_pole_of_the_description_there_is_no_verdict(b, judged):
     assert (numerical.word is not Word.UNDECIDED) is judged
     assert (higher.outcome is not Outcome.UNDECIDED) is judged
     if not judged:
-        why = "The description divides by b - 4 there, which is 0: it gives no equations of motion."
+        why = "The description divides by b - 4 there, which is 0: there is no motion to be judged."
         assert numerical.explanation == why
         assert not found.stability.spectra
         assert higher.why is Why.POLE
@@ -54,3 +58,28 @@ def test_a_pole_of_what_is_derived_is_none_of_the_description():
     found = mbsym.loads(text.replace("motion: {x: 0}", "motion: {x: 0, y: 0}"))
     assert found.normal_forms.at_values is not None
     assert found.stability.numerical.word.stable
+
+
+ROD = """
+mbsym: 1
+name: bead on a turning rod
+parameters: {m: positive, k: positive, a: positive, w: positive}
+prescribed: {f: w}
+bodies:
+  - {name: rod, rotation: {axes: [3], angles: [f]}, mass: 0}
+  - {name: bead, attached to: rod, mass: m, connection point: [r, 0, 0], coordinates: [r]}
+loads:
+  - spring: {coordinate: r, stiffness: k, rest: a}
+motion: {r: k*a/(k - m*w**2)}
+values: {m: 1, k: 1, a: 1, w: 1}
+"""
+
+
+def test_where_the_motion_has_a_pole_there_is_none_to_be_judged():
+    """m r'' + (k - m w^2) r = k a has no rest at k = m w^2, and its first approximation knows nothing of that."""
+    found = mbsym.loads(ROD)
+    assert found.stability.numerical.word is Word.UNDECIDED
+    assert found.stability.numerical.because(Because.POLE)
+    assert not found.stability.spectra
+    assert Judge(found)({"m": Fraction(2), "k": Fraction(8), "a": Fraction(1), "w": Fraction(2)}).because(Because.POLE)
+    assert mbsym.loads(ROD.replace("w: 1}", "w: 1/2}")).stability.numerical.word is Word.STABLE

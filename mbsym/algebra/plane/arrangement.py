@@ -173,10 +173,6 @@ class Arrangement:
             assert at < len(self.columns)
         return tuple(found)
 
-    def signs_at(self, point: Point) -> tuple[int, ...]:
-        """The signs of the given factors at an exact point."""
-        return tuple(point.sign(p) for p in self.factors)
-
 
 def sample_of(root: Any) -> Any:
     """The ordinate of a section as an exact number: its polynomial is factored."""

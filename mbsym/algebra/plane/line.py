@@ -87,8 +87,15 @@ def decompose_line(factors: Sequence[Polynomial], low: Rational, high: Rational)
     for factor, of in through.values():
         ends = [fmpq(x) for x in (low, high) if factor(x) == 0]
         found += [(x, tuple(of)) for x in (*ends, *map(number, roots_between(factor, low, high)))]
-    by = {id(x): of for x, of in found}
-    zeros = tuple(Zero(k, x, by[id(x)]) for k, x in enumerate(ascending([x for x, _ in found])))
+    return divided(low, high, found, factors)
+
+
+def divided(
+    low: Rational, high: Rational, points: Sequence[tuple[Number, tuple[int, ...]]], factors: Sequence[Polynomial] = ()
+) -> Line:
+    """[low, high] divided at different exact points, each with the numbers of those ``factors`` that vanish there."""
+    by = {id(x): of for x, of in points}
+    zeros = tuple(Zero(k, x, by[id(x)]) for k, x in enumerate(ascending([x for x, _ in points])))
     marks: list[tuple[Number, int | None]] = [(zero.number, zero.id) for zero in zeros]
     if not zeros or compare(zeros[0].number, low) != 0:
         marks.insert(0, (low, None))

@@ -21,7 +21,6 @@ Univariate = Any  # a flint.fmpq_poly
 Ball = Any  # a flint.arb
 
 _SHIFT = fmpz_poly([1, 1])
-_TWICE = fmpz_poly([0, 2])
 
 
 @dataclass(eq=False)

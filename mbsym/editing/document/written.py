@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from dataclasses import dataclass, field
 from pathlib import Path as Folder
 
@@ -49,10 +48,6 @@ class Written:
         """Where a span begins, within the text."""
         line = min(span.line, len(self.line_starts)) - 1
         return min(self.line_starts[line] + span.column - 1, len(self.text))
-
-    def line_of(self, offset: int) -> int:
-        """The number of the line, from 0, that a character stands in."""
-        return bisect_right(self.line_starts, offset) - 1
 
     def line_end(self, offset: int) -> int:
         """Where the line of a character ends, before its line end."""

@@ -20,7 +20,7 @@ out, else the later ones; always such that no pivot of the elimination can vanis
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from mbsym.algebra.failures import NoClosedForm
@@ -31,7 +31,7 @@ from mbsym.mechanics.constraints.elimination import Row, echelon
 from mbsym.mechanics.constraints.rows import Row as ConstraintRow
 from mbsym.mechanics.constraints.rows import constraint_rows
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.motion import motion_values, relations
+from mbsym.mechanics.motion import carried, motion_values, relations
 from mbsym.model.system import System, acceleration_name, velocity_name
 
 #: A linear form in deviations: polynomials by the number of the deviation.
@@ -46,12 +46,16 @@ MOST_ROUNDS = 64
 
 @dataclass(frozen=True)
 class Base:
-    """The unperturbed motion: where coordinates rest, who turns, and all rates and accelerations (n each)."""
+    """The unperturbed motion: where coordinates rest, who turns, and all rates and accelerations (n each).
+
+    ``related`` are the generators that others determine on it, and their values: parameters, angles that turn in step.
+    """
 
     values: tuple[Polynomial, ...]
     turning: frozenset[str]
     rates: tuple[Polynomial, ...]
     accelerations: tuple[Polynomial, ...]
+    related: Mapping[int, Polynomial]
 
 
 @dataclass(frozen=True)
@@ -90,8 +94,8 @@ def expansion(scene: Scene, signs: Signs, whole: System | None = None) -> Expans
     rows = constraint_rows(jets)
     n = len(scene.system.coordinates)
     ring = scene.ring
-    held = echelon(ring, signs, _positions(scene, rows), _preferred(scene))
-    moved = echelon(ring, signs, _velocities(scene, rows), [*held.pivots, *_preferred(scene)])
+    held = echelon(ring, signs, _positions(scene, rows, base), _preferred(scene))
+    moved = echelon(ring, signs, _velocities(scene, rows, base), [*held.pivots, *_preferred(scene)])
     coordinates = tuple(i for i in range(n) if i not in held.pivots)
     speeds = tuple(i for i in range(n) if i not in moved.pivots)
 
@@ -178,12 +182,14 @@ def _completed(scene: Scene, signs: Signs) -> Base:
     rates = [scene.lower(values[name][1]) for name in names]
     images = relations(scene)
     turning = {name for name, rate in zip(names, rates, strict=True) if not ring.substitute(rate, images).is_zero()}
+    related = _related(scene, rates)
     for _ in range(MOST_ROUNDS):
         places = tuple(scene.environment[name] if name in turning else scene.lower(values[name][0]) for name in names)
-        still = Base(places, frozenset(turning), tuple(rates), (ring.zero,) * len(names))
+        still = Base(places, frozenset(turning), tuple(rates), (ring.zero,) * len(names), related)
         moving = replace(still, rates=_followed(scene, signs, still, still.rates, open_ones, "g"))
         found = {name for name, rate in zip(names, moving.rates, strict=True) if not rate.is_zero()}
-        if found <= turning:
+        related = _related(scene, moving.rates)
+        if found <= turning and related == still.related:
             return replace(moving, accelerations=_followed(scene, signs, moving, still.accelerations, open_ones, "h"))
         turning |= found
     raise NoClosedForm("the rates of the motion do not follow from the constraints")
@@ -194,7 +200,7 @@ def _followed(
 ) -> tuple[Polynomial, ...]:
     """Rates ("g") or accelerations ("h") with the ``open_ones`` changed so that the rows hold, as far as they can."""
     rows = constraint_rows(over_jets(scene, base))
-    reduced = echelon(scene.ring, signs, _velocities(scene, rows), _preferred(scene))
+    reduced = echelon(scene.ring, signs, _velocities(scene, rows, base), _preferred(scene))
     found = list(values)
     for i in open_ones:
         if i in reduced.pivots and key in reduced.pivots[i]:
@@ -211,7 +217,7 @@ def _preferred(scene: Scene) -> list[int]:
     return [names.index(name) for name in dict.fromkeys(order)]
 
 
-def _positions(scene: Scene, rows: Sequence[ConstraintRow]) -> list[Row]:
+def _positions(scene: Scene, rows: Sequence[ConstraintRow], base: Base) -> list[Row]:
     """f and f_x of the holonomic rows; the columns are "f" and the places of the coordinates."""
     n = len(scene.system.coordinates)
     found: list[Row] = []
@@ -219,11 +225,11 @@ def _positions(scene: Scene, rows: Sequence[ConstraintRow]) -> list[Row]:
         if row.position is not None:
             line: Row = {"f": row.position.value}
             line.update(_first(row.position, range(n)))
-            found.append(_related(scene, line))
+            found.append({key: on_base(scene, base, x) for key, x in line.items()})
     return found
 
 
-def _velocities(scene: Scene, rows: Sequence[ConstraintRow]) -> list[Row]:
+def _velocities(scene: Scene, rows: Sequence[ConstraintRow], base: Base) -> list[Row]:
     """J under the places of the coordinates; "g", "h" on the motion, ("g", i), ("h", i) by deviations, ("J", i, m)."""
     n = len(scene.system.coordinates)
     found: list[Row] = []
@@ -234,7 +240,7 @@ def _velocities(scene: Scene, rows: Sequence[ConstraintRow]) -> list[Row]:
         for i, partial in enumerate(row.partials):
             line[i] = partial.value
             line |= {("J", i, m): x for m, x in _first(partial, range(n)).items()}
-        found.append(_related(scene, line))
+        found.append({key: on_base(scene, base, x) for key, x in line.items()})
     return found
 
 
@@ -242,10 +248,16 @@ def _first(x: Jet, places: range) -> Row:
     return {i: value for i, value in x.first.items() if i in places}
 
 
-def _related(scene: Scene, row: Row) -> Row:
-    """The row with the relations between parameters used."""
+def _related(scene: Scene, rates: Sequence[Polynomial]) -> dict[int, Polynomial]:
+    """The relations between parameters, and between angles that turn in step."""
     images = relations(scene)
-    return {key: scene.ring.substitute(x, images) for key, x in row.items()} if images else row
+    by_name = dict(zip(scene.system.coordinates, (scene.ring.substitute(x, images) for x in rates), strict=True))
+    return images | carried(scene, by_name)
+
+
+def on_base(scene: Scene, base: Base, x: Polynomial) -> Polynomial:
+    """x with what others determine on the motion."""
+    return scene.ring.substitute(x, dict(base.related)) if base.related else x
 
 
 def _substituted(scene: Scene, row: Row, key: str, places: range, forms: Sequence[Form]) -> Form:

@@ -21,7 +21,7 @@ from dataclasses import dataclass, replace
 
 from mbsym.algebra.jet import Jet
 from mbsym.algebra.ring import Polynomial
-from mbsym.mechanics.constraints.expansion import Expansion, Form, combined
+from mbsym.mechanics.constraints.expansion import Expansion, Form, combined, on_base
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.newton_euler import residuals
 
@@ -47,7 +47,10 @@ class Projected:
 def projected(scene: Scene, found: Expansion) -> Projected:
     """The projected equations; ``scene`` is the one over the ring.  Raises NoClosedForm."""
     ring, n = scene.ring, len(scene.system.coordinates)
-    needed: Sequence[Jet] = list(residuals(found.scene).values())
+    needed: Sequence[Jet] = [
+        Jet(on_base(scene, found.base, x.value), {key: on_base(scene, found.base, y) for key, y in x.degree(1).items()})
+        for x in residuals(found.scene).values()
+    ]
     inputs = [3 * n + k for k in range(len(found.scene.system.input_names))]
     deviations = (*found.positions, *found.velocities, *found.accelerations, *({i: ring.one} for i in inputs))
     own = [combined(scene, ((x, deviations[i]) for i, x in one.first.items())) for one in needed]

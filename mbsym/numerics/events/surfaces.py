@@ -18,9 +18,11 @@ from enum import Enum
 
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.derivative import gradient
+from mbsym.algebra.failures import Failure
 from mbsym.algebra.program import Node
 from mbsym.expressions.condition import BOTH, FALLING, RISING, Condition
-from mbsym.expressions.tree import Expression, names
+from mbsym.expressions.tree import Call, Expression, Operation, names, walk
+from mbsym.mechanics.variables import expressions
 from mbsym.model.system import System
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import Code
@@ -118,3 +120,20 @@ def slopes_code(dynamics: Dynamics, event: Event) -> Code:
     for derivative, rate in zip(by_state, rates, strict=True):
         slope = slope + program.product(derivative, rate)
     return Code(program, dynamics.inputs, (value, slope, orientation, *by_state))
+
+
+def source_of(dynamics: Dynamics, place: int) -> Expression | None:
+    """The call, quotient or root of a load that holds the u at this place of ``Features.narrow``; None if unknown."""
+    wanted = dynamics.features.narrow.outputs[place].number
+    for load in dynamics.system.loads:
+        for expression in expressions(load):
+            for one in walk(expression):
+                inside = one.argument if isinstance(one, Call) else one.right if isinstance(one, Operation) else None
+                if inside is None or (isinstance(one, Operation) and one.operator != "/"):
+                    continue
+                try:
+                    if node(dynamics, inside).number == wanted:
+                        return one
+                except (Failure, KeyError):
+                    continue
+    return None

@@ -3,17 +3,42 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
+from dataclasses import replace
 from typing import Any, TypeVar
 from weakref import WeakKeyDictionary
 
+from mbsym.numerics.compensation import compensated_code
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import FLOAT64, Code, Kernel
 from mbsym.numerics.kernels.llvm import kernel
-from mbsym.numerics.machine_code import machine_code
+from mbsym.numerics.scenario import Scenario
+
+#: The codes that are looked at, and which of n coordinates' outputs count.
+COMPENSATED = ("right_hand_side", "pivots")
+
+
+Made = TypeVar("Made")
+
 
 _KEPT: WeakKeyDictionary[Dynamics, dict[Hashable, Any]] = WeakKeyDictionary()
 
-Made = TypeVar("Made")
+
+def machine_code(dynamics: Any, name: str, scalar: str = FLOAT64) -> Code:
+    """One of the codes of a Dynamics as the kernels of a scalar take it.
+
+    In float64 what a scene makes sensitive (ratios of masses) is compensated where that is measured to keep digits
+    (``mbsym.numerics.compensation``); other arithmetics, other codes, and dynamics without a scenario take the code as
+    it is.
+    """
+    code: Code = getattr(dynamics, name)
+    given = getattr(dynamics, "scenario", None)
+    if scalar != FLOAT64 or name not in COMPENSATED or not isinstance(given, Scenario):
+        return code
+    judged = range(len(code.outputs) // 2 if name == "right_hand_side" else 0, len(code.outputs))
+    instructions = [code.program.instructions[number] for number in code.program.live(code.outputs)]
+    read = {str(one.payload) for one in instructions if one.operation == "input"} - set(code.inputs)
+    found = compensated_code(given, replace(code, inputs=(*code.inputs, *sorted(read))), judged)
+    return code if found is None else replace(found.code, inputs=code.inputs)
 
 
 def once(dynamics: Dynamics, key: Hashable, make: Callable[[], Made]) -> Made:

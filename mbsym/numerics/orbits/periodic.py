@@ -378,9 +378,3 @@ def _verified(dynamics: Dynamics, state: Any, period: float, turns: Any) -> tupl
             continue
         return float(np.max(np.abs(end - state - turns) / (1 + np.abs(state)))), f"{name}, {scalar}"
     return float("nan"), "no other method"
-
-
-def guessed(dynamics: Dynamics, period: float, turns: Mapping[str, int] | None = None, **kept: bool) -> Guess:
-    """A guess from the scenario's initial state."""
-    state = np.array([float(x) for x in dynamics.scenario.state])
-    return Guess(state, period, dict(turns or {}), **kept)

@@ -21,7 +21,7 @@ from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64
 from mbsym.numerics.methods.interface import Breakdown, Method, Setting, Unusable, Work
 from mbsym.numerics.methods.kept import compiled_kernel
-from mbsym.numerics.planning.prices import NUMBER, cost
+from mbsym.numerics.planning.prices import cost, cost_of_rows
 from mbsym.numerics.rows import rows
 
 #: Where a setting is aimed at, and the least that is still called fit, as parts of the goal.
@@ -122,7 +122,8 @@ class Bench:
         priced = found
         if often:  # the rows that are asked for, and no others
             priced = rows(complete, self.dynamics, setting, self.shown, scalar)
-        whole = cost(self.dynamics, method.traits.name, scalar, priced.work) + NUMBER * priced.states.size
+        name, (numbers, count) = method.traits.name, priced.states.shape
+        whole = cost(self.dynamics, name, scalar, priced.work) + cost_of_rows(name, priced.work, count, numbers)
         quantities = self.quantities(found.states, times)
         ratio, errors = self.compared(quantities, self.reference) if self.reference is not None else (inf, None)
         # What the reference itself is wrong by is added: a run that happens to be the reference has no smaller error.

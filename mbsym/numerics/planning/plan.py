@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import reduce
-from math import inf
+from math import inf, isfinite
 from operator import and_
 from typing import Any
 
@@ -145,13 +145,21 @@ class Alternative:
     times: float = 1.0
 
 
+def poorly_measured(known: float) -> str:
+    """What is said of a run to measure by that is ``known`` to this part of the sizes only."""
+    if not isfinite(known):
+        return "no run could be had to measure settings by"
+    return f"what settings were measured by is itself known to {known:.1e} only"
+
+
 @dataclass(frozen=True)
 class Plan:
     """Everything that is needed to repeat the run, and what it is worth.
 
     ``bounds`` has one entry for each quantity that an error was named for, else one for the worst; ``seconds`` is what
     the integration took in the pilot, ``spent`` what choosing took.  ``unshown`` says why the run's own error could not
-    be estimated: its accuracy is not shown then.
+    be estimated: its accuracy is not shown then.  ``measured_to``: how well the run is known by which settings were
+    measured, a part of the sizes, where that is too little to tell whether what was taken is accurate enough.
     """
 
     accuracy: Accuracy
@@ -169,6 +177,12 @@ class Plan:
     remarks: tuple[str, ...] = ()
     contradicted: bool = False
     unshown: str = ""
+    measured_to: float | None = None
+
+    @property
+    def unmeasured(self) -> str:
+        """Why it cannot be told whether the setting is accurate enough; nothing where that can be told."""
+        return "" if self.measured_to is None or self.contradicted else poorly_measured(self.measured_to)
 
     @property
     def bound(self) -> Bound:

@@ -65,7 +65,8 @@ def fits(one: Trial, known: float, room: float) -> bool:
 def shares_of(bench: Bench, found: Trial, stick: Yardstick, model: ModelChoice) -> Shares:
     """(name, errors (2n + 1,), how) of model, integration, arithmetic."""
     how = Certainty.PROVED if not np.any(model.taken.errors) else model.taken.how
-    known = stick.known * np.where(np.isfinite(bench.targets), bench.targets, 0.0)
+    asked = np.isfinite(bench.targets)
+    known = np.where(asked, stick.known * np.where(asked, bench.targets, 1.0), 0.0)
     measured = DOUBLED * found.errors + known
     arithmetic, way = np.zeros_like(measured), None  # a part of the integration's share
     other = {FLOAT64: EXTENDED, FLOAT32: FLOAT64}.get(found.scalar)

@@ -29,11 +29,14 @@ from mbsym.numerics.planning.kinds import (
 from mbsym.numerics.planning.model_choice import PART, ModelChoice, Scene, Tried
 from mbsym.numerics.planning.models import Model, described, parted
 from mbsym.numerics.planning.pilot import ALIKE, WASTEFUL, Bench, Trial
-from mbsym.numerics.planning.plan import ARITHMETIC, SECONDS, Bound, Item, Refused
+from mbsym.numerics.planning.plan import ARITHMETIC, SECONDS, Bound, Item, Refused, poorly_measured
 from mbsym.numerics.planning.plan_bounds import fits
 from mbsym.numerics.planning.reduced import Reduced
 from mbsym.numerics.separable import Part
 from mbsym.numerics.trade.yardstick import Yardstick
+
+#: Trials that differ from what they are measured by by less than so many times its own error are not told from it.
+APART = 3.0
 
 #: Arithmetic by its digits.
 DIGITS = (FLOAT32, FLOAT64, EXTENDED)
@@ -59,6 +62,13 @@ class Settled:
     enough: bool
     room: float
     bound: Bound
+
+    @property
+    def measured_to(self) -> float | None:
+        """How well the run is known that measured, where that is all by which the best trial differs from it."""
+        known = self.stick.known
+        least = min((one.ratio - known for one in self.bench.trials), default=inf)
+        return None if self.enough or least > APART * known else known * self.bench.finest_target
 
     @property
     def fitting(self) -> list[Trial]:
@@ -182,7 +192,7 @@ def _cheapest(found: Trial, least: float) -> str:
 
 def _closest(settled: Settled) -> str:
     """Of a plan that is not accurate enough."""
-    found, none = settled.found, "none tried is accurate enough"
+    found, none = settled.found, _none(settled)
     least = min((one.ratio for one in settled.bench.trials), default=inf)
     near = min((one.cost for one in settled.bench.trials if one.ratio <= 2 * least), default=0.0)
     if found.ratio > 2 * least or found.cost > ALIKE * near:
@@ -190,9 +200,16 @@ def _closest(settled: Settled) -> str:
     return f"{none}: by counted work {_cheapest(found, near)} within twice the least error"
 
 
+def _none(settled: Settled) -> str:
+    """No setting was accurate enough, or none could be told to be."""
+    if settled.measured_to is None:
+        return "none tried is accurate enough"
+    return f"{poorly_measured(settled.measured_to)}: none can be told to be enough"
+
+
 def _why_fineness(settled: Settled) -> str:
     if not settled.enough:
-        return "none tried is good enough"
+        return _none(settled)
     found = settled.found
     same = [one for one in settled.fitting if (one.method, one.scalar) == (found.method, found.scalar)]
     coarser = [one.cost for one in same if one.fineness > found.fineness]
@@ -216,7 +233,7 @@ def _why_scalar(settled: Settled) -> str:
     if found.scalar == EXTENDED and usual is None:
         return "in float64 every error that was measured, doubled, is too large"
     if not settled.enough:
-        return "none tried is accurate enough"
+        return _none(settled)
     cheaper = usual is not None and found.cost < usual
     less = "it costs less by counted work" if cheaper and found.scalar != FLOAT64 else ""
     rounding = _rounding(settled.bound) if found.scalar != EXTENDED else ""

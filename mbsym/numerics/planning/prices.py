@@ -38,8 +38,10 @@ JACOBIAN = 1e-2
 #: A step that is made from outside of machine code, and looked at; one where switches or narrow loads are looked for.
 LOOKED_AT, SEARCHED = 6e-5, 6e-4
 
-#: A number of the state in one row.
+#: A number of the state in one row; and a step with rows in it, where a method's rows are made outside of its machine
+#: code: many times the step itself.
 NUMBER = 2e-9
+FILLED = {"taylor": 5e-5}
 
 #: An operation in numbers of 160 bits, and a call.
 PRECISE, PRECISE_CALL = 1.4e-7, 5e-6
@@ -64,6 +66,11 @@ def cost(dynamics: Dynamics, method: str, scalar: str, work: Work, looked_at: bo
     if method.startswith("midpoint"):  # its Jacobians are compiled: one is about as many right-hand sides as the state
         return whole * (1 + len(dynamics.scenario.state) * work.jacobians / max(1, work.evaluations)) + steps * step
     return whole + work.jacobians * JACOBIAN + steps * step
+
+
+def cost_of_rows(method: str, work: Work, count: int, numbers: int) -> float:
+    """What ``count`` rows of so many numbers cost beside the steps of a run."""
+    return NUMBER * count * numbers + FILLED.get(method, 0.0) * min(work.steps, count)
 
 
 def precise_cost(dynamics: Dynamics, evaluations: int) -> float:

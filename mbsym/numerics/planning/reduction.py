@@ -14,18 +14,19 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import Any
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.program import Node
 from mbsym.algebra.ring import Ring
 from mbsym.expressions.angles import LinearForm, linear_form
-from mbsym.expressions.tree import Expression, number
+from mbsym.expressions.tree import ZERO, Expression, number
 from mbsym.mechanics.programs import Programs, programs
 from mbsym.mechanics.states import rational_states
 from mbsym.mechanics.variables import ring_environment, ring_of
-from mbsym.model.resting import held
-from mbsym.model.system import System, velocity_name
+from mbsym.model.substitution import put
+from mbsym.model.system import System, acceleration_name, velocity_name
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.specialise import Specialised, substituted
 
@@ -172,3 +173,27 @@ def without(scenario: Scenario, values: Mapping[str, Expression]) -> Scenario:
         positions=tuple(scenario.positions[place] for place in kept),
         velocities=tuple(scenario.velocities[place] for place in kept),
     )
+
+
+def held(system: System, values: Mapping[str, Expression]) -> System:
+    """The system with q_i = values[i] (and q_i' = 0) put in everywhere and those coordinates taken out.
+
+    Forces on a coordinate that is held do no work and are left out with it.  Whether the coordinates stay where they
+    are held is another question (``mbsym.numerics.planning.reduction``); claims about the whole system are dropped.
+    """
+    images: dict[str, Expression] = {}
+    for name, value in values.items():
+        images |= {name: value, velocity_name(name): ZERO, acceleration_name(name): ZERO}
+    bodies = []
+    for body in system.bodies:
+        kept = tuple(name for name in body.coordinates if name not in values)
+        bodies.append(replace(put(body, images), coordinates=kept))
+    loads = [put(left, images) for load in system.loads if (left := load.without(values)) is not None]
+    changes: dict[str, Any] = {
+        "bodies": tuple(bodies),
+        "loads": tuple(loads),
+        "motion": tuple(put(e, images) for e in system.motion if e.coordinate not in values),
+        "initial": tuple(put(e, images) for e in system.initial if e.coordinate not in values),
+        "claims": (),
+    }
+    return replace(system, **changes)

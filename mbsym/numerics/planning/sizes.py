@@ -83,21 +83,6 @@ def kinetic_between(dynamics: Dynamics, found: Trajectory, completed: Callable[[
     return _seen(dynamics, float(found.times[-1]), completed(METHODS["dop853"]))[2]
 
 
-def motion_sizes(dynamics: Dynamics, end: float) -> Any | None:
-    """What each coordinate and velocity is measured by in the motion from 0 to ``end``, shape (2n,).
-
-    From a coarse run; None where it does not come far enough to tell.
-    """
-    times, states, kinetic = _seen(dynamics, end, METHODS["dop853"])
-    if times[-1] < end:
-        return None
-    try:
-        usual = usual_sizes(dynamics, times, states, kinetic)
-    except Failure:
-        usual = np.zeros(len(states))
-    return scaled(np.max(np.abs(states), axis=1), usual)
-
-
 def _seen(dynamics: Dynamics, end: float, method: Method) -> tuple[Any, Any, float]:
     """Times, states and the largest kinetic energy of a coarse run."""
     operations = max(1, dynamics.right_hand_side.operations)

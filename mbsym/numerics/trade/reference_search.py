@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 from flint import arb, ctx
 
+from mbsym.algebra.failures import Defect, Failure
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.kernels.llvm import available
@@ -69,6 +70,9 @@ TOO_DEAR = "it costs more than it may"
 #: Why there is no reference although solutions came to the end.
 DISAGREE = "no two solutions agree"
 
+#: Why there is none where the program is at fault.
+BROKEN = "no way to a reference worked"
+
 
 def whole_reference(
     dynamics: Dynamics,
@@ -81,7 +85,8 @@ def whole_reference(
 
     Where that is too little for any way, the explicit one goes on up to ``at_most`` in all.  Raises Breakdown where the
     solution does not exist up to the end, where none is found for that (kind STEP_LIMIT), or where no two solutions
-    agree (kind DISAGREE).
+    agree (kind DISAGREE).  A way that ends in an exception that nobody foresaw is none (``Defect`` tells of it); where
+    no other is left, the Breakdown says so (kind BROKEN).
     """
     started, spent = time.perf_counter(), 0.0
     failed: Breakdown | None = None
@@ -104,6 +109,10 @@ def whole_reference(
                     raise
                 continue  # where constraints lose their rank the motion goes on, and others carry it over
             failed = reason if failed is None or reason.time > failed.time or reason.kind == DISAGREE else failed
+        except Failure:
+            raise
+        except Exception as error:
+            failed = failed or Breakdown(BROKEN, str(Defect.of(error)), 0.0, np.empty(0))
         else:
             return replace(found, seconds=time.perf_counter() - started, cost=spent + search.spent)
         finally:

@@ -2,9 +2,12 @@
 
 error    largest |x_i(t) - reference_i(t)| over all coordinates, velocities and the thousands of times at which the
          reference is known, each relative to its size in the whole motion (``mbsym.numerics.planning.sizes``)
-drift    largest change of the energy h at the same times, relative to the largest kinetic energy
+drift    largest error of the energy h at the same times: its change where h is conserved, else its difference from that
+         of the reference, whose loss is the system's own; relative to the largest kinetic energy of the reference, or
+         to the largest change of its h where that is larger
 strayed  largest drift of positions and of velocities from constraints at the same times, where there are any
          (``mbsym.numerics.constrained``: in parts of the motion's size)
+cost     counted work of all that was done for a row, compiling, repeating and comparing included
 seconds  median processor time of the integration from 0 to the end; compiling is not counted (it happens once), nor
          are rows
 
@@ -28,11 +31,13 @@ from typing import Any
 import numpy as np
 
 from mbsym.algebra.failures import Defect, Failure
+from mbsym.numerics.conservation import energy_standing, visited
 from mbsym.numerics.constrained import drift
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
 from mbsym.numerics.kernels.llvm import available, kernels
 from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Method, Setting, Unusable, Work
+from mbsym.numerics.planning.choice import choose
 from mbsym.numerics.planning.prices import STARTED, STARTED_EACH, cost
 from mbsym.numerics.trade.reference import Reference
 
@@ -45,6 +50,9 @@ REPEATS = 5
 
 #: A run is stopped when it has cost so much at the earliest, and looked at in so many places meanwhile.
 LEAST, BLOCKS = 0.05, 64
+
+#: The part of the budget that the likely winner may spend, which is tried first, and the tolerance that it is asked at.
+FIRST, USUAL_TOLERANCE = 0.4, 1e-10
 
 #: What comparing one row costs.
 COMPARED = 1e-6
@@ -77,7 +85,8 @@ class Measured:
     """What one candidate cost and how wrong it was; ``trouble`` says why there is no error.
 
     ``strayed``: the largest drift from constraints on positions, and on velocities; None where there are none.
-    ``carried``: at how many singular positions of constraints it was carried over.
+    ``carried``: at how many singular positions of constraints it was carried over.  ``cost``: the counted work of the
+    row, in seconds of a usual machine.
     """
 
     candidate: Candidate
@@ -90,6 +99,7 @@ class Measured:
     front: bool = False
     strayed: tuple[float, float] | None = None
     carried: int = 0
+    cost: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -105,13 +115,17 @@ class Order:
 
 @dataclass(frozen=True)
 class Tradeoff:
-    """All rows, in the order measured; ``unusable`` methods with the reason; ``interrupted``: not all are there."""
+    """All rows, by methods; ``unusable`` methods with the reason; ``interrupted``: not all are there.
+
+    ``spent``: what measuring them cost, in counted work.
+    """
 
     rows: tuple[Measured, ...]
     reference: Reference
     orders: tuple[Order, ...]
     unusable: tuple[tuple[str, str], ...]
     interrupted: bool = False
+    spent: float = 0.0
 
     def cheapest(self, target: float) -> Measured | None:
         """The least expensive row whose error, with that of the reference, is at most ``target``."""
@@ -134,27 +148,40 @@ def tradeoff(
     """Measures every method's ladder against ``reference`` (whose times are the sampled ones), as ``budget`` allows.
 
     The budget is one of counted work, of everything that happens here, compiling included, about as many seconds on a
-    usual machine.  It is shared evenly between the ladders; a ladder stops where its next rung would cost too much, or
-    where a finer setting no longer gives a smaller error.  Ctrl-C ends the measuring and keeps the rows that there are.
+    usual machine.  The method that a run takes by itself climbs first, for ``FIRST`` of it at most; what is left is
+    shared evenly between the other ladders.  A ladder stops where its next rung would cost too much, or where a finer
+    setting no longer gives a smaller error.  Ctrl-C ends the measuring and keeps the rows that there are.
     An exception that nobody foresaw costs its row and the rest of its ladder (``Defect``), and nothing else.
     """
     judge = _Judge(dynamics, reference)
-    rows: list[Measured] = []
+    found: dict[tuple[str, str], list[Measured]] = {}
     unusable = []
     pairs = [(method, scalar) for method in methods for scalar in method.traits.scalars if available(scalar)]
+    likely = _likely(dynamics, reference) if len(pairs) > 1 else None
     interrupted = False
-    for place, (method, scalar) in enumerate(pairs):
-        share = (budget - judge.spent) / (len(pairs) - place)
+    for place, (method, scalar) in enumerate(sorted(pairs, key=lambda pair: _name(*pair) != likely)):
+        left, own = max(budget - judge.spent, 0.0), found.setdefault(_name(method, scalar), [])
+        share = FIRST * left if _name(method, scalar) == likely else left / (len(pairs) - place)
         try:
-            for row in _ladder(judge, method, scalar, max(share, 0.0), watch):
-                rows.append(row)
+            for row in _ladder(judge, method, scalar, share, watch):
+                own.append(row)
         except (Unusable, Failure) as reason:
             unusable.append((method.traits.name, str(reason)))
         except KeyboardInterrupt:
             interrupted = True
             break
+    rows = [row for pair in pairs for row in found.get(_name(*pair), ())]
     orders = tuple(_orders(rows))
-    return Tradeoff(_with_front(rows), reference, orders, tuple(dict.fromkeys(unusable)), interrupted)
+    return Tradeoff(_with_front(rows), reference, orders, tuple(dict.fromkeys(unusable)), interrupted, judge.spent)
+
+
+def _name(method: Method, scalar: str) -> tuple[str, str]:
+    return method.traits.name, scalar
+
+
+def _likely(dynamics: Dynamics, reference: Reference) -> tuple[str, str]:
+    """The method that a run takes by itself, in its usual arithmetic."""
+    return choose(dynamics, USUAL_TOLERANCE, float(reference.times[-1])).method.traits.name, FLOAT64
 
 
 class _Judge:
@@ -165,6 +192,7 @@ class _Judge:
         self.reference = reference
         self.scale = np.asarray(reference.scale)[:, np.newaxis]
         self.energy = kernels({"energy": dynamics.relative_energy})["energy"]
+        self.true_energy, self.energy_scale = self._true_energy()
         self.spent = self.starting = 0.0
         self.defect = False
         self._ladders: set[tuple[str, str]] = set()
@@ -240,11 +268,20 @@ class _Judge:
             worst = float(np.max(np.abs(states - self.reference.states) / self.scale))
         return worst if isfinite(worst) else inf
 
-    def _drift(self, times: Any, states: Any) -> float:
+    def _true_energy(self) -> tuple[Any, float]:
+        """h along the motion, and what its errors are parts of."""
+        times, states = self.reference.times, self.reference.states
         with np.errstate(all="ignore"):
             h, kinetic = self.energy(np.vstack([times, states]))
-            scale = np.max(np.abs(kinetic)) or abs(h[0]) or 1.0
-            worst = float(np.max(np.abs(h - h[0])) / scale)
+            change = np.max(np.abs(h - h[0]))
+            scale = float(max(np.max(np.abs(kinetic)), change) or abs(h[0]) or 1.0)
+        kept, _ = energy_standing(self.dynamics, visited(times, states, h))
+        return (h[0] if kept.conserved else h), scale
+
+    def _drift(self, times: Any, states: Any) -> float:
+        with np.errstate(all="ignore"):
+            h, _ = self.energy(np.vstack([times, states]))
+            worst = float(np.max(np.abs(h - self.true_energy)) / self.energy_scale)
         return worst if isfinite(worst) else inf
 
     def _strayed(self, times: Any, states: Any) -> tuple[float, float] | None:
@@ -268,8 +305,8 @@ def _ladder(
         watch(candidate.label)
         before = judge.spent
         row = judge.measure(candidate, max(share - (before - begun), LEAST))
-        yield row
         now = judge.spent
+        yield replace(row, cost=now - before)
         idle = 0 if row.error < 0.5 * best else idle + (best < inf)
         best = min(best, row.error)
         growth = max(1.3, (now - before) / dearest) if dearest else 1.3

@@ -145,8 +145,10 @@ def _need(region: Region, claim: Claim) -> Need:
 
 def _for_exponential(derived: Derived, need: Need) -> Remark:
     assert need.exponential is not None
-    whose = "" if len(derived.stability.subsystems) == 1 else ", ".join(need.exponential)
-    return said(Said.FOR_EXPONENTIAL, whose, need.note)
+    parts = derived.stability.subsystems
+    whose = "" if len(parts) == 1 else ", ".join(need.exponential)
+    zeros = any(part.theory.zero_power for part in parts if part.coordinates == need.exponential)
+    return said(Said.FOR_DECAY if zeros else Said.FOR_EXPONENTIAL, whose, need.note)
 
 
 def _but_for_equality(

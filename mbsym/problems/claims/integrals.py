@@ -125,9 +125,9 @@ def _rate_of(derived: Derived, equations: Equations, claimed: Polynomial) -> For
 
 
 def _names_in(derived: Derived, values: Iterable[Polynomial]) -> set[str]:
-    """Coordinates, velocities and parameters in the values, those that relations are made of included."""
+    """Coordinates, velocities, inputs and parameters in the values, those that relations are made of included."""
     ring, system = derived.ring, derived.system
-    wanted = [*system.coordinates, *system.velocities]
+    wanted = [*system.coordinates, *system.velocities, *system.input_names]
     found: set[str] = set()
     for x in values:
         found |= set(ring.dependencies(x, wanted))

@@ -20,6 +20,7 @@ class Said(Enum):
     UNSTABLE_BEYOND = auto()  # but for the case of equality
     UNSTABLE_INSIDE = auto()  # but where another condition is an equality
     FOR_EXPONENTIAL = auto()  # (of which coordinates, "" of all; note)
+    FOR_DECAY = auto()  # (the same, where zero roots split off)
     GROWS_WITH_EQUALITY = auto()
     STABLE_WITH_EQUALITY = auto()
     STABLE_IN_FIRST_WITH_EQUALITY = auto()
@@ -71,6 +72,11 @@ _SENTENCES: dict[Said, str | Callable[..., str]] = {
         if whose
         else "it is necessary for exponential stability (all roots to the left)[[2]]"
     ),
+    Said.FOR_DECAY: lambda whose, note: (
+        "it is necessary for all roots of [[1]] but the zero ones to lie to the left[[2]]"
+        if whose
+        else "it is necessary for all roots but the zero ones to lie to the left[[2]]"
+    ),
     Said.GROWS_WITH_EQUALITY: "with equality solutions grow: the equations are linear",
     Said.STABLE_WITH_EQUALITY: "with equality, too, the motion may be stable",
     Said.STABLE_IN_FIRST_WITH_EQUALITY: "with equality, too, the first approximation may be stable",
@@ -83,7 +89,7 @@ _SENTENCES: dict[Said, str | Callable[..., str]] = {
         "higher order decide, if there are any"
     ),
     Said.NEVER_STABLE: lambda verdict, borders: (
-        "the motion is [[1]]: as it is stable nowhere else, any condition would be necessary, and it says nothing"
+        "the motion is [[1]]: but for these any condition would be necessary, and border cases are left open"
         if borders
         else "the motion is [[1]]: as it is stable for no parameters, any condition would be necessary, and it says "
         "nothing"

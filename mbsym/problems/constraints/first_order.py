@@ -141,6 +141,7 @@ def _motion(form: SpeedForm, reduced: Reduced, at: Equilibrium) -> tuple[Scene, 
         else:
             found[ring.index("coordinate", name)] = ring.substitute(value, images)
         found[ring.index("velocity", name)] = ring.substitute(rate, images)
+    found |= {k: ring.substitute(x, images) for k, x in base.related.items() if k not in images}
     return plain, found
 
 

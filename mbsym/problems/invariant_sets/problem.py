@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import combinations
 
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import Failure
@@ -13,7 +14,6 @@ from mbsym.formulas.formula import Formula
 from mbsym.problems.invariant_sets import second_variation
 from mbsym.problems.invariant_sets.arena import Arena
 from mbsym.problems.invariant_sets.branches import Place
-from mbsym.problems.invariant_sets.emptiness import why_empty
 from mbsym.problems.invariant_sets.result import (
     Definiteness,
     Family,
@@ -29,6 +29,10 @@ from mbsym.problems.invariant_sets.trials import gap_between, is_real
 MOST_SETS = 40
 #: Equations in sines and cosines are longer: fewer branches are followed.
 IN_ANGLES = SplitLimits(branches=150, terms=120, pairs=4, long=24)
+
+
+#: Terms of two equations whose resultant is asked for, and degrees in what is eliminated.
+MOST_TERMS, MOST_DEGREE = 24, 4
 
 
 def invariant_sets(arena: Arena) -> InvariantSets:
@@ -308,3 +312,36 @@ def _invariant(place: Place) -> bool | None:
         return None  # their rates are not known
     answers = [place.vanishes(arena.derivative(p)) for p in equations]
     return False if False in answers else None if None in answers else True
+
+
+def why_empty(place: Place) -> tuple[Polynomial, ...] | None:
+    """Polynomials in parameters alone: where none of them vanishes the branch has no points; None where that is open.
+
+    The resultant of two polynomials lies in their ideal, so that it vanishes at every common zero.
+    """
+    unknown = (*place.arena.multipliers, *place.arena.variables)
+    for p, q in combinations(place.branch.remaining, 2):
+        if len(p) * len(q) > MOST_TERMS**2:
+            continue
+        for g in unknown:
+            degrees = p.degrees()[g], q.degrees()[g]
+            if min(degrees) > 0 and max(degrees) <= MOST_DEGREE:
+                provided = _nonzero(place, p.resultant(q, g))
+                if provided is not None:
+                    return provided
+    return None
+
+
+def _nonzero(place: Place, p: Polynomial) -> tuple[Polynomial, ...] | None:
+    """What has to be nonzero, in parameters alone, for p to be nonzero on the branch; None where that is open."""
+    if p == 0:
+        return None
+    never, needed = place.arena.signs.never_zero, []
+    for factor, _ in irreducible_factors(p)[1]:
+        if factor in place.branch.nonzero or never(factor):
+            continue
+        degrees = factor.degrees()
+        if any(degrees[g] for g in (*place.arena.multipliers, *place.arena.variables)):
+            return None
+        needed.append(factor)
+    return tuple(needed)

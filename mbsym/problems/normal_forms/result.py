@@ -8,6 +8,7 @@ from typing import Any
 
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.notebook import Shown
+from mbsym.problems.stability.theorems import HigherOrder
 from mbsym.problems.stability.word import Word
 
 
@@ -27,27 +28,7 @@ class Outcome(StrEnum):
         return repr(self.value)
 
 
-class Theorem(StrEnum):
-    """The theorems of problem 11."""
-
-    DEFINITE = "Dirichlet"
-    FIRST = "Lyapunov's first method"
-    ARNOLD_MOSER = "Arnold-Moser"
-    ARNOLD_MOSER_6 = "Arnold-Moser, order 6"
-    THIRD = "Markeev, resonance of third order"
-    #: Of more than two degrees of freedom.
-    THIRD_OF_MORE = "Markeev and Khazina, resonance of third order"
-    FOURTH = "Markeev, resonance of fourth order"
-    EQUAL = "Sokolskii, equal frequencies"
-    #: Of equal frequencies with two eigenvectors for each root.
-    EQUAL_TWO = "Sokolskii, equal frequencies with two eigenvectors"
-    #: One root is zero: H has a minimum or maximum by terms of higher order; or its normal form decides.
-    DEFINITE_HIGHER = "Dirichlet, by terms of higher order"
-    ZERO = "Sokolskii, zero frequency"
-    BRUNO = "Bruno"
-    ARNOLD = "Arnold"
-    REDUCTION = "Lyapunov, Pliss: centre manifold"
-    NONE = ""
+Theorem = HigherOrder
 
 
 class Why(StrEnum):

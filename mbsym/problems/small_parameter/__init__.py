@@ -14,7 +14,7 @@ sufficiently small eps > 0 (``steady``).  Reports expand to order 2, or 3 where 
 any order.
 
 A description with a prescribed phase whose rate is a parameter: the effective potential of what the phase shakes or
-drives (``problems.averaging``), as Kapitza's and a Paul trap's, with the orders of eps that are assumed, and problem 6
+drives (``averaging``), as Kapitza's and a Paul trap's, with the orders of eps that are assumed, and problem 6
 with it.  It is withdrawn where the measurement contradicts it.  A description with neither has nothing to expand.
 
 Relations between parameters are put in first: what follows from a scaled parameter is scaled with it, and a small

@@ -19,11 +19,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from mbsym.algebra.failures import NoClosedForm
-from mbsym.algebra.matrices import faddeev
-from mbsym.algebra.tower import MOST_ROOTS, Element
+from mbsym.algebra.matrices import echelon, faddeev
+from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
 from mbsym.problems.small_parameter.generating import Generating, Mode, without_zeros
 from mbsym.problems.small_parameter.harmonics import Harmonics
-from mbsym.problems.small_parameter.linear_waves import solved
 from mbsym.problems.small_parameter.oscillation_result import Divisor, Drift
 
 
@@ -356,3 +355,16 @@ def _over(tower: Any, a: Pair, b: Pair) -> Pair:
     back = tower.reciprocal(b[0] * b[0] + b[1] * b[1])
     real, imaginary = _times(a, (b[0], -b[1]))
     return real * back, imaginary * back
+
+
+def solved(tower: Tower, rows: Sequence[Sequence[Element]], right: Sequence[Element]) -> list[Element] | None:
+    """x with rows x = right, free unknowns zero; None where there is none."""
+    work = [[*row, value] for row, value in zip(rows, right, strict=True)]
+    count = len(rows[0]) if rows else 0
+    work, pivots = echelon(tower, work, count, lambda x: None if x.is_zero() else len(x.top) + len(x.bottom))
+    if any(not row[-1].is_zero() for row in work[len(pivots) :]):
+        return None
+    found = [tower.zero] * count
+    for place, column in enumerate(pivots):
+        found[column] = work[place][-1]
+    return found

@@ -20,6 +20,7 @@ from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.routh import (
     ENERGY_BESIDES,
     besides_cyclic,
+    energy_besides,
     ignoring_cyclic,
     momenta_are_constant,
     only_momenta,
@@ -103,7 +104,7 @@ def _verdict_over(system: LinearSystem, at: ExactPoint) -> PointVerdict:
         reduced = verdict_over(ignoring_cyclic(there), at)
         return PointVerdict(drifting(reduced.verdict), polynomial, roots)
     if energy:
-        return PointVerdict(drifting(concluded(energy), constant_momenta=False), polynomial, roots)
+        return PointVerdict(drifting(energy_besides(system), constant_momenta=False), polynomial, roots)
     return PointVerdict(undecided(Because.CYCLIC_ZERO_ROOTS), polynomial, roots)
 
 

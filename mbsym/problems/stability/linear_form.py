@@ -117,6 +117,11 @@ class LinearSystem:
     def size(self) -> int:
         return len(self.M)
 
+    @property
+    def of_first_order(self) -> bool:
+        """Whether all rows are of first order, x' = A x."""
+        return self.nonholonomic is not None and len(self.nonholonomic.following) == self.size
+
 
 #: Matrices with longer entries on the way are not asked for their null directions.
 _MOST_TERMS = 200
@@ -174,7 +179,7 @@ CONSERVATIVE = "conservative"
 def kind_of(system: LinearSystem) -> str:
     """Words for the acting forces: conservative, gyroscopic conservative, dissipative, circulatory, ..."""
     if system.nonholonomic is not None:
-        return "constrained in velocities"
+        return "of first order" if system.of_first_order else "constrained in velocities"
     damped, gyroscopic = not is_zero(system.D), not is_zero(system.G)
     words = ["gyroscopic"] if gyroscopic else []
     if damped:

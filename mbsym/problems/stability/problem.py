@@ -579,7 +579,8 @@ def in_parameters(ring: Ring, rows: Sequence[Sequence[Sequence[Polynomial]]], si
         for assumption, relation in signs.assumptions
         if used.issuperset(occurring([assumption]))
     ]
-    return small, Signs(small.context, tuple(signs.words[k] for k in small.indices), tuple(kept))
+    numbers = {at: signs.numbers[k] for at, k in enumerate(small.indices) if k in signs.numbers}
+    return small, Signs(small.context, tuple(signs.words[k] for k in small.indices), tuple(kept), numbers=numbers)
 
 
 def elimination_of(scene: Scene) -> Elimination:

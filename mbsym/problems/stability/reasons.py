@@ -49,8 +49,10 @@ class Because(Enum):
     HIGHER_ORDER = auto()
     # of cyclic coordinates
     COASTING = auto()
+    VELOCITIES = auto()
     DRIFT = auto()
     DRIFT_AT_GIVEN_MOMENTA = auto()
+    ELSEWHERE = auto()
     DISPLACEMENTS = auto()  # (how coordinates move together, each a text)
     OTHER_ANGLES = auto()  # (body, axes, angles)
     PARTLY_CYCLIC = auto()

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from mbsym.algebra.characteristic import Matrix, adjugate, determinant
 from mbsym.problems.stability.linear_form import LinearSystem, is_zero
+from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.theorems import Fact
+from mbsym.problems.stability.verdict import Verdict, concluded
 
 
 def only_momenta(system: LinearSystem) -> bool:
@@ -91,6 +93,12 @@ ENERGY_BESIDES = frozenset(
         Fact.ENERGY_NEVER_GROWS,
     }
 )
+
+
+def energy_besides(system: LinearSystem) -> Verdict:
+    """The verdict by ENERGY_BESIDES on what is not cyclic; where everything is, T is all of the energy."""
+    alone = len(system.cyclic) == system.size
+    return concluded(ENERGY_BESIDES, *((Reason(Because.VELOCITIES),) if alone else ()))
 
 
 def besides_cyclic(system: LinearSystem) -> Matrix:

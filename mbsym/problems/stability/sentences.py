@@ -115,6 +115,10 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
         "All coordinates of this part are cyclic: their momenta are constant, so their velocities stay near theirs; "
         "the coordinates drift away if these are disturbed, so that with them counted the motion is unstable."
     ),
+    Because.VELOCITIES: (
+        "All coordinates of this part are cyclic, and the kinetic energy of a disturbance does not grow: velocities "
+        "stay near theirs."
+    ),
     Because.DRIFT: (
         "This is about the other coordinates and all velocities; a perturbation of the cyclic velocities can make "
         "the cyclic coordinates drift away."
@@ -122,6 +126,10 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
     Because.DRIFT_AT_GIVEN_MOMENTA: (
         "This is about the other coordinates at the given momenta of the cyclic ones: momenta that differ a little "
         "stay different, the motion then tends to a steady one near by, and the cyclic coordinates may drift away."
+    ),
+    Because.ELSEWHERE: (
+        "This is about the other coordinates and all velocities: these tend to theirs again, and the cyclic "
+        "coordinates may end elsewhere."
     ),
     Because.DISPLACEMENTS: (
         "No equation of motion changes when coordinates move together as {}: along such displacements there are cyclic "
@@ -134,9 +142,7 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
     Because.PARTLY_CYCLIC: "A part of the coordinates is cyclic.",
     Because.CONSTANT_MOMENTA: ("The momenta of cyclic coordinates are constant, so their velocities stay near theirs."),
     Because.SEE_CASES: "It depends on the parameters; see the cases.",
-    Because.BORDERS_APART: (
-        "This is so wherever no condition is an equality; about border cases the first approximation says nothing."
-    ),
+    Because.BORDERS_APART: ("This is so wherever no condition is an equality; border cases are left open here."),
     Because.CONDITIONS_UNWRITTEN: "Conditions are too long to be written out; see the cases.",
     Because.BORDER: "On a border: no theorem of the first approximation decides.",
     Because.NEAR_BORDER: "On a border, or too close to one: no theorem of the first approximation decides.",
@@ -172,7 +178,7 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
     Because.NOT_THE_VALUE: "The motion does not exist there: {} has another value.".format,
     Because.MOTION_NOT_THERE: "The motion does not exist there: {} = {}, not 0.".format,
     Because.MOTION_OPEN: "Whether the motion exists there is open: {} is about 0.".format,
-    Because.POLE: "The description divides by {} there, which is 0: it gives no equations of motion.".format,
+    Because.POLE: "The description divides by {} there, which is 0: there is no motion to be judged.".format,
 }
 
 

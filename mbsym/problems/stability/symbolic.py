@@ -84,6 +84,7 @@ from mbsym.problems.stability.requirements import (
 from mbsym.problems.stability.routh import (
     ENERGY_BESIDES,
     besides_cyclic,
+    energy_besides,
     ignoring_cyclic,
     momenta_are_constant,
     only_momenta,
@@ -281,7 +282,8 @@ def _analyse(system: LinearSystem, signs: Signs, borders: bool) -> Theory:
     if mass.word is not Definite.POSITIVE:
         remarks.append("M is taken to be positive definite, as the matrix of a kinetic energy is.")
     if zero_power:
-        remarks.append(f"lambda^{zero_power} splits off: {zero_power} zero roots.")
+        several = f"lambda^{zero_power} splits off: {zero_power} zero roots."
+        remarks.append(several if zero_power > 1 else "lambda splits off: one zero root.")
     found = replace(
         start,
         removed=removed,
@@ -631,7 +633,8 @@ def _cases_of_linear(system: LinearSystem, found: Theory, known: Signs) -> tuple
     grows = concluded({Fact.EXACTLY_LINEAR, Fact.JORDAN_BLOCK})
     if still and found.zero_power == 2 * len(null) and not decays and all(r.always for r in wanted):
         return (Case(wanted, (), only_drifts(grows)),)
-    return (Case(_of_full_rank(places, len(null), known), (), grows),)
+    letter = "A" if system.of_first_order else "K + N"
+    return (Case(_of_full_rank(places, letter, len(null), known), (), grows),)
 
 
 def _wanted(found: Theory) -> tuple[Requirement, ...]:
@@ -640,8 +643,8 @@ def _wanted(found: Theory) -> tuple[Requirement, ...]:
     return found.requirements or by_mass or (holds_always(found.removed),)
 
 
-def _of_full_rank(matrix: Matrix, null: int, known: Signs) -> tuple[Requirement, ...]:
-    """A minor of order n - ``null`` that is not zero: the matrix has no further null directions there."""
+def _of_full_rank(matrix: Matrix, letter: str, null: int, known: Signs) -> tuple[Requirement, ...]:
+    """A minor of order n - ``null`` that is not zero: the matrix ``letter`` has no further null directions there."""
     n = len(matrix)
     size = n - null
     if not size:
@@ -650,7 +653,7 @@ def _of_full_rank(matrix: Matrix, null: int, known: Signs) -> tuple[Requirement,
         for columns in combinations(range(n), size):
             minor = known.normalised(determinant([[matrix[i][j] for j in columns] for i in rows]))
             if minor != 0:
-                return (differs(f"minor of order {size} of K + N", minor, known),)
+                return (differs(f"minor of order {size} of {letter}", minor, known),)
     raise ValueError("the rank is smaller")
 
 
@@ -703,7 +706,7 @@ def _energy_besides(system: LinearSystem, known: Signs) -> tuple[Case, ...]:
     wanted = definiteness(block or system.kinetic, known, "K" if block else "M").requirements
     if not block:  # T is all of the energy
         wanted = tuple(replace(r, by_mass=True) for r in wanted)
-    return (Case(wanted, (), drifting(concluded(ENERGY_BESIDES), constant_momenta=False)),)
+    return (Case(wanted, (), drifting(energy_besides(system), constant_momenta=False)),)
 
 
 def _all_left(turned: bool) -> Verdict:

@@ -27,7 +27,7 @@ from __future__ import annotations
 
 from collections.abc import Set
 from dataclasses import dataclass
-from enum import Enum, auto
+from enum import Enum, StrEnum, auto
 
 from mbsym.problems.stability.reasons import Because, Reason
 
@@ -76,6 +76,29 @@ class Ground(Enum):
     SHIFTED = auto()  # bounded but for shifts on which the equations do not depend
     UNDAMPED = auto()  # bounded in first approximation, neither dissipation nor circulation
     IDLE = auto()  # nothing moves but at constant momenta
+
+
+class HigherOrder(StrEnum):
+    """The theorems of problem 11, which judge what the first approximation leaves open."""
+
+    DEFINITE = "Dirichlet"
+    FIRST = "Lyapunov's first method"
+    ARNOLD_MOSER = "Arnold-Moser"
+    ARNOLD_MOSER_6 = "Arnold-Moser, order 6"
+    THIRD = "Markeev, resonance of third order"
+    #: Of more than two degrees of freedom.
+    THIRD_OF_MORE = "Markeev and Khazina, resonance of third order"
+    FOURTH = "Markeev, resonance of fourth order"
+    EQUAL = "Sokolskii, equal frequencies"
+    #: Of equal frequencies with two eigenvectors for each root.
+    EQUAL_TWO = "Sokolskii, equal frequencies with two eigenvectors"
+    #: One root is zero: H has a minimum or maximum by terms of higher order; or its normal form decides.
+    DEFINITE_HIGHER = "Dirichlet, by terms of higher order"
+    ZERO = "Sokolskii, zero frequency"
+    BRUNO = "Bruno"
+    ARNOLD = "Arnold"
+    REDUCTION = "Lyapunov, Pliss: centre manifold"
+    NONE = ""
 
 
 @dataclass(frozen=True)

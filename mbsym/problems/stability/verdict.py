@@ -224,6 +224,7 @@ def weakest(verdicts: Sequence[Verdict]) -> Verdict:
     reasons = {_uncounted(reason) for one in alike for reason in one.reasons}
     if not all(one.because(Because.LINEAR_DRIFTS) for one in verdicts):
         reasons.discard(_DRIFTS)
+    reasons = _farthest(reasons)
     return Verdict(row.word, names, tuple(sorted(reasons, key=lambda x: x.rank)), tuple(grounds.items()), flaws)
 
 
@@ -292,18 +293,21 @@ def exactly(verdict: Verdict, calm: bool = False) -> Verdict:
 def drifting(verdict: Verdict, constant_momenta: bool = True) -> Verdict:
     """The verdict on the other coordinates as one on the whole, whose cyclic coordinates may drift.
 
-    ``constant_momenta``: it was reached after Routh, and a disturbed momentum stays disturbed.
+    ``constant_momenta``: it was reached after Routh, and a disturbed momentum stays disturbed.  Where none is and the
+    others decay, cyclic velocities are among what decays.
     """
     flaws = verdict.flawed | {Flaw.CYCLIC}
     grounds = {ground: _at_constant_momenta(names) for ground, names in verdict.laid.items()}
     if Ground.LINEAR in grounds:  # bounded is what is left when shifts are not counted
         grounds[Ground.SHIFTED] = grounds.pop(Ground.LINEAR)
-    decays = constant_momenta and Ground.DECAYS in verdict.laid
-    drift = Because.DRIFT_AT_GIVEN_MOMENTA if decays else Because.DRIFT
+    drift = Because.DRIFT
+    if Ground.DECAYS in verdict.laid:
+        drift = Because.DRIFT_AT_GIVEN_MOMENTA if constant_momenta else Because.ELSEWHERE
     row = row_of({*grounds}, flaws)
     names = verdict.theorems if row.ground is None else grounds[row.ground]
-    reasons = (*(_BESIDE_ZERO_ROOTS.get(reason, reason) for reason in verdict.reasons), Reason(drift))
-    return Verdict(row.word, names, tuple(dict.fromkeys(reasons)), tuple(grounds.items()), flaws)
+    reasons = dict.fromkeys([*(_BESIDE_ZERO_ROOTS.get(reason, reason) for reason in verdict.reasons), Reason(drift)])
+    said = _farthest(set(reasons))
+    return Verdict(row.word, names, tuple(one for one in reasons if one in said), tuple(grounds.items()), flaws)
 
 
 #: What is true of a whole only if it is of every part that is not stable.
@@ -329,7 +333,10 @@ _BESIDE_ZERO_ROOTS = {
     Reason(Because.LEFT): Reason(Because.LEFT_BUT_CYCLIC),
     Reason(Because.LINEAR_BOUNDED): Reason(Because.LINEAR_SHIFTED),
 }
-_BESIDE_CONSTANT_MOMENTA = _BESIDE_ZERO_ROOTS | {Reason(Because.DRIFT): Reason(Because.DRIFT_AT_GIVEN_MOMENTA)}
+_BESIDE_CONSTANT_MOMENTA = _BESIDE_ZERO_ROOTS | {
+    Reason(Because.DRIFT): Reason(Because.DRIFT_AT_GIVEN_MOMENTA),
+    Reason(Because.ELSEWHERE): Reason(Because.DRIFT_AT_GIVEN_MOMENTA),
+}
 
 
 def _at_constant_momenta(theorems: Iterable[str]) -> tuple[str, ...]:
@@ -397,6 +404,9 @@ def _without_energy(part: Verdict) -> Verdict:
     return replace(part, grounds=tuple(x for x in part.laid.items() if x[0] is not Ground.ENERGY)) if decays else part
 
 
+_MINIMUM, _WITH_DISSIPATION = Because.MINIMUM, Because.MINIMUM_AND_DISSIPATION
+
+
 def _reasons(parts: tuple[Verdict, ...], row: Row) -> tuple[Reason, ...]:
     """Those of the parts that decide; what is counted in one part is not counted in the whole."""
     alike = [part for part in parts if part.word == row.word and row.wanted <= part.flawed]
@@ -414,8 +424,11 @@ def _reasons(parts: tuple[Verdict, ...], row: Row) -> tuple[Reason, ...]:
         found = {reason for part in moving for reason in part.reasons}
     else:
         if row.ground is Ground.ENERGY and not all(Ground.UNDAMPED in part.laid for part in parts):
-            found = {reason for part in alike for reason in part.reasons} - {Reason(Because.MINIMUM)}
-            found.add(Reason(Because.MINIMUM_AND_DISSIPATION))
+            found = {reason for part in alike if part in moving for reason in part.reasons}
+            if found or any(part.because(_MINIMUM) or part.because(_WITH_DISSIPATION) for part in moving):
+                found = found - {Reason(_MINIMUM)} | {Reason(_WITH_DISSIPATION)}
+            else:
+                found = {_BESIDE_ZERO_ROOTS.get(reason, reason) for part in moving for reason in part.reasons}
         if any(Flaw.CYCLIC in part.flawed for part in moving) or (row.ground is Ground.ENERGY and idle):
             found.add(Reason(Because.PARTLY_CYCLIC))
     if not all(part.stable or part.because(Because.LINEAR_DRIFTS) for part in parts):
@@ -427,7 +440,13 @@ def _reasons(parts: tuple[Verdict, ...], row: Row) -> tuple[Reason, ...]:
     if Reason(Because.CONSTANT_MOMENTA) in found:
         found = {_BESIDE_CONSTANT_MOMENTA.get(reason, reason) for reason in found}
     several = len(alike) > 1
-    return tuple(sorted({_uncounted(x) if several else x for x in found}, key=lambda reason: reason.rank))
+    return tuple(sorted(_farthest({_uncounted(x) if several else x for x in found}), key=lambda reason: reason.rank))
+
+
+def _farthest(reasons: set[Reason]) -> set[Reason]:
+    """Where some cyclic coordinates drift away, it is not said of all that they stop."""
+    drift = {Reason(Because.DRIFT), Reason(Because.DRIFT_AT_GIVEN_MOMENTA)}
+    return reasons - {Reason(Because.ELSEWHERE)} if drift & reasons else reasons
 
 
 def _uncounted(reason: Reason) -> Reason:

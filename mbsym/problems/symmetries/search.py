@@ -12,6 +12,7 @@ from flint import fmpq, fmpq_mat, nmod_mat
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Failure, Limit, NoClosedForm
+from mbsym.algebra.kernel import coefficients, independent, kernel
 from mbsym.algebra.point import Rationals
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Formula
@@ -22,7 +23,6 @@ from mbsym.problems.integrals import Integral
 from mbsym.problems.polynomial_integrals.modular import PRIMES, null_space
 from mbsym.problems.polynomial_integrals.result import FUNCTION
 from mbsym.problems.symmetries.blocks import Blocks
-from mbsym.problems.symmetries.kernel import coefficients, independent, kernel
 from mbsym.problems.symmetries.result import DEPENDENT, Symmetries, Symmetry
 from mbsym.problems.vector_field import put_in
 

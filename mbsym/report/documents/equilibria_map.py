@@ -4,10 +4,17 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from mbsym.maps.equilibria_map import Origin, Standing
-from mbsym.report.documents.base import Hashed, Part
+from mbsym.maps.boundaries import OF_EQUILIBRIA
+from mbsym.maps.result import Lack
+from mbsym.report.documents.base import Hashed, Part, words
 from mbsym.report.documents.branches import Equilibrium
 from mbsym.report.documents.parts import Axis
+
+#: Where a curve comes from.
+ORIGINS = tuple(x.value for x in OF_EQUILIBRIA)
+#: What is known of the number of equilibria in a region.
+PROVED, SAMPLE = "proved", "at the sample only"
+STANDINGS = (PROVED, SAMPLE, Lack.INCOMPLETE, Lack.FAMILIES, Lack.WITHDRAWN, Lack.NOT_REACHED)
 
 
 class Curve(Part, frozen=True):
@@ -15,7 +22,7 @@ class Curve(Part, frozen=True):
 
     number: Annotated[int, "its number, from 0"]
     polynomial: Annotated[str, "in the two parameters"]
-    origins: Annotated[list[Origin], "where it comes from"]
+    origins: Annotated[list[Annotated[str, words(*ORIGINS)]], "where it comes from"]
 
 
 class Region(Part, frozen=True):
@@ -23,7 +30,7 @@ class Region(Part, frozen=True):
 
     number: Annotated[int, "its number, from 0"]
     sample: Annotated[list[str], "the rational point at which the equilibria were solved"]
-    standing: Annotated[Standing, "what is known of their number"]
+    standing: Annotated[str, words(*STANDINGS), "what is known of their number"]
     count: Annotated[int | None, "how many there are; null where they are not counted"]
     stable: Annotated[int | None, "how many of them are stable at the sample"]
     stable_throughout: Annotated[bool, "whether those are proved to be stable in the whole region"]

@@ -6,22 +6,29 @@ from typing import Annotated
 
 from msgspec import UNSET, Meta, UnsetType
 
-from mbsym.maps.boundaries import Origin
+from mbsym.maps.boundaries import OF_EQUILIBRIA, Origin
 from mbsym.maps.boxes import Method
 from mbsym.maps.check import Mistake
-from mbsym.maps.result import Of, Standing
-from mbsym.maps.slices import Missing
+from mbsym.maps.result import Lack, Of
 from mbsym.maps.soft_borders import Onset
 from mbsym.maps.subdivision import End
 from mbsym.maps.verdicts import Border
 from mbsym.report.documents.base import Hashed, Part, words
 from mbsym.report.documents.parts import Axis, Number, Verdict
 
+#: Which condition a curve comes from.
+ORIGINS = tuple(x.value for x in Origin if x not in OF_EQUILIBRIA)
+#: Whether there is a verdict at a place, and if not, why.
+STANDINGS = (
+    "judged",
+    *(Lack.OUTSIDE, Lack.MASSLESS, Lack.UNDEFINED, Lack.TOO_LARGE, Lack.WITHDRAWN, Lack.NOT_REACHED),
+)
+
 
 class Condition(Part, frozen=True):
     """a condition of which the curve is a border"""
 
-    origin: Annotated[Origin, "which condition it is"]
+    origin: Annotated[str, words(*ORIGINS), "which condition it is"]
     subsystem: Annotated[
         int | None, "the subsystem it belongs to, by its place in subsystems; nothing for the whole system"
     ]
@@ -68,7 +75,7 @@ class Place(Part, frozen=True, kw_only=True):
 
     number: Annotated[int, "its place in this list"]
     point: Annotated[list[Number], "the exact point at which it was judged, a coordinate for each axis"]
-    standing: Annotated[Standing, "whether there is a verdict, and if not, why"]
+    standing: Annotated[str, words(*STANDINGS), "whether there is a verdict, and if not, why"]
     broken: Annotated[list[str], "what is not kept there"]
     stability: Annotated[
         Verdict | None, "the verdict of problem 6, without terms of higher order; nothing where none is given"
@@ -190,7 +197,11 @@ class Slice(Part, frozen=True):
     number: Annotated[int, "its place in this list"]
     value: Annotated[Number, "the value of the third axis"]
     critical: Annotated[bool, "whether the arrangement of the curves may be another one on its two sides"]
-    missing: Annotated[Missing | None, "why there is no map of it"]
+    missing: Annotated[
+        str | None,
+        words(Lack.IRRATIONAL, Lack.OUTSIDE, Lack.TOO_LARGE, Lack.NOT_REACHED),
+        "why there is no map of it",
+    ]
     broken: Annotated[list[str], "what no point of it keeps"]
     further_curves: Annotated[
         list[Curve],
@@ -214,7 +225,7 @@ class Slice(Part, frozen=True):
 class Statement(Part, frozen=True):
     """a statement"""
 
-    standing: Annotated[Standing, "whether there is a verdict, and if not, why"]
+    standing: Annotated[str, words(*STANDINGS), "whether there is a verdict, and if not, why"]
     broken: Annotated[list[str], "what is not kept there"]
     stability: Annotated[
         Verdict | None, "the verdict of problem 6, without terms of higher order; nothing where none is given"
@@ -250,7 +261,7 @@ class Map(Hashed, frozen=True, kw_only=True):
     parameters, regions, arcs and corners within each.
     """
 
-    of: Annotated[Of, "what the picture is coloured by"]
+    of: Annotated[str, words(Of.STABILITY, Of.SIGNATURE), "what the picture is coloured by"]
     axes: Annotated[list[Axis], "to the right, upwards, and the one that is different in every slice"]
     values: Annotated[dict[str, str], "exact numbers that were put in for parameters and symbols, by name"]
     constant: Annotated[str | None, "an irrational number among the coefficients, if there is one"]

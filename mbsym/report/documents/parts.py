@@ -6,9 +6,8 @@ from typing import Annotated
 
 from msgspec import Meta
 
-from mbsym.problems.normal_forms.result import Theorem
 from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.theorems import THEOREMS
+from mbsym.problems.stability.theorems import THEOREMS, HigherOrder
 from mbsym.problems.stability.word import Word
 from mbsym.report.documents.base import ASIDE, SHA256, Named, Part, words
 
@@ -29,7 +28,7 @@ Formula = Annotated[
 
 TheoremName = Annotated[
     str,
-    words(*(theorem.name for theorem in THEOREMS), *(theorem.value for theorem in Theorem if theorem.value)),
+    words(*(theorem.name for theorem in THEOREMS), *(theorem.value for theorem in HigherOrder if theorem.value)),
     "a theorem of stability, by its name",
 ]
 

@@ -371,8 +371,11 @@ class Writer:
     @block.register
     def _(self, value: content.Facts) -> Markup:
         items = (
-            Markup("<dt>{}</dt>\n<dd>{}</dd>\n").format(self._joined(name), self._joined(said))
-            for name, said in value.items
+            Markup("<dt>{}</dt>\n{}").format(
+                self.inline(fact.name),
+                Markup("").join(Markup("<dd>{}</dd>\n").format(self.inline(line)) for line in fact.lines),
+            )
+            for fact in value.items
         )
         return Markup("<dl>\n{}</dl>").format(Markup("").join(items))
 

@@ -31,8 +31,10 @@ _WORDS = """textbf textit texttt emph textbackslash textless textgreater textbar
     refstepcounter theequation emergencystretch setlength itemsep par newline"""
 _PICTURES = "node draw includegraphics parskip"
 _DOCUMENT = """documentclass usepackage IfFileExists parindent medmuskip setcounter newcommand renewcommand
-    makeatletter makeatother parbox title author date maketitle tableofcontents bibitem refname longformula
-    if relax else fi detokenize thepage ps let thispagestyle pagestyle"""
+    makeatletter makeatother parbox title author date maketitle contentsifneeded tableofcontents bibitem refname
+    longformula
+    if ifnum expandafter csname endcsname edef pages newwrite tf immediate openout jobname relax else fi
+    detokenize thepage ps let thispagestyle pagestyle"""
 
 _COMMANDS = frozenset(f"{_GREEK} {_MATHEMATICS} {_WORDS} {_PICTURES}".split())
 _ONLY_IN_DOCUMENTS = frozenset(_DOCUMENT.split())

@@ -341,9 +341,10 @@ class Writer:
 
     @block.register
     def _(self, value: content.Facts) -> str:
-        items = "".join(
-            f"\\item {self._joined(name)}: {self._joined(said).removesuffix('.')}.\n" for name, said in value.items
-        )
+        items = ""
+        for fact in value.items:
+            lines = ";\\newline ".join(map(self.inline, fact.lines))
+            items += f"\\item {self.inline(fact.name)}: {lines.removesuffix('.')}.\n"
         return f"\\begin{{itemize}}\\setlength{{\\itemsep}}{{1pt}}\n{items}\\end{{itemize}}\n"
 
     @block.register

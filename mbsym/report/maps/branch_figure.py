@@ -6,7 +6,7 @@ Below stands how many equilibria there are, and how many of them are stable.  It
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Any
 
 from matplotlib.axes import Axes
@@ -14,20 +14,17 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from mbsym.algebra.plane.numbers import enclosure
-from mbsym.formulas.latex import LatexNames
+from mbsym.algebra.certainty import Certainty
 from mbsym.maps.branches_events import Event
 from mbsym.maps.branches_result import Branches, Piece
-from mbsym.model.quantities import unit_of
+from mbsym.maps.mapping import float_of
 from mbsym.model.system import System
-from mbsym.report.figures.drawing import pictures
 from mbsym.report.language import Language
-from mbsym.report.maps.branch_words import EVENTS
-from mbsym.report.maps.figure import RESOLUTION, SMALL, TEXT, WIDTH, named
-from mbsym.report.unit_text import labelled
+from mbsym.report.maps.frame import DARK, LINE, SMALL, TEXT, axis_label, framed, legend, started
+from mbsym.report.maps.words import EVENTS, INTERRUPTED
 
-#: Inches: the first panel of a coordinate, further ones, the counts, a line of the legend.
-FIRST, FURTHER, COUNTS, LINE = 2.1, 1.25, 0.75, 0.155
+#: Inches: the first panel of a coordinate, further ones, the counts.
+FIRST, FURTHER, COUNTS = 2.1, 1.25, 0.75
 #: Coordinates that are drawn.
 MOST_PANELS = 3
 
@@ -45,42 +42,28 @@ _MARKS = {
     Event.ISOLATED: "x",
     Event.DEGENERATE: "D",
 }
-_DARK = "#1a1a1a"
 
 
-def branch_figure(system: System, found: Branches, language: Language, formats: Sequence[str]) -> dict[str, bytes]:
-    """``branches.svg``, ``branches.pdf`` and ``branches.png``, those that are asked for."""
-    ordered = sorted(formats, key=lambda kind: kind != "png")
-    return pictures({"branches": lambda: _drawn(system, found, language)}, ordered)
-
-
-def _drawn(system: System, found: Branches, language: Language) -> Figure:
+def bifurcations(system: System, found: Branches, language: Language) -> Figure:
+    """Branches coordinate by coordinate, and how many there are."""
     shown = found.coordinates[:MOST_PANELS]
     heights = [FIRST, *[FURTHER] * (len(shown) - 1), COUNTS] if shown else [COUNTS]
     used: dict[str, Any] = {}
-    figure = Figure(figsize=(WIDTH, sum(heights) + 0.6), dpi=RESOLUTION, layout="constrained")
+    figure = started(sum(heights) + 0.6, 0, found.values)
     panels = figure.subplots(len(heights), 1, sharex=True, squeeze=False, height_ratios=heights)[:, 0]
     for axes, name in zip(panels, shown, strict=False):
         _coordinate(axes, system, found, name, used)
     _counts(panels[-1], found, language)
     for axes in panels:
-        axes.grid(False)
-        axes.tick_params(labelsize=SMALL, length=2.5, width=0.6)
-        for side in axes.spines.values():
-            side.set_visible(True)
-            side.set_linewidth(0.6)
+        framed(axes)
         _lines(axes, found, used)
-    panels[-1].set_xlim(float(found.axis.low), float(found.axis.high))
-    name = found.axis.name
-    panels[-1].set_xlabel(labelled(named(LatexNames([name]), name), unit_of(system, name)), fontsize=TEXT)
+    panels[-1].set_xlim(float(found.axes[0].low), float(found.axes[0].high))
+    panels[-1].set_xlabel(axis_label(system, found.axes[0].name), fontsize=TEXT)
     entries = [(handle, language.say(words, "branches of equilibria")) for words, handle in used.items()]
-    figure.set_figheight(sum(heights) + 0.6 + LINE * len(entries))
-    if entries:
-        handles, labels = zip(*entries, strict=True)
-        figure.legend(
-            handles, labels, loc="outside lower left", fontsize=SMALL, frameon=False, handlelength=2.2,
-            labelspacing=0.35, borderaxespad=0.2,
-        )  # fmt: skip
+    if found.interrupted:
+        entries.append(("!", language.say(INTERRUPTED)))
+    figure.set_figheight(figure.get_figheight() + LINE * len(entries))
+    legend(figure, entries)
     return figure
 
 
@@ -88,7 +71,7 @@ def _coordinate(axes: Axes, system: System, found: Branches, name: str, used: di
     k = found.coordinates.index(name)
     angular = False
     for piece in found.pieces:
-        equilibrium = found.intervals[piece.interval].equilibria[piece.number]
+        equilibrium = found.equilibria(found.regions[piece.interval])[piece.number]
         if equilibrium.coordinates_of or name not in [x.name for x in equilibrium.values]:
             continue
         k = [x.name for x in equilibrium.values].index(name)
@@ -99,21 +82,20 @@ def _coordinate(axes: Axes, system: System, found: Branches, name: str, used: di
         for xs, ys in _unbroken(piece, k, equilibrium.values[k].angle):
             axes.plot(xs, ys, linewidth=1.3, zorder=2, **style)
     for critical in found.criticals:
-        if critical.balance is False:
-            continue
-        p = float(enclosure(critical.number).mid())
-        for one in critical.meetings or ():
+        there = found.critical(critical)
+        p = float_of(critical.sample)
+        for one in (there.meetings or ()) if there.balance is not False else ():
             values = {x.name: x for x in one.values}
             event = one.named.event
             if event is Event.REGULAR or one.coordinates_of or name not in values:
                 continue
-            style = {"linestyle": "none", "marker": _MARKS[event], "markersize": 4, "color": _DARK, "zorder": 3}
+            style = {"linestyle": "none", "marker": _MARKS[event], "markersize": 4, "color": DARK, "zorder": 3}
             style |= {"markerfacecolor": "white", "markeredgewidth": 0.8}
             used.setdefault(EVENTS[event], Line2D([], [], **style))
             y = values[name].value
             ys = [y, -y] if values[name].angle and abs(abs(y) - math.pi) < 1e-9 else [y]
             axes.plot([p] * len(ys), ys, **style)
-    axes.set_ylabel(labelled(named(LatexNames([name]), name), unit_of(system, name)), fontsize=TEXT)
+    axes.set_ylabel(axis_label(system, name), fontsize=TEXT)
     if angular:
         axes.set_ylim(-math.pi * 1.04, math.pi * 1.04)
         axes.set_yticks([-math.pi, -math.pi / 2, 0, math.pi / 2, math.pi])
@@ -149,13 +131,13 @@ def _unbroken(piece: Piece, k: int, angle: bool) -> Iterator[tuple[list[float], 
 
 
 def _counts(axes: Axes, found: Branches, language: Language) -> None:
-    top = max((len(one.equilibria) for one in found.intervals), default=1)
-    for one in found.intervals:
-        low, high = (float(enclosure(x).mid()) for x in (one.low, one.high))
-        style = "-" if one.constant else (0, (1, 1.5))
-        axes.plot([low, high], [len(one.equilibria)] * 2, color=_DARK, linewidth=1.2, linestyle=style)
-        axes.fill_between([low, high], 0, one.stable, color=STABLE, alpha=0.35, linewidth=0)
-    axes.set_ylim(0, top * 1.15 + 0.5)
+    counts = [(one, one.counted) for one in found.intervals if one.counted is not None]
+    for one, counted in counts:
+        low, high = map(float_of, found.ends(one))
+        style = "-" if one.certainty is Certainty.PROVED else (0, (1, 1.5))
+        axes.plot([low, high], [counted.count] * 2, color=DARK, linewidth=1.2, linestyle=style)
+        axes.fill_between([low, high], 0, counted.stable, color=STABLE, alpha=0.35, linewidth=0)
+    axes.set_ylim(0, max((counted.count for _, counted in counts), default=1) * 1.15 + 0.5)
     axes.yaxis.set_major_locator(MaxNLocator(3, integer=True))
     axes.set_ylabel(language.say("equilibria"), fontsize=SMALL)
 
@@ -163,7 +145,7 @@ def _counts(axes: Axes, found: Branches, language: Language) -> None:
 def _lines(axes: Axes, found: Branches, used: dict[str, Any]) -> None:
     """Where there are infinitely many equilibria at one value: a vertical line."""
     for one in found.criticals:
-        if one.continuum:
-            style: dict[str, Any] = {"color": _DARK, "linewidth": 0.8, "linestyle": (0, (1, 2))}
+        if found.critical(one).continuum:
+            style: dict[str, Any] = {"color": DARK, "linewidth": 0.8, "linestyle": (0, (1, 2))}
             used.setdefault(EVENTS[Event.CONTINUUM], Line2D([], [], **style))
-            axes.axvline(float(enclosure(one.number).mid()), zorder=1, **style)
+            axes.axvline(float_of(one.sample), zorder=1, **style)

@@ -1,7 +1,8 @@
-"""The picture of a map: regions coloured by verdict, smooth arcs labelled by the condition they come from, corners.
+"""The picture of a map: cells coloured by what is said there, borders with letters, a legend in words.
 
-It is as wide as a column of a paper, its legend is in words, and what is told apart by a colour is told apart by its
-lightness or a hatch, too.  Arcs at which nothing changes are left out.
+Over one parameter it is a bar, over two a plane, over three small planes on pages, each with the value of the third
+parameter at which it is drawn, and between which values it is the same.  It is as wide as a column of a paper; what a
+colour tells apart its lightness or a hatch does, too.  Borders at which nothing changes are left out.
 """
 
 from __future__ import annotations
@@ -9,6 +10,8 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property, partial
 from string import ascii_lowercase
 from textwrap import fill
 from typing import Any
@@ -21,202 +24,120 @@ from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
-from mbsym.algebra.plane import polyline
-from mbsym.algebra.plane.drawing import Branches
+from mbsym.algebra.plane import Arrangement, polyline
+from mbsym.algebra.plane.drawing import Branches as Drawn
+from mbsym.algebra.plane.line import Line
 from mbsym.formulas.latex import LatexNames
-from mbsym.maps.result import Of, PlaneMap, Shown, Standing, Stratum
-from mbsym.maps.seen import drawn, stands_out
+from mbsym.maps.boxes import BoxMap
+from mbsym.maps.branches_result import Branches
+from mbsym.maps.mapping import float_of
+from mbsym.maps.result import Cell, Lack, Map, Of
+from mbsym.maps.seen import stands_out
+from mbsym.maps.slices import Picture, Stack
 from mbsym.model.quantities import unit_of
 from mbsym.model.system import System
 from mbsym.report.figures.drawing import pictures
 from mbsym.report.language import Language
-from mbsym.report.maps.verdict_colours import NONE, Look, look_of_degree, look_of_roots
-from mbsym.report.maps.words import INTERRUPTED, arcs_of, condition_words, look_words, onset_words, telling
-from mbsym.report.unit_text import labelled
+from mbsym.report.maps.branch_figure import bifurcations
+from mbsym.report.maps.frame import (
+    DARK,
+    EDGE,
+    FINE,
+    SMALL,
+    TEXT,
+    WIDEST,
+    axis_label,
+    framed,
+    legend,
+    named,
+    number,
+    started,
+)
+from mbsym.report.maps.verdict_colours import NONE, WHITE, Look, look_of_count, look_of_degree, look_of_roots
+from mbsym.report.maps.words import INTERRUPTED, border_words, cell_words, marked, percent, stem
+from mbsym.report.unit_text import pretty
 
 XY = tuple[float, float]
 
-#: Inches: the width of a column, and the height of the plane.
-WIDTH, HEIGHT = 3.4, 2.9
-#: Points.
-TEXT, SMALL = 8, 7
-#: Pixels per inch: lines are thin.
-RESOLUTION = 300
+#: Inches: what a plane, a bar and a row of small planes take.
+PLANE, BAR, ROW = 3.25, 1.04, 1.45
 #: Points along a branch over a strip, for what is filled.
 NODES = 28
 #: Arcs deviate by no more than this part of the box.
 TOLERANCE = 4e-4
+#: A number is written into a region that is so wide, as a part of the plane, and of a small one.
+ROOM, SMALL_ROOM = 0.045, 0.12
+#: Letters beside a line of the legend.
+MOST_BESIDE = 3
+#: Small planes beside each other, and rows of them on one page.
+ACROSS, ROWS = 2, 3
 
-#: A number is written into a region that is so wide, as a part of the plane.
-ROOM = 0.045
-
-#: Letters in a line of the legend.
-WIDEST = 52
-
-_DARK, _EDGE = "#1a1a1a", "#777777"
 _DASHES: Any = (0, (3, 2))
 
 
-def map_figure(system: System, found: PlaneMap, language: Language, formats: Sequence[str]) -> dict[str, bytes]:
-    """``map.svg``, ``map.pdf`` and ``map.png``, those that are asked for."""
+def map_figure(system: System, found: Map, language: Language, formats: Sequence[str]) -> dict[str, bytes]:
+    """``map.svg`` and others (see ``stem``), those that are asked for; of slices ``map-2.svg``, ..., too.
+
+    Nothing where no slice has a map.
+    """
     ordered = sorted(formats, key=lambda kind: kind != "png")  # a PNG is drawn before others set their resolution
-    return pictures({"map": lambda: _drawn(system, found, language)}, ordered)
+    if isinstance(found, Branches):
+        return pictures({stem(found): partial(bifurcations, system, found, language)}, ordered)
+    told, shown, size = lettered(found), panels(found), ACROSS * ROWS
+    pages = [shown[k : k + size] for k in range(0, len(shown), size)]
+    drawings = (partial(_page, system, found, page, told, language) for page in pages)
+    return pictures(dict(zip(page_names(found), drawings, strict=True)), ordered)
 
 
-def look(found: Shown, stratum: Stratum) -> Look:
+def page_names(found: Map) -> list[str]:
+    """The files without their endings: map, map-2, ..."""
+    count, first = -(-len(panels(found)) // (ACROSS * ROWS)), stem(found)
+    return [first if k == 0 else f"{first}-{k + 1}" for k in range(count)]
+
+
+def panels(found: Map) -> list[tuple[Picture | None, Map]]:
+    """The map, or the slices that stand for the pictures of a stack."""
+    if not isinstance(found, Stack):
+        return [(None, found)]
+    shown = [(one, found.layers[one.shown].plane) for one in found.pictures]
+    return [(one, plane) for one, plane in shown if plane is not None]
+
+
+def look(found: Map, cell: Cell) -> Look:
     """Colour and hatch of a region."""
-    judged = stratum.judged
+    if (counted := cell.counted) is not None:
+        counts = {one.counted.count for one in found.regions if one.counted is not None}
+        return look_of_count(counted.count, counts, counted.throughout or not counted.stable)
+    judged = cell.judged
     if judged is None:
-        return NONE if stratum.standing is not Standing.NOT_REACHED else Look("#ffffff")
+        return WHITE if cell.lack in (Lack.NOT_REACHED, Lack.UNPROVED) else NONE
     if found.of is Of.SIGNATURE and judged.degree is not None:
         return look_of_degree(judged.degree)
     return look_of_roots(judged.verdict.word, judged.right, judged.real_right)
 
 
-def _drawn(system: System, found: PlaneMap, language: Language) -> Figure:
-    told = lettered(found)
-    entries = _entries(found, told, language)
-    height = HEIGHT + 0.35 + 0.155 * len(entries)
-    figure = Figure(figsize=(WIDTH, height), dpi=RESOLUTION, layout="constrained")
-    axes = figure.subplots()
-    draw_plane(axes, system, found, told)
-    legend(figure, entries)
-    return figure
+# --- letters ----------------------------------------------------------------------------------------------------------
 
 
-def legend(figure: Figure, entries: Sequence[tuple[Any, str]]) -> None:
-    """(What is shown, what it means) below a figure."""
-    handles, told = zip(*entries, strict=True)
-    figure.legend(
-        handles,
-        told,
-        loc="outside lower left",
-        fontsize=SMALL,
-        frameon=False,
-        handlelength=1.6,
-        handleheight=1.0,
-        labelspacing=0.35,
-        borderaxespad=0.2,
-        handler_map={str: Letter()},
-    )
+def lettered(found: Map) -> dict[str, str]:
+    """A letter for every curve of which an arc is drawn, and every point of a line, by its ``mark_name``."""
+    names = dict.fromkeys(mark_name(found, plane, k) for _, plane in panels(found) for k in sorted(marks(plane)))
+    order = sorted(names, key=lambda name: (not name.isdigit(), int(name) if name.isdigit() else 0))
+    return dict(zip(order, letters([axis.name for axis in found.axes], len(order)), strict=True))
 
 
-def draw_plane(
-    axes: Axes, system: System, found: PlaneMap, told: Mapping[int, str], size: float = SMALL, room: float = ROOM
-) -> None:
-    """A map in axes of a figure; ``told`` are the letters of its curves, ``size`` that of small text.
-
-    Numbers stand in regions that are wider than ``room``, as a part of the plane.
-    """
-    box = found.arrangement.box
-    axes.grid(False)
-    axes.set_xlim(float(box.x0), float(box.x1))
-    axes.set_ylim(float(box.y0), float(box.y1))
-    axes.xaxis.set_major_locator(MaxNLocator(5))
-    axes.yaxis.set_major_locator(MaxNLocator(6))
-    for side in ("top", "right"):
-        axes.spines[side].set_visible(True)
-    axes.tick_params(labelsize=size, length=2.5, width=0.6)
-    for spine in axes.spines.values():
-        spine.set_linewidth(0.6)
-    across, up = labels(system, found)
-    axes.set_xlabel(across, fontsize=TEXT)
-    axes.set_ylabel(up, fontsize=TEXT)
-    branches = Branches(found.arrangement)
-    for stratum in found.regions:
-        _fill(axes, found, branches, stratum)
-    lines = {one.number: polyline(found.arrangement, there, TOLERANCE) for one, there in _arcs(found)}
-    for stratum, _ in _arcs(found):
-        style = _style(found, stratum)
-        if style:
-            xs, ys = zip(*lines[stratum.number], strict=True)
-            axes.plot(xs, ys, solid_capstyle="round", **style)
-    _corners(axes, found)
-    _numbers(axes, found, branches, size, room)
-    _letters(axes, found, told, lines, size)
+def marks(plane: Map) -> set[int]:
+    """The curves, by number, of which an arc is drawn; of a line the points."""
+    shown = [one for one in plane.borders if plane.drawn(one)]
+    if isinstance(plane.ground, Line):
+        return {one.number for one in shown}
+    return {k for one in shown for k in plane.place(one).factors}
 
 
-def labels(system: System, found: PlaneMap) -> tuple[str, str]:
-    """What stands along the axes."""
-    names = LatexNames([axis.name for axis in found.section.axes])
-    across, up = (labelled(named(names, x.name), unit_of(system, x.name)) for x in found.section.axes)
-    return across, up
-
-
-def named(names: LatexNames, name: str) -> str:
-    """A name on an axis, as a formula where it is one."""
-    symbol = names[name]
-    return name.replace("$", r"\$") if "mathtt" in symbol.stem else f"${symbol}$"
-
-
-def _arcs(found: PlaneMap) -> list[tuple[Stratum, Any]]:
-    return list(zip(found.arcs, found.arrangement.arcs, strict=True))
-
-
-def _fill(axes: Axes, found: PlaneMap, branches: Branches, stratum: Stratum) -> None:
-    """A region, strip by strip: between the branches below and above."""
-    shown = look(found, stratum)
-    vertices: list[XY] = []
-    codes: list[Any] = []
-    for strip, cell in found.arrangement.regions[stratum.number].cells:
-        below, above = [], []
-        left, right = branches.bounds(strip)
-        for k in range(NODES + 1):
-            t = math.pi * k / NODES
-            x, ys = branches.at(strip, min(max(t, 1e-3), math.pi - 1e-3))
-            x = left if k == 0 else right if k == NODES else x
-            below.append((x, ys[cell]))
-            above.append((x, ys[cell + 1]))
-        ring = [*below, *above[::-1]]
-        vertices += [*ring, ring[0]]
-        codes += [Path.MOVETO, *[Path.LINETO] * (len(ring) - 1), Path.CLOSEPOLY]
-    path = Path(vertices, codes)
-    # an edge of the same colour: no seams between strips
-    axes.add_patch(PathPatch(path, facecolor=shown.colour, edgecolor=shown.colour, linewidth=0.4, zorder=0.5))
-    if shown.hatch:
-        hatched = PathPatch(
-            path, facecolor="none", edgecolor=hatch_of(shown), linewidth=0, hatch=shown.hatch, zorder=0.6
-        )
-        axes.add_patch(hatched)
-
-
-def hatch_of(shown: Look) -> str:
-    """The colour of a hatch."""
-    return "#9a9a9a" if shown == NONE else "#5e1830" if shown.hatch == "xxxx" else "#ffffff"
-
-
-def _style(found: PlaneMap, arc: Stratum) -> dict[str, Any] | None:
-    """How an arc is drawn; None where nothing changes at it."""
-    if not drawn(found, arc):
-        return None
-    if found.separates(arc):
-        open_side = any(one is not None and one.judged is None for one in found.beside(arc))
-        return {"color": _EDGE if open_side else _DARK, "linewidth": 0.7 if open_side else 0.9, "zorder": 2}
-    return {"color": _DARK, "linewidth": 0.8, "linestyle": _DASHES, "zorder": 2}
-
-
-def _corners(axes: Axes, found: PlaneMap) -> None:
-    """Points in which drawn arcs meet, and those that differ from what is around them."""
-    points = []
-    for stratum, corner in zip(found.corners, found.arrangement.corners, strict=True):
-        lines = [k for k in corner.arcs if drawn(found, found.arcs[k])]
-        inside = corner.kind != "edge"
-        if (inside and len(lines) > 2) or stands_out(found, stratum):
-            points.append(corner.point.floats())
-    if points:
-        xs, ys = zip(*points, strict=True)
-        axes.plot(xs, ys, linestyle="none", marker="o", markersize=2.6, color=_DARK, markeredgewidth=0, zorder=3)
-
-
-def lettered(found: PlaneMap) -> dict[int, str]:
-    """A letter for every curve (by its number) of which an arc is drawn, in the order in which they are listed."""
-    curves = sorted(drawn_curves(found))
-    return dict(zip(curves, letters([axis.name for axis in found.section.axes], len(curves)), strict=True))
-
-
-def drawn_curves(found: PlaneMap) -> set[int]:
-    """The curves, by number, of which an arc is drawn."""
-    return {k for one, there in _arcs(found) if _style(found, one) for k in there.factors}
+def mark_name(found: Map, plane: Map, k: int) -> str:
+    """Its number where it belongs to all slices, its polynomial where it was found in one."""
+    whole = isinstance(plane.ground, Line) or k < len(found.boundaries.factors)
+    return str(k) if whole else str(plane.boundaries.factors[k])
 
 
 def letters(taken: Collection[str], count: int) -> list[str]:
@@ -225,36 +146,237 @@ def letters(taken: Collection[str], count: int) -> list[str]:
     return list(itertools.islice((name for name in named if name not in taken), count))
 
 
-def _letters(
-    axes: Axes, found: PlaneMap, told: Mapping[int, str], lines: Mapping[int, Sequence[XY]], points: float
-) -> None:
-    """Each letter once, on the longest arc of its curve, at a place away from the letters before it."""
-    box = found.arrangement.box
-    size = float(box.x1 - box.x0), float(box.y1 - box.y0)
-    start = float(box.x0), float(box.y0)
-    taken: list[XY] = []
-    taken += [_unit(one.point.floats(), start, size) for one in found.arrangement.corners if len(one.arcs) > 2]
-    for k, letter in told.items():
-        on = [lines[one.number] for one, there in _arcs(found) if k in there.factors and _style(found, one)]
-        places = [_unit(p, start, size) for line in on for p in _along(line)]
-        inside = [p for p in places if min(*p, 1 - p[0], 1 - p[1]) > 0.04] or places
-        place = max(inside, key=lambda p: min((math.dist(p, other) for other in taken), default=1.0))
-        taken.append(place)
-        axes.text(
-            start[0] + place[0] * size[0],
-            start[1] + place[1] * size[1],
-            letter,
-            fontsize=points,
-            style="italic",
-            ha="center",
-            va="center",
-            zorder=4,
-            bbox={"boxstyle": "circle,pad=0.16", "facecolor": "white", "edgecolor": _DARK, "linewidth": 0.4},
-        )
+# --- a page -----------------------------------------------------------------------------------------------------------
 
 
-def _unit(point: XY, start: XY, size: XY) -> XY:
-    return (point[0] - start[0]) / size[0], (point[1] - start[1]) / size[1]
+def _page(
+    system: System,
+    found: Map,
+    page: Sequence[tuple[Picture | None, Map]],
+    told: Mapping[str, str],
+    language: Language,
+) -> Figure:
+    small = isinstance(found, Stack)
+    names = [{k: told[mark_name(found, plane, k)] for k in sorted(marks(plane))} for _, plane in page]
+    entries = _entries([(plane, own) for (_, plane), own in zip(page, names, strict=True)], language)
+    if any(one is not None and one.unseen for one, _ in page):
+        entries.append(("*", language.say("but for single values not looked at")))
+    if found.interrupted:
+        entries.append(("!", language.say(INTERRUPTED)))
+    rows = -(-len(page) // ACROSS)
+    body = ROW * rows + 0.3 if small else BAR if isinstance(found.ground, Line) else PLANE
+    figure = started(body, len(entries), found.values, near=small)
+    grid = figure.subplots(rows, ACROSS if small else 1, squeeze=False)
+    for place, axes in enumerate(grid.flat):
+        if place >= len(page):
+            axes.set_axis_off()
+            continue
+        picture, plane = page[place]
+        _Drawing(axes, system, plane, names[place], FINE if small else SMALL, SMALL_ROOM if small else ROOM).draw()
+        if isinstance(found, Stack) and picture is not None:
+            last = place + ACROSS >= len(page)
+            axes.set_xlabel(axes.get_xlabel() if last else "", fontsize=TEXT - 1, labelpad=1)
+            axes.set_ylabel("" if place % ACROSS else axes.get_ylabel(), fontsize=TEXT - 1, labelpad=1)
+            axes.tick_params(labelleft=not place % ACROSS, labelbottom=last)
+            axes.xaxis.set_major_locator(MaxNLocator(4))
+            axes.yaxis.set_major_locator(MaxNLocator(4))
+            axes.set_title(
+                title(system, found, picture), fontsize=SMALL - 0.5, pad=2.5, loc="left", linespacing=1.05
+            )  # fmt: skip
+    legend(figure, entries)
+    return figure
+
+
+def title(system: System, found: Stack, picture: Picture) -> str:
+    """``C = 7/6`` and, on a second line, between which values the picture is the same."""
+    symbol = named(LatexNames([found.axis.name]), found.axis.name)
+    unit = pretty(unit_of(system, found.axis.name))
+    first = f"{symbol} = {number(found.layers[picture.shown].z)}" + (f" {unit}" if unit else "")
+    if len(picture.layers) == 1 and found.layers[picture.shown].critical:
+        return first
+    low, closed_low, high, closed_high = found.ends(picture)
+    relations = ("\u2264" if closed_low else "<", "\u2264" if closed_high else "<")
+    star = "*" if picture.unseen else ""
+    return f"{first}\n{number(low)} {relations[0]} {symbol} {relations[1]} {number(high)}{star}"
+
+
+# --- one plane, or one bar --------------------------------------------------------------------------------------------
+
+
+@dataclass
+class _Drawing:
+    """A map in axes of a figure; ``told`` are the letters of its marks, ``size`` that of small text.
+
+    Numbers stand in regions that are wider than ``room``, as a part of the plane.
+    """
+
+    axes: Axes
+    system: System
+    found: Map
+    told: Mapping[int, str]
+    size: float
+    room: float
+    taken: list[XY] = field(default_factory=list)  # where something is written, in parts of the plane
+
+    def draw(self) -> None:
+        framed(self.axes, self.size)
+        (x0, x1), (y0, y1) = self.span
+        self.axes.set_xlim(x0, x1)
+        self.axes.set_ylim(y0, y1)
+        self.axes.set_xlabel(axis_label(self.system, self.found.axes[0].name), fontsize=TEXT)
+        self._fill()
+        if isinstance(self.found.ground, Line):
+            self.axes.set_yticks([])
+            self._points()
+            return
+        self.axes.xaxis.set_major_locator(MaxNLocator(5))
+        self.axes.yaxis.set_major_locator(MaxNLocator(6))
+        self.axes.set_ylabel(axis_label(self.system, self.found.axes[1].name), fontsize=TEXT)
+        if isinstance(self.found.ground, Arrangement):
+            self._arcs()
+            self._corners()
+            self._numbers()
+            self._letters()
+
+    @cached_property
+    def span(self) -> tuple[XY, XY]:
+        """From where to where the axes go."""
+        ground = self.found.ground
+        if isinstance(ground, Line):
+            return (float_of(ground.low), float_of(ground.high)), (0.0, 1.0)
+        box = ground.box
+        return (float(box.x0), float(box.x1)), (float(box.y0), float(box.y1))
+
+    @cached_property
+    def branches(self) -> Drawn:
+        return Drawn(self.found.arrangement)
+
+    @cached_property
+    def lines(self) -> dict[int, Sequence[XY]]:
+        """The drawn arcs, by number."""
+        drawn = [one for one in self.found.arcs if self.found.drawn(one)]
+        return {one.number: polyline(self.found.arrangement, self.found.place(one), TOLERANCE) for one in drawn}
+
+    def _fill(self) -> None:
+        """All regions of one look at once."""
+        paths: dict[Look, list[list[XY]]] = {}
+        for cell in self.found.regions:
+            paths.setdefault(look(self.found, cell), []).extend(self._rings(cell))
+        for seen, rings in paths.items():
+            path = Path.make_compound_path(*(Path(ring, closed=True) for ring in (([*x, x[0]]) for x in rings)))
+            # an edge of the same colour: no seams between strips
+            patch = {"facecolor": seen.colour, "edgecolor": seen.colour, "linewidth": 0.4, "zorder": 0.5}
+            self.axes.add_patch(PathPatch(path, **patch))
+            if seen.hatch:
+                hatch = {"edgecolor": hatch_of(seen), "linewidth": 0, "hatch": seen.hatch, "zorder": 0.6}
+                self.axes.add_patch(PathPatch(path, facecolor="none", **hatch))
+
+    def _rings(self, cell: Cell) -> list[list[XY]]:
+        """The outline of a region: of an arrangement strip by strip, between the branches below and above."""
+        place = self.found.place(cell)
+        if isinstance(self.found.ground, Line):
+            low = self.span[0][0] + sum(size for size, _ in self.found.areas[: cell.number])
+            return [_rectangle(low, low + self.found.areas[cell.number][0], 0, 1)]
+        if not isinstance(self.found.ground, Arrangement):
+            box = place.box
+            return [_rectangle(float(box.x0), float(box.x1), float(box.y0), float(box.y1))]
+        rings = []
+        for strip, k in place.cells:
+            below, above = [], []
+            left, right = self.branches.bounds(strip)
+            for i in range(NODES + 1):
+                t = math.pi * i / NODES
+                x, ys = self.branches.at(strip, min(max(t, 1e-3), math.pi - 1e-3))
+                x = left if i == 0 else right if i == NODES else x
+                below.append((x, ys[k]))
+                above.append((x, ys[k + 1]))
+            rings.append([*below, *above[::-1]])
+        return rings
+
+    def _points(self) -> None:
+        """Lines through a bar, each with its letter."""
+        for k, letter in self.told.items():
+            x = float_of(self.found.corners[k].sample)
+            self.axes.axvline(x, color=DARK, linewidth=0.9)
+            self.axes.annotate(
+                letter, (x, 1), xytext=(0, 2), textcoords="offset points", fontsize=SMALL, style="italic", ha="center"
+            )
+
+    def _arcs(self) -> None:
+        for k, line in self.lines.items():
+            arc = self.found.arcs[k]
+            style: dict[str, Any] = {"color": DARK, "linewidth": 0.8, "linestyle": _DASHES}
+            if self.found.separates(arc):
+                open_side = any(one is not None and one.lack is not None for one in self.found.beside(arc))
+                style = {"color": EDGE if open_side else DARK, "linewidth": 0.7 if open_side else 0.9}
+            xs, ys = zip(*line, strict=True)
+            self.axes.plot(xs, ys, solid_capstyle="round", zorder=2, **style)
+
+    def _corners(self) -> None:
+        """Points in which drawn arcs meet, and those that differ from what is around them."""
+        points = []
+        for cell, corner in zip(self.found.corners, self.found.arrangement.corners, strict=True):
+            meeting = corner.kind != "edge" and sum(k in self.lines for k in corner.arcs) > 2
+            if meeting or stands_out(self.found, cell):
+                points.append(corner.point.floats())
+        if points and self.found.of is not Of.EQUILIBRIA:
+            xs, ys = zip(*points, strict=True)
+            style: dict[str, Any] = {
+                "linestyle": "none",
+                "marker": "o",
+                "markersize": 2.6,
+                "color": DARK,
+                "markeredgewidth": 0,
+            }
+            self.axes.plot(xs, ys, zorder=3, **style)
+
+    def _numbers(self) -> None:
+        """Roots to the right, or equilibria and stable ones, in the middle of the widest part of regions with room."""
+        (x0, x1), (y0, y1) = self.span
+        for cell in self.found.regions:
+            text = cell_text(self.found, cell)
+            best, place = 0.0, (0.0, 0.0)
+            for strip, k in self.found.place(cell).cells if text else ():
+                left, right = self.branches.bounds(strip)
+                x, ys = self.branches.at(strip, math.pi / 2)
+                room = min((right - left) / (x1 - x0), (ys[k + 1] - ys[k]) / (y1 - y0))
+                if room > best:
+                    best, place = room, (x, (ys[k] + ys[k + 1]) / 2)
+            if best <= self.room * (1 if len(text) < 3 else 1.5):
+                continue
+            self.taken.append(self._unit(place))
+            seen = look(self.found, cell)
+            behind = {"boxstyle": "round,pad=0.12", "facecolor": seen.colour, "edgecolor": "none"}
+            self.axes.text(
+                *place, text, fontsize=self.size - (len(text) > 2), color=DARK if seen.light else "white",
+                ha="center", va="center", zorder=3, bbox=behind if seen.hatch else None,
+                path_effects=[withStroke(linewidth=1.6, foreground=seen.colour)],
+            )  # fmt: skip
+
+    def _letters(self) -> None:
+        """Each letter once, on an arc of its curve, at a place away from numbers, corners and the letters before it."""
+        taken = self.taken
+        taken += [self._unit(one.sample.floats()) for one in self.found.corners if len(self.found.place(one).arcs) > 2]
+        for k, letter in self.told.items():
+            on = [self.lines[one.number] for one in marked(self.found, k)[0] if one.number in self.lines]
+            spots = [self._unit(p) for line in on for p in _along(line)]
+            inside = [p for p in spots if min(*p, 1 - p[0], 1 - p[1]) > 0.04] or spots
+            spot = max(inside, key=lambda p: min((math.dist(p, other) for other in taken), default=1.0))
+            taken.append(spot)
+            ring = {"boxstyle": "circle,pad=0.16", "facecolor": "white", "edgecolor": DARK, "linewidth": 0.4}
+            self.axes.text(
+                *spot, letter, transform=self.axes.transAxes, fontsize=self.size, style="italic",
+                ha="center", va="center", zorder=4, bbox=ring,
+            )  # fmt: skip
+
+    def _unit(self, point: XY) -> XY:
+        """As parts of the plane."""
+        (x0, x1), (y0, y1) = self.span
+        return (point[0] - x0) / (x1 - x0), (point[1] - y0) / (y1 - y0)
+
+
+def _rectangle(x0: float, x1: float, y0: float, y1: float) -> list[XY]:
+    return [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
 
 
 def _along(line: Sequence[XY]) -> list[XY]:
@@ -266,94 +388,67 @@ def _along(line: Sequence[XY]) -> list[XY]:
     return list(middle[:: max(1, len(middle) // 24)])
 
 
-def _numbers(axes: Axes, found: PlaneMap, branches: Branches, points: float, least: float) -> None:
-    """How many roots lie to the right, in the middle of the widest part of every unstable region with room for it."""
-    if found.of is not Of.STABILITY:
-        return
-    box = found.arrangement.box
-    width, height = float(box.x1 - box.x0), float(box.y1 - box.y0)
-    for stratum in found.regions:
-        if stratum.judged is None or not stratum.judged.right:
-            continue
-        best, place = 0.0, (0.0, 0.0)
-        for strip, cell in found.arrangement.regions[stratum.number].cells:
-            left, right = branches.bounds(strip)
-            x, ys = branches.at(strip, math.pi / 2)
-            room = min((right - left) / width, (ys[cell + 1] - ys[cell]) / height)
-            if room > best:
-                best, place = room, (x, (ys[cell] + ys[cell + 1]) / 2)
-        if best > least:
-            halo = [withStroke(linewidth=1.6, foreground=look(found, stratum).colour)]
-            told = str(stratum.judged.right)
-            axes.text(
-                *place, told, fontsize=points, color="white", ha="center", va="center", path_effects=halo, zorder=3
-            )
+def cell_text(found: Map, cell: Cell) -> str:
+    """What is written into a region: roots to the right; ``24 (4)`` equilibria, of them stable."""
+    if (counted := cell.counted) is not None:
+        return f"{counted.count} ({counted.stable})"
+    return str(cell.right) if found.of is Of.STABILITY and cell.right else ""
 
 
-def _entries(found: PlaneMap, told: Mapping[int, str], language: Language) -> list[tuple[Any, str]]:
-    return [*entries_of([(found, told)], language), *partial(found, language)]
+# --- the legend -------------------------------------------------------------------------------------------------------
 
 
-def partial(found: Shown, language: Language) -> list[tuple[Any, str]]:
-    """What a legend says of a map that was interrupted."""
-    return [("!", language.say(INTERRUPTED))] if found.partial else []
+def hatch_of(seen: Look) -> str:
+    """The colour of a hatch."""
+    return "#9a9a9a" if seen == NONE else "#5e1830" if seen.hatch == "xxxx" else "#ffffff"
 
 
-def entries_of(shown: Sequence[tuple[PlaneMap, Mapping[int, str]]], language: Language) -> list[tuple[Any, str]]:
-    """The legend of maps of one section or of its slices, each with the letters of its curves.
+def _entries(shown: Sequence[tuple[Map, Mapping[int, str]]], language: Language) -> list[tuple[Any, str]]:
+    """The legend of a map, or of its slices, each with the letters of its marks.
 
-    It says what colours mean, in the order of area, then what curves are.
+    It says what colours mean, in the order of area (of numbers of equilibria), then what curves are.
     """
-    by_words: dict[str, tuple[float, Look]] = {}
+    by_words: dict[str, tuple[tuple[float, ...], Look]] = {}
     by_condition: dict[str, list[str]] = {}
     named_letters: set[str] = set()
-    dashed = counted = False
+    dashed = numbered = False
     for found, told in shown:
         for one, (area, _) in zip(found.regions, found.areas, strict=True):
-            words = look_words(found, one, language)
-            by_words[words] = (by_words.get(words, (0.0, NONE))[0] + area, look(found, one))
+            words = cell_words(found, one, language)
+            if isinstance(found, BoxMap) and one.lack is Lack.UNPROVED:
+                words = f"{language.say('white: nothing is proved')} ({percent(found, language)})"
+            (before, *_), _ = by_words.get(words, ((0.0,), NONE))
+            order: tuple[float, ...] = (before - area,)
+            if found.of is Of.EQUILIBRIA:
+                order = (1,) if one.counted is None else (-one.counted.count, -one.counted.stable)
+            by_words[words] = order, look(found, one)
         for k, letter in told.items():
             if letter not in named_letters:  # of slices, the first tells what a curve is
                 named_letters.add(letter)
-                condition = telling(found.boundaries.conditions[k], _borders_open(found, k))
-                words = condition_words(condition, found.section, language)
-                words += onset_words(arcs_of(found, k), language)
+                words = border_words(found, k, language)
+                if isinstance(found.ground, Line):
+                    words = f"{float_of(found.corners[k].sample):.6g}   {words}"
                 by_condition.setdefault(words, []).append(letter)
-        counted |= found.of is Of.STABILITY and any(x.judged is not None and x.judged.right for x in found.regions)
-        dashed |= any(found.singles_out(arc) and _style(found, arc) for arc in found.arcs)
+        if isinstance(found.ground, Arrangement) and found.of is Of.STABILITY:
+            numbered |= any(cell_text(found, one) for one in found.regions)
+        dashed |= any(found.drawn(one) and found.singles_out(one) for one in found.arcs)
     entries: list[tuple[Any, str]] = []
-    for words, (_, seen) in sorted(by_words.items(), key=lambda item: -item[1][0]):
-        patch = Patch(facecolor=seen.colour, edgecolor=hatch_of(seen), linewidth=0.3, hatch=seen.hatch or None)
-        entries.append((patch, words))
-    if counted:
+    for words, (_, seen) in sorted(by_words.items(), key=lambda item: (item[1][1] == WHITE, item[1][0])):
+        edge = hatch_of(seen) if seen.hatch or not seen.light else EDGE
+        style: dict[str, Any] = {
+            "facecolor": seen.colour,
+            "edgecolor": edge,
+            "linewidth": 0.3,
+            "hatch": seen.hatch or None,
+        }
+        entries.append((Patch(**style), words))
+    if numbered:
         entries.append(("2", language.say("number of roots with positive real part")))
-    entries += [(", ".join(names), fill(words, WIDEST)) for words, names in by_condition.items()]
+    for words, names in by_condition.items():
+        handle = ", ".join(names)
+        few = len(names) <= MOST_BESIDE  # more letters have no room beside the words
+        entries.append((handle if few else "", fill(words if few else f"{handle}: {words}", WIDEST)))
     if dashed:
-        line = Line2D([], [], color=_DARK, linewidth=0.8, linestyle=_DASHES)
+        line = Line2D([], [], color=DARK, linewidth=0.8, linestyle=_DASHES)
         entries.append((line, language.say("dashed: another verdict on the curve alone")))
     return entries
-
-
-def _borders_open(found: PlaneMap, curve: int) -> bool:
-    """Whether a drawn arc of a curve borders on parameters without a verdict."""
-    lines = [arc for arc, there in _arcs(found) if curve in there.factors and _style(found, arc)]
-    return any(side is not None and side.judged is None for arc in lines for side in found.beside(arc))
-
-
-class Letter:
-    """A letter in a circle, as in the plane, for a legend's handle."""
-
-    def legend_artist(self, legend: Any, handle: str, fontsize: float, box: Any) -> Any:
-        from matplotlib.text import Text
-
-        text = Text(
-            x=box.xdescent + box.width / 2,
-            y=box.height / 2 - box.ydescent,
-            text=handle,
-            fontsize=SMALL - 1,
-            style="italic",
-            ha="center",
-            va="center_baseline",
-        )
-        box.add_artist(text)
-        return text

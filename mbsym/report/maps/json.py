@@ -1,54 +1,75 @@
-"""A map as JSON: every region, arc and corner with its exact point, what was proved there, and the polynomials."""
+"""A map as JSON: every cell with its exact point, what was proved there, and the polynomials of its borders."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from flint import fmpq
+from msgspec import UNSET
 from msgspec.structs import asdict
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.plane import AlgebraicNumber, Point
+from mbsym.algebra.plane.line import Line
 from mbsym.algebra.plane.numbers import enclosure
 from mbsym.maps.admissible import Demand
 from mbsym.maps.boundaries import Boundaries, Condition
 from mbsym.maps.boxes import BoxMap
+from mbsym.maps.branches_result import Branches, Meeting, Piece
 from mbsym.maps.check import Check
-from mbsym.maps.result import LineMap, PlaneMap, Stratum
-from mbsym.maps.slices import Stack
+from mbsym.maps.equilibria_map import EquilibriaMap
+from mbsym.maps.result import Cell, Counted, Lack, Map
+from mbsym.maps.slices import Layer, Picture, Stack
 from mbsym.model.system import System
+from mbsym.report.documents import branches, equilibria_map, parts
 from mbsym.report.documents import map as doc
-from mbsym.report.documents import parts
 from mbsym.report.documents.writer import written
+from mbsym.report.maps.equilibria_json import coordinate_value
 from mbsym.report.sections.stability import verdict_data
 from mbsym.source.meaning import meaning
 
+#: Digits of numbers that are followed in floating point.
+DIGITS = 10
 
-def map_json(system: System, found: PlaneMap | LineMap) -> str:
+
+def map_json(system: System, found: Map) -> str:
     """One JSON object, keys in a fixed order, the same text for the same input."""
-    places = _of_line(found) if isinstance(found, LineMap) else plane_data(found)
+    if isinstance(found, Branches):
+        return written(_branches(system, found))
+    if isinstance(found, EquilibriaMap):
+        return written(_equilibria(system, found))
+    assert found.section is not None
     return written(
-        doc.Map(**head(system, found), interrupted=found.interrupted, check=check_data(found.check), **places)
+        doc.Map(
+            **_head(system, found),
+            of=found.of,
+            constant=None if found.section.constant is None else found.section.constant.text,
+            subsystems=[list(names) for names in found.section.coordinates],
+            demands=[_demand(one) for one in found.admissibility.demands],
+            left_out=list(found.admissibility.left_out),
+            curves=_curves(found.boundaries),
+            vanishing=[_condition(one) for one in found.boundaries.vanishing],
+            check=_check(found.check),
+            **_places(None if isinstance(found, BoxMap | Stack) else found),
+            pictures=[_picture(found, one) for one in found.pictures] if isinstance(found, Stack) else UNSET,
+            slices=[_layer(found, one) for one in found.layers] if isinstance(found, Stack) else UNSET,
+            subdivision=_boxes(found) if isinstance(found, BoxMap) else UNSET,
+        )
     )
 
 
-def head(system: System, found: PlaneMap | LineMap | Stack | BoxMap) -> dict[str, Any]:
-    """What maps over any number of axes have in common."""
+def _head(system: System, found: Map) -> dict[str, Any]:
+    """What all maps have in common."""
     return {
         "system": system.name,
         "description_sha256": meaning(system),
-        "of": found.of,
-        "axes": [parts.Axis(name=x.name, low=str(x.low), high=str(x.high)) for x in found.section.axes],
-        "values": {name: str(value) for name, value in sorted(found.section.told.items())},
-        "constant": None if found.section.constant is None else found.section.constant.text,
-        "subsystems": [list(names) for names in found.section.coordinates],
-        "demands": [_demand(one) for one in found.admissibility.demands],
-        "left_out": list(found.admissibility.left_out),
-        "curves": curves_data(found.boundaries),
-        "vanishing": [_condition(one) for one in found.boundaries.vanishing],
+        "axes": [parts.Axis(name=x.name, low=str(x.low), high=str(x.high)) for x in found.axes],
+        "values": {name: str(value) for name, value in sorted(found.values.items())},
+        "interrupted": found.interrupted,
     }
 
 
-def curves_data(found: Boundaries, start: int = 0) -> list[doc.Curve]:
+def _curves(found: Boundaries, start: int = 0) -> list[doc.Curve]:
     """The boundary polynomials from number ``start`` on."""
     return [
         doc.Curve(number=k, polynomial=str(p), conditions=[_condition(one) for one in conditions])
@@ -57,73 +78,212 @@ def curves_data(found: Boundaries, start: int = 0) -> list[doc.Curve]:
     ]
 
 
-def plane_data(found: PlaneMap) -> dict[str, Any]:
-    """Regions, arcs and corners."""
-    arrangement = found.arrangement
+def _places(found: Map | None) -> dict[str, Any]:
+    """Regions, arcs and corners; of a line intervals, with their ends, and points."""
+    if found is None:
+        return {"regions": [], "arcs": [], "corners": []}
+    line = isinstance(found.ground, Line)
     return {
         "regions": [
             doc.Region(
-                **_place(one, _point(found.point_of(one))),
+                **_place(one),
                 signs=list(there.signs),
-                arcs=list(there.arcs),
+                arcs=[] if line else list(there.arcs),
+                ends=list(there.ends) if line else UNSET,
                 area=area,
                 area_error=error,
             )
-            for one, there, (area, error) in zip(found.regions, arrangement.regions, found.areas, strict=True)
+            for one, (area, error) in zip(found.regions, found.areas, strict=True)
+            for there in [found.place(one)]
         ],
         "arcs": [
             doc.Arc(
-                **_place(one, _point(found.point_of(one))),
+                **_place(one),
                 soft_or_hard=_soft(one),
                 curves=list(there.factors),
                 regions=list(there.regions),
                 corners=list(there.corners),
                 separates=found.separates(one),
             )
-            for one, there in zip(found.arcs, arrangement.arcs, strict=True)
+            for one in found.arcs
+            for there in [found.place(one)]
         ],
         "corners": [
             doc.Corner(
-                **_place(one, _point(found.point_of(one))),
+                **_place(one),
                 soft_or_hard=_soft(one),
                 curves=list(there.factors),
-                arcs=list(there.arcs),
-                kind=str(there.kind),
+                arcs=[] if line else list(there.arcs),
+                kind="zero" if line else str(there.kind),
             )
-            for one, there in zip(found.corners, arrangement.corners, strict=True)
+            for one in found.corners
+            for there in [found.place(one)]
         ],
     }
 
 
-def _of_line(found: LineMap) -> dict[str, Any]:
-    """Intervals are the regions, with their ends; zeros the corners."""
-    return {
-        "regions": [
-            doc.Region(
-                **_place(one, [coordinate(there.sample)]),
-                signs=list(there.signs),
-                arcs=[],
-                ends=list(there.ends),
-                area=area,
-                area_error=error,
-            )
-            for one, there, (area, error) in zip(found.regions, found.line.intervals, found.areas, strict=True)
-        ],
-        "arcs": [],
-        "corners": [
-            doc.Corner(
-                **_place(one, [coordinate(there.number)]),
-                soft_or_hard=_soft(one),
-                curves=list(there.factors),
-                arcs=[],
-                kind="zero",
-            )
-            for one, there in zip(found.corners, found.line.zeros, strict=True)
-        ],
-    }
+def _boxes(found: BoxMap) -> doc.Subdivision:
+    """Each statement once, and the boxes with the numbers of theirs; exact edges."""
+    statements: list[doc.Statement] = []
+    places: dict[tuple[object, ...], int] = {}
+    boxes = []
+    for cell, tile in zip(found.regions, found.subdivision.tiles, strict=True):
+        key = (*cell.kind, tuple(x.condition.about for x in cell.broken), cell.judged and cell.judged.null)
+        if cell.lack is not Lack.UNPROVED and key not in places:
+            places[key] = len(statements)
+            statements.append(_statement(cell))
+        edges = [str(x) for x in (tile.box.x0, tile.box.x1, tile.box.y0, tile.box.y1)]
+        boxes.append(doc.Box(edges=edges, statement=places.get(key)))
+    return doc.Subdivision(
+        because=found.because or None,
+        method=found.method,
+        end=found.subdivision.end,
+        white=str(found.subdivision.white),
+        statements=statements,
+        boxes=boxes,
+    )
 
 
-def check_data(found: Check | None) -> doc.MapCheck | None:
+def _picture(found: Stack, one: Picture) -> doc.Picture:
+    low, closed_low, high, closed_high = found.ends(one)
+    return doc.Picture(
+        slices=list(one.layers),
+        shown=one.shown,
+        not_looked_at=list(one.unseen),
+        low=coordinate(low),
+        low_belongs=closed_low,
+        high=coordinate(high),
+        high_belongs=closed_high,
+    )
+
+
+def _layer(found: Stack, one: Layer) -> doc.Slice:
+    plane = one.plane
+    return doc.Slice(
+        number=one.number,
+        value=coordinate(one.z),
+        critical=one.critical,
+        missing=one.lack,
+        broken=_broken(one),
+        further_curves=[] if plane is None else _curves(plane.boundaries, len(found.boundaries.factors)),
+        second=None if one.second is None else str(one.second),
+        confirmed=one.confirmed,
+        interrupted=plane is not None and plane.interrupted,
+        check=None if plane is None else _check(plane.check),
+        **_places(plane),
+    )
+
+
+def _equilibria(system: System, found: EquilibriaMap) -> equilibria_map.EquilibriaMap:
+    boundaries = zip(found.boundaries.factors, found.boundaries.conditions, strict=True)
+    return equilibria_map.EquilibriaMap(
+        **_head(system, found),
+        unfinished=list(found.unfinished),
+        curves=[
+            equilibria_map.Curve(number=k, polynomial=str(p), origins=[x.origin.value for x in conditions])
+            for k, (p, conditions) in enumerate(boundaries)
+        ],
+        regions=[_numbered(one, area) for one, (area, _) in zip(found.regions, found.areas, strict=True)],
+    )
+
+
+def _numbered(one: Cell, area: float) -> equilibria_map.Region:
+    known = equilibria_map.PROVED if one.certainty is Certainty.PROVED else equilibria_map.SAMPLE
+    said = one.said if isinstance(one.said, Counted) else Counted(())
+    return equilibria_map.Region(
+        number=one.number,
+        sample=[str(x) for x in (one.sample.x, one.sample.y)],
+        standing=one.lack or known,
+        count=None if one.counted is None else said.count,
+        stable=None if one.counted is None else said.stable,
+        stable_throughout=said.throughout,
+        found_by_newton_elsewhere=said.confirmed,
+        area=area,
+        equilibria=_listed(said),
+    )
+
+
+def _listed(found: Counted) -> list[branches.Equilibrium]:
+    return [
+        branches.Equilibrium(
+            coordinates=[coordinate_value(x) for x in one.values],
+            angles_of=one.coordinates_of or None,
+            stability=verdict_data(one.verdict),
+        )
+        for one in found.equilibria
+    ]
+
+
+def _branches(system: System, found: Branches) -> branches.Branches:
+    head = _head(system, found)
+    return branches.Branches(
+        parameter=head.pop("axes")[0],
+        **head,
+        coordinates=list(found.coordinates),
+        proved=found.proved,
+        remarks=[branches.Remark(doubt=one.doubt, about=one.about) for one in found.remarks],
+        intervals=[_interval(found, one, one.counted) for one in found.intervals if one.counted is not None],
+        critical_values=[_critical(found, one) for one in found.criticals],
+        branches=[_piece(one) for one in found.pieces],
+    )
+
+
+def _interval(found: Branches, one: Cell, counted: Counted) -> branches.Interval:
+    low, high = map(coordinate, found.ends(one))
+    return branches.Interval(
+        low=low,
+        high=high,
+        sample=str(one.sample),
+        count=counted.count,
+        stable=counted.stable,
+        constant=one.certainty is Certainty.PROVED,
+        equilibria=_listed(counted),
+    )
+
+
+def _critical(found: Branches, at: Cell) -> branches.CriticalValue:
+    one = found.critical(at)
+    return branches.CriticalValue(
+        value=coordinate(at.sample),
+        intervals=[None if side is None else side.number for side in found.sides(at)],
+        events=[event.value for event in one.events],
+        verdict_changes=found.verdict_changes(at),
+        continuum=one.continuum,
+        border=one.border,
+        counts_agree=one.balance,
+        equilibria=None if one.meetings is None else [_meeting(x) for x in one.meetings],
+    )
+
+
+def _meeting(one: Meeting) -> branches.CriticalValueEquilibrium:
+    return branches.CriticalValueEquilibrium(
+        coordinates=[coordinate_value(x) for x in one.values],
+        angles_of=one.coordinates_of or None,
+        event=one.named.event,
+        below=one.named.below,
+        above=one.named.above,
+        derivatives=dict(one.named.derivatives),
+        stability=None if one.verdict is None else verdict_data(one.verdict),
+    )
+
+
+def _piece(one: Piece) -> branches.Branch:
+    return branches.Branch(
+        interval=one.interval,
+        equilibrium=one.number,
+        throughout=one.throughout,
+        start=one.start,
+        end=one.end,
+        parameter=[_rounded(x) for x in one.parameter],
+        points=[[_rounded(x) for x in q] for q in one.values],
+    )
+
+
+def _rounded(x: float) -> float:
+    return float(f"{x:.{DIGITS}g}")
+
+
+def _check(found: Check | None) -> doc.MapCheck | None:
     """What was tried a second time, and what did not agree."""
     if found is None:
         return None
@@ -140,16 +300,20 @@ def check_data(found: Check | None) -> doc.MapCheck | None:
     return doc.MapCheck(points=found.points, arcs=found.arcs, enclosed=found.enclosed, findings=findings)
 
 
-def _place(one: Stratum, point: list[parts.Number]) -> dict[str, Any]:
-    return {"number": one.number, "point": point} | asdict(judged_data(one))
+def _place(one: Cell) -> dict[str, Any]:
+    return {"number": one.number, "point": _point(one.sample)} | asdict(_statement(one))
 
 
-def judged_data(one: Stratum) -> doc.Statement:
+def _broken(one: Cell | Layer) -> list[str]:
+    return [x.condition.about or str(x.condition.polynomial) for x in one.broken]
+
+
+def _statement(one: Cell) -> doc.Statement:
     """What is proved at a place, or why nothing is."""
     judged = one.judged
     return doc.Statement(
-        standing=one.standing,
-        broken=[x.condition.about or str(x.condition.polynomial) for x in one.broken],
+        standing=one.lack or "judged",
+        broken=_broken(one),
         stability=None if judged is None else verdict_data(judged.verdict),
         unstable_roots=None if judged is None else judged.right,
         real_unstable_roots=None if judged is None else judged.real_right,
@@ -159,7 +323,7 @@ def judged_data(one: Stratum) -> doc.Statement:
     )
 
 
-def _soft(one: Stratum) -> doc.SoftOrHard | None:
+def _soft(one: Cell) -> doc.SoftOrHard | None:
     """What terms of third order decide where a pair of roots is imaginary."""
     found = one.soft
     if found is None:
@@ -181,7 +345,7 @@ def _soft(one: Stratum) -> doc.SoftOrHard | None:
 
 
 def _condition(one: Condition) -> doc.Condition:
-    return doc.Condition(origin=one.origin, subsystem=one.part, about=one.about, reduced=one.reduced)
+    return doc.Condition(origin=one.origin.value, subsystem=one.part, about=one.about, reduced=one.reduced)
 
 
 def _demand(one: Demand) -> doc.Demand:
@@ -189,8 +353,8 @@ def _demand(one: Demand) -> doc.Demand:
     return doc.Demand(**condition, polynomial=str(one.condition.polynomial), relation=one.relation)
 
 
-def _point(point: Point) -> list[parts.Number]:
-    return [coordinate(x) for x in (point.x, point.y)]
+def _point(point: Any) -> list[parts.Number]:
+    return [coordinate(x) for x in ((point.x, point.y) if isinstance(point, Point) else (point,))]
 
 
 def coordinate(x: Any) -> parts.Number:

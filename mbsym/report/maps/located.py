@@ -1,4 +1,4 @@
-"""Given points of a map's plane, each with the region, arc or corner it lies in and the verdict there."""
+"""Given points of a map, each with the cell it lies in, or beside which slice, and what is said there."""
 
 from __future__ import annotations
 
@@ -8,19 +8,27 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
+from typing import Any
 
 from flint import fmpq
 
-from mbsym.algebra.plane import Arc, Corner, Point
-from mbsym.algebra.plane.line import Zero
+from mbsym.algebra.plane import Point
+from mbsym.algebra.plane.line import Line
+from mbsym.algebra.plane.numbers import compare, sign
 from mbsym.maps.mapping import Judge
-from mbsym.maps.result import LineMap, PlaneMap, Shape, Standing, Stratum
+from mbsym.maps.result import Cell, Lack, Map, Of, Shape
+from mbsym.maps.slices import Layer, Stack, at_level
 from mbsym.maps.soft_borders import Onset
+from mbsym.maps.subdivision import Subdivision
+from mbsym.report.maps.words import cell_words
 
 #: Rows beyond this number are refused.
 MOST_POINTS = 1_000_000
 #: A number may be written in so many characters.
 LONGEST = 200
+#: Of the last so many different values of the third axis the section is kept.
+_KEPT = 256
 
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d{1,3})?)(?:/(\d+))?\s*\Z", re.ASCII)
 
@@ -92,74 +100,107 @@ def _number(text: str) -> Fraction | None:
     return Fraction(match[1]) / Fraction(match[2] or 1)
 
 
-def located_csv(points: Points, found: PlaneMap | LineMap) -> str:
-    """The same rows with the columns ``where``, ``verdict`` and ``border``.
+def located_csv(points: Points, found: Map) -> str:
+    """The same rows with the columns ``where``, ``verdict`` and, of exact maps of a line or a plane, ``border``.
 
     The last one: soft, hard or open at a point where a pair of roots is imaginary and none to the right.
     """
-    out = io.StringIO(newline="")
+    out, locate = io.StringIO(newline=""), Locating(found)
+    borders = len(found.axes) < 3 and found.of is not Of.EQUILIBRIA and not isinstance(found.ground, Subdivision)
     writer = csv.writer(out, lineterminator="\n")
-    writer.writerow((*points.header, WHERE, VERDICT, BORDER))
+    writer.writerow((*points.header, WHERE, VERDICT, *([BORDER] if borders else [])))
     for row, values in zip(points.rows, points.values, strict=True):
-        stratum = judged_at(found, *values)
-        writer.writerow((*row, *_told(found, stratum), "" if stratum is None else _border(found, stratum, values)))
+        writer.writerow((*row, *locate(*values), *([locate.border(*values)] if borders else [])))
     return out.getvalue()
 
 
-def located(found: PlaneMap | LineMap, *values: Fraction) -> tuple[str, str]:
-    """(``region 3``, verdict or why there is none) of a point; ("outside of the box", "") where it lies there.
+class Locating:
+    """Finds where points of a map lie, and judges each exactly at its own place."""
 
-    On an arc the verdict is that of the point itself.
-    """
-    return _told(found, judged_at(found, *values))
+    def __init__(self, found: Map) -> None:
+        self.found = found
+        self._judge_at = lru_cache(_KEPT)(self._new_judge)
+
+    def __call__(self, *values: Fraction) -> tuple[str, str]:
+        """(``region 3``, verdict or why there is none) of a point; ("outside of the box", "") where it lies there.
+
+        Over three axes (``slice 4, region 3``, ...); beside a slice the region is the one that its signs single out.
+        """
+        if isinstance(self.found, Stack):
+            return self._in_stack(self.found, values)
+        cell = self.judged(*values)
+        if cell is None:
+            return f"outside of the {'interval' if isinstance(self.found.ground, Line) else 'box'}", ""
+        white = "white " if cell.lack is Lack.UNPROVED else ""
+        return f"{white}{cell.shape}{'' if white else f' {cell.number}'}", told(self.found, cell)
+
+    def judged(self, *values: Fraction) -> Cell | None:
+        """The cell of a rational point; an arc's verdict is found at the point itself.  None outside."""
+        cell, there = self.found.at(*values), self.found.section
+        if cell is not None and there is not None and cell.shape is Shape.ARC and cell.lack is None:
+            return Judge(there, self.found.admissibility)(Shape.ARC, cell.number, _place(values))
+        return cell
+
+    def border(self, *values: Fraction) -> str:
+        """``soft``, ``hard``, ``open`` or ``neither`` at a point with an imaginary pair and no root to the right."""
+        cell = self.judged(*values)
+        if cell is None or self.found.onsets is None or not cell.imaginary:
+            return ""
+        if cell.shape is not Shape.ARC:
+            return "" if cell.soft is None else cell.soft.onset.value
+        whole = self.found.arcs[cell.number].soft
+        if whole is not None and whole.onset is Onset.NEITHER:
+            return whole.onset.value
+        return self.found.onsets.at(_place(values)).onset.value
+
+    # --- over three axes ---
+
+    def _in_stack(self, found: Stack, values: Sequence[Fraction]) -> tuple[str, str]:
+        if any(not axis.low <= value <= axis.high for axis, value in zip(found.axes, values, strict=True)):
+            return "outside of the box", ""
+        x, y, z = (fmpq(value.numerator, value.denominator) for value in values)
+        layer = _layer(found, z)
+        if layer.z == z and layer.plane is not None:
+            cell = layer.plane.at(*values[:2])
+            assert cell is not None
+            return f"slice {layer.number}, {cell.shape} {cell.number}", told(found, cell)
+        beside = f"slice {layer.number}" if layer.z == z else f"beside slice {layer.number}"
+        judge, broken = self._judge_at(z)
+        cell = Cell(Shape.REGION, 0, lack=Lack.OUTSIDE) if broken else judge(Shape.REGION, 0, Point(x, y))
+        return beside + _region(found, layer, (x, y, z)), told(found, cell)
+
+    def _new_judge(self, z: Any) -> tuple[Judge, bool]:
+        assert self.found.section is not None
+        cut, kept = at_level(self.found.section, self.found.admissibility, z)
+        return Judge(cut, kept), bool(kept.broken)
 
 
-def judged_at(found: PlaneMap | LineMap, *values: Fraction) -> Stratum | None:
-    """The region, arc or corner of a rational point; an arc's verdict is found at the point itself.  None outside."""
-    stratum = stratum_at(found, *values)
-    if stratum is not None and stratum.shape is Shape.ARC and stratum.standing is Standing.JUDGED:
-        # an arc's verdict is that of its own exact point: here it is found at the point that is asked about
-        return Judge(found.section, found.admissibility)(Shape.ARC, stratum.number, _place(values))
-    return stratum
+def told(found: Map, cell: Cell) -> str:
+    """The word of the verdict, numbers of equilibria, or why there is nothing."""
+    if cell.lack is not None:
+        return cell.lack.value
+    return cell_words(found, cell) if cell.word is None else cell.word.value
 
 
 def _place(values: Sequence[Fraction]) -> Point:
     return Point(*(fmpq(x.numerator, x.denominator) for x in values))
 
 
-def _told(found: PlaneMap | LineMap, stratum: Stratum | None) -> tuple[str, str]:
-    if stratum is None:
-        return "outside of the interval" if isinstance(found, LineMap) else "outside of the box", ""
-    word = stratum.word
-    return f"{stratum.shape} {stratum.number}", stratum.standing.value if word is None else word.value
+def _layer(found: Stack, z: Any) -> Layer:
+    """The slice at a value, or the one between the same critical values."""
+    for layer in found.layers:
+        if layer.critical and compare(layer.z, z) == 0:
+            return layer
+    there: Any = found.line.locate(z)
+    return next(one for one in found.layers if not one.critical and one.z == there.sample)
 
 
-def _border(found: PlaneMap | LineMap, stratum: Stratum, values: Sequence[Fraction]) -> str:
-    """``soft``, ``hard``, ``open`` or ``neither`` at a point with an imaginary pair and no root to the right."""
-    if found.borders is None or not stratum.imaginary:
+def _region(found: Stack, layer: Layer, point: Sequence[Any]) -> str:
+    """``, region 3`` where one region alone has the signs of the point."""
+    if layer.plane is None or layer.z == point[2]:
         return ""
-    if stratum.shape is not Shape.ARC:
-        return "" if stratum.soft is None else stratum.soft.onset.value
-    whole = found.arcs[stratum.number].soft
-    if whole is not None and whole.onset is Onset.NEITHER:
-        return whole.onset.value
-    return found.borders.at(_place(values)).onset.value
-
-
-def stratum_at(found: PlaneMap | LineMap, *values: Fraction) -> Stratum | None:
-    """The region, arc or corner of a rational point, exactly (interval or zero of a line); None outside."""
-    at = tuple(fmpq(x.numerator, x.denominator) for x in values)
-    if isinstance(found, LineMap):
-        if not found.line.low <= at[0] <= found.line.high:
-            return None
-        there = found.line.locate(at[0])
-        return found.corners[there.id] if isinstance(there, Zero) else found.regions[there.id]
-    x, y = at
-    if (x, y) not in found.arrangement.box:
-        return None
-    place = found.arrangement.locate(x, y)
-    if isinstance(place, Arc):
-        return found.arcs[place.id]
-    if isinstance(place, Corner):
-        return found.corners[place.id]
-    return found.regions[place.id]
+    signs = tuple(sign(p(*point)) for p in found.boundaries.factors)
+    if 0 in signs:
+        return ", on a curve"
+    fitting = [one for one in layer.plane.regions if layer.plane.place(one).signs[: len(signs)] == signs]
+    return f", region {fitting[0].number}" if len(fitting) == 1 else ""

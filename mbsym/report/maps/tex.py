@@ -1,18 +1,24 @@
-r"""A map as LaTeX to \input: the picture with its caption, and the equations of its curves."""
+r"""A map as LaTeX to \input: the pictures with their caption, and the equations of what bounds its cells."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
+from flint import fmpq
+
+from mbsym.algebra.certainty import Certainty
+from mbsym.algebra.plane.line import Line
 from mbsym.formulas.latex import LatexNames
 from mbsym.maps.boxes import BoxMap
-from mbsym.maps.result import LineMap, Of, PlaneMap
+from mbsym.maps.branches_result import Branches
+from mbsym.maps.mapping import float_of
+from mbsym.maps.result import Lack, Map, Of
 from mbsym.maps.slices import Stack
 from mbsym.model.system import System
 from mbsym.report.language import Language
-from mbsym.report.maps.figure import lettered
-from mbsym.report.maps.line_figure import changes
-from mbsym.report.maps.words import INTERRUPTED, arcs_of, condition_words, onset_words, telling
+from mbsym.report.maps.figure import lettered, mark_name, marks, page_names, panels
+from mbsym.report.maps.words import INTERRUPTED, border_words, critical_words, percent, stem
 
 #: Longer polynomials are told by their degrees and number of terms.
 MOST_TERMS = 14
@@ -29,33 +35,83 @@ _ESCAPED = {
 }
 _ESCAPED |= {"<": r"\textless{}", ">": r"\textgreater{}", "^": r"\textasciicircum{}", "~": r"\textasciitilde{}"}
 
-
-def map_tex(system: System, found: PlaneMap | LineMap, language: Language) -> str:
-    """Needs graphicx; the picture is map.pdf in the same folder."""
-    names = LatexNames([axis.name for axis in found.section.axes])
-    axes = ", ".join(f"${names[axis.name]}$" for axis in found.section.axes)
-    plane = f"({axes})" if len(found.section.axes) > 1 else axes
-    lines = figure_lines("map.pdf", caption_of(system, found, plane, language))
-    items = _zeros(found, names, language) if isinstance(found, LineMap) else _curves(found, names, language)
-    if items:
-        head = "The points of the map:" if isinstance(found, LineMap) else "The curves of the map:"
-        lines += ["", r"\noindent " + language.say(head), r"\begin{itemize}", *items, r"\end{itemize}"]
-    return "\n".join(lines) + "\n"
+_HEADS = {
+    Of.STABILITY: "Stability of",
+    Of.SIGNATURE: "Degree of instability of",
+    Of.EQUILIBRIA: "Numbers of relative equilibria of",
+}
 
 
-def caption_of(system: System, found: PlaneMap | LineMap | Stack | BoxMap, plane: str, language: Language) -> str:
-    """What is shown, over which axes, and what has a number."""
-    fixed = LatexNames(list(found.section.told))
-    values = ", ".join(f"${fixed[name]} = {_rational(value)}$" for name, value in found.section.told.items())
-    what = "Degree of instability of" if found.of is Of.SIGNATURE else "Stability of"
-    told = f"{language.say(what)} {escaped(system.name)}: {plane}" + (f"; {values}" if values else "") + "."
-    return told + f" {language.say(INTERRUPTED)}." if found.interrupted else told
+def map_tex(system: System, found: Map, language: Language) -> str:
+    """Needs graphicx; the pictures are map.pdf, map-2.pdf, ... (see ``stem``) in the same folder."""
+    if isinstance(found, Branches):
+        return _branches(system, found, language)
+    names = LatexNames([axis.name for axis in found.axes])
+    caption = caption_of(system, _HEADS[found.of], found.values, language, _plane(found, names))
+    if isinstance(found, BoxMap):
+        caption += f" {language.say('Every coloured box is proved as a whole')}"
+        if any(one.lack is Lack.UNPROVED for one in found.regions):
+            caption += f"; {language.say('white: nothing is proved')} ({escaped(percent(found, language))})"
+        caption += "."
+    if found.interrupted:
+        caption += f" {language.say(INTERRUPTED)}."
+    command = "map --of equilibria" if found.of is Of.EQUILIBRIA else "map"
+    lines = [line for name in page_names(found) for line in figure_lines(f"{name}.pdf", caption, command)]
+    points = isinstance(found.ground, Line) and not isinstance(found, Stack)
+    head = "The points of the map:" if points else "The curves of the map:"
+    return "\n".join([*lines, *listed(language.say(head), _marks(found, names, language))]) + "\n"
 
 
-def figure_lines(file: str, caption: str) -> list[str]:
+def _branches(system: System, found: Branches, language: Language) -> str:
+    """The diagram, the numbers of equilibria, the critical values."""
+    name = LatexNames([found.axes[0].name])[found.axes[0].name]
+    caption = caption_of(system, "Relative equilibria of", found.values, language)
+    if found.interrupted:
+        caption += f" {language.say(INTERRUPTED)}."
+    numbers = []
+    for one, last in found.spans():
+        low, high, counted = number_tex(found.ends(one)[0]), number_tex(found.ends(last)[1]), one.counted
+        assert counted is not None
+        doubt = "" if one.certainty is Certainty.PROVED else f" ({language.say('not proved to be constant')})"
+        stable = f"{language.say('of them stable')} {counted.stable}"
+        stable += f", {language.say('undecided')} {counted.undecided}" if counted.undecided else ""
+        numbers.append(rf"\item ${low} < {name} < {high}$: {counted.count}, {stable}{doubt}")
+    told = [(one, words) for one in found.criticals if (words := critical_words(found, one, language))]
+    critical = [rf"\item ${name} = {number_tex(one.sample)}$: {escaped(words)}" for one, words in told]
+    lines = figure_lines("branches.pdf", caption, "equilibria --vary")
+    lines += listed(language.say("Numbers of equilibria:"), numbers)
+    return "\n".join([*lines, *listed(language.say("Critical values:"), critical)]) + "\n"
+
+
+def number_tex(x: Any) -> str:
+    """A rational number, a square root, or digits that end in dots."""
+    if isinstance(x, fmpq):
+        return str(x)
+    c = x.polynomial.coeffs()
+    if len(c) == 3 and c[1] == 0 and c[2] == 1:
+        return ("-" if float(x) < 0 else "") + rf"\sqrt{{{-c[0]}}}"
+    return f"{float(x):.8g}" + r"\ldots"
+
+
+def _plane(found: Map, names: LatexNames) -> str:
+    """What is shown: its axes."""
+    across = ", ".join(f"${names[axis.name]}$" for axis in found.axes[:2])
+    if not isinstance(found, Stack):
+        return f"({across})" if len(found.axes) > 1 else across
+    return rf"({across}), ${found.axis.low} \le {names[found.axis.name]} \le {found.axis.high}$"
+
+
+def caption_of(system: System, head: str, values: Mapping[str, Any], language: Language, plane: str = "") -> str:
+    """What is shown, over which axes, and what has a number; fractions with a stroke need no package."""
+    fixed = LatexNames(list(values))
+    told = "; " + ", ".join(f"${fixed[name]} = {value}$" for name, value in values.items()) if values else ""
+    return f"{language.say(head)} {escaped(system.name)}" + (f": {plane}" if plane else "") + f"{told}."
+
+
+def figure_lines(file: str, caption: str, command: str) -> list[str]:
     """A figure with a picture of the same folder."""
     return [
-        "% needs \\usepackage{graphicx}; written by mbsym map",
+        f"% needs \\usepackage{{graphicx}}; written by mbsym {command}",
         r"\begin{figure}",
         r"\centering",
         rf"\includegraphics[width=\columnwidth]{{{file}}}",
@@ -64,30 +120,33 @@ def figure_lines(file: str, caption: str) -> list[str]:
     ]
 
 
-def _curves(found: PlaneMap, names: LatexNames, language: Language) -> list[str]:
-    items = []
-    for k, letter in lettered(found).items():
-        condition = condition_words(telling(found.boundaries.conditions[k]), found.section, language)
-        condition += onset_words(arcs_of(found, k), language)
-        polynomial = equation(found.boundaries.factors[k], names, language)
-        items.append(rf"\item[\textit{{{letter}}}] {polynomial} \quad ({escaped(condition)})")
-    return items
+def listed(head: str, items: Iterable[str]) -> list[str]:
+    """A list under its head; nothing of none."""
+    told = list(items)
+    return ["", r"\noindent " + head, r"\begin{itemize}", *told, r"\end{itemize}"] if told else []
 
 
-def _zeros(found: LineMap, names: LatexNames, language: Language) -> list[str]:
-    name = names[found.section.axes[0].name]
-    return [
-        rf"\item[\textit{{{letter}}}] ${name} = {x:.10g}$ \quad ({escaped(words)})"
-        for letter, x, words in changes(found, language)
-    ]
+def _marks(found: Map, names: LatexNames, language: Language) -> Iterator[str]:
+    """Each letter of the picture with its polynomial in the axes, or its number; of one slice, in two of them."""
+    places = {mark_name(found, plane, k): (plane, k) for _, plane in reversed(panels(found)) for k in marks(plane)}
+    file = f"{stem(found)}.json"
+    for name, letter in lettered(found).items():
+        plane, k = places[name]
+        words = escaped(border_words(plane, k, language))
+        if isinstance(plane.ground, Line):
+            equality = f"${names[plane.axes[0].name]} = {float_of(plane.corners[k].sample):.10g}$"
+        else:
+            own = k >= len(found.boundaries.factors)
+            equality = equation((plane if own else found).boundaries.factors[k], names, language, file)
+        yield rf"\item[\textit{{{letter}}}] {equality} \quad ({words})"
 
 
-def equation(p: Any, names: LatexNames, language: Language) -> str:
-    """p = 0, or how long it is."""
+def equation(p: Any, names: LatexNames, language: Language, file: str) -> str:
+    """p = 0, or how long it is, and in which file it stands."""
     if len(p) > MOST_TERMS:
         symbols = [names[name] for name in p.context().names()]
         degrees = ", ".join(f"{d} ({language.say('in')} ${s}$)" for s, d in zip(symbols, p.degrees(), strict=True))
-        return f"{language.say('degrees')} {degrees}, {language.say('terms')}: {len(p)}, map.json"
+        return f"{language.say('degrees')} {degrees}, {language.say('terms')}: {len(p)}, {file}"
     terms: list[str] = []
     for exponents, coefficient in p.terms():
         powers = "".join(
@@ -96,15 +155,10 @@ def equation(p: Any, names: LatexNames, language: Language) -> str:
             if e
         ).strip()
         size = abs(coefficient)
-        number = "" if size == 1 and powers else _rational(size)
+        number = "" if size == 1 and powers else str(size)
         sign = "-" if coefficient < 0 else "+" if terms else ""
         terms.append(f"{sign} {number} {powers}".strip())
     return f"${' '.join(terms)} = 0$"
-
-
-def _rational(value: Any) -> str:
-    """As in running text: fractions with a stroke need no package."""
-    return str(value)
 
 
 def escaped(plain: str) -> str:

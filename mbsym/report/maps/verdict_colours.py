@@ -6,6 +6,7 @@ told apart by the colour-blind (Tol's palettes) and in grey.  What is no verdict
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 from mbsym.problems.stability.word import Word
@@ -17,6 +18,12 @@ class Look:
 
     colour: str
     hatch: str = ""
+
+    @property
+    def light(self) -> bool:
+        """Whether dark text is read upon it."""
+        red, green, blue = (int(self.colour[k : k + 2], 16) for k in (1, 3, 5))
+        return 0.299 * red + 0.587 * green + 0.114 * blue > 150
 
 
 #: By the word of the verdict.
@@ -42,6 +49,11 @@ DEGREES = (Look("#4f93c9"), Look("#ddcc77"), Look("#cc6677"), Look("#882255"), L
 
 #: Where no verdict is given: outside what was assumed, or where formulas divide by zero.
 NONE = Look("#ffffff", "///")
+#: Where nothing is proved, or was looked at: as the paper is.
+WHITE = Look("#ffffff")
+
+#: From few equilibria to many: told apart in grey, too.
+SHADES = ("#f7fbff", "#d6e6f4", "#abd0e6", "#6aaed6", "#3787c0", "#105ba4", "#08306b")
 
 
 def look_of_roots(word: str, right: int | None, real: int | None) -> Look:
@@ -54,6 +66,13 @@ def look_of_roots(word: str, right: int | None, real: int | None) -> Look:
 def look_of_degree(degree: int) -> Look:
     """The look of a degree of instability."""
     return DEGREES[min(degree, len(DEGREES) - 1)]
+
+
+def look_of_count(count: int, counts: Collection[int], throughout: bool) -> Look:
+    """The shade of a number of equilibria among all ``counts``, dotted where stability is the sample's."""
+    at, last = sorted(counts).index(count), len(counts) - 1
+    shade = SHADES[round(at * (len(SHADES) - 2) / last)] if last else SHADES[2]
+    return Look(shade, "" if throughout else "....")
 
 
 def look_of(word: str) -> Look:

@@ -1,15 +1,20 @@
-"""The words of maps: what a region is, which condition a curve comes from, why there is no verdict."""
+"""The words of maps: what a cell is, which condition a border comes from, why nothing is said."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
+from mbsym.algebra.certainty import Certainty
+from mbsym.algebra.plane.line import Line
 from mbsym.expressions.counting import counted
 from mbsym.maps.boundaries import Condition, Origin
-from mbsym.maps.result import Of, PlaneMap, Shape, Shown, Standing, Stratum
-from mbsym.maps.section import Section
+from mbsym.maps.boxes import BoxMap
+from mbsym.maps.branches_events import Event
+from mbsym.maps.branches_result import Branches, Doubt, Remark
+from mbsym.maps.result import Cell, Counted, Lack, Map, Of, Shape
 from mbsym.maps.soft_borders import Onset
 from mbsym.maps.verdicts import Judged
+from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word
 from mbsym.report.language import Language
 
@@ -21,6 +26,7 @@ _TELLING = (
     Origin.MEETING,
     *(Origin.ASSUMPTION, Origin.INERTIA, Origin.SIGN, Origin.UNDEFINED, Origin.MASS, Origin.LEADING),
     *(Origin.DAMPING, Origin.UNDAMPED, Origin.POTENTIAL, Origin.NOT_GYROSCOPIC, Origin.CYCLIC, Origin.ENERGY),
+    *(Origin.SINGULAR, Origin.LEAVING),
 )
 
 _CONDITIONS = {
@@ -42,19 +48,31 @@ _CONDITIONS = {
     Origin.SIGN: "declared sign",
     Origin.INERTIA: "triangle inequality",
     Origin.UNDEFINED: "division by zero",
+    Origin.SINGULAR: "singular equilibria: bifurcation, or none that is real",
+    Origin.LEAVING: "equilibria at infinity or at a border, or none that is real",
 }
 
 #: Of every file of a map that Ctrl-C ended.
 INTERRUPTED = "Interrupted: incomplete and not checked"
 
-STANDINGS = {
-    Standing.OUTSIDE: "not admissible",
-    Standing.MASSLESS: "kinetic energy not positive definite",
-    Standing.UNDEFINED: "formulas divide by zero",
-    Standing.TOO_LARGE: "too large to be decided",
-    Standing.WITHDRAWN: "withdrawn: the check failed",
-    Standing.NOT_REACHED: "not reached",
+LACKS = {
+    Lack.OUTSIDE: "not admissible",
+    Lack.MASSLESS: "kinetic energy not positive definite",
+    Lack.UNDEFINED: "formulas divide by zero",
+    Lack.TOO_LARGE: "too large to be decided",
+    Lack.WITHDRAWN: "withdrawn: the check failed",
+    Lack.NOT_REACHED: "not reached",
+    Lack.IRRATIONAL: "at an irrational value: not looked at",
+    Lack.UNPROVED: "nothing is proved",
+    Lack.INCOMPLETE: "not counted: the list is not complete",
+    Lack.FAMILIES: "infinitely many equilibria",
+    Lack.UNCOUNTED: "not counted",
 }
+
+
+def stem(found: Map) -> str:
+    """What the files of a map are called, without their endings."""
+    return "branches" if isinstance(found, Branches) else "equilibria-map" if found.of is Of.EQUILIBRIA else "map"
 
 
 def telling(conditions: Sequence[Condition], outside: bool = False) -> Condition:
@@ -64,28 +82,41 @@ def telling(conditions: Sequence[Condition], outside: bool = False) -> Condition
     return min(conditions, key=lambda one: order.index(one.origin))
 
 
-def condition_words(condition: Condition, section: Section, language: Language = ENGLISH) -> str:
+def condition_words(condition: Condition, found: Map, language: Language = ENGLISH) -> str:
     """``double root: discriminant (psi, phi, sigma)``."""
     words = language.say(_CONDITIONS[condition.origin])
     if condition.origin in (Origin.ASSUMPTION, Origin.SIGN, Origin.INERTIA):
         return f"{words}: {condition.about}" if condition.about else words
-    if condition.part is None or len(section.parts) == 1:
+    if condition.part is None or found.section is None or len(found.section.parts) == 1:
         return words
-    return f"{words} ({', '.join(section.coordinates[condition.part])})"
+    return f"{words} ({', '.join(found.section.coordinates[condition.part])})"
 
 
-def arcs_of(found: PlaneMap, curve: int) -> list[Stratum]:
-    """The arcs of a boundary polynomial."""
-    return [one for one in found.arcs if curve in found.arrangement.arcs[one.number].factors]
+def border_words(found: Map, k: int, language: Language = ENGLISH) -> str:
+    """What a letter of the picture stands for: curve ``k``, or point ``k`` of a line.
+
+    Where drawn borders bound what is not judged it is what parameters have to keep.
+    """
+    borders, conditions = marked(found, k)
+    sides = [x for one in borders if found.drawn(one) for x in found.beside(one) if x is not None]
+    condition = telling(conditions, outside=any(x.lack is not None for x in sides))
+    return condition_words(condition, found, language) + onset_words(borders, language)
 
 
-def onset_words(strata: Sequence[Stratum], language: Language = ENGLISH) -> str:
-    """``, soft border`` of a curve's arcs or of zeros where terms of third order decide that on all of them.
+def marked(found: Map, k: int) -> tuple[list[Cell], Sequence[Condition]]:
+    """The borders that have this letter, and the conditions that are equalities there."""
+    if isinstance(found.ground, Line):
+        return [found.corners[k]], found.conditions(found.corners[k])
+    return [one for one in found.arcs if k in found.place(one).factors], found.boundaries.conditions[k]
+
+
+def onset_words(borders: Sequence[Cell], language: Language = ENGLISH) -> str:
+    """``, soft border`` of a curve's arcs or of points where terms of third order decide that on all of them.
 
     Nothing where one of them is open, or is decided at its point only.
     """
     seen: set[Onset] = set()
-    for one in strata:
+    for one in borders:
         if one.soft is not None and one.soft.onset is not Onset.NEITHER:
             stretches = one.soft.stretches
             if one.shape is Shape.ARC and stretches is None:
@@ -98,13 +129,28 @@ def onset_words(strata: Sequence[Stratum], language: Language = ENGLISH) -> str:
     return f", {language.say(words[only])}"
 
 
-def look_words(found: Shown, stratum: Stratum, language: Language = ENGLISH) -> str:
-    """What is shown of a stratum, for a legend."""
-    if stratum.judged is None:
-        return language.say(STANDINGS[stratum.standing])
-    if found.of is Of.SIGNATURE:
-        return signature_words(stratum.judged, language)
-    return judged_words(stratum.judged, language)
+def cell_words(found: Map, cell: Cell, language: Language = ENGLISH) -> str:
+    """What is said of a cell, for a legend or a table."""
+    if (counts := cell.counted) is not None:
+        return counted_words(counts, cell.certainty, language)
+    if (judged := cell.judged) is None:
+        assert cell.lack is not None
+        return language.say(LACKS[cell.lack])
+    return signature_words(judged, language) if found.of is Of.SIGNATURE else judged_words(judged, language)
+
+
+def counted_words(found: Counted, certainty: Certainty, language: Language = ENGLISH) -> str:
+    """``24 equilibria, 4 stable``."""
+    proved = certainty is Certainty.PROVED
+    stable = "stable" if found.throughout or not proved else "stable at the sample"
+    stable = language.say(stable, "number of equilibria")
+    if language.name == "en":
+        told = f"{counted(found.count, 'equilibrium', 'equilibria')}, {found.stable} {stable}"
+        told += f", {found.undecided} undecided" if found.undecided else ""
+    else:
+        told = f"{language.say('equilibria')}: {found.count}; {stable}: {found.stable}"
+        told += f"; {language.say('undecided')}: {found.undecided}" if found.undecided else ""
+    return told if proved else f"{told} ({language.say('at the sample only')})"
 
 
 def judged_words(judged: Judged, language: Language = ENGLISH) -> str:
@@ -125,12 +171,88 @@ def signature_words(judged: Judged, language: Language = ENGLISH) -> str:
     return told + (f", {language.say('null directions')} {judged.null}" if judged.null else "")
 
 
-def broken_words(stratum: Stratum) -> str:
-    """The demands that are not kept, each once."""
-    return "; ".join(dict.fromkeys(one.condition.about or str(one.condition.polynomial) for one in stratum.broken))
+def row_words(found: Map, cell: Cell) -> tuple[str, str]:
+    """(``unstable: flutter, 2 roots to the right``, the theorem), for tables."""
+    told, judged = cell_words(found, cell), cell.judged
+    if judged is None or found.of is Of.SIGNATURE:
+        return told, ""
+    return (f"{told}, {counted(judged.right, 'root')} to the right" if judged.right else told), judged.verdict.theorem
 
 
-def row_words(judged: Judged) -> str:
-    """``unstable: flutter, 2 roots to the right``, for tables."""
-    told = judged_words(judged)
-    return f"{told}, {counted(judged.right, 'root')} to the right" if judged.right else told
+def share(value: float) -> str:
+    """A part of the area in per cent, never rounded to none or all."""
+    percent = 100 * value
+    if value in (0, 1):
+        return f"{percent:.0f} %"
+    return "less than 0.01 %" if percent < 0.01 else f"{min(percent, 99.99):.2f} %"
+
+
+def percent(found: BoxMap, language: Language) -> str:
+    """``12.50 % of the area`` are white."""
+    told = share(float(found.subdivision.white)).replace("less than", language.say("less than"))
+    return f"{told} {language.say('of the area')}"
+
+
+# --- branches of equilibria -------------------------------------------------------------------------------------------
+
+EVENTS = {
+    Event.FOLD: "fold",
+    Event.STEEP: "vertical tangent",
+    Event.TRANSCRITICAL: "transcritical point",
+    Event.ISOLATED: "isolated point",
+    Event.PITCHFORK: "pitchfork",
+    Event.CONTINUUM: "infinitely many equilibria at one value",
+    Event.DEGENERATE: "degenerate point, not named",
+}
+
+_DOUBTS = {
+    Doubt.UNFINISHED: "critical values may be missing, the exact solution is not finished",
+    Doubt.THROUGHOUT: "equilibria are singular over a whole interval: critical values may be missing",
+    Doubt.STABILITY: "where the stability changes along branches is not all solved",
+    Doubt.UNCOUNTED: "the equilibria at a critical value are not all solved",
+    Doubt.MISMATCH: "the counts beside a critical value contradict the events there: nothing is claimed of it",
+    Doubt.INCOMPLETE: "the list at a sample may be incomplete",
+    Doubt.FAMILIES: "at a sample there are infinitely many equilibria, which are not followed",
+}
+
+_BORDER = "equilibria at infinity or at a border (a root or denominator is zero, or the mass matrix singular)"
+_CHANGE = "the verdict of a branch changes"
+_DIFFER = "the verdicts at the samples on both sides differ"
+
+
+def event_words(events: Iterable[Event], language: Language = ENGLISH) -> str:
+    """``2 x fold, pitchfork``."""
+    listed = list(events)
+    told = []
+    for event in dict.fromkeys(listed):
+        words = language.say(EVENTS[event])
+        told.append(f"{listed.count(event)} x {words}" if listed.count(event) > 1 else words)
+    return ", ".join(told)
+
+
+def critical_words(found: Branches, at: Cell, language: Language = ENGLISH) -> str:
+    """What happens at a critical value; "" for nothing that is shown."""
+    one = found.critical(at)
+    if one.balance is False:
+        return language.say(EVENTS[Event.DEGENERATE])
+    parts = [event_words(one.events, language)] if one.events else []
+    if found.leaves(at) and not one.continuum:
+        parts.append(language.say(_BORDER))
+    if found.verdict_changes(at) and not parts and not found.count_changes(at):
+        parts.append(language.say(_CHANGE if found.certain(at) else _DIFFER))
+    if not parts and found.happens(at):
+        parts.append(language.say(EVENTS[Event.DEGENERATE]))
+    return ", ".join(parts)
+
+
+def remark_words(one: Remark) -> str:
+    """A sentence of the terminal on what is not proved."""
+    return _DOUBTS[one.doubt] + (f" ({one.about})" if one.about else "")
+
+
+def stable_words(verdicts: Iterable[Verdict | None]) -> str:
+    """``2``, or ``2, 1 undecided``: what nothing decides is not silently one of those that are not stable."""
+    known = list(verdicts)
+    stable = sum(x is not None and x.stable for x in known)
+    open_ = sum(x is None or x.word.open for x in known)
+    return f"{stable}, {open_} undecided" if open_ else f"{stable}"

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from mbsym.expressions.tree import text
+from mbsym.numerics.events.surfaces import source_of
 from mbsym.numerics.methods.passed import Narrow, Passed
-from mbsym.numerics.sources import source_of
 from mbsym.report.documents import simulation as doc
 
 if TYPE_CHECKING:

@@ -82,7 +82,8 @@ def plan_lines(plan: Plan, unit: str | None) -> Iterator[tuple[str, str]]:
     if plan.unshown and not plan.contradicted and all(bound.reached for bound in plan.bounds):
         yield "warning", f"the accuracy asked for is not shown: the error of this run is not estimated ({plan.unshown})"
     elif not plan.reached:
-        yield "warning", "the accuracy asked for is not reached"
+        why = plan.unmeasured
+        yield "warning", f"the accuracy asked for is not {f'shown: {why}' if why else 'reached'}"
     for item in plan.items:
         if item.kind in TITLES:
             yield TITLES[item.kind], item_words(item, plan)

@@ -14,7 +14,8 @@ from mbsym.numerics.trade.fidelity import RESOLVED, ModelError
 from mbsym.numerics.trade.tradeoff import Measured, Tradeoff, duration
 
 COLUMNS = (
-    "method", "arithmetic", "tolerance", "step", "error", "drift", "evaluations", "steps", "seconds", "front", "trouble"
+    "method", "arithmetic", "tolerance", "step", "error", "drift", "evaluations", "steps", "seconds", "cost", "front",
+    "trouble",
 )  # fmt: skip
 #: Behind ``drift``, where there are constraints.
 STRAYED = ("constraint_drift", "constraint_velocity_drift")
@@ -70,6 +71,7 @@ def _row(row: Measured, tied: bool) -> Sequence[object]:
         row.evaluations,
         row.steps,
         _number(row.seconds),
+        _number(row.cost),
         "yes" if row.front else "no",
         row.trouble,
     )
@@ -82,7 +84,7 @@ def _number(value: float) -> str:
 
 
 def shown(rows: Sequence[Measured], smallest_judged: float) -> list[tuple[str, ...]]:
-    """Cells for the terminal: method (and arithmetic), setting, error, drift, evaluations, steps, time, front.
+    """Cells for the terminal: method (and arithmetic), setting, error, drift, evaluations, steps, time, cost, front.
 
     Where there are constraints, the larger of its two drifts from them stands behind the drift of the energy.
     """
@@ -101,6 +103,7 @@ def shown(rows: Sequence[Measured], smallest_judged: float) -> list[tuple[str, .
                 str(row.evaluations),
                 str(row.steps),
                 duration(row.seconds),
+                f"{row.cost:.2g}",
                 "*" if row.front else "",
             )
         )

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 from mbsym.model.system import System
 from mbsym.problems.equilibrium import Equilibrium
-from mbsym.report.code.functions import moving
-from mbsym.report.content import Block, Display, Heading, Listed, Name, Relation, Said, paragraph
+from mbsym.report.content import Block, Display, Heading, Name, Relation, Said, paragraph
 from mbsym.report.documents import results as doc
 from mbsym.report.plain import Write, column_text
+from mbsym.report.sections.system import unperturbed_motion
 
 if TYPE_CHECKING:
     from mbsym.report.results import Results
@@ -38,10 +38,7 @@ def content(results: Results) -> Iterator[Block]:
     system, found = results.system, results.found.get(4)
     if system.motion or found is not None:
         yield paragraph(Said("The unperturbed motion"))
-    if system.motion or system.inputs:
-        items = [Relation(Name(x.coordinate), "=", moving(x.value, x.rate)) for x in system.motion]
-        held = [Relation(Name(x.name), "=", x.held) for x in system.inputs]
-        yield Display(Listed((*items, *held)), "motion")
+        yield Display(unperturbed_motion(system), "motion")
     yield from results.missing(4)
     if found is None:
         return

@@ -27,6 +27,7 @@ from mbsym.report.words.invariant_words import (
 )
 
 if TYPE_CHECKING:
+    from mbsym.formulas.formula import Formula
     from mbsym.report.results import Results
 
 
@@ -112,3 +113,31 @@ def content(results: Results) -> Iterator[Block]:
             yield ragged(*of_set(one, k, ring_of(found)))
     if found.generic:
         yield ragged(*closing(found))
+
+
+def formulas(found: InvariantSets, system: System) -> Iterator[tuple[str, Formula]]:
+    """What each formula is, and the formula: those that model.py has."""
+    for k, (name, formula) in enumerate(found.integrals):
+        yield f"V{k}, {name}", formula
+    for k, formula in enumerate(found.relations, start=1):
+        yield f"relation {k}, zero", formula
+    for f, family in enumerate(found.families, start=1):
+        for k, one in enumerate(family.sets, start=1):
+            yield from ((f"family {f}, set {k}: {key}", formula) for key, formula in _formulas_of_set(one))
+
+
+def _formulas_of_set(one: StationarySet) -> Iterator[tuple[str, Formula]]:
+    yield from one.solved
+    for k, formula in enumerate(one.relations, start=1):
+        yield f"equation {k}, zero", formula
+    for name, value in one.multipliers:
+        if value is not None:
+            yield f"multiplier {name}", value
+    yield from ((f"{name}'", formula) for name, formula in one.motion)
+    if one.variation is not None:
+        for word, relations in (("positive", one.variation.positive), ("negative", one.variation.negative)):
+            for k, each in enumerate(relations or (), start=1):
+                yield f"second variation {word} {k}, {each.relation} 0", each.formula
+    if one.first is not None:
+        for k, each in enumerate(one.first.necessary, start=1):
+            yield f"necessary {k}, {each.relation} 0", each.formula

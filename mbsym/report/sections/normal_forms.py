@@ -16,6 +16,7 @@ from mbsym.report.plain import Write
 from mbsym.report.words.normal_form_words import sentences
 
 if TYPE_CHECKING:
+    from mbsym.formulas.formula import Formula
     from mbsym.report.results import Results
 
 
@@ -83,3 +84,19 @@ def content(results: Results) -> Iterator[Block]:
     yield from results.missing(11)
     if 11 in results.found:
         yield from map(ragged, sentences(results.found[11]))
+
+
+def formulas(found: NormalForms, system: System) -> Iterator[tuple[str, Formula]]:
+    """What each formula is, and the formula: those that model.py has."""
+    symbols = found.in_symbols
+    if isinstance(symbols, InSymbols):
+        yield "sum of squares of the frequencies", symbols.trace
+        yield "product of squares of the frequencies", symbols.product
+        yield "discriminant", symbols.discriminant
+        yield "D4", symbols.determinant
+        yield "D4 vanishes with", symbols.zero
+        for vector, formula in symbols.resonances:
+            yield f"resonance {':'.join(map(str, vector))} vanishes with", formula
+    elif isinstance(symbols, Focus):
+        yield "square of the frequency", symbols.square
+        yield f"coefficient for the amplitude of {symbols.amplitude_of}", symbols.coefficient

@@ -19,6 +19,7 @@ from mbsym.report.words.integrals_words import (
     NOT_UNIFORM,
     OPENING,
     UNIFORM,
+    level_title,
     sentences,
     title,
     weighted,
@@ -109,3 +110,18 @@ def of_symmetries(found: Symmetries) -> Iterator[Block]:
 
 def _constant(formula: Formula) -> Display:
     return Display(Relation(formula, "=", Notation("\\mathrm{const}")))
+
+
+def formulas(found: Polynomials, system: System) -> Iterator[tuple[str, Formula]]:
+    """What each formula is, and the formula: those that model.py has."""
+    for k, (one, formula) in enumerate(zip(found.found.generators, found.formulas, strict=True), start=1):
+        yield f"{k}. {title(one)}, weight {one.weight}", formula
+    k = len(found.formulas)
+    for level, formulas in zip(found.levels, found.on_levels, strict=True):
+        for (weight, _), formula in zip(level.integrals, formulas, strict=True):
+            k += 1
+            yield f"{k}. {level_title(weight, level)}", formula
+    for symmetry in () if found.symmetries is None else found.symmetries.symmetries:
+        if not symmetry.name:
+            k += 1
+            yield f"{k}. integral of the symmetry {symmetry_words.field_text(symmetry)}", symmetry.integral

@@ -19,6 +19,7 @@ from mbsym.report.words.expansion_words import coefficients, of_averaging, of_me
 if TYPE_CHECKING:
     from mbsym.analysis.expanding import Expansion
     from mbsym.analysis.oscillating import Oscillating
+    from mbsym.formulas.formula import Formula
     from mbsym.report.results import Results
     from mbsym.simulation.expanded import Measured
     from mbsym.simulation.oscillating import MeasuredOrders
@@ -101,3 +102,18 @@ def of_wave(found: Oscillating, measured: MeasuredOrders | str) -> Iterator[Para
         yield from map(Display, oscillation_words.drifting(found))
     yield from map(ragged, oscillation_words.sentences(found))
     yield from map(ragged, oscillation_words.measured_sentences(found, measured))
+
+
+def formulas(found: SmallParameters, system: System) -> Iterator[tuple[str, Formula]]:
+    """What each formula is, and the formula: those that model.py has."""
+    if found.slow is not None:
+        for one in coefficients(found.slow):
+            yield f"{one.variable}{chr(39) if one.rate else ''}, order {one.order}", one.formula
+    if found.oscillation is not None:
+        for one in oscillation_words.coefficients(found.oscillation):
+            yield f"periodic solution: {one.variable}{chr(39) if one.rate else ''}, order {one.order}", one.formula
+    for each in averages(found, system):
+        if each.found is not None:
+            over = f"averaged over {each.found.phase} ({each.found.scaling})"
+            yield f"effective potential, {over}", each.found.potential
+            yield f"what the fast phase adds, {over}", each.found.vibrational

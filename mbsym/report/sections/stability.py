@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from msgspec import UNSET, UnsetType
@@ -14,9 +15,12 @@ from mbsym.formulas.names import free_name
 from mbsym.mechanics.variables import expressions
 from mbsym.model.quantities import rate_unit
 from mbsym.model.system import System
+from mbsym.problems.dissipation import EnergyLaw
 from mbsym.problems.stability import Stability
+from mbsym.problems.stability.linear_form import CONSERVATIVE
 from mbsym.problems.stability.problem import SubsystemStability
 from mbsym.problems.stability.reasons import Because
+from mbsym.problems.stability.requirements import Place
 from mbsym.problems.stability.sentences import sentence
 from mbsym.problems.stability.spectrum import RootNumbers, numbers
 from mbsym.problems.stability.verdict import Verdict
@@ -214,7 +218,10 @@ def _told(part: SubsystemStability, number: int, several: bool, results: Results
     """A subsystem: its characteristic polynomial, conditions, cases and verdict."""
     theory, variable = part.theory, results.variable
     title: tuple[Inline, ...] = (Said("Subsystem"), f" {number}: ") if several else ()
-    yield Subheading((*title, named(part.coordinates), " (", Words(theory.kind), ")"))
+    kind: Inline = Words(theory.kind)
+    if theory.kind.endswith(CONSERVATIVE) and not _conserved(results):
+        kind = say("in first approximation [[kind]]", kind=kind)
+    yield Subheading((*title, named(part.coordinates), " (", kind, ")"))
     symbol = Symbol(results.characteristic, upper=f"({number})" if several else "")
     shown = Relation(symbol, Listed((Symbol(variable),), brackets=True))
     yield paragraph(say("The characteristic polynomial $[[symbol]]$, freed of a positive factor, is", symbol=shown))
@@ -230,6 +237,8 @@ def _told(part: SubsystemStability, number: int, several: bool, results: Results
             yield Display(Relation(k, ":", factor), f"factor:{number}:{k}")
     seen, told = Shown(), label_meanings(part.ring, theory.requirements)
     wanted = list(statements(part.ring, theory.requirements, True, told))
+    if theory.verdict.stable:  # this method leaves open what is decided otherwise
+        wanted = [replace(x, place=Place.NECESSARY) if x.place is Place.METHOD else x for x in wanted]
     if wanted:
         yield paragraph(Said("Conditions"), " (", Words(theory.wanted, variable), "):")
         yield from _conditions(wanted, seen)
@@ -241,6 +250,12 @@ def _told(part: SubsystemStability, number: int, several: bool, results: Results
     for remark in theory.remarks:
         yield paragraph(Words(remark, variable))
     yield paragraph(Said("Verdict"), *results.presumed, ": ", *_verdict_told(theory.verdict, variable))
+
+
+def _conserved(results: Results) -> bool:
+    """Whether the energy of the nonlinear system is constant near the motion, in all orders."""
+    found = results.analysis.optional("balance")
+    return found is not None and found.law is EnergyLaw.CONSERVED
 
 
 def _verdict_told(found: Verdict, variable: str) -> tuple[Inline, ...]:

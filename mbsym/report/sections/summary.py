@@ -1,29 +1,35 @@
-"""What was found: the results of a run in a few lines."""
+"""What was found: the results of a run in a few lines, the verdict first."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
 from itertools import groupby
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from mbsym.algebra.factors import rational_ratio
+from mbsym.model.quantities import rate_unit
 from mbsym.model.system import System
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.stability import Stability, SubsystemStability
+from mbsym.problems.stability.spectrum import numbers
 from mbsym.problems.stability.word import Word
-from mbsym.report.brief import self_check, worst
-from mbsym.report.conditions import statements
+from mbsym.report.brief import ranges, self_check, worst
+from mbsym.report.conditions import OPPOSITE, CaseStatement, Statement, cases, label_meanings
 from mbsym.report.content import (
     Block,
+    Fact,
     Facts,
     Graded,
     Heading,
     Inline,
     Link,
+    Math,
     Name,
     Phrase,
     Relation,
     Said,
+    Unit,
     Words,
     joined,
     named,
@@ -31,14 +37,17 @@ from mbsym.report.content import (
 )
 from mbsym.report.sections.canonical import TITLES
 from mbsym.report.sections.equations import is_short, short_equations
+from mbsym.report.sections.system import unperturbed_motion
 from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line, titles
-from mbsym.report.words.verdicts import decided, grade, verdict
+from mbsym.report.words.verdicts import decided, grade, verdict, where
 
 if TYPE_CHECKING:
+    from mbsym.formulas.formula import Formula
     from mbsym.problems.constraints import Constraints
     from mbsym.report.results import Results
 
-Fact = tuple[tuple[Inline, ...], tuple[Inline, ...]]
+#: More conditions of a case, cases of a subsystem, coordinates of a motion are left to the problems.
+MOST_CONDITIONS, MOST_CASES, MOST_COORDINATES = 4, 4, 8
 
 
 def content(results: Results) -> Iterator[Block]:
@@ -54,124 +63,188 @@ def finding(results: Results) -> Facts:
 
 def _facts(results: Results) -> Iterator[Fact]:
     system, found = results.system, results.found
-    yield _size(system, found[3].constraints if 3 in found else None)
-    if 2 in found and found[2].cyclic and not system.constraints:
-        yield (Said("$L$ does not contain"),), (named(found[2].cyclic),)
+    yield _size(system, found)
     if 3 in found and (equations := short_equations(found[3], system)):
         written = [Relation(one, "=", 0) for one in equations]
         written += [Relation(Name(x, 1), "=", rate) for x, rate in getattr(found[3], "kinematic", ())]
-        yield (Said("Equations of motion"),), (joined(written, ";  "),)
+        yield Fact(Said("Equations"), tuple(written))
     if 4 in found:
-        yield (Said("The unperturbed motion"),), _motion(found[4])
+        yield Fact(Said("Motion"), tuple(_motion(found[4], system)))
     if 6 in found:
-        yield from _stability(found[6], results)
+        if found[6].numerical is not None:
+            yield Fact(Said("At given values"), (_at_values(found[6], system),))
+        yield Fact(Said("Stability"), tuple(_stability(found[6], results)))
     if 7 in found:
-        integrals = [part for one in found[7] for part in ("; ", Words(one.name), " (", Words(one.status), ")")]
-        none = Said("none in closed form of the kinds that are looked for")
-        yield (Said("First integrals"),), tuple(integrals[1:]) or (none,)
-    claims = results.analysis.claims
-    if claims:
-        count = Counter(claim_line(one).word for one in claims)
-        gravest = next(word for word in (REFUTED, OPEN, HELD) if count[word])
-        said = say("all [[count]] hold", count=str(len(claims))) if len(claims) > 1 else Said("it holds")
-        if gravest != HELD:
-            text = "[[held]] hold, [[refuted]] do not, [[open]] undecided"
-            said = say(text, held=str(count[HELD]), refuted=str(count[REFUTED]), open=str(count[OPEN]))
-        yield (Said("Claims"),), (Link(Graded(said, grade(gravest)), "claims"),)
-        for line in map(claim_line, claims):
-            if line.word != HELD:
-                place = (line.place, ", ") if line.place else ()
-                about = (Said("Claim"), " ", *place, titles([line]))
-                yield about, (Graded(Phrase(line.said), grade(line.word)),)
-    for reason, several in groupby(results.failures.items(), key=lambda one: one[1].reason):
-        numbers = [number for number, _ in several]
-        named_ones = ", ".join(map(str, numbers))
-        title = (
-            say("Problem [[number]]", number=named_ones)
-            if len(numbers) == 1
-            else say("Problems [[numbers]]", numbers=named_ones)
-        )
-        hint = results.failures[numbers[0]].hint
-        more = (" (", Words(hint), ")") if hint else ()
-        yield (Link(title, f"problem-{numbers[0]}"),), (Said("no result"), ": ", Words(reason), *more)
-    for form, failure in results.forms.forms.failures:
-        yield (Said(TITLES[form]),), (Said("no result"), ": ", Words(failure.reason))
-    checks = results.analysis.checks
-    if checks:
-        yield (Said("Self-check"),), (Link(Graded(self_check(checks), grade(worst(checks))), "checks"),)
+        none = (Said("none in closed form of the kinds that are looked for"),)
+        integrals = tuple(Phrase((Words(one.name), " (", Words(one.status), ")")) for one in found[7])
+        yield Fact(Said("First integrals"), integrals or none)
+    if results.analysis.claims:
+        yield Fact(Said("Claims"), tuple(_claims(results)))
+    yield from _missing(results)
+    if checks := results.analysis.checks:
+        yield Fact(Said("Self-check"), (Link(Graded(self_check(checks), grade(worst(checks))), "checks"),))
 
 
-def _size(system: System, tied: Constraints | None) -> Fact:
-    freedom = Phrase((str(len(system.coordinates)), ": ", named(system.coordinates)))
+def _size(system: System, found: dict[int, Any]) -> Fact:
+    """Coordinates, constraints, what is left of freedom, cyclic coordinates, bodies."""
+    tied: Constraints | None = found[3].constraints if 3 in found else None
+    said: list[Inline] = [named(system.coordinates)]
+    if len(system.coordinates) > 1:
+        said.insert(0, f"{len(system.coordinates)}: ")
     if system.linear:
-        title = "State variables" if system.linear.of_first_order else "Degrees of freedom"
-        return (Said(title),), (freedom, "; ", Said("given by its matrices"))
-    bodies = str(len(system.bodies))
+        title = "State variables" if system.linear.of_first_order else "Coordinates"
+        return Fact(Said(title), (Phrase((*said, "; ", Said("given by its matrices"))),))
     if system.constraints:
-        text = "[[bodies]]; coordinates: [[coordinates]]; constraints: [[constraints]]"
-        said = say(
-            text,
-            bodies=bodies,
-            coordinates=freedom,
-            constraints=str(len(system.constraints) if tied is None else tied.velocity_rank),
-        )
-        if tied is not None:
-            left = len(tied.coordinates) - tied.velocity_rank
-            return (Said("Bodies and frames"),), (said, "; ", say("degrees of freedom: [[freedom]]", freedom=str(left)))
-    else:
-        said = say("[[bodies]]; degrees of freedom: [[freedom]]", bodies=bodies, freedom=freedom)
-    return (Said("Bodies and frames"),), (said,)
+        count = len(system.constraints) if tied is None else tied.velocity_rank
+        said += ["; ", say("constraints: [[count]]", count=str(count))]
+    if tied is not None:
+        freedom = len(tied.coordinates) - tied.velocity_rank
+        said += ["; ", say("degrees of freedom: [[freedom]]", freedom=str(freedom))]
+    if 2 in found and found[2].cyclic and not system.constraints:
+        said += ["; ", Said("$L$ does not contain"), " ", named(found[2].cyclic)]
+    said += ["; ", say("bodies and frames: [[count]]", count=str(len(system.bodies)))]
+    return Fact(Said("Coordinates"), (Phrase(tuple(said)),))
 
 
-def _motion(found: Equilibrium) -> tuple[Inline, ...]:
+def _motion(found: Equilibrium, system: System) -> Iterator[Inline]:
+    items = unperturbed_motion(system)
+    told: tuple[Inline, ...] = (items, " ") if 0 < len(items.items) <= MOST_COORDINATES else ()
     if found.satisfied:
-        return (Said("satisfies the equations of motion identically"),)
-    if found.impossible:
-        return (Graded(Said("does not satisfy the equations of motion"), "bad"),)
-    text = "satisfies the equations of motion under conditions; their number: [[count]]"
-    return (Link(say(text, count=str(len(found.conditions))), "problem-4"),)
-
-
-def _stability(found: Stability, results: Results) -> Iterator[Fact]:
-    """The verdicts: that on the whole first."""
-    several, presumed = len(found.subsystems) > 1, results.presumed
-    cases = ("; ", Link(Said("see problem 6 of the report"), "problem-6"))
-    names = named(found.subsystems[0].coordinates)
-    whole = (Said("Stability of the whole system"),) if several else (Said("Stability"), ", ", names)
-    depends = found.verdict.word is Word.DEPENDS
-    yield (
-        (*whole, *presumed),
-        (
-            *verdict(found.verdict, "verdict"),
-            *(cases if depends else ()),
-            *(() if several else _conditions(found.subsystems[0], results.variable)),
-        ),
-    )
-    for part in found.subsystems if several else ():
-        others = (", ", Said("while the others keep to the unperturbed motion"))
-        said = (*verdict(part.theory.verdict), *others, *_conditions(part, results.variable))
-        yield (Said("Stability"), ", ", named(part.coordinates), *presumed), said
-    if found.numerical is not None:
-        said = verdict(found.numerical, "verdict-at-values")
-        if found.numerical.word is Word.UNDECIDED and found.numerical.explanation:
-            said = (*said, ": ", Words(found.numerical.explanation))
-        yield (Said("At the given values of the parameters"), Words(decided(found))), said
-
-
-def _conditions(part: SubsystemStability, variable: str) -> Iterator[Inline]:
-    """The conditions that a verdict depends on, where they are short, else their number."""
-    if part.theory.verdict.word not in (Word.DEPENDS, Word.UNSTABLE_BUT_BORDERS):
-        return
-    items = list(statements(part.ring, part.theory.requirements))
-    if not items or any(one.never is not None for one in items):
-        return
-    yield from ("; ", say("conditions ([[wanted]])", wanted=Words(part.theory.wanted, variable)), ": ")
-    if all(one.formula is not None and is_short(one.formula) for one in items):
-        shown: list[Inline] = []
-        for one in items:
-            assert one.formula is not None
-            remark = (" (", Words(one.remark, variable), ")") if one.remark else ()
-            shown.append(Phrase((Relation(one.formula, one.relation, 0), *remark)))
-        yield joined([one for k, one in enumerate(shown) if one not in shown[:k]], ", ")
+        yield Phrase((*told, Said("satisfies the equations of motion identically")))
+    elif found.impossible:
+        yield Phrase((*told, Graded(Said("does not satisfy the equations of motion"), "bad")))
+    elif len(found.conditions) <= MOST_CONDITIONS and all(map(is_short, found.conditions)):
+        wanted = joined((Relation(one, "=", 0) for one in found.conditions), ", ")
+        yield Phrase((*told, Said("satisfies the equations of motion if and only if"), " ", wanted))
     else:
-        yield Link(say("[[count]] in number", count=str(len(items))), "problem-6")
+        text = "satisfies the equations of motion under conditions; their number: [[count]]"
+        yield Phrase((*told, Link(say(text, count=str(len(found.conditions))), "problem-4")))
+
+
+def _at_values(found: Stability, system: System) -> Inline:
+    """The verdict at the given values; of an unstable motion how fast the fastest solution grows."""
+    assert found.numerical is not None
+    said = (*verdict(found.numerical, "verdict-at-values"), Words(decided(found)))
+    if found.numerical.word is Word.UNDECIDED and found.numerical.explanation:
+        said = (*said, ": ", Words(found.numerical.explanation))
+    growth = max((root.real for part in found.spectra for root in numbers(part)), default=0.0)
+    if found.numerical.word is Word.UNSTABLE and growth > 0:
+        unit = rate_unit(system)
+        largest = say("largest real part of an eigenvalue: [[growth]]", growth=f"{growth:.4g}")
+        said = (*said, "; ", largest, *((" ", Unit(unit)) if unit else ()))
+    return Phrase(said)
+
+
+def _stability(found: Stability, results: Results) -> Iterator[Inline]:
+    """The verdicts for all values of the parameters: that on the whole, then those on subsystems, with their cases."""
+    several, presumed = len(found.subsystems) > 1, results.presumed
+    if presumed:
+        yield Phrase((*presumed[1:], ":"))
+    if not several:
+        yield from _part(found.subsystems[0], "verdict")
+        return
+    yield Phrase((Said("the whole system"), ": ", *verdict(found.verdict, "verdict")))
+    for part in found.subsystems:
+        first, *further = _part(part, "")
+        yield Phrase((named(part.coordinates), ": ", first))
+        yield from further
+    yield Phrase(("(", Said("of each group of coordinates while the others keep to the unperturbed motion"), ")"))
+
+
+def _part(part: SubsystemStability, key: str) -> Iterator[Inline]:
+    """The verdict on a subsystem, or which verdict follows where: the first case that applies is the one."""
+    known = cases(part.ring, part.theory.cases, label_meanings(part.ring, part.theory.requirements))
+    known = [one for one in known if one.all_of or one.any_of or one.otherwise]
+    word = part.theory.verdict.word
+    if word is not Word.DEPENDS or key or not known:
+        yield Phrase(verdict(part.theory.verdict, key))
+    if word.stable or word is Word.UNSTABLE:
+        return
+    seen: list[Formula] = []
+    before: list[Relation] = []
+    for k, case in enumerate(known[:MOST_CASES]):
+        otherwise = (Said("otherwise"), " ") if k else ()
+        every, either = _conditions(case, seen)
+        told = Phrase(where(case.word, case.theorems))
+        yield Phrase((*otherwise, _where(told, every, either, before) if every or either else _counted(told, case)))
+        before = every
+    if len(known) > MOST_CASES:
+        yield Link(say("further cases: [[count]]", count=str(len(known) - MOST_CASES)), "problem-6")
+
+
+def _conditions(case: CaseStatement, seen: list[Formula]) -> tuple[list[Relation], list[Relation]]:
+    """What all has to hold, and what of which something has to; nothing where it is too long to be read.
+
+    ``seen``: polynomials that stood before, as they stood.
+    """
+    wanted = [*case.all_of, *case.any_of]
+    if len(wanted) > MOST_CONDITIONS or not all(one.formula is not None and is_short(one.formula) for one in wanted):
+        return [], []
+    either = [_relation(one, seen) for one in case.any_of]
+    every = [_relation(one, seen) for one in case.all_of]
+    if len(either) == 1:  # p < 0 says that p is not 0
+        every = [one for one in every if one.parts != (either[0].parts[0], "!=", 0)]
+    return every, either
+
+
+def _counted(verdict: Phrase, case: CaseStatement) -> Inline:
+    """That a case has conditions."""
+    if case.otherwise:
+        return verdict
+    text = "[[verdict]] if conditions hold; their number: [[count]]"
+    if not case.all_of and len(case.any_of) > 1:
+        text = "[[verdict]] if at least one of several conditions holds; their number: [[count]]"
+    return Link(say(text, verdict=verdict, count=str(len(case.all_of) + len(case.any_of))), "problem-6")
+
+
+def _where(verdict: Phrase, every: list[Relation], either: list[Relation], before: list[Relation]) -> Inline:
+    """The verdict with its conditions; ``before``: those of the case in front of it."""
+    if len(either) > 1 and not every and [one.parts for one in either] == [_reversed(one) for one in before]:
+        return say("[[verdict]] if one of these is negative", verdict=verdict)
+    between = (", ", Said("and"), " ") if every and either else ()
+    conditions = Phrase((joined(every, ", "), *between, joined(either, " ", Said("or"), " ")))
+    return say("[[verdict]] if [[conditions]]", verdict=verdict, conditions=conditions)
+
+
+def _reversed(one: Relation) -> tuple[Math | str, ...]:
+    return (one.parts[0], "<", 0) if one.parts[1] == ">" else ()
+
+
+def _relation(item: Statement, seen: list[Formula]) -> Relation:
+    """p > 0; where -p or a multiple stood before, by that: p < 0."""
+    assert item.formula is not None
+    for one in seen:
+        ratio = rational_ratio(item.formula.polynomial, one.polynomial)
+        if ratio is not None:
+            return Relation(one, item.relation if ratio > 0 else OPPOSITE.get(item.relation, item.relation), 0)
+    seen.append(item.formula)
+    return Relation(item.formula, item.relation, 0)
+
+
+def _claims(results: Results) -> Iterator[Inline]:
+    """How many hold; each that does not."""
+    lines = list(map(claim_line, results.analysis.claims))
+    count = Counter(one.word for one in lines)
+    gravest = next(word for word in (REFUTED, OPEN, HELD) if count[word])
+    said = say("all [[count]] hold", count=str(len(lines))) if len(lines) > 1 else Said("it holds")
+    if gravest != HELD:
+        text = "[[held]] hold, [[refuted]] do not, [[open]] undecided"
+        said = say(text, held=str(count[HELD]), refuted=str(count[REFUTED]), open=str(count[OPEN]))
+    yield Link(Graded(said, grade(gravest)), "claims")
+    for line in lines:
+        if line.word != HELD:
+            place = (line.place, ", ") if line.place else ()
+            yield Phrase((*place, titles([line]), ": ", Graded(Phrase(line.said), grade(line.word))))
+
+
+def _missing(results: Results) -> Iterator[Fact]:
+    """Problems and forms without a result, and why."""
+    for reason, several in groupby(results.failures.items(), key=lambda one: one[1].reason):
+        numbers_of = [number for number, _ in several]
+        hint = results.failures[numbers_of[0]].hint
+        more = (" (", Words(hint), ")") if hint else ()
+        text = "Problem [[number]]" if len(numbers_of) == 1 else "Problems [[number]]"
+        title = Link(say(text, number=ranges(numbers_of)), f"problem-{numbers_of[0]}")
+        yield Fact(title, (Phrase((Said("no result"), ": ", Words(reason), *more)),))
+    for form, failure in results.forms.forms.failures:
+        yield Fact(Said(TITLES[form]), (Phrase((Said("no result"), ": ", Words(failure.reason))),))

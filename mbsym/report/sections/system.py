@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from mbsym.expressions.tree import ZERO
+from mbsym.expressions.tree import ZERO, Expression
 from mbsym.model.speeds import UnitVector
 from mbsym.model.system import INERTIAL, Body, System
 from mbsym.report.code.functions import moving
@@ -188,6 +188,20 @@ def _body(body: Body, number: int, accepted: dict[str, str]) -> Iterator[Inline]
     yield "."
 
 
+def unperturbed_motion(system: System) -> Listed:
+    """The motion about which problems 4 to 6 are, and the values at which inputs are held.
+
+    What is not named is 0, but for what constraints make of it.
+    """
+    moves = {x.coordinate: moving(x.value, x.rate) for x in system.motion}
+    alike: dict[Expression, list[str]] = {}
+    for name in moves if system.constraints else system.coordinates:
+        alike.setdefault(moves.get(name, ZERO), []).append(name)
+    items = [Relation(*(part for name in names for part in (Name(name), "=")), value) for value, names in alike.items()]
+    held = [Relation(Name(x.name), "=", x.held) for x in system.inputs]
+    return Listed((*items, *held))
+
+
 def _values(system: System) -> Iterator[Block]:
     if system.relations:
         relations = Listed(tuple(Relation(Name(x.name), "=", x.value) for x in system.relations))
@@ -204,9 +218,7 @@ def _values(system: System) -> Iterator[Block]:
             parts += [*([", "] if k else []), between, *_unit(system, name)]
         yield paragraph(Said("Limits of the coordinates, which no force keeps"), ": ", *parts, ".")
     if system.motion:
-        items = [Relation(Name(x.coordinate), "=", moving(x.value, x.rate)) for x in system.motion]
-        held = [Relation(Name(x.name), "=", x.held) for x in system.inputs]
-        yield paragraph(Said("Unperturbed motion"), ": ", Listed((*items, *held)), ".")
+        yield paragraph(Said("Unperturbed motion"), ": ", unperturbed_motion(system), ".")
     initial: list[Inline] = []
     for item in system.initial:
         if item.position is not None:

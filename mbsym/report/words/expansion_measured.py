@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from mbsym.analysis.oscillating import Oscillating
     from mbsym.analysis.small import Averaging, SmallParameters
     from mbsym.model.system import System
-    from mbsym.problems.averaging import Averaged
+    from mbsym.problems.small_parameter.averaging import Averaged
     from mbsym.simulation.averaged import Measured as MeasuredAverage
     from mbsym.simulation.expanded import Measured
     from mbsym.simulation.oscillating import MeasuredOrders

@@ -22,8 +22,17 @@ def grade(word: str) -> str:
 
 def concluded(word: Word, theorems: Sequence[str], key: str = "") -> tuple[Inline, ...]:
     """``stable (Routh)``."""
+    return Strong(Words(word), grade(word), key), *_by(theorems)
+
+
+def where(word: Word, theorems: Sequence[str]) -> tuple[Inline, ...]:
+    """The same of what holds under conditions: it is neither good nor bad."""
+    return Words(word), *_by(theorems)
+
+
+def _by(theorems: Sequence[str]) -> tuple[Inline, ...]:
     names = [part for name in theorems for part in (", ", Words(name))][1:]
-    return Strong(Words(word), grade(word), key), *((" (", *names, ")") if names else ())
+    return (" (", *names, ")") if names else ()
 
 
 def verdict(found: Verdict, key: str = "") -> tuple[Inline, ...]:

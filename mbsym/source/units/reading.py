@@ -10,11 +10,22 @@ from functools import cache
 from typing import Any
 
 from mbsym.expressions.parser import ascii_safe
-from mbsym.model.units import Declared, Dimension, dimension, times
+from mbsym.model.units import (
+    ENERGY,
+    FORCE,
+    LENGTH,
+    MASS,
+    NONE,
+    RATE,
+    TIME,
+    Declared,
+    Dimension,
+    dimension,
+    times,
+)
 from mbsym.source.placed import Node
 from mbsym.source.reading import Reading, keys_of
 from mbsym.source.scope import Allowed, closest
-from mbsym.source.units.common import COMMON
 from mbsym.source.units.products import MAX_EXPONENT, Wrong, product
 
 #: Names of our base units in pint's dimensions.
@@ -29,13 +40,45 @@ _BASES = {
 }
 
 #: What people write, for guesses at slips.
-_COMMON = ("kg", "m", "s", "N", "J", "W", "Pa", "Hz", "rad", "deg", "mm", "cm", "km", "g", "min", "h", "A", "V", "K")
+_WRITTEN = ("kg", "m", "s", "N", "J", "W", "Pa", "Hz", "rad", "deg", "mm", "cm", "km", "g", "min", "h", "A", "V", "K")
 
 
 #: Products that would be taken for something else: Nm is a number of metres a gram.
 _CONFUSED = {"Nm": "N*m", "Nms": "N*m*s", "kgm": "kg*m"}
 _MILLISECONDS = re.compile(r"ms(?:\^|\*\*)?-([12])\Z")
 _DIGIT = re.compile(r"\b([A-Za-z]+)([2-4])\b")
+
+
+_POWER = times(ENERGY, TIME, -1)
+_PRESSURE = times(FORCE, LENGTH, -2)
+
+#: The units that mechanics is written in, so that descriptions with these alone need not load every unit there is:
+#: name -> size in SI (kg, m, s) and dimension; ``tests/source/test_units.py`` holds it against pint.
+COMMON: dict[str, tuple[Fraction, Dimension]] = {
+    name: (Fraction(size), dimension)
+    for name, size, dimension in (
+        ("kg", "1", MASS),
+        ("g", "1/1000", MASS),
+        ("t", "1000", MASS),
+        ("m", "1", LENGTH),
+        ("mm", "1/1000", LENGTH),
+        ("cm", "1/100", LENGTH),
+        ("km", "1000", LENGTH),
+        ("s", "1", TIME),
+        ("ms", "1/1000", TIME),
+        ("min", "60", TIME),
+        ("h", "3600", TIME),
+        ("N", "1", FORCE),
+        ("kN", "1000", FORCE),
+        ("J", "1", ENERGY),
+        ("kJ", "1000", ENERGY),
+        ("W", "1", _POWER),
+        ("kW", "1000", _POWER),
+        ("Pa", "1", _PRESSURE),
+        ("rad", "1", NONE),
+        ("Hz", "1", RATE),
+    )
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,7 +182,7 @@ def read_units(node: Node | None, given: Iterable[Declared], reading: Reading) -
         reason = unit(one.text)
         if isinstance(reason, str):
             close = _likely(one.text)
-            close = close if close and isinstance(unit(close), Unit) else closest(one.text, _COMMON)
+            close = close if close and isinstance(unit(close), Unit) else closest(one.text, _WRITTEN)
             hint = f"did you mean '{close}'?" if close else "for example kg, m, s, N, kg*m^2, rad, m/s^2, or 1"
             reading.error("bad-unit", f"{ascii_safe(one.text)} is no unit: {reason}", one.span, hint)
     return tuple(found.values())

@@ -69,10 +69,6 @@ class Request:
         return self.format or FORMATS
 
     @property
-    def pictures(self) -> tuple[str, ...]:
-        return tuple(kind for kind in self.files if kind in ("svg", "pdf", "png"))
-
-    @property
     def varied(self) -> str:
         return "" if self.vary is None else self.vary.name
 

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 from flint import fmpq
 
-from mbsym.algebra.plane.numbers import compare
+from mbsym.algebra.certainty import Certainty
 from mbsym.model.system import System
 from mbsym.studies.study import Answer, Column, Exit, Line, Rows, Watch, line
 
 if TYPE_CHECKING:
     from mbsym.maps.axis import Axis
     from mbsym.maps.branches_result import Branches
+    from mbsym.maps.result import Cell
     from mbsym.studies.equilibria import Request
 
 
@@ -35,46 +36,30 @@ def followed(system: System, axis: Axis, values: Mapping[str, Fraction], watch: 
 
 
 def answer(system: System, request: Request, found: Branches) -> Answer:
-    lines, files = _lines(found), _files(system, request, found)
+    from mbsym.studies.map.answer import files_of
+
+    lines, files = _lines(found), files_of(system, found, request.files, request.language or "en")
     if found.interrupted:
         told = "interrupted; what was proved before that is written"
         return Answer(lines, files, (told,), Exit.INTERRUPTED)
-    unbalanced = any(one.balance is False for one in found.criticals)
+    unbalanced = any(found.critical(one).balance is False for one in found.criticals)
     return Answer(lines, files, code=Exit.FAILED if unbalanced else Exit.OK)
-
-
-def _files(system: System, request: Request, found: Branches) -> dict[str, str | bytes]:
-    from mbsym.report.language import Language
-    from mbsym.report.maps.branch_json import branches_json
-    from mbsym.report.maps.branch_tex import branch_tex
-
-    spoken = Language(request.language or "en")
-    files: dict[str, str | bytes] = {}
-    if request.pictures:
-        from mbsym.report.maps.branch_figure import branch_figure
-
-        files |= branch_figure(system, found, spoken, request.pictures)
-    if "json" in request.files:
-        files["branches.json"] = branches_json(system, found)
-    if "tex" in request.files:
-        files["branches.tex"] = branch_tex(system, found, spoken)
-    return files
 
 
 def _lines(found: Branches) -> Iterator[Line | Rows]:
     """Intervals and critical values in their order, then what there is to know besides."""
-    from mbsym.report.maps.branch_words import critical_words, remark_words
+    from mbsym.report.maps.words import critical_words, remark_words
 
     columns = (
-        Column(found.axis.name),
+        Column(found.axes[0].name),
         Column("equilibria", right=True),
         Column("stable", right=True),
         Column("what happens", fold=True),
     )
     yield Rows(columns, rows(found))
     for one in found.criticals:
-        if (polynomial := _minimal(one.number)) and critical_words(found, one):
-            yield line(f"  {value(one.number)} is a root of {polynomial}")
+        if (polynomial := _minimal(one.sample)) and critical_words(found, one):
+            yield line(f"  {value(one.sample)} is a root of {polynomial}")
     for remark in found.remarks:
         yield line(f"  {remark_words(remark)}")
     lost = sum(not piece.throughout for piece in found.pieces)
@@ -87,32 +72,28 @@ def _lines(found: Branches) -> Iterator[Line | Rows]:
 def rows(found: Branches) -> list[tuple[str, str, str, str]]:
     """(interval or value, equilibria, stable ones, what happens); intervals between which nothing happens as one."""
     told: list[tuple[str, str, str, str]] = []
-    from mbsym.report.maps.branch_words import stable_words
+    from mbsym.report.maps.words import stable_words
 
     for first, last in found.spans():
-        told += _at(found, first.low)
-        count = f"{len(first.equilibria)}" + ("" if first.constant else " ?")
-        stable = stable_words(x.verdict for x in first.equilibria)
-        told.append((f"{value(first.low)} .. {value(last.high)}", count, stable, ""))
-    return told + (_at(found, found.intervals[-1].high) if found.intervals else [])
+        told += _critical_row(found, found.between(first)[0])
+        count = f"{len(found.equilibria(first))}" + ("" if first.certainty is Certainty.PROVED else " ?")
+        stable = stable_words(x.verdict for x in found.equilibria(first))
+        told.append((f"{value(found.ends(first)[0])} .. {value(found.ends(last)[1])}", count, stable, ""))
+    return told + (_critical_row(found, found.between(found.intervals[-1])[1]) if found.intervals else [])
 
 
-def _at(found: Branches, x: Any) -> list[tuple[str, str, str, str]]:
-    """The row of the critical value at the end of an interval, if there is one."""
-    one = next((c for c in found.criticals if compare(c.number, x) == 0), None)
-    return [] if one is None else _critical_row(found, one)
+def _critical_row(found: Branches, at: Cell | None) -> list[tuple[str, str, str, str]]:
+    """The row of the critical value at the end of an interval, if there is one at which something happens."""
+    from mbsym.report.maps.words import critical_words, stable_words
 
-
-def _critical_row(found: Branches, one: Any) -> list[tuple[str, str, str, str]]:
-    from mbsym.report.maps.branch_words import critical_words, stable_words
-
-    words = critical_words(found, one)
-    if not words:
+    words = "" if at is None else critical_words(found, at)
+    if at is None or not words:
         return []
+    one = found.critical(at)
     counted = one.meetings is not None and not one.continuum
     stable = stable_words(x.verdict for x in one.meetings or ())
-    count = "infinitely many" if one.continuum else str(len(one.meetings)) if counted else "not counted"
-    return [(value(one.number), count, stable if counted else "", words)]
+    count = "infinitely many" if one.continuum else str(len(one.meetings or ())) if counted else "not counted"
+    return [(value(at.sample), count, stable if counted else "", words)]
 
 
 def value(x: Any) -> str:

@@ -1,7 +1,6 @@
 """``mbsym map``: where a motion is stable, exactly, in a plane of two parameters.
 
-A line or a plane of one motion is told in ``plane.py``, slices in ``slices.py``, boxes in ``boxes.py``, a plane with
-numbers of equilibria in ``equilibria.py``.
+What is said and written of a map, whatever it is over and of, is in ``answer.py``.
 """
 
 from __future__ import annotations
@@ -11,7 +10,7 @@ from dataclasses import KW_ONLY, dataclass, field
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, TypeAlias
+from typing import TYPE_CHECKING, Annotated
 
 from mbsym.expressions.safe import safe
 from mbsym.maps.axis import Axis
@@ -20,14 +19,9 @@ from mbsym.studies.section import distinct, unfit_section
 from mbsym.studies.study import Answer, Asked, Folder, NotFit, Refusal, Study, Unfit, Watch, failed
 
 if TYPE_CHECKING:
-    from mbsym.maps.boxes import BoxMap
-    from mbsym.maps.equilibria_map import EquilibriaMap
-    from mbsym.maps.result import LineMap, PlaneMap
-    from mbsym.maps.slices import Stack
+    from mbsym.maps.result import Map
     from mbsym.model.system import System
     from mbsym.report.maps.located import Points
-
-    Found: TypeAlias = PlaneMap | LineMap | Stack | BoxMap | EquilibriaMap
 
 KINDS = ("stability", "signature", "equilibria")
 ROUTES = ("regions", "boxes")
@@ -93,10 +87,6 @@ class Request:
         """Those that are given; one that could not be read is left out."""
         return tuple(one for one in (self.x, self.y, self.z) if one is not None)
 
-    @property
-    def pictures(self) -> tuple[str, ...]:
-        return tuple(kind for kind in self.format if kind in ("svg", "pdf", "png"))
-
     @cached_property
     def located(self) -> tuple[Points | None, tuple[Unfit, ...]]:
         """The points of ``locate``, and what is wrong with the file."""
@@ -133,7 +123,7 @@ def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[
         yield Unfit("--by", "missing-option", "boxes are of planes", "give two parameters, as --x and --y")
     yield from distinct(request.axes, request.values)
     read = len(request.axes) == sum(name in typed for name in ("x", "y", "z")) > 0
-    if of_one and read:
+    if read:
         yield from request.located[1]
     if not of_one:
         yield from fitting(request, system, typed)
@@ -143,15 +133,14 @@ class NoMap(Exception):
     """Neither regions nor boxes."""
 
 
-def derive(asked: Asked, request: Request, watch: Watch) -> Found:
+def derive(asked: Asked, request: Request, watch: Watch) -> Map:
     """Raises NotFit where the section cannot be made."""
     from mbsym.algebra.failures import Failure, TooLargeError
     from mbsym.analysis import Analysis
     from mbsym.maps.boxes import box_map
     from mbsym.maps.given import Unfit as Wrong
     from mbsym.maps.irrational import irrational
-    from mbsym.maps.line_map import line_map
-    from mbsym.maps.mapping import plane_map
+    from mbsym.maps.mapping import exact_map
     from mbsym.maps.result import Of
     from mbsym.maps.slices import stack
 
@@ -165,15 +154,15 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Found:
             return stack(analysis, axes, values, of, watch)
         if request.by == "boxes":
             return box_map(analysis, axes, values, of, watch, "")
-        if len(axes) == 1:
-            return line_map(analysis, axes[0], values, of, watch)
         try:
-            return plane_map(analysis, axes, values, of, watch)
+            return exact_map(analysis, axes, values, of, watch)
         except Wrong as wrong:
-            if not (irrational(wrong) and of is Of.STABILITY):
+            if len(axes) == 1 or not (irrational(wrong) and of is Of.STABILITY):
                 raise
             return box_map(analysis, axes, values, of, watch, "")
         except TooLargeError as large:
+            if len(axes) == 1:
+                raise
             try:
                 return box_map(analysis, axes, values, of, watch, str(large))
             except Failure as failure:
@@ -183,21 +172,10 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Found:
         raise NotFit(tuple(unfit_section(wrong.complaints, option))) from wrong
 
 
-def answer(asked: Asked, request: Request, found: Found) -> Answer:
-    from mbsym.maps.boxes import BoxMap
-    from mbsym.maps.equilibria_map import EquilibriaMap
-    from mbsym.maps.slices import Stack
-    from mbsym.studies.map import boxes, equilibria, plane, slices
+def answer(asked: Asked, request: Request, found: Map) -> Answer:
+    from mbsym.studies.map.answer import answer
 
-    match found:
-        case Stack():
-            return slices.answer(asked.system, request, found)
-        case BoxMap():
-            return boxes.answer(asked.system, request, found)
-        case EquilibriaMap():
-            return equilibria.answer(asked.system, request, found)
-        case _:
-            return plane.answer(asked.system, request, found)
+    return answer(asked.system, request, found)
 
 
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:

@@ -8,8 +8,8 @@ import pytest
 
 import mbsym
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.problems.normal_forms.dissipative import taylor_field
 from mbsym.problems.normal_forms.expansion import expansion
-from mbsym.problems.normal_forms.taylor_field import taylor_field
 
 SYSTEMS = Path(__file__).parents[3] / "systems"
 

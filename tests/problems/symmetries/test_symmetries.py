@@ -11,12 +11,12 @@ import pytest
 import mbsym
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Constrained
+from mbsym.algebra.kernel import independent
 from mbsym.analysis import symmetric
 from mbsym.analysis.pipeline import Analysis
 from mbsym.analysis.symmetric import symmetries_of
 from mbsym.problems.polynomial_integrals import FUNCTION
 from mbsym.problems.symmetries import in_speeds
-from mbsym.problems.symmetries.kernel import independent
 from mbsym.problems.symmetries.result import DEPENDENT
 
 SYSTEMS = Path(__file__).parents[3] / "systems"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from msgspec import UNSET, Meta, UnsetType, field
 
@@ -13,16 +13,27 @@ from mbsym.report.documents.results.canonical import Brackets, Hamilton, Routh
 from mbsym.report.documents.results.claims import Claim
 from mbsym.report.documents.results.energy import Energy
 from mbsym.report.documents.results.equations import Equations, Reaction
-from mbsym.report.documents.results.invariant_sets import InvariantSets
 from mbsym.report.documents.results.kinematics import Kinematics
 from mbsym.report.documents.results.ledger import Ledger
 from mbsym.report.documents.results.linearisation import FirstOrder, Linearisation, StateSpace
-from mbsym.report.documents.results.normal_forms import NormalForms
-from mbsym.report.documents.results.polynomial_integrals import PolynomialIntegrals
-from mbsym.report.documents.results.small_parameters import SmallParameters
 from mbsym.report.documents.results.stabilisation import Stabilisation
 from mbsym.report.documents.results.stability import Stability
 from mbsym.report.documents.writer import version
+
+if TYPE_CHECKING:
+    from mbsym.report.documents.results.invariant_sets import InvariantSets
+    from mbsym.report.documents.results.normal_forms import NormalForms
+    from mbsym.report.documents.results.polynomial_integrals import PolynomialIntegrals
+    from mbsym.report.documents.results.small_parameters import SmallParameters
+
+
+#: Types of sections of problems that an installation may lack (``mbsym.algebra.parts``), for schemas alone.
+LATER = {
+    "InvariantSets": "invariant_sets",
+    "NormalForms": "normal_forms",
+    "PolynomialIntegrals": "polynomial_integrals",
+    "SmallParameters": "small_parameters",
+}
 
 
 class Described(Part, frozen=True):

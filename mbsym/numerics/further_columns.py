@@ -1,4 +1,4 @@
-"""Speeds and components of unit vectors and quaternions along a trajectory of coordinates and generalised velocities.
+"""Columns of a trajectory besides the state: inputs by their laws, and speeds, unit vectors and quaternions.
 
     u = S(q, t) q' + s0(q, t),      e = the columns of the direction cosines R(q), or turns by half angles, one by one
 
@@ -11,9 +11,12 @@ from typing import Any
 
 import numpy as np
 
+from mbsym.algebra.base import Lowering
 from mbsym.algebra.program import Program
+from mbsym.expressions.tree import names
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.mechanics.variables import ring_of
+from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.kernels.llvm import kernels
 from mbsym.numerics.scenario import Scenario
@@ -39,3 +42,18 @@ def speed_columns(scenario: Scenario, times: Any, states: Any) -> dict[str, Any]
     with np.errstate(all="ignore"):
         found = kernel(np.vstack([times, np.asarray(states, dtype=float)]))
     return dict(zip(formulas, found, strict=True))
+
+
+def input_columns(given: Scenario, times: Any, positions: Any, velocities: Any) -> dict[str, Any]:
+    """u(t, q, q') of shape (m,) by name, at times (m,) with q and q' of shape (n, m)."""
+    if not given.inputs:
+        return {}
+    program = bound(given)
+    used = set().union(*(names(one.law) for one in given.inputs))
+    lower = Lowering(program, {name: program.input(name) for name in (*sorted(used), "pi")})
+    nodes = tuple(lower(one.law) for one in given.inputs)
+    inputs = ("t", *given.system.coordinates, *given.system.velocities)
+    points = np.vstack([times, np.asarray(positions, dtype=float), np.asarray(velocities, dtype=float)])
+    values = arrays.kernel(Code(program, inputs, nodes))(points)
+    shaped = (np.broadcast_to(value, np.shape(times)) for value in values)
+    return dict(zip((one.name for one in given.inputs), shaped, strict=True))

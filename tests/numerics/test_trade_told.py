@@ -1,0 +1,96 @@
+"""What `tradeoff` tells of itself: a lost energy is no error, what was spent, who climbs first, what failed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import mbsym
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.methods.interface import Breakdown
+from mbsym.numerics.methods.table import METHODS
+from mbsym.numerics.scenario import scenario
+from mbsym.numerics.trade import reference_search
+from mbsym.numerics.trade.reference import reference
+from mbsym.numerics.trade.reference_search import BROKEN, whole_reference
+from mbsym.numerics.trade.tradeoff import FIRST, tradeoff
+from mbsym_cli.main import main
+
+OSCILLATOR = """
+mbsym: 1
+name: Oscillator with damping
+parameters: {m: positive, k: positive, c: positive}
+bodies:
+  - name: b
+    attached to: 0
+    connection point: [x, 0, 0]
+    mass: m
+    coordinates: [x]
+loads:
+  - spring: {coordinate: x, stiffness: k}
+  - damper: {coordinate: x, coefficient: c}
+values: {m: 1, k: 1, c: 1/2}
+initial: {x: 1}
+"""
+
+
+def dynamics_of(text: str) -> Dynamics:
+    return Dynamics(scenario(mbsym.loads(text).system))
+
+
+def test_the_energy_that_a_damper_takes_is_no_error_of_a_method() -> None:
+    """x'' + x'/2 + x = 0 loses nearly all of its energy 1/2 in 20 units of time; no method errs by that.
+
+    A method that is right to 1e-10 has the energy x'^2/2 + x^2/2 right to 2e-10 of its size, about.  Planted: one that
+    is wrong by a thousandth is seen in the energy, too.
+    """
+    dynamics = dynamics_of(OSCILLATOR)
+    truth = reference(dynamics, np.linspace(0, 20, 41))
+    found = tradeoff(dynamics, [METHODS["dop853"], METHODS["rk4"]], truth, budget=4.0)
+    exact = [row for row in found.rows if row.error < 1e-10]
+    assert exact
+    assert all(row.drift < 1e-9 for row in exact)
+    wrong = [row for row in found.rows if 1e-3 < row.error < 1e-1]
+    assert wrong
+    assert all(row.drift > 1e-4 for row in wrong)
+
+
+def test_the_method_that_a_run_takes_climbs_first_and_every_row_says_what_it_cost() -> None:
+    dynamics = dynamics_of(OSCILLATOR)
+    truth = reference(dynamics, np.linspace(0, 20, 5))
+    labels: list[str] = []
+    found = tradeoff(dynamics, [METHODS["rk4"], METHODS["rk45"], METHODS["dop853"]], truth, 4.0, labels.append)
+    assert labels[0].startswith("dop853")
+    assert [row.candidate.method.traits.name for row in found.rows][:1] == ["rk4"]  # the table keeps its order
+    assert all(row.cost > 0 for row in found.rows)
+    assert sum(row.cost for row in found.rows) == pytest.approx(found.spent)
+    first = sum(
+        row.cost for row in found.rows if row.candidate.label.startswith("dop853") and "," not in row.candidate.label
+    )
+    assert first <= FIRST * 4.0 + 1.0
+
+
+def test_a_way_to_a_reference_that_fails_as_nobody_foresaw_is_no_end_of_the_study(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def broken(*_: Any) -> Any:
+        raise ZeroDivisionError("planted")
+
+    monkeypatch.setattr(reference_search, "_knots", broken)
+    truth = whole_reference(dynamics_of(OSCILLATOR), 5.0, 10.0)
+    assert truth.way == reference_search.EXPLICIT
+    monkeypatch.setattr(reference_search, "_agreeing", broken)
+    with pytest.raises(Breakdown) as told:
+        whole_reference(dynamics_of(OSCILLATOR), 5.0, 10.0)
+    assert told.value.kind == BROKEN
+    path = tmp_path / "oscillator.yaml"
+    path.write_text(OSCILLATOR)
+    found = CliRunner().invoke(main, ["tradeoff", str(path), "--time", "5", "--out", str(tmp_path)])
+    assert found.exit_code == 3
+    assert "internal error" in found.output
+    assert "planted" in found.output
+    assert "Traceback" not in found.output
