@@ -164,8 +164,8 @@ def judgeable(analysis: Analysis) -> Linearisation:
     growing = _growing(analysis)
     if growing:
         reason = (
-            f"terms of higher order vary with {', '.join(growing)} and are not known to be small at all times alike; "
-            "no theorem about the first approximation applies"
+            f"the equations may vary with {', '.join(growing)} otherwise than by sines and cosines, and terms of higher "
+            "order are not known to be small at all times alike; no theorem about the first approximation applies"
         )
         raise Unavailable("stability", NoResult(reason, "", "time-dependent", "time-dependent"))
     return found

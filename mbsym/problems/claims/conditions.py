@@ -114,8 +114,9 @@ def _necessary(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimResu
 
 
 def _need(region: Region, claim: Claim) -> Need:
-    wanted = wanted_of(region, claim)
+    wanted, pieces = wanted_of(region, claim), pieces_of(region, claim)
     closed = replace(wanted, relation=">=") if wanted.relation == ">" else wanted
+    edges = [replace(x, relation=">=") if x.relation == ">" else x for x in pieces]
     what, _ = _found_among(region, wanted, ("sufficient",))
     everywhere = beyond = but_borders = False
     exponential: tuple[str, ...] | None = None
@@ -123,16 +124,16 @@ def _need(region: Region, claim: Claim) -> Need:
     for bodies in (False, True):
         if bodies and region.signs_of_bodies is region.signs:
             continue
-        without = region.without(wanted, bodies).word
+        without = _unstable_without(region, pieces, bodies)
         everywhere = without is Word.UNSTABLE
         but_borders = but_borders or without is Word.UNSTABLE_BUT_BORDERS
         beyond = everywhere or (
             closed is not wanted
-            and region.without(closed, bodies).word is Word.UNSTABLE
+            and _unstable_without(region, edges, bodies) is Word.UNSTABLE
             and not is_certain(region.signs_of_bodies, closed)  # else there is nothing beyond
         )
         if not everywhere and (beyond or wanted.relation == "!="):
-            everywhere = region.on_border(wanted).word is Word.UNSTABLE
+            everywhere = region.on_border(pieces[-1], edges[:-1]).word is Word.UNSTABLE
         exponential = region.exponential(wanted, bodies) if exponential is None else exponential
         bodies_used = bodies
         if everywhere or beyond or exponential is not None:
@@ -141,6 +142,14 @@ def _need(region: Region, claim: Claim) -> Need:
     note = _BODIES if bodies_used else ""
     because = what or said(Said.FOLLOWS, labels, note)
     return Need(everywhere, beyond, but_borders, because, exponential, "" if everywhere or beyond else note)
+
+
+def _unstable_without(region: Region, pieces: Sequence[Inequality], bodies: bool) -> Word:
+    """What the motion is where one of these does not hold, if it is unstable."""
+    open_ones = [one for one in pieces if len(pieces) == 1 or not is_certain(region.signs, one)]
+    words = [region.without(one, bodies).word for one in open_ones]
+    worst = (Word.UNSTABLE, Word.UNSTABLE_BUT_BORDERS)
+    return max(words, key=worst.index) if all(word in worst for word in words) else Word.DEPENDS
 
 
 def _for_exponential(derived: Derived, need: Need) -> Remark:
@@ -207,7 +216,20 @@ def forms(derived: Derived, claim: Claim) -> Iterator[Region]:
 
 
 def wanted_of(region: Region, claim: Claim) -> Inequality:
-    """The claimed inequality as p > 0, p >= 0 or p != 0.  Raises NoClosedForm."""
+    """The claimed inequality as p > 0, p >= 0 or p != 0, without roots where one inequality without does.
+
+    Raises NoClosedForm.
+    """
+    pieces = pieces_of(region, claim)
+    return pieces[0] if len(pieces) == 1 else _as_printed(region, claim)
+
+
+def pieces_of(region: Region, claim: Claim) -> tuple[Inequality, ...]:
+    """The inequalities without roots that hold together where the claimed one does.  Raises NoClosedForm."""
+    return region.without_roots(_as_printed(region, claim))
+
+
+def _as_printed(region: Region, claim: Claim) -> Inequality:
     derived = region.derived
     symbols = Symbols.of(derived)
     assert claim.right is not None
@@ -282,8 +304,8 @@ def _sufficient(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimRes
         return _told(result, FAILS, said(Said.NOT_SUFFICIENT, number), example=tried.found)
     open_words: tuple[Remark, ...] = ()
     for region in forms(derived, claim):
-        conditions = [wanted_of(region, one) for one in together]
-        known = trivial(region, conditions[together.index(claim)], result)
+        conditions = [piece for one in together for piece in pieces_of(region, one)]
+        known = trivial(region, wanted_of(region, claim), result)
         if known is not None and known.outcome == FAILS:
             return known
         strict = [replace(one, relation=">") if one.relation == ">=" else one for one in conditions]

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from itertools import combinations
 from typing import Any
 
 from mbsym.algebra.evaluate import Carrier
@@ -17,12 +18,13 @@ from mbsym.algebra.generators import occurring
 from mbsym.algebra.point import Rationals
 from mbsym.algebra.ring import ParameterRing, Polynomial
 from mbsym.algebra.semialgebraic import atom, where
-from mbsym.algebra.signs import MOST_TERMS, ContradictionError, Signs
+from mbsym.algebra.signs import MOST_TERMS, ContradictionError, Signs, coefficients_in
 from mbsym.expressions.tree import is_number
 from mbsym.model.claims import Claim
 from mbsym.problems.claims.forms import in_parameters, on_relations
 from mbsym.problems.claims.remarks import Remark, Said, said
 from mbsym.problems.claims.result import Derived
+from mbsym.problems.knowledge import signs as signs_now
 from mbsym.problems.stability import SubsystemStability
 from mbsym.problems.stability.covering import Cell, Lift, atoms, cells_of, everywhere, joined
 from mbsym.problems.stability.problem import in_parameters as of_parameters
@@ -45,6 +47,8 @@ _CERTAIN = {
     "<": ("negative",),
     "=": ("zero",),
 }
+#: Roots that are turned over together, and steps by which roots are removed.
+_MOST_ROOTS, _MOST_STEPS = 3, 6
 _NEGATED = {">": "<=", ">=": "<", "!=": "=", "<=": ">", "<": ">=", "=": "!="}
 
 
@@ -79,13 +83,66 @@ class Region:
 
     def cleared(self, x: Polynomial) -> Polynomial:
         """x in this form times a product that is positive wherever x makes sense: no denominators are left."""
-        ring = self.derived.ring
         whole = x if self.own else on_relations(self.derived, self.claim, in_parameters(self.derived, x))
+        return self._numerator(whole)
+
+    def _numerator(self, whole: Polynomial) -> Polynomial:
+        ring = self.derived.ring
         numerator, denominators = ring.fraction(whole)
         for factor, exponent in denominators:
             if exponent % 2 and self.signs.sign(factor) != "positive":
                 numerator = ring.times(numerator, factor)
         return numerator
+
+    def without_roots(self, wanted: Inequality) -> tuple[Inequality, ...]:
+        """Inequalities without roots that hold together where ``wanted`` does; itself where these were not found.
+
+        With roots r >= 0: a + b r has the sign of (a + b r)(a - b r) where a - b r is known to be positive, and where b
+        is known not to be positive it is if a and a^2 - b^2 r^2 are.  So g > sqrt(k1) + sqrt(k2) is g^2 > k1 + k2
+        and (g^2 - k1 - k2)^2 > 4 k1 k2, for positive g.
+        """
+        ring, p, apart = self.derived.ring, wanted.polynomial, list[Inequality]()
+        if wanted.relation not in (">", ">=") or not self._roots(p):
+            return (wanted,)
+        known = signs_now(self.derived.parameters_scene)  # what claims hold was not there when the others were found
+        try:
+            for _ in range(_MOST_STEPS):
+                roots = self._roots(p)
+                if not roots:
+                    return (*apart, Inequality(p, wanted.relation))
+                norm = self._norm(p, roots, known)
+                if norm is None:
+                    first, norm = self._squared(p, roots, known)
+                    apart.append(Inequality(first, wanted.relation))
+                p = self._numerator(ring.reduce(norm))
+        except (Failure, LookupError):
+            pass
+        return (wanted,)
+
+    def _roots(self, p: Polynomial) -> list[int]:
+        return [k for k in occurring([p]) if self.derived.ring.generators[k].kind == "root"]
+
+    def _norm(self, p: Polynomial, roots: Sequence[int], known: Signs) -> Polynomial | None:
+        """p times what it is with other signs of some roots, of known sign, or minus that; None where there is none."""
+        for number in range(min(len(roots), _MOST_ROOTS), 0, -1):
+            for turned in combinations(roots, number):
+                terms = p.terms()
+                other = p.context().from_dict({e: c * (-1) ** sum(e[k] for k in turned) for e, c in terms})
+                sign = known.sign(other)
+                if sign in ("positive", "negative"):
+                    return self.derived.ring.times(p, other if sign == "positive" else -other)
+        return None
+
+    def _squared(self, p: Polynomial, roots: Sequence[int], known: Signs) -> tuple[Polynomial, Polynomial]:
+        """(a, a^2 - b^2 r^2) of p = a + b r with b <= 0.  Raises LookupError where it is not of that form."""
+        times = self.derived.ring.times
+        for k in roots:
+            if p.degrees()[k] == 1:
+                a, b = coefficients_in(p, k)
+                if not self._roots(a) and known.sign(b) in ("negative", "nonpositive"):
+                    with_root = b * p.context().gen(k)
+                    return a, times(a, a) - times(with_root, with_root)
+        raise LookupError("no root can be taken apart")
 
     # --- single conditions ---
 

@@ -440,7 +440,15 @@ def _reasons(parts: tuple[Verdict, ...], row: Row) -> tuple[Reason, ...]:
     if Reason(Because.CONSTANT_MOMENTA) in found:
         found = {_BESIDE_CONSTANT_MOMENTA.get(reason, reason) for reason in found}
     several = len(alike) > 1
-    return tuple(sorted(_farthest({_uncounted(x) if several else x for x in found}), key=lambda reason: reason.rank))
+    found = {_uncounted(x) if several else x for x in found}
+    found = {Reason(Because.RIGHT_ROOT) if x.code in _OF_ONE_PART else x for x in found}
+    if not all(part.because(Because.COMPLETE) for part in parts) and Reason(Because.COMPLETE) in found:
+        found = found - {Reason(Because.COMPLETE)} | {Reason(Because.LEFT)}
+    return tuple(sorted(_farthest(found), key=lambda reason: reason.rank))
+
+
+#: What is said of K and D of a part, and need not be true of those of the whole.
+_OF_ONE_PART = (Because.ODD_DEGREE, Because.ODD_DEGREE_REMAINS, Because.DESTROYED)
 
 
 def _farthest(reasons: set[Reason]) -> set[Reason]:

@@ -37,7 +37,7 @@ def sets_of(members: Any) -> list[frozenset[Any]]:
 def verdict_of(grounds: frozenset[Ground], flaws: frozenset[Flaw], theorem: str) -> Verdict:
     """The only verdict with these grounds, each laid by a theorem of this name."""
     row = row_of(grounds, flaws)
-    theorems = (theorem,) if row.arrangement is not None or row.word is Word.UNSTABLE else ()
+    theorems = (theorem,) if row.ground is not None or row.word is Word.UNSTABLE else ()
     return Verdict(row.word, theorems, (), tuple((ground, (theorem,)) for ground in grounds), flaws)
 
 
@@ -367,3 +367,30 @@ def test_asymptotic_at_given_momenta_only() -> None:
     assert "all velocities" not in found.explanation
     braked = Block([[1]], [[1]], [[0]], [[0]], [[0]], (0,))  # phi'' + phi' = 0: this velocity does come back
     assert "all velocities" in verdict_at(braked.system(True), {}).verdict.explanation
+
+
+def test_what_is_said_of_k_and_d_of_a_part_is_not_said_of_the_whole() -> None:
+    """Two pendulums that stand upright: of each det K = -m g l < 0, of both together det K > 0.  A damped one upright
+    beside one without damping that hangs: there is no complete dissipation."""
+    upright = """
+mbsym: 1
+name: upright
+parameters: {m: positive, l: positive, g: positive}
+bodies:
+  - {name: a, rotation: {axes: [3], angles: [q]}, mass centre: [0, l, 0], mass: m}
+  - {name: b, attached to: 0, rotation: {axes: [3], angles: [r]}, mass centre: [0, l, 0], mass: m}
+loads:
+  - uniform gravity: {vector: [0, -g, 0]}
+motion: {}
+values: {m: 1, l: 1, g: 1}
+"""
+    both = mbsym.loads(upright).stability
+    assert "det K < 0" in both.subsystems[0].theory.at_point.verdict.explanation
+    assert both.numerical is not None
+    assert "det K" not in both.numerical.explanation
+    damped = mbsym.loads(
+        upright.replace("motion: {}", "  - damper: {coordinate: q, coefficient: 1}\nmotion: {r: pi}")
+    ).stability
+    assert "Complete dissipation" in damped.subsystems[0].theory.at_point.verdict.explanation
+    assert damped.numerical is not None
+    assert "Complete dissipation" not in damped.numerical.explanation
