@@ -129,8 +129,8 @@ def _felt(
 ) -> list[Variable]:
     """The positions on which formulas depend, and on which the rates of these do.
 
-    With ``by_themselves`` the coordinates whose rates depend on themselves, too, directly or through others (the angle of a light
-    trailer): they have roots of their own although no equation of the speeds needs them.
+    With ``by_themselves`` the coordinates whose rates depend on themselves, too, directly or through others (the angle
+    of a light trailer): they have roots of their own although no equation of the speeds needs them.
     """
     ring, names = form.ring, list(rates)
     needs = {name: set(ring.dependencies(rates[name], names)) for name in names}
