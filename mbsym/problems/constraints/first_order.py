@@ -52,8 +52,8 @@ def first_order(form: SpeedForm, equations: SpeedEquations, reduced: Reduced, at
     forcing = [x.polynomial for x in embedded.forcing]
     rates = {x.name: ring.reduce(ring.substitute(form.rates[x.name], images)) for x in form.positions}
     plain, motion = _motion(form, reduced, at)
-    for own in (True, False):
-        positions = _felt(form, forcing, rates, own)
+    for by_themselves in (True, False):
+        positions = _felt(form, forcing, rates, by_themselves)
         variables = [*positions, *speeds]
         values = {x.index: ring.substitute(_inner(form, x), motion) for x in variables}
         varying = {name for value in values.values() for name in unsteady(plain, value)}
@@ -131,12 +131,12 @@ def check(form: SpeedForm, found: FirstOrder, reduced: Reduced, at: Equilibrium)
 
 
 def _felt(
-    form: SpeedForm, formulas: Sequence[Polynomial], rates: Mapping[str, Polynomial], own: bool
+    form: SpeedForm, formulas: Sequence[Polynomial], rates: Mapping[str, Polynomial], by_themselves: bool
 ) -> list[Variable]:
     """The positions on which formulas depend, and on which the rates of these do.
 
-    With ``own`` the coordinates whose rates depend on themselves, too, directly or through others (the angle of a light
-    trailer): they have roots of their own although no equation of the speeds needs them.
+    With ``by_themselves`` the coordinates whose rates depend on themselves, too, directly or through others (the angle
+    of a light trailer): they have roots of their own although no equation of the speeds needs them.
     """
     ring, names = form.ring, list(rates)
     needs = {name: set(ring.dependencies(rates[name], names)) for name in names}
@@ -150,7 +150,7 @@ def _felt(
         return found
 
     start = {name for x in formulas for name in ring.dependencies(x, names)}
-    if own:
+    if by_themselves:
         start |= {name for name in form.coordinates if name in needs and name in reached(needs[name])}
     found = reached(start)
     return [x for x in form.positions if x.name in found]
