@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import replace
@@ -12,7 +13,7 @@ from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.ring import Ring
 from mbsym.expressions.message import Message
-from mbsym.formulas import latex, mathml
+from mbsym.formulas import latex, mathml, python
 from mbsym.problems.claims.forms import in_parameters
 from mbsym.problems.claims.symbols import Symbols
 from mbsym.problems.integrals import ENERGY
@@ -234,4 +235,5 @@ def write_in(ring: Ring, analysis: Analysis, names: Mapping[str, str]) -> tuple[
         latex.write_as(ring, told | symbols)
     if page:
         mathml.write_as(ring, page)
+        python.write_as(ring, {x: re.sub("_dot$", "'", names[x]) for x in page})
     return tuple((plain, name) for plain, name in names.items() if plain != name)

@@ -6,15 +6,16 @@ boxes; over three a stack of slices, each a map of its own.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field, replace
 from enum import StrEnum
 from fractions import Fraction
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from flint import fmpq
 
-from mbsym.algebra.arrangements import Arc, Arrangement, Corner
+from mbsym.algebra.arrangements import Arc, Arrangement, Corner, CornerKind
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.plane.line import Line, Zero
 from mbsym.maps.admissible import Admissibility, Demand
@@ -25,6 +26,7 @@ from mbsym.maps.section import Section
 from mbsym.maps.soft_borders import SoftBorders, SoftOrHard
 from mbsym.maps.subdivision import Subdivision
 from mbsym.maps.verdicts import Border, Judged
+from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word
 
 if TYPE_CHECKING:
@@ -107,7 +109,8 @@ class Cell:
 
     ``said`` holds at the sample exactly, ``certainty`` is how surely it holds in the whole cell (of counted equilibria:
     their number).  Where nothing is said ``lack`` says why; ``broken``: the demands that are not kept there.
-    ``soft``: of borders at which one pair of roots is imaginary and none to the right; None elsewhere.
+    ``soft``: of borders at which one pair of roots is imaginary and none to the right; None elsewhere.  ``nonlinear``:
+    of a verdict that leaves the motion open, what the nonlinear system shows at the sample alone.
     """
 
     shape: Shape
@@ -118,6 +121,7 @@ class Cell:
     lack: Lack | None = None
     broken: tuple[Demand, ...] = ()
     soft: SoftOrHard | None = None
+    nonlinear: Verdict | None = None
 
     @property
     def judged(self) -> Judged | None:
@@ -227,6 +231,11 @@ class Map:
         """The cells between regions."""
         return self.corners if isinstance(self.ground, Line) else self.arcs
 
+    @cached_property
+    def counts(self) -> frozenset[int]:
+        """All numbers of equilibria that regions have."""
+        return frozenset(one.counted.count for one in self.regions if one.counted is not None)
+
     @property
     def whole(self) -> float:
         """The length of the interval, the area of the plane."""
@@ -295,11 +304,16 @@ class Map:
             below, above = self.place(border).regions
         return None if below is None else self.regions[below], None if above is None else self.regions[above]
 
-    def around(self, corner: Cell) -> list[Cell | None]:
-        """The regions that meet at a corner, each once; None is outside."""
+    def around(self, corner: Cell) -> Sequence[Cell | None]:
+        """The regions that meet at a corner, each once; None is outside.  Of an isolated point the one around it."""
         if isinstance(self.ground, Line):
             return list(self.beside(corner))
-        pairs = [self.beside(self.arcs[k]) for k in self.place(corner).arcs]
+        there = self.place(corner)
+        if there.kind is CornerKind.ISOLATED:
+            at, j = there.place
+            inside = self.arrangement.places.intervals
+            return [self.regions[inside[key]] for key in ((at, j), (at, j - 1)) if key in inside][:1]
+        pairs = [self.beside(self.arcs[k]) for k in there.arcs]
         return list({None if x is None else x.number: x for pair in pairs for x in pair}.values())
 
     def separates(self, border: Cell) -> bool:

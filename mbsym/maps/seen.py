@@ -6,7 +6,7 @@ lines are one where only such a curve crosses them.
 
 from __future__ import annotations
 
-from mbsym.algebra.arrangements.arrangement import Arrangement, CornerKind
+from mbsym.algebra.arrangements.arrangement import CornerKind
 from mbsym.algebra.arrangements.likeness import Graph
 from mbsym.maps.result import Cell, Joined, Map
 
@@ -35,18 +35,10 @@ def seen(found: Map) -> Graph:
 
 def stands_out(found: Map, corner: Cell) -> bool:
     """Whether an isolated point has another verdict than the region around it."""
-    ground = found.ground
-    if not isinstance(ground, Arrangement) or corner.judged is None:
+    if corner.judged is None or found.place(corner).kind is not CornerKind.ISOLATED:
         return False
-    there = ground.corners[corner.number]
-    if there.kind is not CornerKind.ISOLATED:
-        return False
-    at, j = there.place
-    intervals = ground.places.intervals
-    around = intervals.get((at, j), intervals.get((at, j - 1)))
-    if around is None or found.regions[around].judged is None:
-        return False
-    return found.look(corner) != found.look(found.regions[around])
+    return any(x is not None and x.judged is not None and found.look(x) != found.look(corner)
+               for x in found.around(corner))  # fmt: skip
 
 
 def _line(found: Map, arc: Cell) -> object:

@@ -34,7 +34,18 @@ from mbsym.algebra.plane.numbers import Number, between_simply, sign
 from mbsym.analysis import Analysis
 from mbsym.maps.admissible import Admissibility, Demand
 from mbsym.maps.boundaries import Boundaries, norm_of_factors
-from mbsym.maps.mapping import Judge, Watch, bounded, box_of, ends, kept_in, mapped, unwatched, with_onsets
+from mbsym.maps.mapping import (
+    Judge,
+    Watch,
+    bounded,
+    box_of,
+    ends,
+    kept_in,
+    mapped,
+    unwatched,
+    with_nonlinear,
+    with_onsets,
+)
 from mbsym.maps.result import Lack, Map, Of, Shape
 from mbsym.maps.section import Axis, Law, Section, section
 from mbsym.maps.seen import seen
@@ -181,7 +192,7 @@ class _Slicing:
             return Layer(number, z, critical, lack=Lack.OUTSIDE, broken=kept.broken)
         try:
             plane = mapped(cut, kept, self._flat(cut, kept, z), self.of, told)
-            plane = with_onsets(plane, SoftBorders(self.analysis, cut), told)
+            plane = with_nonlinear(with_onsets(plane, SoftBorders(self.analysis, cut), told), self.analysis, told)
             if critical or plane.interrupted:
                 return Layer(number, z, critical, plane)
             told("another value", 0, 1)

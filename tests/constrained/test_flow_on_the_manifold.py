@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
 from random import Random
 from typing import Any
 
@@ -33,6 +34,7 @@ from mbsym.problems.stability.word import Word
 from mbsym.source import read
 
 STEP = 2e-4
+CASES = Path(__file__).parents[1] / "cases" / "constraints"
 
 # --- descriptions ---
 
@@ -226,6 +228,64 @@ def test_linearised_flows(kind: Any, dependent: bool) -> None:
             # Beside rows that follow from others accelerations off the manifold depend on the choice: O(STEP).
             assert compared(analysis) < 1e-4, text
     assert tried >= 4
+
+
+def test_roots_in_speeds() -> None:
+    """x' = A x in declared speeds of the car has all roots that are not zero, those of light trailers, too."""
+    place, tried = "coordinates: [x, y, th]}", 0
+    for seed in range(6):
+        text = trailers(Random(f"trailers {seed}"), False)
+        own = text.replace(place, place[:-1] + ", speeds: {w: omega3, u: x_dot*cos(th) + y_dot*sin(th)}}")
+        plain, told = analysed(text), analysed(own)
+        if plain is None or told is None:
+            continue
+        slopes, basis, _ = flow(plain.system)
+        found = np.linalg.eigvals(numbers(told.first_order.A.polynomials))
+        assert apart(found, np.linalg.eigvals(basis.T @ slopes @ basis)) < 1e-4, own
+        tried += 1
+    assert tried >= 4
+
+
+def test_a_light_trailer_has_its_root_in_speeds() -> None:
+    """p' = -v p/d - ... : pushed (d < 0) it folds, with the root -v/d, whatever the car does."""
+    text = (CASES / "light-push.yaml").read_text(encoding="utf-8")
+    text = text.replace("coordinates: [x, y, th]}", "coordinates: [x, y, th], speeds: {w: omega3}}")
+    found = Analysis(read(text)[0]).first_order  # type: ignore[arg-type]
+    k = found.names.index("ps")
+    assert str(found.A[k, k]) == "-v/d"
+
+
+def test_inputs_and_outputs_of_a_segway() -> None:
+    """Motors u1, u2 between body and wheels.  By hand, with wheels of mass w and radius r at d on both sides, half a
+    turn's inertia w r^2/2, a body of mass M, height l and inertia J about the axle's direction, p the mean of the
+    wheels' angles and s half their difference (yaw = -r s/d), at rest:
+
+        (3 w + M) r^2 p'' + M r l tilt'' = u1 + u2,      M r l p'' + (J + M l^2) tilt'' = -(u1 + u2).
+    """
+    text = (CASES / "segway.yaml").read_text(encoding="utf-8")
+    text = text.replace("dependent:", "outputs: {turn: yaw_dot, shifted: y + 2*tilt}\ndependent:")
+    space = Analysis(read(text)[0]).state_space  # type: ignore[arg-type]
+    assert space.states == ("x", "y", "yaw", "tilt", "pl", "pr", "tilt_dot", "pl_dot", "pr_dot")
+    values = {"mb": 10, "mw": 1, "r": Fraction(1, 5), "d": Fraction(3, 10), "l": Fraction(7, 10), "v": 1, "g": 9.81}
+
+    def at(matrix: Any) -> Any:
+        rows = [[eval(str(x), {name: float(y) for name, y in values.items()}) for x in row] for row in matrix]
+        return np.array(rows, dtype=float)
+
+    w, big, r, length, inertia = 1.0, 10.0, 0.2, 0.7, 0.4
+    mass = np.array([[(3 * w + big) * r**2, big * r * length], [big * r * length, inertia + big * length**2]])
+    mean, tilt = np.linalg.solve(mass, [1.0, -1.0])
+    gains = at(space.B)
+    assert gains[6] == pytest.approx([tilt, tilt])
+    assert gains[7] + gains[8] == pytest.approx([2 * mean, 2 * mean])
+    fall = np.linalg.solve(mass, [0.0, big * 9.81 * length])
+    assert at(space.A)[6:, 3] == pytest.approx([fall[1], fall[0], fall[0]])
+    assert at(space.A)[:3, 6:] == pytest.approx(np.array([[0, r / 2, r / 2], [0, 0, 0], [0, -1 / 3, 1 / 3]]))
+    assert at(space.A)[1, 2] == pytest.approx(1)  # y' = v yaw
+    turn, shifted = at(space.C)
+    assert turn == pytest.approx([0] * 7 + [-1 / 3, 1 / 3])
+    assert shifted == pytest.approx([0, 1, 0, 2, 0, 0, 0, 0, 0])
+    assert not at(space.D).any()
 
 
 def test_a_dropped_coordinate_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:

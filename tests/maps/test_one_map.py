@@ -24,6 +24,7 @@ from mbsym.maps.mapping import exact_map
 from mbsym.maps.result import Cell, Lack, Map, Shape
 from mbsym.maps.section import Axis
 from mbsym.maps.slices import Stack, stack
+from mbsym.problems.stability.word import Word
 from mbsym.report.language import Language
 from mbsym.report.maps.figure import map_figure
 from mbsym.report.maps.frame import values_lines
@@ -31,6 +32,7 @@ from mbsym.report.maps.json import map_json
 from mbsym.report.maps.tex import map_tex
 from mbsym.report.maps.words import share, stem
 from mbsym.report.schemas import schema
+from mbsym.studies.map.answer import remarks
 from mbsym_cli.main import main
 
 #: x'' = p x - x^3 + q: one equilibrium, and three where 4 p^3 > 27 q^2.
@@ -152,3 +154,38 @@ def test_numbers_that_were_put_in_stand_above_the_picture() -> None:
     assert sum(line.count(" = ") for line in many) == 40
     assert all(line.endswith(",") for line in many[:-1])
     assert not many[-1].endswith(",")
+
+
+OSCILLATOR = """mbsym: 1
+name: oscillator
+parameters: {p: {sign: real}, s: {sign: real}}
+bodies:
+  - {name: one, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}
+loads:
+  - generalized force: {x: FORCE}
+motion: {x: 0}
+"""
+
+#: A force, an axis, other numbers: what is said where the first approximation is open.
+DECIDED: dict[str, tuple[Axis, dict[str, Fraction], set[Word]]] = {
+    # x^4/4 is the energy at p = 0, a minimum
+    "-p*x - x**3 + 0*s": (P, {"s": Fraction(0)}, {Word.STABLE}),
+    # r' = -3 s r^3/8 for all s > 0; at s = 0 it is exactly a pair of roots, and s < 0 is outside of the interval
+    "-x - s*x_dot**3 + 0*p": (axis("s", 1, 2), {"p": Fraction(0)}, {Word.ASYMPTOTIC}),
+    "-x + s*x_dot**3 + 0*p": (axis("s", 1, 2), {"p": Fraction(0)}, {Word.UNSTABLE}),
+}
+
+
+@pytest.mark.parametrize("force", DECIDED)
+def test_terms_of_higher_order_are_asked_at_samples(force: str) -> None:
+    """Word by word what a run says at the sample; of the cell around it nothing more is said than before."""
+    along, given, words = DECIDED[force]
+    found = exact_map(mbsym.loads(OSCILLATOR.replace("FORCE", force)), [along], given)
+    further = [one for one in found.cells if one.nonlinear is not None]
+    assert {one.nonlinear.word for one in further if one.nonlinear is not None} == words
+    assert all(one.word is not None and one.word.open for one in further)
+    assert any("at the exact point alone" in text for text in remarks(found))
+    data = json.loads(map_json(mbsym.loads(OSCILLATOR.replace("FORCE", force)).system, found))
+    assert list(Draft202012Validator(schema("map")).iter_errors(data)) == []
+    told = {x["nonlinear"]["verdict"] for x in (*data["regions"], *data["corners"]) if "nonlinear" in x}
+    assert told == {word.value for word in words}

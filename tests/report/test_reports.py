@@ -19,6 +19,7 @@ import numpy as np
 import pytest
 from conftest import SHIPPED, compiled_latex, needs_pdflatex, precision
 from flint import arb, fmpq
+from terminal import told
 
 import mbsym
 from mbsym.algebra.signs import Condition
@@ -39,7 +40,6 @@ from mbsym.report.latex.labels import Labels as TexLabels
 from mbsym.report.latex.words import LINE, broken
 from mbsym.report.latex.writer import Writer
 from mbsym.report.sections.stability import label_of
-from mbsym.report.summary import summary
 from mbsym.report.targets import TARGETS
 
 #: Names that are reserved in some language, or look alike in another; forces of many kinds; a comment-closing name.
@@ -459,19 +459,16 @@ def test_verdicts_presume_the_conditions_of_problem_4():
     presumed = "provided the condition of problem 4 holds"
     assert f"Verdict, {presumed}: " in TARGETS["latex"].render(analysis, (4, 6)).replace("\n", " ")
     assert presumed in TARGETS["wolfram"].render(analysis, (6,))
-    lines = [text for line in summary(analysis, (6,), []).problems for text in line.lines]
-    assert f"all this {presumed}" in lines
+    assert any(text.startswith(f"Verdict, {presumed}: ") for text in told(analysis, 6))
     assert "problem 4 holds" not in TARGETS["latex"].render(analysis_of("heavy-top.yaml"), (4, 6))
 
 
-def test_the_summary_says_what_a_verdict_depends_on():
-    (line,) = summary(analysis_of("heavy-top.yaml"), (6,), []).problems
-    heading = "necessary conditions, but for the case of equality"
-    assert line.lines[0] == f"alpha, beta: depends on the parameters; {heading}:"
-    assert "whole system: depends on the parameters" in line.lines
+def test_the_terminal_says_what_a_verdict_depends_on():
+    lines = told(analysis_of("heavy-top.yaml"), 6)
+    assert "Verdict: depends on the parameters; see the cases." in lines
+    assert any(text.endswith("For the whole system: depends on the parameters.") for text in lines)
     never = mbsym.loads(HOOP.replace("theta: theta0}", "theta: 0}") + "assumptions: [R*Omega**2 > g]\n")
-    (line,) = summary(never, (6,), []).problems
-    assert any(re.fullmatch(r"  v0 = .*g.* > 0 never holds", text) for text in line.lines), line.lines
+    assert any(re.fullmatch(r"  v0 = .*g.* > 0 \(never holds\)", text) for text in told(never, 6))
 
 
 # --- no closed form ---
@@ -489,9 +486,7 @@ def test_without_closed_form_reports_give_the_reason_and_the_program(tmp_path):
     assert "dynamics[t_" in texts["wolfram"]
     model = loaded(texts["python"], tmp_path)
     assert model.mass_matrix(np.zeros(5), dict.fromkeys(model.PARAMETERS, 1.0)).shape == (5, 5)
-    lines = {line.number: line for line in summary(analysis, analysis.problems, []).problems}
-    assert not lines[3].available
-    assert reason in lines[3].lines[0]
+    assert told(analysis, 3)[0].startswith(f"No result: {reason}")
 
 
 # --- determinism ---

@@ -158,7 +158,7 @@ def _constrained_dynamics(
     holonomic = sum(row.position is not None for row in rows)
     masses: Sequence[Sequence[Node]] = mass_matrix(frames)
     forces: Sequence[Node] = forcing(frames, bias_forces(frames))
-    if massless or _held_by_rows(scene, masses, partials):
+    if massless or _held_by_rows(scene, program, masses, partials):
         masses, forces = _added(scene, rows, masses, forces)
     tree = Elimination(program, masses, [forces, *partials])
     free, *weighted = tree.forward
@@ -207,12 +207,14 @@ def _constrained_dynamics(
     )
 
 
-def _held_by_rows(scene: Scene[Node], masses: Sequence[Sequence[Node]], partials: Sequence[Sequence[Node]]) -> bool:
+def _held_by_rows(
+    scene: Scene[Node], program: Program, masses: Sequence[Sequence[Node]], partials: Sequence[Sequence[Node]]
+) -> bool:
     """Whether M is singular where all coordinates are zero, and M and J together have the full rank there.
 
     Exactly, at some values of the parameters; False where there are irrational numbers among the entries.
     """
-    system, ring, program = scene.system, scene.ring, scene.algebra
+    system, ring = scene.system, scene.ring
     if not any(body.coordinates and not _moves_mass(scene, body) for body in system.bodies):
         return False
     values = drawn(system, ring, Random(SEED)) | dict.fromkeys(system.coordinates, fmpq(0)) | {"pi": fmpq(355, 113)}

@@ -179,7 +179,7 @@ def held(system: System, values: Mapping[str, Expression]) -> System:
     """The system with q_i = values[i] (and q_i' = 0) put in everywhere and those coordinates taken out.
 
     Forces on a coordinate that is held do no work and are left out with it.  Whether the coordinates stay where they
-    are held is another question (``mbsym.numerics.planning.reduction``); claims about the whole system are dropped.
+    are held is another question (``resting``); claims about the whole system are dropped.
     """
     images: dict[str, Expression] = {}
     for name, value in values.items():

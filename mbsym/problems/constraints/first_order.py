@@ -4,7 +4,8 @@ With  Mb v' = fb(s, v, t),  s' = g(s, V v + v0, t)  and v' = 0, s' = 0 on the mo
 
     delta s' = (dg/d(s, v)) x,      Mb_0 delta v' = (dfb/d(s, v)) x,      A = [dg/d(s, v); Mb_0^-1 dfb/d(s, v)].
 
-Positions are those on which fb depends, and on which their rates do.  Constraints on positions tie the deviations of
+Positions are those on which fb depends, and on which their rates do, and coordinates that have roots of their own since
+their rates depend on themselves, if these do not vary on the motion.  Constraints on positions tie the deviations of
 these, and are refused.
 
 Second route: what the coordinates have been expanded to (``mechanics.constraints.expansion``), q' = S eta + T x_q and
@@ -50,11 +51,14 @@ def first_order(form: SpeedForm, equations: SpeedEquations, reduced: Reduced, at
     speeds = [u for u in form.speeds if u.name in tied.free]
     forcing = [x.polynomial for x in embedded.forcing]
     rates = {x.name: ring.reduce(ring.substitute(form.rates[x.name], images)) for x in form.positions}
-    positions = _felt(form, forcing, rates)
-    variables = [*positions, *speeds]
     plain, motion = _motion(form, reduced, at)
-    values = {x.index: ring.substitute(_inner(form, x), motion) for x in variables}
-    varying = {name for value in values.values() for name in unsteady(plain, value)}
+    for by_themselves in (True, False):
+        positions = _felt(form, forcing, rates, by_themselves)
+        variables = [*positions, *speeds]
+        values = {x.index: ring.substitute(_inner(form, x), motion) for x in variables}
+        varying = {name for value in values.values() for name in unsteady(plain, value)}
+        if not varying:
+            break
     if varying:
         raise NoClosedForm(
             Message(
@@ -70,8 +74,8 @@ def first_order(form: SpeedForm, equations: SpeedEquations, reduced: Reduced, at
     lower = solved(ring, mass, slopes[m:])
     if any(unsteady(plain, x) for row in (*slopes[:m], *lower) for x in row):
         raise NoClosedForm("the coefficients of the first approximation vary with time")
-    own = {x.name for x in positions}
-    relations = sum(all({a, b} <= own for a, b in pairs) for pairs in equations.relations)
+    felt = {x.name for x in positions}
+    relations = sum(all({a, b} <= felt for a, b in pairs) for pairs in equations.relations)
     return FirstOrder(
         names=tuple(x.name for x in variables),
         values=column(ring, list(values.values())),
@@ -126,14 +130,29 @@ def check(form: SpeedForm, found: FirstOrder, reduced: Reduced, at: Equilibrium)
     return check_identities(ring, "first approximation in speeds", routes, differences, unsolved(plain, at))
 
 
-def _felt(form: SpeedForm, formulas: Sequence[Polynomial], rates: Mapping[str, Polynomial]) -> list[Variable]:
-    """The positions on which formulas depend, and on which the rates of these do."""
+def _felt(
+    form: SpeedForm, formulas: Sequence[Polynomial], rates: Mapping[str, Polynomial], by_themselves: bool
+) -> list[Variable]:
+    """The positions on which formulas depend, and on which the rates of these do.
+
+    With ``by_themselves`` the coordinates whose rates depend on themselves, too, directly or through others (the angle
+    of a light trailer): they have roots of their own although no equation of the speeds needs them.
+    """
     ring, names = form.ring, list(rates)
-    found: set[str] = set()
-    new = {name for x in formulas for name in ring.dependencies(x, names)}
-    while new:
-        found |= new
-        new = {name for one in new for name in ring.dependencies(rates[one], names)} - found
+    needs = {name: set(ring.dependencies(rates[name], names)) for name in names}
+
+    def reached(start: set[str]) -> set[str]:
+        found, pending = set(start), list(start)
+        while pending:
+            new = needs[pending.pop()] - found
+            found |= new
+            pending += new
+        return found
+
+    start = {name for x in formulas for name in ring.dependencies(x, names)}
+    if by_themselves:
+        start |= {name for name in form.coordinates if name in needs and name in reached(needs[name])}
+    found = reached(start)
     return [x for x in form.positions if x.name in found]
 
 

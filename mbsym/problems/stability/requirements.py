@@ -31,6 +31,8 @@ class Method(StrEnum):
     NONE = "none"
 
 
+#: What the conditions on roots in lambda^2 say where zero roots are left out of them.
+EVEN_BUT_ZERO = "all roots in lambda^2 but the zero ones real, negative and simple: coefficients and discriminants"
 #: What Hurwitz's conditions say where zero roots, or those of a turned steady spin as well, are left out of them.
 BUT_ZERO = "all roots but the zero ones to the left of the imaginary axis: Lienard-Chipart"
 BUT_TURNED = "all roots but the zero ones and those of a turned spin to the left of the imaginary axis: Lienard-Chipart"

@@ -69,6 +69,7 @@ from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.requirements import (
     BUT_TURNED,
     BUT_ZERO,
+    EVEN_BUT_ZERO,
     OF_FACTOR,
     Case,
     Definite,
@@ -143,6 +144,8 @@ class Theory:
     @property
     def wanted(self) -> str:
         """What the conditions say together."""
+        if self.method is Method.EVEN and self.zero_power:
+            return EVEN_BUT_ZERO
         if self.method is not Method.HURWITZ or not (self.zero_power or self.turned):
             return self.method.value
         return BUT_TURNED if self.turned else BUT_ZERO

@@ -107,8 +107,7 @@ def panels(found: Map) -> list[tuple[Picture | None, Map]]:
 def look(found: Map, cell: Cell) -> Look:
     """Colour and hatch of a region."""
     if (counted := cell.counted) is not None:
-        counts = {one.counted.count for one in found.regions if one.counted is not None}
-        return look_of_count(counted.count, counts, counted.throughout or not counted.stable)
+        return look_of_count(counted.count, found.counts, counted.throughout or not counted.stable)
     judged = cell.judged
     if judged is None:
         return WHITE if cell.lack in (Lack.NOT_REACHED, Lack.UNPROVED) else NONE

@@ -19,7 +19,8 @@ OPENING = (
     "Polynomials up to weighted degree [[degree]] whose derivatives vanish by the equations of motion; "
     "weights of the variables: [[weights]]."
 )
-HEADING = "Polynomial first integrals up to weighted degree [[degree]]"
+UNIFORM = "Under these weights the equations are quasi-homogeneous."
+NOT_UNIFORM = "Under these weights the equations are not quasi-homogeneous."
 
 
 def weights_text(variables: Sequence[Inline], given: Sequence[int]) -> str:
