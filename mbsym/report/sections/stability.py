@@ -11,6 +11,7 @@ from msgspec import UNSET, UnsetType
 from msgspec.structs import asdict
 
 from mbsym.expressions.message import Message
+from mbsym.expressions.message import joined as sentences_of
 from mbsym.expressions.tree import names
 from mbsym.formulas.names import free_name
 from mbsym.mechanics.variables import expressions
@@ -262,7 +263,7 @@ def _conserved(results: Results) -> bool:
 def _verdict_told(found: Verdict, variable: str) -> tuple[Inline, ...]:
     if found.word is Word.DEPENDS:
         others = [sentence(one) for one in found.reasons if one.code is not Because.SEE_CASES]
-        said = (" ", Words(" ".join(others), variable)) if others else ()
+        said = (" ", Words(sentences_of(others), variable)) if others else ()
         return *concluded(found.word, ()), "; ", Said("see the cases."), *said
     return *verdict(found), ". ", Words(found.explanation, variable)
 
