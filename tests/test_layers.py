@@ -120,6 +120,14 @@ def test_reading_a_description_loads_nothing_heavy(name: str) -> None:
     assert done.stdout.split() == []
 
 
+def test_an_analysis_loads_what_every_system_needs() -> None:
+    """Neither claims, of which most descriptions have none, nor the parts that an installation may lack."""
+    unused = ("mbsym.problems.claims", "mbsym.analysis.judging", *PARTS)
+    program = f"import sys, mbsym.analysis; print(*[m for m in {unused} if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == []
+
+
 #: What a run has no use for: numbers in arrays, figures, SymPy's exchange, the search for all equilibria,
 #: metadata of packages, constraints where there are none, and (where nothing is printed) a terminal's colours.
 UNUSED = (

@@ -12,6 +12,7 @@ import pytest
 
 import mbsym
 from mbsym.algebra.parts import PARTS, installed, missing
+from mbsym.serving.tasks import perform
 
 ROOT = Path(mbsym.__file__).parents[1]
 
@@ -74,6 +75,14 @@ def test_another_module_that_is_not_found_is_a_mistake() -> None:
     assert missing(ModuleNotFoundError(name="numpy")) == ""
 
 
+def test_the_editor_names_what_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """None in ``sys.modules`` is how an import fails of what is not there."""
+    text = (ROOT / "systems" / "double-pendulum.yaml").read_text()
+    task = {"kind": "map", "text": text, "name": "x.yaml", "x": {"name": "m1", "low": "1", "high": "2"}}
+    monkeypatch.setitem(sys.modules, "mbsym.maps.mapping", None)
+    assert [*perform(task)] == [{"kind": "failed", "words": "mbsym.maps is not installed"}]
+
+
 def test_everything_else_works_without_them(core: Path) -> None:
     lines = (
         "check double-pendulum.yaml",
@@ -105,8 +114,8 @@ def test_what_is_missing_is_named(core: Path) -> None:
         "explain 11",
     )
     run, _, _ = said.partition("<0: run clebsch-poisson.yaml")
-    assert "Problems 9, 10: no result: mbsym.problems.symmetries is not installed" in run
-    assert "Problem 11: no result: mbsym.problems.normal_forms is not installed" in run
+    for part in ("symmetries", "normal_forms", "small_parameter"):
+        assert f"no result: mbsym.problems.{part} is not installed" in run
     written = (core / "further" / "report.tex").read_text()
     assert "Problem 9" in written
     assert "is not installed" in written

@@ -66,7 +66,7 @@ class _Pairs:
         pairs = [self.pairs[k] for k in operands]
         if not operands or not (exact or any(low is not None for _, low in pairs)):
             unchanged = all(high.number == k for (high, _), k in zip(pairs, operands, strict=True))
-            return (Node(program, number) if unchanged else self._again(operation, [h for h, _ in pairs])), None
+            return (Node(program, number) if unchanged else program.again(operation, [h for h, _ in pairs])), None
         match operation, pairs:
             case "negative", [(a, low)]:
                 return program.minus(a), None if low is None else program.minus(low)
@@ -83,32 +83,11 @@ class _Pairs:
             case ("sin" | "cos") as which, [a]:
                 found = self._turn(which, a, exact)
             case name, [(a, _)]:
-                return self._again(name, [a]), None
+                return program.again(name, [a]), None
             case _:
                 raise ValueError(f"no such operation: {operation}")
         # What is not sensitive itself takes in what it was handed, and hands on one number.
         return found if exact else (self._joined(found), None)
-
-    def _again(self, operation: str, operands: Sequence[Node]) -> Node:
-        program = self.program
-        match operation, operands:
-            case "add", [a, b]:
-                return program.plus(a, b)
-            case "subtract", [a, b]:
-                return program.difference(a, b)
-            case "multiply", [a, b]:
-                return program.product(a, b)
-            case "divide", [a, b]:
-                return program.divide(a, b)
-            case "negative", [a]:
-                return program.minus(a)
-            case "sqrt", [a]:
-                return program.square_root(a)
-            case ("sin" | "cos") as which, [a]:
-                return program.sin_cos_of(a)[0 if which == "sin" else 1]
-            case name, [a]:
-                return program.function(name, a)
-        raise ValueError(f"no such operation: {operation}")
 
     def _split(self, number: int, value: Fraction) -> Pair:
         high = Fraction(float(value))

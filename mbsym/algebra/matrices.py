@@ -210,6 +210,16 @@ def cramer(algebra: Algebra[S], rows: Table[S], right: Sequence[S]) -> list[S]:
     ]
 
 
+def solved(algebra: Algebra[S], rows: Table[S], right: Table[S]) -> list[list[S]]:
+    """A^-1 B by Cramer's rule: the denominator is the determinant, and nothing that it does not need.
+
+    Raises what ``reciprocal`` of the algebra raises where that is zero.
+    """
+    inverse = algebra.reciprocal(determinant(algebra, rows))
+    columns = [cramer(algebra, rows, column) for column in zip(*right, strict=True)]
+    return [[algebra.reduce(algebra.times(x, inverse)) for x in row] for row in zip(*columns, strict=True)]
+
+
 # --- characteristic polynomials ---
 
 

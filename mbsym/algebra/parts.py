@@ -9,6 +9,7 @@ from importlib.util import find_spec
 
 #: Problems 9 to 12, arrangements of curves and maps, robots, exports to other tools, the cluster.
 PARTS = (
+    "mbsym.algebra.arrangements",
     "mbsym.batch.cluster",
     "mbsym.batch.swept",
     "mbsym.maps",

@@ -330,6 +330,27 @@ class Program(Algebra[Node]):
                     counted += 1
         return counted
 
+    def again(self, operation: str, operands: Sequence[Node]) -> Node:
+        """An instruction's operation on other operands, with all that is known of sums, products and angles."""
+        match operation, operands:
+            case "add", [a, b]:
+                return self.plus(a, b)
+            case "subtract", [a, b]:
+                return self.difference(a, b)
+            case "multiply", [a, b]:
+                return self.product(a, b)
+            case "divide", [a, b]:
+                return self.divide(a, b)
+            case "negative", [a]:
+                return self.minus(a)
+            case "sqrt", [a]:
+                return self.square_root(a)
+            case ("sin" | "cos") as which, [a]:
+                return self.sin_cos_of(a)[which == "cos"]
+            case name, [a]:
+                return self.function(name, a)
+        raise ValueError(f"no such operation: {operation}")
+
     def evaluate(
         self,
         outputs: Sequence[Node],

@@ -101,23 +101,7 @@ class _Rewriting:
             return self._sum(number)
         if all(self.image[k].number == k for k in operands if k in self.image) and operation != "negative":
             return Node(program, number)
-        nodes = [self._factor(k) for k in operands]
-        match operation, nodes:
-            case "multiply", [a, b]:
-                return program.product(a, b)
-            case "divide", [a, b]:
-                return program.divide(a, b)
-            case "negative", [a]:
-                return program.minus(a)
-            case "sqrt", [a]:
-                return program.square_root(a)
-            case "sin", [a]:
-                return program.sin_cos_of(a)[0]
-            case "cos", [a]:
-                return program.sin_cos_of(a)[1]
-            case name, [a]:
-                return program.function(name, a)
-        raise ValueError(f"no such operation: {operation}")
+        return program.again(operation, [self._factor(k) for k in operands])
 
     def _factor(self, number: int) -> Node:
         """The image of an operand; one inside a negative is made now."""

@@ -165,8 +165,11 @@ def balance_of(analysis: Analysis) -> Balance:
 
 def state_space_of(analysis: Analysis) -> StateSpace:
     """A, B, C, D."""
-    from mbsym.problems.state_space import state_space  # few systems have inputs
+    from mbsym.problems.state_space import reduced_state_space, state_space  # few systems have inputs
 
+    if analysis.system.constraints:
+        _ = analysis.linearisation  # the motion exists, and is steady
+        return reduced_state_space(analysis.parameters_scene, analysis.reduced, analysis.equilibrium)
     return state_space(analysis.parameters_scene, analysis.expanded, analysis.linearisation, analysis.equilibrium)
 
 

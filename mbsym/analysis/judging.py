@@ -34,10 +34,8 @@ _EXPANSIONS = {
 
 
 def judged_claims(analysis: Analysis) -> tuple[ClaimResult, ...]:
-    """Every claim's outcome, in the order of the description."""
+    """Every claim's outcome, in the order of the description, which has some."""
     system = analysis.system
-    if not system.claims:
-        return ()
     if system.constraints and system.speeds:
         reason = refused(system, "not judged in speeds")
         return tuple(claims.undecided(system, claim, reason) for claim in system.claims)

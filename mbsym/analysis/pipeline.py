@@ -22,7 +22,6 @@ from mbsym.analysis import (
     deriving,
     forms,
     given,
-    judging,
     second_routes,
 )
 from mbsym.analysis.forms import FORMS
@@ -38,8 +37,6 @@ from mbsym.model.driven import held
 from mbsym.model.system import System
 from mbsym.problems import kinematics, knowledge
 from mbsym.problems.checks import Check, oracles
-from mbsym.problems.claims import ClaimResult
-from mbsym.problems.claims.counterexample import Trials
 from mbsym.problems.dissipation import Balance
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
@@ -57,6 +54,8 @@ if TYPE_CHECKING:
     from mbsym.mechanics.speeds import SpeedForm
     from mbsym.problems.canonical.brackets import Brackets
     from mbsym.problems.canonical.canonical import Hamilton, Routh
+    from mbsym.problems.claims import ClaimResult
+    from mbsym.problems.claims.counterexample import Trials
     from mbsym.problems.constraints import Constraints
     from mbsym.problems.first_order import FirstOrder
     from mbsym.problems.invariant_sets import InvariantSets
@@ -80,7 +79,7 @@ KNOW_CONSTRAINTS = frozenset(
         *("scene", "held_scene", "parameters_scene", "signs", "kinematics", "energy", "equations", "constraints"),
         *("tied_in_coordinates", "first_order", "small_parameters"),
         *("claims", "checks", "reduced", "residuals", "equilibrium", "first_approximation", "linearisation"),
-        *("judgeable", "balance", "stability", "trials", "integrals", "reactions"),
+        *("state_space", "judgeable", "balance", "stability", "trials", "integrals", "reactions"),
         *(f"check: {name}" for name in ("kinematics", "energy", "equations of motion", *constrained.CHECKS)),
         f"check: {constrained.REACTIONS}",
         *("check: equilibrium", "check: perturbed motion"),
@@ -394,13 +393,15 @@ class Analysis(Stages):
 
     # --- what stands beside the problems: claims, and the second routes of the self-check ---
 
-    claims = Derived["Analysis", tuple[ClaimResult, ...]](judging.judged_claims)
-    trials = Derived["Analysis", Trials](judging.trials, JUDGED, says=True)
+    claims: Derived[Analysis, tuple[ClaimResult, ...]] = Derived(
+        lambda a: later("mbsym.analysis.judging", "judged_claims")(a) if a.system.claims else ()
+    )
+    trials: Derived[Analysis, Trials] = Derived(later("mbsym.analysis.judging", "trials"), JUDGED, says=True)
     claimed_oscillation: Derived[Analysis, Oscillating] = Derived(
-        judging.claimed_oscillation, ("equations of motion",), says=True
+        later("mbsym.analysis.judging", "claimed_oscillation"), ("equations of motion",), says=True
     )
     claimed_manifold: Derived[Analysis, Expansion] = Derived(
-        judging.claimed_manifold, ("equations of motion",), says=True
+        later("mbsym.analysis.judging", "claimed_manifold"), ("equations of motion",), says=True
     )
     checks = Derived["Analysis", tuple[Check, ...]](second_routes.checks)
 

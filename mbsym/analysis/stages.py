@@ -207,6 +207,7 @@ def later(module: str, name: str) -> Callable[..., Any]:
     def call(*given: Any) -> Any:
         return getattr(import_module(module), name)(*given)
 
+    call.__doc__ = f"See ``{module}.{name}``."
     return call
 
 

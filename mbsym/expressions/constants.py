@@ -63,9 +63,9 @@ def meaningless(tree: Expression, known: Known | None = None) -> tuple[Expressio
     return None
 
 
-def out_of_range(tree: Expression, known: Known | None = None) -> str:
+def out_of_range(tree: Expression) -> str:
     """Why no double holds the number that a tree is; "" where one does, or the tree has names or no value."""
-    found = value(tree, known)
+    found = value(tree)
     if found is None:
         return ""
     if isinstance(found, Fraction):

@@ -23,6 +23,7 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.plane.line import Interval, Line, divided
 from mbsym.algebra.plane.numbers import Number, ascending, between_simply, compare, enclosure
 from mbsym.algebra.polynomial_systems import Limits
+from mbsym.algebra.rationals import fraction
 from mbsym.maps.boundaries import Boundaries
 from mbsym.maps.branches_curve import Curve, CurvePoint, Found, curves, joined
 from mbsym.maps.branches_events import named
@@ -149,10 +150,6 @@ def _sample(interval: Interval, line: Line) -> Any:
         return interval.sample
     last = interval.ends[1]
     return between_simply(fmpq(0), line.high if last is None else line.zeros[last].number)
-
-
-def fraction(x: Any) -> Fraction:
-    return Fraction(int(x.p), int(x.q))
 
 
 def _meetings(parts: Sequence[Curve], number: Number) -> tuple[tuple[Meeting, ...] | None, str, bool]:

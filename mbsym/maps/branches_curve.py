@@ -14,26 +14,22 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
 from typing import Any
 
 from flint import fmpq, fmpq_mat, fmpq_poly
 
-from mbsym.algebra.characteristic import determinant
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.plane.numbers import Number, compare, number, primitive, roots_between
 from mbsym.algebra.polynomial_systems import AlgebraicPoint, Family, Limits, solve
 from mbsym.algebra.ring import Polynomial
-from mbsym.mechanics.charts import Chart, charts
-from mbsym.mechanics.rest import Rest, at_numbers, rest
+from mbsym.maps.varied import INFINITY_OPEN, MASS_OPEN, Varied, charts_over
+from mbsym.mechanics.charts import Chart
 from mbsym.model.system import System
-from mbsym.problems.relative_equilibria.equilibria import EXACT, WITHIN, _ChartSearch
+from mbsym.problems.relative_equilibria.equilibria import EXACT
 from mbsym.problems.relative_equilibria.place import PRECISION, Place
 from mbsym.problems.relative_equilibria.unknowns import Unknowns
 
-#: The determinant of M is not formed for more coordinates.
-MOST_COORDINATES = 6
 #: Values of coordinates (or of their sines and cosines) at which real points of a family are looked for.
 _TRIED = (fmpq(3, 5), fmpq(-4, 5), fmpq(5, 13), fmpq(1, 10), fmpq(-1, 10), fmpq(0), fmpq(1))
 
@@ -73,69 +69,13 @@ class Found:
     unfinished: tuple[str, ...]
 
 
-def with_parameter(system: System, name: str, values: Mapping[str, Fraction]) -> Rest:
-    """The equations of the steady motions with numbers for all parameters but one.
-
-    Raises KeyError for a missing value, NoClosedForm, SingularPoint.
-    """
-    kept = next(one for one in system.parameters if one.name == name)
-    numbers = {key: value for key, value in values.items() if key != name}
-    return rest(replace(at_numbers(system, numbers), parameters=(replace(kept, value=None),)))
-
-
-class _Search(_ChartSearch):
-    """The conditions of rest with a parameter that is an unknown, too."""
-
-    parameter = ""
-
-    def _obstacle(self, used: set[int]) -> str:
-        found = super()._obstacle(used - {self.ring.index("parameter", self.parameter)})
-        if found == f"{self.parameter} is transcendental":
-            return f"{self.parameter} stands in a root or a function"
-        return found
-
-
-class Curve:
+class Curve(Varied):
     """The curve in one set of angles.  Raises NoClosedForm where the equations are not of the kind needed."""
 
     def __init__(self, chart: Chart, parameter: str, low: Fraction, high: Fraction, limits: Limits) -> None:
-        self.chart, self.parameter, self.limits = chart, parameter, limits
+        super().__init__(chart, (parameter,), limits)
+        self.parameter, self.index = parameter, self.ring.index("parameter", parameter)
         self.low, self.high = (fmpq(x.numerator, x.denominator) for x in (low, high))
-        search = _Search(chart, WITHIN, limits)
-        search.parameter = parameter
-        search._conditions()
-        self.search, self.found, self.ring = search, chart.found, chart.found.ring
-        self.index = self.ring.index("parameter", parameter)
-        self.label = chart.label
-        self.empty = search.impossible
-        self.names = () if self.empty else search.occurring
-        if self.empty:
-            return
-        if search.reason:
-            raise NoClosedForm(search.reason)
-        others = [x for name, x in self._rows.items() if name not in self.names and not x.is_zero()]
-        if others or search.remarks:
-            raise NoClosedForm("the equations at rest are more than their unknowns, or vary in time")
-
-    @cached_property
-    def _rows(self) -> dict[str, Polynomial]:
-        found = self.found
-        return {name: self.ring.fraction(x)[0] for name, x in zip(found.system.coordinates, found.at_rest, strict=True)}
-
-    @cached_property
-    def forcing(self) -> list[Polynomial]:
-        """f, times what its rows divide by, for the coordinates that occur: the rows vanish with those of f."""
-        return [self._rows[name] for name in self.names]
-
-    @cached_property
-    def slopes(self) -> list[list[Polynomial]]:
-        """df/dq of ``forcing``."""
-        return [[self.ring.derivative(x, name) for name in self.names] for x in self.forcing]
-
-    @cached_property
-    def singular(self) -> Polynomial:
-        """det df/dq."""
-        return self.ring.reduce(determinant(self.slopes)) if self.names else self.ring.one
 
     def along(self, x: Polynomial) -> Polynomial:
         """The derivative by the parameter.  Raises NoClosedForm where p stands in a root or a function."""
@@ -161,7 +101,7 @@ class Curve:
     def where(self, further: Sequence[Polynomial], at: Number | None = None) -> Found:
         """The points of the curve, p within the range, at which ``further`` vanish, or at one number p."""
         given = [self.ring.fraction(x)[0] for x in further]
-        table = self._table(given)
+        table = self.table(given)
         wanted = [table.polynomial(x) for x in (*self.search.equations, *given) if not x.is_zero()]
         if at is not None:
             wanted.append(_of_number(at, table.context, table.indices.index(self.index)))
@@ -170,7 +110,7 @@ class Curve:
     def where_on_components(self, further: Sequence[Polynomial]) -> Found:
         """As ``where``, component by component of the curve: longer polynomials are short on one."""
         given = [self.ring.fraction(x)[0] for x in further]
-        table = self._table(given)
+        table = self.table(given)
         equations = [table.polynomial(x) for x in self.search.equations] + table.relations()
         usable = [table.polynomial(x) for x in self.search.nonzero if table.holds(x)]
         whole = solve(equations, usable, table.bounded(), self.limits)
@@ -181,10 +121,6 @@ class Curve:
                 return Found((), (), True, ())
             found.append(self._solved(table, [*family.equations, *table.relations(), *wanted], None))
         return joined(found)
-
-    def _table(self, given: Sequence[Polynomial]) -> Unknowns:
-        marked = [*self.search.equations, *given, *self.search.singular_where, self.ring.context.gen(self.index)]
-        return Unknowns(self.ring, marked)
 
     def _solved(self, table: Unknowns, equations: Sequence[Any], at: Number | None) -> Found:
         usable = [table.polynomial(x) for x in self.search.nonzero if table.holds(x)]
@@ -246,15 +182,10 @@ class Curve:
 
     def borders(self) -> Found:
         """Where a square root vanishes, a denominator does, or a length goes to infinity."""
-        parts: list[Found] = []
-        angular = {str(x) for x in self.search.singular_where}
-        beside = [x for x in self.search.nonzero if str(x) not in angular]
-        roots = [
-            self.ring.context.gen(k) for k in occurring(self.search.equations) if self.ring.generators[k].kind == "root"
+        parts = [self._without_conditions([x]) for x in self.undefined()]
+        parts += [
+            Found((), (), False, (INFINITY_OPEN,)) if one is None else self._gone(*one) for one in self.at_infinity()
         ]
-        for x in (*beside, *roots):
-            parts.append(self._without_conditions([x]))
-        parts += self._at_infinity()
         return joined([*parts, self._massless()])
 
     def _massless(self) -> Found:
@@ -262,13 +193,11 @@ class Curve:
 
         Where it vanishes all along a branch, other branches meet that one in singular points only.
         """
-        mass = self.found.mass_matrix()
-        if len(mass) > MOST_COORDINATES:
-            return Found((), (), False, ("where the mass matrix is singular is not looked at",))
-        det = self.ring.reduce(determinant(mass))
-        if det.is_constant():
+        if self.mass is None:
+            return Found((), (), False, (MASS_OPEN,))
+        if self.mass.is_constant():
             return Found((), (), False, ())
-        return replace(self.where([det]), throughout=False)
+        return replace(self.where([self.mass]), throughout=False)
 
     def _without_conditions(self, further: Sequence[Polynomial]) -> Found:
         kept, self.search.nonzero = self.search.nonzero, list(self.search.singular_where)
@@ -277,30 +206,9 @@ class Curve:
         finally:
             self.search.nonzero = kept
 
-    def _at_infinity(self) -> list[Found]:
-        """Lengths are z/u with one z_j = 1; at u = 0 the forms of highest degree in z are left of the equations."""
-        ring = self.ring
-        lengths = [name for name in self.names if not self.search._periodic(name)]
-        if not lengths:
-            return []
-        kinds = {ring.generators[k].kind for k in occurring(self.search.equations)}
-        if kinds - {"sine", "cosine", "coordinate", "parameter"}:
-            return [Found((), (), False, ("whether branches go to infinity is not looked at: roots beside lengths",))]
-        table = Unknowns(ring, [*self.search.equations, ring.context.gen(self.index)])
-        equations = [table.polynomial(x) for x in self.search.equations] + table.relations()
-        places = [table.indices.index(ring.index("coordinate", name)) for name in lengths]
-        k = table.indices.index(self.index)
-        return [self._gone(equations, places, at, table, k) for at in places]
-
-    def _gone(self, equations: Sequence[Any], places: Sequence[int], at: int, table: Unknowns, k: int) -> Found:
-        """The values of p (unknown ``k``) at which the length ``at`` may go to infinity, none of ``places`` faster."""
-        tops = []
-        for x in equations:
-            degree = max(sum(int(m[i]) for i in places) for m in x.monoms())
-            kept = {m: c for m, c in x.terms() if sum(int(m[i]) for i in places) == degree}
-            tops.append(table.context.from_dict(kept))
-        fixed = [table.context.gens()[at] - 1]
-        result = solve([*tops, *fixed], (), table.bounded(), self.limits)
+    def _gone(self, table: Unknowns, equations: Sequence[Any]) -> Found:
+        """The values of p at which a length may go to infinity."""
+        result = solve(equations, (), table.bounded(), self.limits)
         numbers = [self._number(table, one, None) for one in result.points]
         unfinished = list(result.unfinished)
         for family in result.families:
@@ -326,7 +234,7 @@ def curves(
 ) -> tuple[Curve, ...]:
     """The curve in every set of angles that is needed; those without points are left out."""
     found = []
-    for chart in charts(with_parameter(system, parameter, values)):
+    for chart in charts_over(system, (parameter,), values):
         one = Curve(chart, parameter, low, high, limits)
         if not one.empty:
             found.append(one)

@@ -10,8 +10,8 @@ few cells (spread by Halton's sequence), and there
 * the signs of the boundary polynomials have to be those of the region, and as many branches as in the whole strip to
   lie over the abscissa.
 
-On every arc a second exact point has to have the verdict of the arc.  The laws of arrangements (``plane.laws``) are
-checked besides: Euler's finds corners that were missed.  What continuity demands of counts on arcs and at corners
+On every arc a second exact point has to have the verdict of the arc. The laws of arrangements (``arrangements.laws``)
+are checked besides: Euler's finds corners that were missed. What continuity demands of counts on arcs and at corners
 (``continuity``) is the check of corners.
 """
 
@@ -27,14 +27,14 @@ from typing import Any
 
 from flint import acb_mat, arb, arb_mat, arb_poly, ctx, fmpq, fmpq_mat
 
+from mbsym.algebra.arrangements.arrangement import Arc, Arrangement, Piece, sample_of
+from mbsym.algebra.arrangements.laws import Breach, breaches
+from mbsym.algebra.arrangements.stacks import column
 from mbsym.algebra.failures import TooLargeError
-from mbsym.algebra.plane.arrangement import Arc, Arrangement, Piece, sample_of
-from mbsym.algebra.plane.laws import Breach, breaches
 from mbsym.algebra.plane.line import Line
 from mbsym.algebra.plane.numbers import Rational, between_simply, high, low, sign, simplest
 from mbsym.algebra.plane.points import Point
 from mbsym.algebra.plane.projection import nothing
-from mbsym.algebra.plane.stacks import column
 from mbsym.maps.constant_points import beside
 from mbsym.maps.continuity import jumps
 from mbsym.maps.on_curves import ExactVerdicts

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from mbsym.algebra.plane.arrangement import Arrangement
+from mbsym.algebra.arrangements.arrangement import Arrangement
 from mbsym.algebra.plane.line import Line
 from mbsym.maps.verdicts import Judged
 

@@ -18,11 +18,12 @@ from typing import Any
 
 from flint import fmpq
 
+from mbsym.algebra.arrangements import Arrangement, areas, decompose
+from mbsym.algebra.arrangements.arrangement import Region
+from mbsym.algebra.arrangements.drawing import Branches as Drawn
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
-from mbsym.algebra.plane import Arrangement, Point, areas, decompose
-from mbsym.algebra.plane.arrangement import Region
-from mbsym.algebra.plane.drawing import Branches as Drawn
+from mbsym.algebra.plane import Point
 from mbsym.algebra.polynomial_systems import Limits
 from mbsym.maps.boundaries import Boundaries, Condition, Origin, factored
 from mbsym.maps.branches_stability import BY_INERTIA, is_undamped

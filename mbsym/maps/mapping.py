@@ -11,13 +11,15 @@ from typing import Any
 
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
+from mbsym.algebra.arrangements import Arrangement, areas, decompose
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.characteristic import leading_minors
-from mbsym.algebra.failures import TooLargeError
-from mbsym.algebra.plane import AlgebraicNumber, Arrangement, Box, Point, areas, decompose
+from mbsym.algebra.failures import Failure, TooLargeError
+from mbsym.algebra.plane import AlgebraicNumber, Box, Point
 from mbsym.algebra.plane.line import Line, decompose_line, univariate
 from mbsym.algebra.plane.numbers import sign
 from mbsym.analysis import Analysis
+from mbsym.analysis.judge import Judge as OneJudge
 from mbsym.maps.admissible import Admissibility, admissibility
 from mbsym.maps.boundaries import Boundaries, Condition, Origin, boundaries
 from mbsym.maps.check import Check, check
@@ -29,6 +31,9 @@ from mbsym.maps.section import Axis, Section, section
 from mbsym.maps.soft_borders import Onset, SoftBorders, SoftOrHard, lost
 from mbsym.maps.verdicts import Judged, matrix_at, verdict_at
 from mbsym.problems.stability.exact import inertia
+
+#: So many points of a map are judged by the nonlinear system, too.
+MOST_ASKED = 200
 
 #: Tells what is being done: a word, how much of it is done, and how much there is.
 Watch = Callable[[str, int, int], None]
@@ -55,7 +60,8 @@ def exact_map(
     there = section(analysis, axes, settings)
     kept = kept_in(analysis, there)
     watch("boundaries", 0, 1)
-    return with_onsets(mapped(there, kept, bounded(there, kept), of, watch), SoftBorders(analysis, there), watch)
+    found = with_onsets(mapped(there, kept, bounded(there, kept), of, watch), SoftBorders(analysis, there), watch)
+    return with_nonlinear(found, analysis, watch)
 
 
 def kept_in(analysis: Analysis, there: Section) -> Admissibility:
@@ -102,6 +108,44 @@ def with_onsets(found: Map, onsets: SoftBorders, watch: Watch) -> Map:
     except KeyboardInterrupt:
         interrupted = True
     return replace(found, arcs=tuple(arcs), corners=tuple(corners), interrupted=interrupted, onsets=onsets)
+
+
+def with_nonlinear(found: Map, analysis: Analysis, watch: Watch) -> Map:
+    """The map with what the one judge says at rational samples where the first approximation and the energy are open.
+
+    It is said of these points alone: what terms of higher order depend on bounds no region.  Only where the axes and
+    all that is given are parameters with numbers, and at the first ``MOST_ASKED`` of such points.
+    """
+    there, system = found.section, analysis.system
+    if found.of is not Of.STABILITY or found.interrupted or there is None or there.constant is not None:
+        return found
+    names = {axis.name for axis in found.axes}
+    related = {item.name for item in system.relations} | {name for name, _ in analysis.equilibrium.solved}
+    if {*system.parameter_names} - related != {*there.numbers, *names} - related:
+        return found
+    judge, left = OneJudge(analysis), MOST_ASKED
+
+    def asked(cell: Cell) -> Cell:
+        nonlocal left
+        point = _coordinates(cell.sample)
+        if cell.judged is None or not cell.judged.verdict.word.open or not all(isinstance(x, fmpq) for x in point):
+            return cell
+        if not left:
+            return cell
+        left -= 1
+        values = {axis.name: Fraction(int(x.p), int(x.q)) for axis, x in zip(found.axes, point, strict=True)}
+        watch("terms of higher order", cell.number, len(found.regions))
+        try:
+            verdict = judge.decided(cell.judged.verdict, {**there.numbers, **values})
+        except Failure:
+            return cell
+        return cell if verdict.word.open else replace(cell, nonlinear=verdict)
+
+    try:
+        regions, arcs, corners = (tuple(map(asked, part)) for part in (found.regions, found.arcs, found.corners))
+    except KeyboardInterrupt:
+        return replace(found, interrupted=True)
+    return replace(found, regions=regions, arcs=arcs, corners=corners)
 
 
 def mapped(
@@ -206,7 +250,7 @@ def places(ground: Ground) -> list[tuple[Shape, int, Any]]:
 
 
 class Judge:
-    """Judges exact points of a section with one or two axes, one by one: a Point, or a number."""
+    """Judges exact points of a section one by one: a number, a Point, or the rational coordinates of more axes."""
 
     def __init__(self, there: Section, kept: Admissibility) -> None:
         self.section, self.kept = there, kept
@@ -258,6 +302,8 @@ class Judge:
 
 
 def _coordinates(point: Any) -> tuple[Any, ...]:
+    if isinstance(point, tuple):
+        return point
     return (point.x, point.y) if isinstance(point, Point) else (point,)
 
 
@@ -265,4 +311,6 @@ def _sign(place: Any, p: Any) -> int:
     """The sign of a polynomial of the section's context at an exact point."""
     if isinstance(place, AlgebraicNumber):
         return place.sign(univariate(p))
-    return sign(fmpq(p(place))) if isinstance(place, fmpq) else int(place.sign(p))
+    if isinstance(place, fmpq | tuple):
+        return sign(fmpq(p(*_coordinates(place))))
+    return int(place.sign(p))

@@ -17,6 +17,7 @@ from mbsym.algebra.matrices import added
 from mbsym.algebra.plane import AlgebraicNumber, Point
 from mbsym.algebra.plane.numbers import sign
 from mbsym.algebra.plane.point_field import LineField, PointField
+from mbsym.algebra.rationals import fraction
 from mbsym.algebra.roots import RootCount, counted, counted_real
 from mbsym.maps.constant_points import ConstantPoint
 from mbsym.maps.section import Section
@@ -72,12 +73,8 @@ def _field(place: Place) -> ExactPoint:
     if isinstance(place, Point):
         if not place.rational:
             return PointField(place)
-        return RationalPoint({0: _fraction(place.x), 1: _fraction(place.y)})
-    return LineField(place) if isinstance(place, AlgebraicNumber) else RationalPoint({0: _fraction(place)})
-
-
-def _fraction(x: Any) -> Fraction:
-    return Fraction(int(x.p), int(x.q))
+        return RationalPoint({0: fraction(place.x), 1: fraction(place.y)})
+    return LineField(place) if isinstance(place, AlgebraicNumber) else RationalPoint({0: fraction(place)})
 
 
 def _signs(place: Place) -> tuple[int, ...]:

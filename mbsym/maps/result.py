@@ -6,16 +6,17 @@ boxes; over three a stack of slices, each a map of its own.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field, replace
 from enum import StrEnum
 from fractions import Fraction
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from flint import fmpq
 
+from mbsym.algebra.arrangements import Arc, Arrangement, Corner, CornerKind
 from mbsym.algebra.certainty import Certainty
-from mbsym.algebra.plane import Arc, Arrangement, Corner
 from mbsym.algebra.plane.line import Line, Zero
 from mbsym.maps.admissible import Admissibility, Demand
 from mbsym.maps.axis import Axis
@@ -25,6 +26,7 @@ from mbsym.maps.section import Section
 from mbsym.maps.soft_borders import SoftBorders, SoftOrHard
 from mbsym.maps.subdivision import Subdivision
 from mbsym.maps.verdicts import Border, Judged
+from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word
 
 if TYPE_CHECKING:
@@ -107,7 +109,8 @@ class Cell:
 
     ``said`` holds at the sample exactly, ``certainty`` is how surely it holds in the whole cell (of counted equilibria:
     their number).  Where nothing is said ``lack`` says why; ``broken``: the demands that are not kept there.
-    ``soft``: of borders at which one pair of roots is imaginary and none to the right; None elsewhere.
+    ``soft``: of borders at which one pair of roots is imaginary and none to the right; None elsewhere.  ``nonlinear``:
+    of a verdict that leaves the motion open, what the nonlinear system shows at the sample alone.
     """
 
     shape: Shape
@@ -118,6 +121,7 @@ class Cell:
     lack: Lack | None = None
     broken: tuple[Demand, ...] = ()
     soft: SoftOrHard | None = None
+    nonlinear: Verdict | None = None
 
     @property
     def judged(self) -> Judged | None:
@@ -155,6 +159,23 @@ class Cell:
             return (self.lack,)
         found = self.judged
         return (found.verdict.word, found.verdict.theorems, found.right, found.real_right, found.degree)
+
+
+class Joined:
+    """Numbers that are joined to classes; the least stands for each."""
+
+    def __init__(self, count: int) -> None:
+        self._above = list(range(count))
+
+    def __call__(self, k: int) -> int:
+        while self._above[k] != k:
+            self._above[k] = self._above[self._above[k]]
+            k = self._above[k]
+        return k
+
+    def join(self, a: int, b: int) -> None:
+        a, b = self(a), self(b)
+        self._above[max(a, b)] = min(a, b)
 
 
 #: How the space of parameters is divided.
@@ -209,6 +230,11 @@ class Map:
     def borders(self) -> tuple[Cell, ...]:
         """The cells between regions."""
         return self.corners if isinstance(self.ground, Line) else self.arcs
+
+    @cached_property
+    def counts(self) -> frozenset[int]:
+        """All numbers of equilibria that regions have."""
+        return frozenset(one.counted.count for one in self.regions if one.counted is not None)
 
     @property
     def whole(self) -> float:
@@ -278,11 +304,16 @@ class Map:
             below, above = self.place(border).regions
         return None if below is None else self.regions[below], None if above is None else self.regions[above]
 
-    def around(self, corner: Cell) -> list[Cell | None]:
-        """The regions that meet at a corner, each once; None is outside."""
+    def around(self, corner: Cell) -> Sequence[Cell | None]:
+        """The regions that meet at a corner, each once; None is outside.  Of an isolated point the one around it."""
         if isinstance(self.ground, Line):
             return list(self.beside(corner))
-        pairs = [self.beside(self.arcs[k]) for k in self.place(corner).arcs]
+        there = self.place(corner)
+        if there.kind is CornerKind.ISOLATED:
+            at, j = there.place
+            inside = self.arrangement.places.intervals
+            return [self.regions[inside[key]] for key in ((at, j), (at, j - 1)) if key in inside][:1]
+        pairs = [self.beside(self.arcs[k]) for k in there.arcs]
         return list({None if x is None else x.number: x for pair in pairs for x in pair}.values())
 
     def separates(self, border: Cell) -> bool:
@@ -309,25 +340,13 @@ class Map:
     @property
     def together(self) -> tuple[int, ...]:
         """For each region the first of those that it makes one with, as no border between them changes anything."""
-        pairs = [(a.number, b.number) for one in self.borders for a, b in [self.beside(one)] if a and b
-                 and self.look(a) == self.look(one) == self.look(b)]  # fmt: skip
-        return _together(len(self.regions), pairs)
+        regions = Joined(len(self.regions))
+        for one in self.borders:
+            a, b = self.beside(one)
+            if a is not None and b is not None and self.look(a) == self.look(one) == self.look(b):
+                regions.join(a.number, b.number)
+        return tuple(map(regions, range(len(self.regions))))
 
     def conditions(self, cell: Cell) -> list[Condition]:
         """The conditions that are equalities on a border."""
         return [condition for k in self.place(cell).factors for condition in self.boundaries.conditions[k]]
-
-
-def _together(count: int, alike: Iterable[tuple[int, int]]) -> tuple[int, ...]:
-    """For each of so many regions the first one that it is joined with, over pairs that nothing separates."""
-    first = list(range(count))
-
-    def of(k: int) -> int:
-        while first[k] != k:
-            k = first[k]
-        return k
-
-    for a, b in alike:
-        low, high = sorted((of(a), of(b)))
-        first[high] = low
-    return tuple(of(k) for k in range(count))

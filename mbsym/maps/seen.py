@@ -6,32 +6,15 @@ lines are one where only such a curve crosses them.
 
 from __future__ import annotations
 
-from mbsym.algebra.plane.arrangement import Arrangement, CornerKind
-from mbsym.algebra.plane.likeness import Graph
-from mbsym.maps.result import Cell, Map
-
-
-class _Joined:
-    """Numbers that are joined to classes; the least stands for each."""
-
-    def __init__(self, count: int) -> None:
-        self._above = list(range(count))
-
-    def __call__(self, k: int) -> int:
-        while self._above[k] != k:
-            self._above[k] = self._above[self._above[k]]
-            k = self._above[k]
-        return k
-
-    def join(self, a: int, b: int) -> None:
-        a, b = self(a), self(b)
-        self._above[max(a, b)] = min(a, b)
+from mbsym.algebra.arrangements.arrangement import CornerKind
+from mbsym.algebra.arrangements.likeness import Graph
+from mbsym.maps.result import Cell, Joined, Map
 
 
 def seen(found: Map) -> Graph:
     """Areas, lines and points with their looks; lines have edges to the areas beside them and to their end points."""
     there = found.arrangement
-    areas, lines = _Joined(len(there.regions)), _Joined(len(there.arcs))
+    areas, lines = Joined(len(there.regions)), Joined(len(there.arcs))
     shown = [found.drawn(arc) for arc in found.arcs]
     for arc, kept in zip(there.arcs, shown, strict=True):
         below, above = arc.regions
@@ -52,18 +35,10 @@ def seen(found: Map) -> Graph:
 
 def stands_out(found: Map, corner: Cell) -> bool:
     """Whether an isolated point has another verdict than the region around it."""
-    ground = found.ground
-    if not isinstance(ground, Arrangement) or corner.judged is None:
+    if corner.judged is None or found.place(corner).kind is not CornerKind.ISOLATED:
         return False
-    there = ground.corners[corner.number]
-    if there.kind is not CornerKind.ISOLATED:
-        return False
-    at, j = there.place
-    intervals = ground.places.intervals
-    around = intervals.get((at, j), intervals.get((at, j - 1)))
-    if around is None or found.regions[around].judged is None:
-        return False
-    return found.look(corner) != found.look(found.regions[around])
+    return any(x is not None and x.judged is not None and found.look(x) != found.look(corner)
+               for x in found.around(corner))  # fmt: skip
 
 
 def _line(found: Map, arc: Cell) -> object:
@@ -74,8 +49,8 @@ def _line(found: Map, arc: Cell) -> object:
 
 def _graph(
     found: Map,
-    areas: _Joined,
-    lines: _Joined,
+    areas: Joined,
+    lines: Joined,
     kept: list[int],
     told: list[object],
     points: list[tuple[object, list[int]]],

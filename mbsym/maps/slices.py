@@ -9,7 +9,7 @@ the plane is decomposed and judged as any other map.  Between two neighbouring c
   same (``maps.boundaries``).
 
 On arcs and at corners verdicts are those of the slice that is looked at.  Another slice between the same two values
-checks both statements: it has to correspond to the first one (``plane.likeness``), verdicts of regions included.
+checks both statements: it has to correspond to the first one (``arrangements.likeness``), verdicts of regions included.
 
 Slices in which the same is shown (``maps.seen``) are one ``Picture``.  A critical value ends it unless the same is
 shown at that value, too; values at which it was not looked at are told with the picture.
@@ -24,16 +24,28 @@ from typing import Any
 
 from flint import fmpq
 
+from mbsym.algebra.arrangements import Arrangement, decompose
+from mbsym.algebra.arrangements.likeness import alike, corresponding
+from mbsym.algebra.arrangements.space import critical_levels, flattened, levels_of
 from mbsym.algebra.failures import Limit, TooLargeError
-from mbsym.algebra.plane import AlgebraicNumber, Arrangement, Point, decompose
-from mbsym.algebra.plane.likeness import alike, corresponding
+from mbsym.algebra.plane import AlgebraicNumber, Point
 from mbsym.algebra.plane.line import Line
 from mbsym.algebra.plane.numbers import Number, between_simply, sign
-from mbsym.algebra.plane.space import critical_levels, flattened, levels_of
 from mbsym.analysis import Analysis
 from mbsym.maps.admissible import Admissibility, Demand
 from mbsym.maps.boundaries import Boundaries, norm_of_factors
-from mbsym.maps.mapping import Judge, Watch, bounded, box_of, ends, kept_in, mapped, unwatched, with_onsets
+from mbsym.maps.mapping import (
+    Judge,
+    Watch,
+    bounded,
+    box_of,
+    ends,
+    kept_in,
+    mapped,
+    unwatched,
+    with_nonlinear,
+    with_onsets,
+)
 from mbsym.maps.result import Lack, Map, Of, Shape
 from mbsym.maps.section import Axis, Law, Section, section
 from mbsym.maps.seen import seen
@@ -180,7 +192,7 @@ class _Slicing:
             return Layer(number, z, critical, lack=Lack.OUTSIDE, broken=kept.broken)
         try:
             plane = mapped(cut, kept, self._flat(cut, kept, z), self.of, told)
-            plane = with_onsets(plane, SoftBorders(self.analysis, cut), told)
+            plane = with_nonlinear(with_onsets(plane, SoftBorders(self.analysis, cut), told), self.analysis, told)
             if critical or plane.interrupted:
                 return Layer(number, z, critical, plane)
             told("another value", 0, 1)

@@ -16,7 +16,7 @@ Source: N. N. Bautin, The Behaviour of Dynamical Systems near the Boundaries of 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import cached_property
@@ -25,10 +25,11 @@ from typing import Any
 
 from flint import acb, acb_poly, arb, ctx, fmpq, fmpq_poly
 
+from mbsym.algebra.arrangements import Arrangement
+from mbsym.algebra.arrangements.arrangement import Arc, Piece, sample_of
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import Failure, Limit, TooLargeError
-from mbsym.algebra.plane import Arrangement, Point
-from mbsym.algebra.plane.arrangement import Arc, Piece, sample_of
+from mbsym.algebra.plane import Point
 from mbsym.algebra.plane.numbers import Root, between_simply, compare, enclosure, primitive, roots_between
 from mbsym.algebra.plane.numbers import high as upper
 from mbsym.algebra.plane.numbers import low as lower
@@ -198,18 +199,9 @@ class SoftBorders:
         formula = self._formula(self.section.context.gen(0) - x, arc, 1)
         if formula is None:
             return None
-        found: list[Stretch] = []
-        for low, high in pairwise([ends[0], *formula.between(*ends), ends[1]]):
-            at = (enclosure(x, PRECISION), arb(between_simply(low, high)))
-            onset = _confirmed(self, formula, *at)
-            if onset is None:
-                return None
-            goes_on = bool(found) and found[-1].onset is onset
-            if goes_on and self._at((at[0], enclosure(low, PRECISION))).onset is onset:
-                found[-1] = replace(found[-1], end=high)
-            else:
-                found.append(Stretch(low, high, onset, axis=1))
-        return tuple(found)
+        across = enclosure(x, PRECISION)
+        runs = _runs(self, formula, [ends[0], *formula.between(*ends), ends[1]], lambda ball: (across, ball))
+        return None if runs is None else tuple(runs)
 
     def _formula(self, curve: Any, arc: Arc, axis: int = 0) -> _Along | None:
         """a on a curve along an axis; None where it outgrows its budgets, or the curve is another one."""
@@ -318,10 +310,9 @@ def _stretches(
     """Stretches of one sign of a; None where a point of the arc could not be told."""
     found: list[Stretch] = []
     for piece in arc.pieces:
-        run = list(_of_piece(borders, formula, made, piece, curve))
-        if any(one is None for one in run):
+        kept = _of_piece(borders, formula, made, piece, curve)
+        if kept is None:
             return None
-        kept = [one for one in run if one is not None]
         if piece.backwards:
             kept = [Stretch(one.end, one.start, one.onset) for one in reversed(kept)]
         if found and found[-1].onset is kept[0].onset and _same_between(borders, made, piece, kept[0].onset):
@@ -344,30 +335,40 @@ def _same_between(borders: SoftBorders, made: Arrangement, piece: Piece, onset: 
 
 def _of_piece(
     borders: SoftBorders, formula: _Along, made: Arrangement, piece: Piece, curve: int
-) -> Iterator[Stretch | None]:
+) -> list[Stretch] | None:
     """Stretches of a piece from left to right; None where a sign is not told."""
     sections = made.columns[piece.strip].sections
     place = sum(1 for one in sections[: piece.section] if one.curve == curve)
     count = sum(1 for one in sections if one.curve == curve)
     ends = [made.fibres[piece.strip + k].abscissa.x for k in (0, 1)]
-    marks = [ends[0], *formula.between(*ends), ends[1]]
-    last: Stretch | None = None
-    for left, right in pairwise(marks):
-        x = between_simply(left, right)
-        y = _ordinate(made.curves[curve], made, arb(x), place, count)
-        onset = None if y is None else _confirmed(borders, formula, arb(x), y)
+
+    def point(x: Any) -> tuple[Any, Any] | None:
+        y = _ordinate(made.curves[curve], made, x, place, count)
+        return None if y is None else (x, y)
+
+    return _runs(borders, formula, [ends[0], *formula.between(*ends), ends[1]], point)
+
+
+def _runs(
+    borders: SoftBorders, formula: _Along, marks: Sequence[Any], point: Callable[[Any], tuple[Any, Any] | None]
+) -> list[Stretch] | None:
+    """Stretches between marks along the formula's axis, joined where the mark between has the same onset.
+
+    ``point`` gives the enclosed point of the curve over an enclosed number; None where a sign is not told.
+    """
+    found: list[Stretch] = []
+    for start, end in pairwise(marks):
+        here = point(arb(between_simply(start, end)))
+        onset = None if here is None else _confirmed(borders, formula, *here)
         if onset is None:
-            yield None
-            return
-        here = Stretch(left, right, onset)
-        alike = last is not None and last.onset is onset
-        if last is not None and alike and _regular(borders, made.curves[curve], made, left, place, count, here):
-            last = replace(last, end=right)
-            continue
-        if last is not None:
-            yield last
-        last = here
-    yield last
+            return None
+        if found and found[-1].onset is onset:
+            meeting = point(enclosure(start, PRECISION))
+            if meeting is not None and borders._at(meeting).onset is onset:
+                found[-1] = replace(found[-1], end=end)
+                continue
+        found.append(Stretch(start, end, onset, formula.axis))
+    return found
 
 
 def _confirmed(borders: SoftBorders, formula: _Along, x: Any, y: Any) -> Onset | None:
@@ -377,15 +378,6 @@ def _confirmed(borders: SoftBorders, formula: _Along, x: Any, y: Any) -> Onset |
     if onset is None or onset is Onset.OPEN:
         return onset
     return onset if (onset is Onset.HARD) == (sign > 0) else None
-
-
-def _regular(
-    borders: SoftBorders, curve: Curve, made: Arrangement, x: Any, place: int, count: int, here: Stretch
-) -> bool:
-    """Whether the onset at an abscissa within a piece is that of its neighbourhood, by enclosures."""
-    ball = enclosure(x, PRECISION)
-    y = _ordinate(curve, made, ball, place, count)
-    return y is not None and borders._at((ball, y)).onset is here.onset
 
 
 def _ordinate(curve: Curve, made: Arrangement, x: Any, place: int, count: int) -> Any:

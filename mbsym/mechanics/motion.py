@@ -46,7 +46,7 @@ def _turning(scene: Scene) -> tuple[str, ...]:
     return tuple(name for name, rate in rates.items() if not ring.substitute(rate, images).is_zero())
 
 
-def unperturbed(scene: Scene, velocities: bool = True) -> dict[int, Polynomial]:
+def unperturbed(scene: Scene) -> dict[int, Polynomial]:
     """Generator indices and their values on the unperturbed motion (scene over the ring)."""
     ring: Ring = scene.ring
     images: dict[int, Polynomial] = {}
@@ -55,9 +55,8 @@ def unperturbed(scene: Scene, velocities: bool = True) -> dict[int, Polynomial]:
         images |= _standing(scene, "prescribed", one.name, one.held)
     for name, (value, rate) in motion_values(scene.system).items():
         speed = scene.lower(rate)
-        if velocities:
-            images[ring.index("velocity", name)] = speed
-            images[ring.index("acceleration", name)] = ring.zero
+        images[ring.index("velocity", name)] = speed
+        images[ring.index("acceleration", name)] = ring.zero
         if name in spinning:
             continue
         images |= _standing(scene, "coordinate", name, value)
@@ -86,20 +85,23 @@ def in_step(ring: Ring, rates: Mapping[str, Polynomial]) -> dict[str, tuple[str,
 def carried(scene: Scene, rates: Mapping[str, Polynomial] | None = None) -> dict[int, Polynomial]:
     """The generators of angles ``in_step`` with another one, q = value + k (q_1 - value_1), and what they are.
 
-    ``rates`` are those of the motion where they are not all given.
+    What is prescribed counts among them.  ``rates`` are those of the motion where they are not all given.
     """
+    system = scene.system
+    values = motion_values(system) | {one.name: (one.initial or ZERO, one.rate) for one in system.prescribed}
+    driven, images = [one.name for one in system.prescribed], relations(scene)
     if rates is None:
         if scene not in _CARRIED:
-            values, images = motion_values(scene.system), relations(scene)
             own = {name: scene.ring.substitute(scene.lower(values[name][1]), images) for name in turning(scene)}
             _CARRIED[scene] = carried(scene, own)
         return dict(_CARRIED[scene])
-    values = motion_values(scene.system)
+    moved = {name: scene.ring.substitute(scene.lower(values[name][1]), images) for name in driven}
     found: dict[int, Polynomial] = {}
-    for name, (first, ratio) in in_step(scene.ring, rates).items():
+    for name, (first, ratio) in in_step(scene.ring, {**moved, **rates}).items():
         way = multiply(number(ratio), subtract(Name(first), values[first][0]))
         with suppress(Failure):  # a part of an angle that the ring does not know
-            found |= _standing(scene, "coordinate", name, add(values[name][0], way))
+            kind = "prescribed" if name in driven else "coordinate"
+            found |= _standing(scene, kind, name, add(values[name][0], way))
     return found
 
 

@@ -23,7 +23,7 @@ from itertools import combinations
 from mbsym.algebra.base import Algebra, Lowering, Scalar
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import SingularPoint
-from mbsym.algebra.matrices import cramer, determinant
+from mbsym.algebra.matrices import determinant, solved
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.vectors import Tensor, Vector, tensor_of
@@ -83,9 +83,9 @@ class SpeedForm:
         for speed, row, drift in zip(named, rows, drifts, strict=True):
             rest = ring.generator("coordinate", speed.name) - drift
             targets.append(ring.reduce(rest - sum((ring.times(row[k], velocity[k]) for k in left), ring.zero)))
-        solved = _cramer(ring, [[row[k] for k in chosen] for row in rows], targets)
+        velocities = [x for (x,) in solved(ring, [[row[k] for k in chosen] for row in rows], [[x] for x in targets])]
         self.velocities: dict[str, Polynomial] = {self.coordinates[k]: velocity[k] for k in left}
-        self.velocities |= {self.coordinates[k]: x for k, x in zip(chosen, solved, strict=True)}
+        self.velocities |= {self.coordinates[k]: x for k, x in zip(chosen, velocities, strict=True)}
         kept = {self.coordinates[k] for k in left}
         self.speeds = tuple(self._speeds(kept))
         self.positions = tuple(self._variable(name) for name in self._position_names())
@@ -376,11 +376,3 @@ def direction_cosines_of(algebra: Algebra, body: Body, values: Mapping[str, Scal
         return tensor_of(algebra, rows, body.name, body.attached_to)
     columns = [[values[name] for name in vector.components] for vector in body.orientation]
     return tensor_of(algebra, [[column[i] for column in columns] for i in range(3)], body.name, body.attached_to)
-
-
-def _cramer(ring: Ring, matrix: Sequence[Sequence[Polynomial]], right: Sequence[Polynomial]) -> list[Polynomial]:
-    """The solution of matrix x = right; the denominator is the determinant, and nothing that it does not need."""
-    if not right:
-        return []
-    inverse = ring.reciprocal(determinant(ring, matrix))
-    return [ring.reduce(ring.times(x, inverse)) for x in cramer(ring, matrix, right)]

@@ -19,7 +19,6 @@ import numpy as np
 
 from mbsym.algebra.derivative import jacobian
 from mbsym.algebra.program import Node, Program
-from mbsym.algebra.ring import Ring
 from mbsym.algebra.vectors import axis_vector
 from mbsym.mechanics.energy import body_energy
 from mbsym.mechanics.loads.kinds import force_function
@@ -50,24 +49,20 @@ class BodyMotions:
     force_function: Any
 
 
-def body_motions(
-    scenario: Scenario, times: Any, states: Any, rates: Any, frame: str = INERTIAL, ring: Ring | None = None
-) -> BodyMotions:
+def body_motions(scenario: Scenario, times: Any, states: Any, rates: Any, frame: str = INERTIAL) -> BodyMotions:
     """Of every body that ``frame`` carries, massless ones too, along ``states`` (2n, m) with q'' = ``rates`` (n, m).
 
     Raises Failure where there is no program for the force function.
     """
-    return followed_bodies(scenario, frame, ring)(times, states, rates)
+    return followed_bodies(scenario, frame)(times, states, rates)
 
 
-def followed_bodies(
-    scenario: Scenario, frame: str = INERTIAL, ring: Ring | None = None
-) -> Callable[[Any, Any, Any], BodyMotions]:
+def followed_bodies(scenario: Scenario, frame: str = INERTIAL) -> Callable[[Any, Any, Any], BodyMotions]:
     """``body_motions`` of times, states and rates, for whoever has them bit by bit."""
     system = scenario.system
     program = Program()
     environment = program_environment(system, program)
-    scene = scene_without_accelerations(system, ring if ring is not None else ring_of(system), program, environment)
+    scene = scene_without_accelerations(system, ring_of(system), program, environment)
     algebra = scene.algebra
     names = tuple(body.name for body in system.bodies if frame in system.path(body.name)[:-1])
     fixed: list[Node] = []

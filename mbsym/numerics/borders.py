@@ -23,6 +23,7 @@ from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE
 from mbsym.algebra.point import Rationals
 from mbsym.algebra.program import Program
+from mbsym.algebra.rationals import ball
 from mbsym.algebra.roots import enclosures
 from mbsym.algebra.stable import stabilised
 from mbsym.analysis import Analysis, Unavailable
@@ -33,7 +34,7 @@ from mbsym.numerics.kernels.precise import precise
 from mbsym.numerics.planning.scales import kinds, scales
 from mbsym.numerics.probes import Ladder, Probe, free_parameters, scaled
 from mbsym.numerics.scenario import Incomplete, Scenario, changed
-from mbsym.numerics.trade.digits import FULL, PRECISIONS, Digits, ball, compared, digits_of, tight
+from mbsym.numerics.trade.digits import FULL, PRECISIONS, Digits, compared, digits_of, tight
 from mbsym.problems.stability import ExactVerdicts
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word

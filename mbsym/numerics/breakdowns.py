@@ -60,13 +60,17 @@ def wrong_at_once(dynamics: Dynamics, initial: Any, begin: float = 0.0) -> Break
 
 
 def _lost_rank(dynamics: Dynamics, initial: Any) -> str:
-    """What is said of an initial position in which constraints depend on each other that do not beside it."""
+    """What is said of an initial position in which constraints depend on each other that do not beside it.
+
+    Or where nothing is beside it that all of them allow (links at full stretch between two points).
+    """
     known = dynamics.constraints
     if known is None:
         return ""
     rank, usual = len(known.independent(0.0, initial)), len(known.kept)
     if rank == usual:
-        return ""
+        what = f"what the constraint rows allow at this position to first order (their rank is {rank})"
+        return f"{what} they stop at second order" if known.obstructed(initial) else ""
     return f"of {usual} constraint rows that are independent beside this position, {rank} are independent in it"
 
 

@@ -55,6 +55,9 @@ BESIDE, AWAY = 3, 0.05
 #: The least eigenvalue of M with ones on its diagonal that is not zero to roundings.
 MASSLESS = 1e-13
 
+#: A row of length 1 that is bent by less than this, in the units of the coordinates, follows others all along.
+OBSTRUCTED = 1e-3
+
 #: How many times nearer to a singular position than the start states may be computed: S has lost six digits.
 NEAREST = 1e6
 
@@ -185,6 +188,38 @@ class Constraints:
         """Velocities that remain free: coordinates less independent rows."""
         return self.size - len(self.kept)
 
+    @cached_property
+    def more_is_held(self) -> bool:
+        """Whether the initial position is ``obstructed``: less moves than the rank tells."""
+        return self.obstructed(np.array([float(x) for x in self._scenario.state]))
+
+    def obstructed(self, state: Any) -> bool:
+        """Whether the rows stop at second order what they allow: y J = 0 and  y (dJ/dq z) z != 0,  J z = 0.
+
+        J q'' = -(dJ/dq q') q' has no solution then for q' = z.  Where J has a constant rank on the configurations near
+        by there are no such z.  By differences, along some z; False of rows that move by themselves.
+        """
+        count, n, source = len(self.names), self.size, np.random.default_rng(7)
+        if not self.steady:
+            return False
+        sizes, small = 1 + np.abs(state[:n]), AWAY / 10
+        rows = self.at(0.0, state).partials * sizes
+        lengths = _positive(np.linalg.norm(rows, axis=1))
+        left, values, right = np.linalg.svd(rows / lengths[:, None])
+        rank = int(np.sum(values > DEPENDENT * values[0]))
+        if rank in (count, n):
+            return False
+        for _ in range(BESIDE):
+            way = right[rank:].T @ source.normal(size=n - rank)
+            step = small * sizes * way / np.max(np.abs(way))
+            ahead, behind = (
+                self.at(0.0, np.concatenate([state[:n] + sign * step, state[n:]])).partials for sign in (1, -1)
+            )
+            bent = (ahead - behind) @ step / lengths / (2 * small**2)
+            if np.linalg.norm(left[:, rank:].T @ bent) > OBSTRUCTED:
+                return True
+        return False
+
     def independent(self, t: float, state: Any) -> list[int]:
         """Rows that are independent at a position: holonomic ones first, of them the most independent one next."""
         return self._orthogonalised(t, state)[0]
@@ -256,16 +291,25 @@ class Constraints:
 
     @property
     def _massless(self) -> bool:
-        """Whether M is singular at the initial position and beside it."""
+        """Whether M is singular at the initial position or beside it, and the rows hold what moves no mass there.
+
+        Or singular everywhere there, whatever the rows hold.
+        """
         state = np.array([float(x) for x in self._scenario.state])
+        regular = False
         for place in self._places(state):
             masses = self._masses(np.concatenate(([0.0], place))).reshape(self.size, self.size)
             sizes = np.sqrt(np.diag(masses))
-            if not np.all(sizes > 0):
+            held = sizes > 0
+            scaled = masses / np.outer(np.where(held, sizes, 1.0), np.where(held, sizes, 1.0))
+            if np.linalg.eigvalsh(scaled)[0] > MASSLESS:
+                regular = True
                 continue
-            if np.linalg.eigvalsh(masses / np.outer(sizes, sizes))[0] > MASSLESS:
-                return False
-        return True
+            rows = self.at(0.0, place).partials / np.where(held, sizes, 1.0)
+            rows = rows / _positive(np.linalg.norm(rows, axis=1))[:, None]
+            if np.linalg.eigvalsh(scaled + rows.T @ rows)[0] > CERTAIN:
+                return True
+        return not regular
 
     @cached_property
     def nearest(self) -> tuple[Fraction, ...]:

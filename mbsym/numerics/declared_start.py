@@ -14,12 +14,13 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from flint import arb, arb_mat, ctx, fmpq
+from flint import arb, arb_mat, ctx
 
 from mbsym.algebra.derivative import jacobian
 from mbsym.algebra.matrices import dot
 from mbsym.algebra.point import Balls
 from mbsym.algebra.program import Program
+from mbsym.algebra.rationals import ball
 from mbsym.expressions.tree import Name
 from mbsym.mechanics import quaternions
 from mbsym.mechanics.speeds import SpeedForm
@@ -74,10 +75,10 @@ class _Start:
         numbers: Mapping[str, Fraction],
     ) -> None:
         self.system, self.form = system, SpeedForm(system, ring_of(system))
-        self.own = {name: _ball(value) for name, value in own.items()}
-        self.positions = {name: None if x is None else _ball(x) for name, x in positions.items()}
-        self.velocities = {name: None if x is None else _ball(x) for name, x in velocities.items()}
-        self.numbers = {name: _ball(value) for name, value in numbers.items()} | {"pi": arb.pi(), "t": arb(0)}
+        self.own = {name: ball(value) for name, value in own.items()}
+        self.positions = {name: None if x is None else ball(x) for name, x in positions.items()}
+        self.velocities = {name: None if x is None else ball(x) for name, x in velocities.items()}
+        self.numbers = {name: ball(value) for name, value in numbers.items()} | {"pi": arb.pi(), "t": arb(0)}
         self.missing: list[str] = []
         self.wrong: list[tuple[str, str]] = []
         #: The components of quaternions and unit vectors by name.
@@ -132,7 +133,7 @@ class _Start:
         if stated:
             other = _of_angles(body, [self.positions[name] or arb(0) for name in own])
             gap = max(abs(a - b) for x, y in zip(rows, other, strict=True) for a, b in zip(x, y, strict=True))
-            if len(stated) < 3 or not gap < _ball(AGREEMENT):
+            if len(stated) < 3 or not gap < ball(AGREEMENT):
                 text = (
                     f"the orientation of {body.name} is given twice: by {', '.join(stated)} and by {', '.join(given)}"
                 )
@@ -164,7 +165,7 @@ class _Start:
             for other in vectors[i:]:
                 product = dot(vector, other)
                 wanted = 1 if other is vector else 0
-                if not abs(product - wanted) < _ball(AGREEMENT):
+                if not abs(product - wanted) < ball(AGREEMENT):
                     name = body.orientation[i].name
                     what = "the norm squared" if other is vector else "a product with another unit vector"
                     text = f"{what} of {name} is {float(product.mid()):.12g} and has to be {wanted}"
@@ -224,7 +225,7 @@ class _Start:
         named = [name for name, x in self.velocities.items() if x is not None]
         if named and len(named) == n:
             gap = max((abs(a - b) for a, b in zip(own, wanted, strict=True)), default=arb(0))
-            if not gap < _ball(AGREEMENT) * (1 + max(abs(x) for x in wanted)):
+            if not gap < ball(AGREEMENT) * (1 + max(abs(x) for x in wanted)):
                 text = "the initial velocities are given twice, by coordinates and by speeds, and these differ"
                 self.wrong.append((velocity_name(named[0]), text))
             return wanted, tuple(stated[name] for name in names)
@@ -245,10 +246,6 @@ class _Start:
         """u in (q, q', t), in the order of the speeds."""
         n = len(self.form.positions)
         return self.form.state_in_coordinates(program)[n:]
-
-
-def _ball(value: Fraction) -> arb:
-    return arb(fmpq(value.numerator, value.denominator))
 
 
 def _within(x: arb) -> arb:

@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 
 from mbsym.algebra.program import Program
-from mbsym.algebra.ring import Ring
 from mbsym.algebra.vectors import Vector, axis_vector
 from mbsym.expressions.tree import ZERO, names
 from mbsym.mechanics.kinematics import Scene
@@ -130,12 +129,12 @@ class Positions:
         return self.until(max(end, 2))
 
 
-def positions(scenario: Scenario, times: Any, states: Any, ring: Ring | None = None) -> Positions | None:
+def positions(scenario: Scenario, times: Any, states: Any) -> Positions | None:
     """Points along a trajectory (``states`` of shape (2n, m)); None where there is nothing to draw."""
     system = scenario.system
     program = Program()
     environment = program_environment(system, program)
-    scene = scene_without_accelerations(system, ring if ring is not None else ring_of(system), program, environment)
+    scene = scene_without_accelerations(system, ring_of(system), program, environment)
     fresh = bound(scenario)
     inputs = ("t", *system.coordinates, *system.velocities)
     carriers = frames(system)

@@ -107,12 +107,12 @@ def bound(scenario: Scenario) -> Specialised:
 
 def substituted(program: Program, outputs: Sequence[Node], fresh: Program) -> list[Node]:
     """The outputs rebuilt in another program, whose ``input`` says what the names stand for there."""
-    inputs: Mapping[str, Node] = _Inputs(fresh)
+    inputs: Mapping[str, Node] = Names(fresh)
     return program.evaluate(outputs, inputs, fresh)
 
 
-class _Inputs(dict[str, Node]):
-    """Inputs looked up in the program itself."""
+class Names(dict[str, Node]):
+    """What names stand for in a program, which knows which of them are bound."""
 
     def __init__(self, program: Program) -> None:
         super().__init__()

@@ -15,12 +15,12 @@ the rows of a quaternion there are  de/dq_i = 1/2 e o w_i,  w_i the axis about w
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from mbsym.algebra.failures import NoClosedForm
-from mbsym.algebra.matrices import determinant
-from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.matrices import ScalarMatrix, solved
+from mbsym.algebra.ring import Polynomial
 from mbsym.expressions.tree import divide, number, substitute
 from mbsym.expressions.tree import names as names_in
 from mbsym.formulas.formula import Column, Matrix, column
@@ -113,7 +113,8 @@ def check(
     ]
     upper = [[ring.one if j == len(names) + i else ring.zero for j in range(2 * len(names))] for i in n]
     whole = [*upper, *solved(ring, mass, below)]
-    left, right = product(ring, found.A.polynomials, rows), product(ring, rows, whole)
+    change = ScalarMatrix(ring, rows)
+    left, right = ScalarMatrix(ring, found.A.polynomials) @ change, change @ ScalarMatrix(ring, whole)
     states = [*names, *(velocity_name(name) for name in names)]
     differences = {
         f"the row of {x.name} by {by}": ring.reduce(a - b - rate)
@@ -183,21 +184,3 @@ def _quaternion_slopes(form: SpeedForm, plain: Scene, motion: Mapping[int, Polyn
 
 def _value(form: SpeedForm, variable: Variable, at: Mapping[int, Polynomial]) -> Polynomial:
     return form.ring.substitute(_inner(form, variable), at)
-
-
-def product(ring: Ring, a: Sequence[Sequence[Polynomial]], b: Sequence[Sequence[Polynomial]]) -> list[list[Polynomial]]:
-    columns = list(zip(*b, strict=True))
-    return [[ring.dot(row, column_) for column_ in columns] for row in a]
-
-
-def solved(
-    ring: Ring, matrix: Sequence[Sequence[Polynomial]], right: Sequence[Sequence[Polynomial]]
-) -> list[list[Polynomial]]:
-    """matrix^-1 right, by Cramer's rule column by column."""
-    inverse = ring.reciprocal(determinant(ring, matrix))
-    found: list[list[Polynomial]] = [[] for _ in matrix]
-    for values in zip(*right, strict=True):
-        for k in range(len(matrix)):
-            replaced = [[*row[:k], value, *row[k + 1 :]] for row, value in zip(matrix, values, strict=True)]
-            found[k].append(ring.reduce(ring.times(determinant(ring, replaced), inverse)))
-    return found

@@ -156,10 +156,15 @@ def has_rational_states(system: System, ring: Ring, dependent: Dependent, rates:
 
 
 def _rates(system: System, ring: Ring, dependent: Dependent) -> dict[str, Polynomial]:
-    """The given rates; zero is zero, however that is written (-0, w - w, a parameter that is related to 0)."""
+    """The given rates, of what is prescribed, too.
+
+    Zero is zero, however that is written (-0, w - w, a parameter that is related to 0).
+    """
     lower = Lowering(ring, ring_environment(system, ring))
     images = {ring.index("parameter", name): value for name, value in dependent.parameters.items()}
-    return {name: ring.substitute(lower(rate), images) for name, (_, rate) in _given_motion(system).items()}
+    given = {name: rate for name, (_, rate) in _given_motion(system).items()}
+    given |= {one.name: one.rate for one in system.prescribed}
+    return {name: ring.substitute(lower(rate), images) for name, rate in given.items()}
 
 
 def unperturbed_state(system: System, ring: Ring, dependent: Dependent, balls: bool, turning: Rates = NONE) -> State:

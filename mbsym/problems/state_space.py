@@ -8,6 +8,14 @@ in physical time and declared parameters, on the right the matrices of problem 5
 are held, y0 those of the outputs on the unperturbed motion.  M^-1 is the adjugate over the determinant, exactly in the
 ring, part by part of what M couples.
 
+Under constraints it is the whole flow on what they allow (``mbsym.mechanics.constraints.perturbed``): x = (q_i, nu_k)
+with the independent coordinates and the independent velocities, which need not be of the same coordinates, none of
+them left out,
+
+    A = [ T, S; -A^-1 C, -A^-1 B ],    B = [ 0; A^-1 gains ],    C = dy/d(q, q') P,
+
+P from the independent deviations to all of them.
+
 Source: Astrom & Murray, Feedback Systems, section 5.3 and example 5.4 (balance systems).
 
 Example:
@@ -29,10 +37,13 @@ from mbsym.algebra.matrices import adjugate, components, determinant
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Matrix
 from mbsym.formulas.notebook import Shown
+from mbsym.mechanics.constraints.expansion import combined, on_base
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import steadied, unsteady
+from mbsym.model.system import velocity_name
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.linearisation import Linearisation
+from mbsym.problems.reduction import Reduced
 
 #: Coordinates that M couples with each other: the inverse of more is no formula to read.
 MOST_COUPLED = 6
@@ -42,7 +53,10 @@ Rows = list[list[Polynomial]]
 
 @dataclass(frozen=True, repr=False)
 class StateSpace(Shown):
-    """A (2n x 2n), B (2n x m), C (p x 2n), D (p x m); ``states`` are q and q' by name, deviations from the motion."""
+    """A (s x s), B (s x m), C (p x s), D (p x m); ``states`` are q and q' by name, deviations from the motion.
+
+    Without constraints s = 2n; under them the states are the independent coordinates, then the independent velocities.
+    """
 
     states: tuple[str, ...]
     inputs: tuple[str, ...]
@@ -77,24 +91,72 @@ def state_space(scene: Scene, expanded: Scene, linear: Linearisation, equilibriu
     measured = [
         [steadied(scene, ring.substitute(row.get(k, ring.zero), images)) for k in range(2 * n + m)] for row in slopes
     ]
-    found = StateSpace(
-        states=(*system.coordinates, *system.velocities),
-        inputs=linear.inputs,
-        outputs=tuple(one.name for one in system.outputs),
-        A=Matrix.of(ring, [*upper, *(row[: 2 * n] for row in solved)]),
-        B=Matrix.of(ring, [*([ring.zero] * m for _ in range(n)), *(row[2 * n :] for row in solved)]),
-        C=Matrix.of(ring, [row[: 2 * n] for row in measured]),
-        D=Matrix.of(ring, [row[2 * n :] for row in measured]),
+    return _steady(
+        scene,
+        StateSpace(
+            states=(*system.coordinates, *system.velocities),
+            inputs=linear.inputs,
+            outputs=tuple(one.name for one in system.outputs),
+            A=Matrix.of(ring, [*upper, *(row[: 2 * n] for row in solved)]),
+            B=Matrix.of(ring, [*([ring.zero] * m for _ in range(n)), *(row[2 * n :] for row in solved)]),
+            C=Matrix.of(ring, [row[: 2 * n] for row in measured]),
+            D=Matrix.of(ring, [row[2 * n :] for row in measured]),
+        ),
     )
-    _check_steady(scene, found)
-    return found
 
 
-def _check_steady(scene: Scene, found: StateSpace) -> None:
-    for letter, matrix in (("B", found.B), ("C", found.C), ("D", found.D)):
+def reduced_state_space(scene: Scene, reduced: Reduced, equilibrium: Equilibrium) -> StateSpace:
+    """The same of a constrained system.  Raises as ``state_space``, which also has what is said of the matrices."""
+    ring, found, equations = scene.ring, reduced.expansion, reduced.equations
+    system, n = found.scene.system, len(scene.system.coordinates)
+    names, inputs = scene.system.coordinates, system.input_names
+    images = equilibrium.determined(scene)
+
+    def on(rows: Sequence[Sequence[Polynomial]]) -> Rows:
+        return [[steadied(scene, ring.substitute(x, dict(images))) for x in row] for row in rows]
+
+    places, size = len(found.coordinates), len(found.speeds)
+    right = [
+        [*(-x for x in position), *(-x for x in speed), *gains]
+        for position, speed, gains in zip(equations.C, equations.B, equations.gains, strict=True)
+    ]
+    upper = on([[*there, *moved] for there, moved in zip(equations.T, equations.S, strict=True)])
+    lower = _solved(ring, on(equations.A), on(right))
+    states = [*found.coordinates, *(n + k for k in found.speeds)]
+    pushes = [3 * n + k for k in range(len(inputs))]
+    deviations = (*found.positions, *found.velocities)
+    measured = []
+    for one in system.outputs:
+        slopes = found.scene.lower(one.value).first
+        own = combined(scene, ((slopes[i], form) for i, form in enumerate(deviations) if i in slopes))
+        measured.append(
+            [
+                on_base(scene, found.base, x)
+                for x in (*(own.get(i, ring.zero) for i in states), *(slopes.get(i, ring.zero) for i in pushes))
+            ]
+        )
+    measured, whole = on(measured), places + size
+    return _steady(
+        scene,
+        StateSpace(
+            states=(*(names[i] for i in found.coordinates), *(velocity_name(names[k]) for k in found.speeds)),
+            inputs=inputs,
+            outputs=tuple(one.name for one in system.outputs),
+            A=Matrix.of(ring, [*upper, *(row[:whole] for row in lower)]),
+            B=Matrix.of(ring, [*([ring.zero] * len(inputs) for _ in range(places)), *(row[whole:] for row in lower)]),
+            C=Matrix.of(ring, [row[:whole] for row in measured]),
+            D=Matrix.of(ring, [row[whole:] for row in measured]),
+        ),
+    )
+
+
+def _steady(scene: Scene, found: StateSpace) -> StateSpace:
+    """It, where it is constant."""
+    for letter, matrix in (("A", found.A), ("B", found.B), ("C", found.C), ("D", found.D)):
         among = {name for row in matrix.polynomials for x in row for name in unsteady(scene, x)}
         if among:
             raise NoClosedForm(f"{letter} of the first-order form varies with {', '.join(sorted(among))}")
+    return found
 
 
 def _sum(ring: Ring, a: Sequence[Sequence[Polynomial]], b: Sequence[Sequence[Polynomial]], sign: int) -> Rows:

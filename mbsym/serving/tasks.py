@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 from markupsafe import escape
 
 from mbsym.algebra.failures import Failure
+from mbsym.algebra.parts import missing
 from mbsym.source import read
 
 if TYPE_CHECKING:
@@ -44,6 +45,10 @@ def perform(task: Task) -> Iterator[Message]:
         yield from _KINDS[task["kind"]](task, _system(task))
     except (Refused, Failure, Unavailable, Incomplete, ValueError, ArithmeticError) as error:
         yield {"kind": "failed", "words": str(error) or type(error).__name__}
+    except ModuleNotFoundError as error:
+        if not missing(error):
+            raise
+        yield {"kind": "failed", "words": f"{missing(error)} is not installed"}
 
 
 def _system(task: Task) -> System:

@@ -1,4 +1,4 @@
-"""Loads and constraints in the editor's plain text: the lines below ``Load description (1)`` as {kind: data}."""
+"""Loads, constraints, claims in the editor's plain text: the lines below ``Load description (1)`` as {kind: data}."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Sequence as Items
 from typing import TYPE_CHECKING
 
 from mbsym.expressions.place import Span
+from mbsym.model.claims import BODY, CLAIMS
 from mbsym.source.grammar import Ends, Kind, Named
 from mbsym.source.keys import ALIASES
 from mbsym.source.labels import ENDS, EXPRESSION, NUMBERED, VECTORS
@@ -65,3 +66,24 @@ def _value(reader: TextReader, word: str, value: Scalar) -> Node:
     if word in NUMBERED:
         return reader.body_reference(value)
     return items(value) if word in VECTORS else value
+
+
+def claim(reader: TextReader, heading: Scalar, lines: Items[Scalar]) -> Mapping:
+    """The keys of a claim, one a line; of a body the number, a state as ``theta = 0.1; theta_dot = 2``."""
+    entries = []
+    found = [(label, value) for label, value in map(reader.load_line, lines) if label is not None]
+    kinds = [word_of(value.text) for label, value in found if word_of(label.text) == "claim"]
+    about_body = any(kind in CLAIMS and CLAIMS[kind].of == BODY for kind in kinds)
+    for label, value in found:
+        word = word_of(label.text)
+        node: Node = value
+        if word == "of" and about_body:
+            node = reader.body_reference(value)
+        elif word == "entry":
+            node = items(value)
+        elif word == "state":
+            node = reader.numbers(value)
+        elif word == "place":
+            node = reader.unquoted(value)
+        entries.append(Entry(key_of(label, word), node))
+    return Mapping(tuple(entries), heading.span)

@@ -17,8 +17,7 @@ from mbsym.source.keys import CONSTRAINTS, LOADS, VERSION
 from mbsym.source.labels import ASSUMPTIONS, BODY, HEADER, SECTIONS
 from mbsym.source.placed import Entry, Mapping, Node, Scalar, Sequence
 from mbsym.source.scope import closest
-from mbsym.source.text_claims import claim
-from mbsym.source.text_kinds import of_kind
+from mbsym.source.text_kinds import claim, of_kind
 from mbsym.source.text_lines import HEADING, key_of, label_in, label_of, lines_of, word_of
 from mbsym.source.text_values import items, row, split
 

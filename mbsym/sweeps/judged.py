@@ -8,7 +8,7 @@ judge at the number which the column holds.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from threading import Lock
 from typing import Any
 
@@ -18,14 +18,10 @@ from flint import fmpq
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.plane import Point
 from mbsym.analysis import Analysis
-from mbsym.maps.admissible import admissibility
-from mbsym.maps.given import Complaint, Fault, Unfit
-from mbsym.maps.mapping import Judge
-from mbsym.maps.result import Cell, Lack, Shape
+from mbsym.maps.mapping import Judge, kept_in
+from mbsym.maps.result import Lack, Shape
 from mbsym.maps.section import Section
-from mbsym.maps.verdicts import matrix_at, verdict_at
 from mbsym.numerics.kernels import llvm
-from mbsym.problems.stability.exact import inertia
 from mbsym.problems.stability.word import Word
 from mbsym.sweeps.deciding import classes, deciding
 from mbsym.sweeps.measure import Column
@@ -33,7 +29,12 @@ from mbsym.sweeps.measure import Column
 #: What may stand in place of a verdict, before the words of verdicts.
 OUTSIDE, UNDEFINED, MASSLESS = "not admissible", "not defined", "kinetic energy not positive definite"
 NO_VERDICT = (OUTSIDE, UNDEFINED, MASSLESS)
-NO_WORDS: Mapping[Lack | None, str] = {Lack.OUTSIDE: OUTSIDE, Lack.MASSLESS: MASSLESS}
+NO_WORDS: Mapping[Lack | None, str] = {
+    Lack.OUTSIDE: OUTSIDE,
+    Lack.UNDEFINED: UNDEFINED,
+    Lack.MASSLESS: MASSLESS,
+    Lack.TOO_LARGE: Word.UNDECIDED.value,
+}
 WORDS = (*NO_VERDICT, *(word.value for word in Word))
 
 VERDICT = Column(
@@ -58,21 +59,14 @@ class StabilityMeasure:
     def __init__(self, analysis: Analysis, section: Section) -> None:
         self.section = section
         #: What parameters have to keep; ``left_out`` of it could not be expressed in the axes.
-        self.admissibility = admissibility(analysis, section)
-        if self.admissibility.broken:
-            raise Unfit([Complaint(Fault.OUTSIDE, "", one.condition.about) for one in self.admissibility.broken])
+        self.admissibility = kept_in(analysis, section)
         further = [
             *section.undefined,
             *section.asked,
             *(demand.condition.polynomial for demand in self.admissibility.demands),
         ]
         self._deciding = deciding(section.parts, further, [axis.name for axis in section.axes], section.constant)
-        #: Judges one point in a field of algebraic numbers, where a constant is irrational.
-        self._judge: Callable[[Sequence[Any]], Cell] | None = None
-        if section.constant is not None:
-            judge, line = Judge(section, self.admissibility), len(section.axes) == 1
-            shape = Shape.INTERVAL if line else Shape.REGION
-            self._judge = lambda point: judge(shape, 0, point[0] if line else Point(*point))
+        self._judge = Judge(section, self.admissibility)
         self._kernel = llvm.kernels({"signs": self._deciding.code}, wide=True)["signs"]
         self._known: dict[tuple[int, ...], tuple[int, int]] = {}
         self._lock = Lock()
@@ -103,26 +97,14 @@ class StabilityMeasure:
         if not np.all(np.isfinite(point)):
             return WORDS.index(UNDEFINED), -1
         numbers = [fmpq(*float(x).as_integer_ratio()) for x in point]
-        if self._judge is not None:
-            return self._irrationally(self._judge(numbers))
-        demands = self.admissibility.demands
-        if any(not one.kept(one.condition.polynomial(*numbers)) for one in demands):
-            return WORDS.index(OUTSIDE), -1
-        if any(x(*numbers) == 0 for x in self.section.undefined):
-            return WORDS.index(UNDEFINED), -1
-        kinetic = [part.kinetic for part in self.section.parts if part.kinetic]
-        if any(inertia(matrix_at(matrix, numbers))[0] < len(matrix) for matrix in kinetic):
-            return WORDS.index(MASSLESS), -1
+        line, constant = len(numbers) == 1, self.section.constant is not None
+        place: Any = numbers[0] if line else Point(*numbers) if constant else tuple(numbers)
         try:
-            found = verdict_at(self.section, numbers)
-        except (Failure, ValueError, ZeroDivisionError):
+            found = self._judge(Shape.INTERVAL if line else Shape.REGION, 0, place)
+        except Failure:  # a limit was reached: nothing is wrong with the formulas
+            return WORDS.index(Word.UNDECIDED), -1
+        except (ValueError, ZeroDivisionError):
             return WORDS.index(UNDEFINED), -1
-        return WORDS.index(found.verdict.word.value), -1 if found.right is None else found.right
-
-    def _irrationally(self, found: Cell) -> tuple[int, int]:
-        """The same of a point that was judged in a field of algebraic numbers."""
         if found.judged is None:
-            word = NO_WORDS.get(found.lack, UNDEFINED)
-            return WORDS.index(word), -1
-        right = found.judged.right
-        return WORDS.index(found.judged.verdict.word.value), -1 if right is None else right
+            return WORDS.index(NO_WORDS[found.lack]), -1
+        return WORDS.index(found.judged.verdict.word.value), -1 if found.right is None else found.right

@@ -14,13 +14,14 @@ import numpy as np
 from mbsym.algebra.base import Lowering
 from mbsym.expressions.tree import Expression
 from mbsym.mechanics.constraints.refusal import refuse_constraints
-from mbsym.numerics.ensembles.parametrised import Names, Parametrised, released
+from mbsym.numerics.ensembles.parametrised import Parametrised, released
 from mbsym.numerics.ensembles.side_by_side import TABLEAUX, SideBySide, compiled
 from mbsym.numerics.ensembles.variation import members
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.scenario import Scenario
+from mbsym.numerics.specialise import Names
 from mbsym.sweeps.measure import Column
 
 METHOD, TOLERANCE = "dop853", 1e-9

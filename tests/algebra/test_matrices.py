@@ -33,6 +33,7 @@ from mbsym.algebra.matrices import (
     null_space,
     reduced_rows,
     skew,
+    solved,
     symmetric,
 )
 from mbsym.algebra.point import Rationals
@@ -136,6 +137,8 @@ def test_determinants_of_every_route_are_one(n: int, seed: int) -> None:
     assert whole * fmpq_mat([[x] for x in found]) == fmpq_mat([[b] for b in right]) * value
     if value != 0:
         assert fmpq_mat(inverted(rows, lambda x: 1 / x, fmpq(0), fmpq(1))) == whole.inv()
+        sides = [[b, -b] for b in right]
+        assert whole * fmpq_mat(solved(NUMBERS, rows, sides)) == fmpq_mat(sides)
 
 
 def test_adjugate_of_a_characteristic_matrix_by_hand() -> None:

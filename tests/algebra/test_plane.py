@@ -9,22 +9,13 @@ from typing import Any
 import pytest
 from flint import fmpq, fmpq_mpoly_ctx
 
+from mbsym.algebra.arrangements import Arrangement, Corner, CornerKind, Region, decompose, decomposition
+from mbsym.algebra.arrangements.laws import Law, breaches, euler
+from mbsym.algebra.arrangements.stacks import Fibre
 from mbsym.algebra.failures import TooLargeError
-from mbsym.algebra.plane import (
-    Arrangement,
-    Box,
-    Budget,
-    Corner,
-    CornerKind,
-    Region,
-    decompose,
-    decompose_line,
-    decomposition,
-)
-from mbsym.algebra.plane.laws import Law, breaches, euler
+from mbsym.algebra.plane import Box, Budget, decompose_line
 from mbsym.algebra.plane.numbers import sign
 from mbsym.algebra.plane.point_field import PointField
-from mbsym.algebra.plane.stacks import Fibre
 
 X, Y = (CONTEXT := fmpq_mpoly_ctx.get(["x", "y"])).gens()
 BOX = Box(-2, 2, -2, 2)

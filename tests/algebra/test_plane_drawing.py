@@ -8,7 +8,8 @@ from itertools import pairwise
 import pytest
 from flint import fmpq, fmpq_mpoly_ctx
 
-from mbsym.algebra.plane import Box, areas, decompose, polyline
+from mbsym.algebra.arrangements import areas, decompose, polyline
+from mbsym.algebra.plane import Box
 
 X, Y = fmpq_mpoly_ctx.get(["x", "y"]).gens()
 BOX = Box(-2, 2, -2, 2)

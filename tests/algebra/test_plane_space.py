@@ -7,9 +7,10 @@ from typing import Any
 import pytest
 from flint import fmpq, fmpq_mpoly_ctx
 
+from mbsym.algebra.arrangements import critical_levels, decompose, decompose_space
+from mbsym.algebra.arrangements.laws import breaches
 from mbsym.algebra.failures import TooLargeError
-from mbsym.algebra.plane import Box, Budget, critical_levels, decompose, decompose_space
-from mbsym.algebra.plane.laws import breaches
+from mbsym.algebra.plane import Box, Budget
 
 X, Y, Z = fmpq_mpoly_ctx.get(["x", "y", "z"]).gens()
 BOX = Box(-2, 2, -2, 2)

@@ -49,6 +49,29 @@ motion: {a: {rate: w}, b: {rate: -2*w}}
 initial: {a: 0, b: 0}
 """
 
+TABLE = BARS.replace("k: positive, w: real}", "k: positive, w: real}\nprescribed: {chi: {rate: w}}")
+TABLE = TABLE.replace("angles: [a]}, mass: m, mass centre: [l, 0, 0]}", "angles: [chi]}, mass: 0}").replace(
+    "a: {rate: w}, ", ""
+)
+
+#: A bar that is pinned to a turntable at two points, and another on it.
+PINNED = """
+mbsym: 1
+name: a bar on a turntable
+parameters: {m: positive, l: positive, k: positive, w: real}
+prescribed: {chi: {rate: w}}
+bodies:
+  - {name: table, attached to: 0, rotation: {axes: [3], angles: [chi]}, mass: 0}
+  - {name: two, attached to: 0, rotation: {axes: [3], angles: [b]}, mass: m, mass centre: [l, 0, 0]}
+  - {name: three, attached to: two, connection point: [l, 0, 0], rotation: {axes: [3], angles: [c]}, mass: m,
+     mass centre: [l, 0, 0]}
+loads: [{generalized force: {c: -k*c}}]
+constraints:
+  - coincide: [{body: table, point: [l, 0, 0]}, {body: two, point: [l, 0, 0]}]
+motion: {b: {rate: w}, c: 0}
+initial: {b: 0, c: 0}
+"""
+
 
 @pytest.mark.parametrize("given", [GIVEN, "motion: {x: {rate: v}}"])
 def test_wheels_with_a_balanced_rod_run_steadily(given: str) -> None:
@@ -81,6 +104,24 @@ def test_bars_in_their_own_angles_and_in_the_relative_one() -> None:
     m, stiffness = apart.linearisation.M, apart.linearisation.K
     assert [str(x) for x in (m[0, 0], m[0, 1])] == ["m*l**2", "0"]
     assert [str(x) for x in (stiffness[0, 0], stiffness[0, 1])] == ["l**2*k", "-l**2*k"]
+
+
+def test_a_bar_beside_a_turntable() -> None:
+    """m l^2 b'' = -k l^2 (b - chi) about b = chi = w t."""
+    found = mbsym.loads(TABLE)
+    assert found.equilibrium.satisfied
+    assert str(found.linearisation.K[0, 0]) == "l**2*k"
+    assert all(not check.failed for check in found.checks)
+
+
+def test_a_bar_that_is_held_by_a_turntable() -> None:
+    """b = chi by two rows of which one follows from the other; m l^2 c'' = -(k + m l^2 w^2) c about c = 0."""
+    found = mbsym.loads(PINNED)
+    assert found.equilibrium.satisfied
+    assert found.linearisation.coordinates == ("c",)
+    m, k = found.linearisation.M[0, 0], found.linearisation.K[0, 0]
+    assert (str(m), str(k)) == ("m*l**2", "m*l**2*w**2 + k")
+    assert all(not check.failed for check in found.checks)
 
 
 def test_an_angle_twice_as_fast() -> None:

@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+import mbsym
 from mbsym.mechanics.constraints import dynamics as equations
 from mbsym.numerics.closing import closed
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.kept import compiled_kernel
 from mbsym.numerics.scenario import scenario
+from mbsym.report.targets import FORMATS
 from mbsym.simulation import Request, Simulation, simulate
 from mbsym.source import read
 from mbsym_cli.main import main
@@ -116,3 +118,25 @@ def test_the_force_of_the_rod_is_the_pendulum_s(monkeypatch: pytest.MonkeyPatch)
 
     monkeypatch.setattr(equations, "_added", forgotten)
     assert np.max(np.abs(_rod_force(text) - truth)) > 0.1
+
+
+def test_links_in_line() -> None:
+    """Two links of length 1 without mass, b = a, a particle m at the end (``light-links-in-line``): M is singular in
+    line, where nothing moves the particle along them, and the system is not,
+
+        T = m (5 + 4 cos a) a'^2/2,      U = m g (cos a + cos 2a),      Q = 6:       18 a'' = 6 at a = 0, m = 2.
+    """
+    text = (Path(__file__).parents[1] / "cases" / "constraints" / "light-links-in-line.yaml").read_text(
+        encoding="utf-8"
+    )
+    model: dict[str, Any] = {}
+    exec(FORMATS["python"].render(mbsym.loads(text, (3,)), ()), model)
+    rates = model["rhs"](0.0, np.zeros(4), model["complete"]())[2:]
+    assert rates == pytest.approx([1 / 3, 1 / 3], abs=1e-12)
+    for start in ("a: 0, b: 0", "a: -0.5, b: -0.5"):  # begins there, or passes it
+        found = run(text.replace("a: 0, b: 0", start), 3.0)
+        assert found.whole
+        a, rate = found["a"], found["a_dot"]
+        energy = (5 + 4 * np.cos(a)) * rate**2 - 18 * (np.cos(a) + np.cos(2 * a)) - 6 * a
+        assert energy == pytest.approx(np.full(41, energy[0]), abs=1e-8)
+        assert np.max(a) > 0.1

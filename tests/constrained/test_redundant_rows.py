@@ -13,6 +13,7 @@ import ctypes
 import subprocess
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from fractions import Fraction
 from functools import cache
 from math import atan, cos, pi, sin
 from pathlib import Path
@@ -24,8 +25,10 @@ import pytest
 from click.testing import CliRunner
 
 import mbsym
+from mbsym.algebra.failures import SingularPoint
 from mbsym.mechanics.constraints import dependence
 from mbsym.model.system import System
+from mbsym.numerics import breakdowns
 from mbsym.numerics.closing import closed
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels import arrays
@@ -352,7 +355,14 @@ def test_mechanisms_with_redundant_rows(name: str, rank: int) -> None:
     constraints = dynamics.constraints
     assert constraints is not None
     assert constraints.rank == mbsym.loads(case(name)).constraints.velocity_rank == rank
-    n, source = constraints.size, np.random.default_rng(3)
+    as_d_alembert_has_them(dynamics, np.random.default_rng(3))
+
+
+def as_d_alembert_has_them(dynamics: Dynamics, source: Any) -> None:
+    """Ranks and accelerations at some positions of the branch by the singular values of all rows."""
+    constraints = dynamics.constraints
+    assert constraints is not None
+    n = constraints.size
     start = np.array([float(x) for x in dynamics.scenario.state])
     kernels = [arrays.kernel(code) for code in (dynamics.right_hand_side, dynamics.mass_matrix, dynamics.forcing)]
     for place in constraints._places(start):
@@ -367,13 +377,72 @@ def test_mechanisms_with_redundant_rows(name: str, rank: int) -> None:
         rates, mass, force = (kernel(np.concatenate([[0.0], state])) for kernel in kernels)
         mass = mass.reshape(n, n)
         sizes, basis = np.linalg.svd(here.partials)[1:]
-        assert int(np.sum(sizes > 1e-7 * sizes[0])) == rank
-        free = basis[rank:].T
+        assert int(np.sum(sizes > 1e-7 * sizes[0])) == constraints.rank
+        free = basis[constraints.rank :].T
         bent = (rows_after(STEP) - rows_after(-STEP)) / (2 * STEP)
         bent = (4 * (rows_after(STEP / 2) - rows_after(-STEP / 2)) / STEP - bent) / 3
         first = np.linalg.lstsq(here.partials, -bent, rcond=1e-9)[0]
         wanted = first + free @ np.linalg.solve(free.T @ mass @ free, free.T @ (force - mass @ first))
         assert rates[n:] == pytest.approx(wanted, abs=1e-7 * (1 + np.max(np.abs(wanted))))
+
+
+def mechanism(source: Random) -> str:
+    """A tree of hinges and slides whose bodies are held together at points that coincide where all coordinates are 0.
+
+    Some bodies have no mass; some are held at two points, some twice at one: these rows follow from others.
+    """
+    planar, count = source.random() < 0.5, source.randint(3, 6)
+
+    def vector() -> list[Fraction]:
+        found = [Fraction(source.choice(["0", "1", "-1", "1/2", "2"])) for _ in range(3)]
+        return [*found[:2], Fraction(0)] if planar else found
+
+    def listed(values: Any) -> str:
+        return "[" + ", ".join(map(str, values)) + "]"
+
+    places, bodies = [[Fraction(0)] * 3], []
+    for i in range(1, count + 1):
+        parent, arm = source.randint(0, i - 1), vector()
+        places.append([a + b for a, b in zip(places[parent], arm, strict=True)])
+        axis = 3 if planar else source.choice([1, 2, 3])
+        joint = f"connection point: {listed(arm)}, rotation: {{axes: [{axis}], angles: [q{i}]}}"
+        if source.random() < 0.15:
+            joint = f"connection point: {listed([f'{arm[0]} + q{i}', *arm[1:]])}, coordinates: [q{i}]"
+        mass = "mass: 1, mass centre: " + listed(vector()) + ", inertia about: mass centre, inertia: [1/5, 1/4, 1/3]"
+        mass = "mass: 0" if source.random() < 0.2 else mass
+        bodies.append(f"{{name: b{i}, attached to: {f'b{parent}' if parent else 0}, {joint}, {mass}}}")
+    rows: list[str] = []
+    for _ in range(source.randint(1, 3)):
+        pair, point = source.sample(range(count + 1), 2), [2 * x for x in vector()]
+        for _ in range(source.choice([1, 1, 2])):
+            arms = {k: listed(a - b for a, b in zip(point, places[k], strict=True)) for k in pair}
+            ends = (f"{{body: {f'b{k}' if k else 0}, point: {arm}}}" for k, arm in arms.items())
+            rows.append(f"coincide: [{', '.join(ends)}]")
+            point = [a + b for a, b in zip(point, vector(), strict=True)]
+    rows += rows[:1] if source.random() < 0.3 else []
+    lines = ["mbsym: 1", "name: random", "bodies:", *(f"  - {x}" for x in bodies)]
+    lines += ["loads: [{uniform gravity: {vector: [1, -9, 2]}}]", "constraints:", *(f"  - {x}" for x in rows)]
+    return "\n".join([*lines, f"initial: {{{', '.join(f'q{i}: 0' for i in range(1, count + 1))}}}", ""])
+
+
+def test_random_mechanisms() -> None:
+    """Wherever a run may begin; where it may not the position is singular, or a coordinate moves no mass."""
+    tried = 0
+    for seed in range(24):
+        text = mechanism(Random(f"mechanism {seed}"))
+        try:
+            dynamics = Dynamics(begun(text))
+            constraints = dynamics.constraints
+            assert constraints is not None
+            start = np.array([float(x) for x in dynamics.scenario.state])
+            if not constraints.freedom or breakdowns._lost_rank(dynamics, start):
+                continue
+            assert dynamics.right_hand_side
+        except SingularPoint:
+            continue
+        as_d_alembert_has_them(dynamics, np.random.default_rng(seed))
+        tried += 1
+    assert tried >= 8
 
 
 def test_a_mechanism_that_moves_at_its_values_only() -> None:
@@ -440,6 +509,29 @@ def test_what_cannot_move_is_not_run(tmp_path: Path) -> None:
     assert done.exit_code == 3
     assert "error[no-freedom]" in done.output
     assert "nothing can move from q1 = 0" in done.output
+
+
+def test_full_stretch_is_singular(tmp_path: Path) -> None:
+    """Two links of length sqrt(2) between points 2 sqrt(2) apart: J has rank 1 of 2 in the one position that they have.
+
+    To first order the elbow moves across, to second order it does not; the pendulum alone has a freedom.  It was run as
+    a mechanism of two freedoms, off its constraints, with exit code 0.
+    """
+    file = CASES / "held-at-full-stretch.yaml"
+    result = CliRunner().invoke(main, ["simulate", str(file), "--time", "1", "--out", str(tmp_path / "out")])
+    assert result.exit_code == 3
+    assert "their rank is 1) they stop at second order" in result.stderr
+    assert "at most 2 of 3 velocities are free" in " ".join(result.stdout.split())
+
+
+@pytest.mark.parametrize("name", ["par3", "bricard", "sarrus-linkage", "tied-twice", "coupling-rod"])
+def test_regular_positions_are_held_no_further(name: str) -> None:
+    """Rows that follow from others all along: also beside the start."""
+    constraints = Dynamics(begun(case(name))).constraints
+    assert constraints is not None
+    assert len(constraints.kept) < len(constraints)
+    start = np.array([float(x) for x in constraints._scenario.state])
+    assert not any(constraints.obstructed(place) for place in constraints._places(start))
 
 
 def test_runs_of_regular_positions_end_whole() -> None:

@@ -10,7 +10,8 @@ import pytest
 from flint import fmpq
 
 import mbsym
-from mbsym.algebra.plane import Arrangement, Box, Point, decompose, decompose_line
+from mbsym.algebra.arrangements import Arrangement, decompose
+from mbsym.algebra.plane import Box, Point, decompose_line
 from mbsym.maps.boundaries import boundaries
 from mbsym.maps.check import Check, Mistake, check
 from mbsym.maps.mapping import exact_map

@@ -96,12 +96,12 @@ def test_two_gyroscopes_against_the_matrices_by_hand() -> None:
     random, words = Random(5), set()
     for _ in range(150):
         place = 2 * F(random.randint(1, 10_006), 10_007)
-        stratum = found.at(place)
-        assert stratum is not None
-        assert stratum.judged is not None
+        cell = found.at(place)
+        assert cell is not None
+        assert cell.judged is not None
         right = to_the_right(two({**fixed, "k2": place}))
-        assert (stratum.judged.right, stratum.word) == (right, Word.UNSTABLE if right else Word.STABLE)
-        words.add(stratum.word)
+        assert (cell.judged.right, cell.word) == (right, Word.UNSTABLE if right else Word.STABLE)
+        words.add(cell.word)
     assert words == {Word.UNSTABLE, Word.STABLE}
 
 
@@ -119,16 +119,16 @@ def test_friction_in_the_gimbal_ends_what_the_rotor_holds(friction: Map) -> None
         h = -20 * F(random.randint(1, 10_006), 10_007)
         for d in (F(0), F(1, 10**9), F(random.randint(1, 10_000), 10_007)):
             right = to_the_right(one({**body, "h": h, "d": d}))
-            stratum = friction.at(h, d)
-            assert stratum is not None
-            assert stratum.judged is not None
-            assert stratum.judged.right == right
-            assert (stratum.word is Word.UNSTABLE) == (right > 0)
+            cell = friction.at(h, d)
+            assert cell is not None
+            assert cell.judged is not None
+            assert cell.judged.right == right
+            assert (cell.word is Word.UNSTABLE) == (right > 0)
             if d == 0:
-                assert stratum.shape is Shape.ARC
-                words.add(stratum.word)
+                assert cell.shape is Shape.ARC
+                words.add(cell.word)
             else:
-                assert stratum.word is Word.UNSTABLE
+                assert cell.word is Word.UNSTABLE
     assert words == {Word.GYROSCOPIC, Word.UNSTABLE}
 
 
@@ -145,8 +145,8 @@ def test_a_mistake_in_the_matrices_is_met(friction: Map) -> None:
             [4 * (B - C), 4 * (Jz - Jy) + h, B + Jz - A - Jx + h],
             [(0, 1, values["k"], values["d"])],
         )
-        stratum = friction.at(h, F(0))
-        assert stratum is not None
-        assert stratum.judged is not None
-        wrong += stratum.judged.right != to_the_right(mistaken)
+        cell = friction.at(h, F(0))
+        assert cell is not None
+        assert cell.judged is not None
+        wrong += cell.judged.right != to_the_right(mistaken)
     assert wrong

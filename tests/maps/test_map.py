@@ -93,16 +93,16 @@ def test_the_satellites_map_agrees_with_eigenvalues_of_the_papers_matrices(p1: s
     random, seen = Random(20), set()
     for _ in range(150):
         alpha, gamma = Fraction(random.randint(-999, 999), 1000), Fraction(random.randint(1, 999), 1000)
-        stratum = at(found, alpha, gamma)
+        cell = at(found, alpha, gamma)
         counted = [roots_to_the_right(*one) for one in paper_matrices(alpha, gamma, Fraction(p1), Fraction(p2))]
         if not all(positive for _, positive in counted):
-            assert stratum.lack is Lack.MASSLESS
+            assert cell.lack is Lack.MASSLESS
             continue
         right = sum(count for count, _ in counted)
-        assert stratum.judged is not None
-        assert stratum.judged.right == right
-        assert (stratum.word is Word.UNSTABLE) == (right > 0)
-        seen.add(stratum.word)
+        assert cell.judged is not None
+        assert cell.judged.right == right
+        assert (cell.word is Word.UNSTABLE) == (right > 0)
+        seen.add(cell.word)
     assert seen >= {Word.STABLE, Word.UNSTABLE}
 
 

@@ -10,7 +10,8 @@ import pytest
 from flint import fmpq
 
 import mbsym
-from mbsym.algebra.plane import Arrangement, Box, Point, decompose
+from mbsym.algebra.arrangements import Arrangement, decompose
+from mbsym.algebra.plane import Box, Point
 from mbsym.maps.boundaries import boundaries
 from mbsym.maps.on_curves import ExactVerdicts
 from mbsym.maps.section import Axis, Section, section

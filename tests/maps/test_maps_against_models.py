@@ -255,7 +255,7 @@ NAMES = [case.name for case in CASES]
 
 
 @cache
-def made(name: str) -> Map | Map:
+def made(name: str) -> Map:
     case = CASES[NAMES.index(name)]
     analysis = mbsym.load(f"systems/{name}.yaml")
     axes = [Axis(axis, F(low), F(high)) for axis, low, high in case.axes]
@@ -277,20 +277,20 @@ def disagreements(case: Case, points: list[dict[str, F]]) -> tuple[list[Any], se
     """Points at which the map and the model differ, and the words that were met."""
     found, wrong, seen = made(case.name), [], set()
     for point in points:
-        stratum = found.at(*point.values())
-        assert stratum is not None
-        assert stratum.shape in (Shape.REGION, Shape.INTERVAL)
+        cell = found.at(*point.values())
+        assert cell is not None
+        assert cell.shape in (Shape.REGION, Shape.INTERVAL)
         if not case.real(point):
-            agree = stratum.lack is Lack.OUTSIDE
-        elif stratum.judged is None or stratum.word is None:
+            agree = cell.lack is Lack.OUTSIDE
+        elif cell.judged is None or cell.word is None:
             agree = False
         else:
             right = sum(map(to_the_right, case.model(point)))
-            seen.add(stratum.word)
+            seen.add(cell.word)
             words = {Word.UNSTABLE} if right else case.stable
-            agree = stratum.judged.right == right and stratum.word in words
+            agree = cell.judged.right == right and cell.word in words
         if not agree:
-            wrong.append((point, stratum))
+            wrong.append((point, cell))
     return wrong, seen
 
 
@@ -330,6 +330,6 @@ def test_the_wedge_of_small_damping_is_the_published_one() -> None:
         for ratio in (F(1, 20), F(1, 3), F(1), F(3), F(15, 2), F(19, 2)):
             b1, b2 = scale * ratio / 10, scale / 10
             critical = (4 * b1**2 + 33 * b1 * b2 + 4 * b2**2) / (2 * (b1**2 + 7 * b1 * b2 + 6 * b2**2)) + b1 * b2 / 2
-            stratum = found.at(b1, b2)
-            assert stratum is not None
-            assert stratum.word is (Word.ASYMPTOTIC if p < critical else Word.UNSTABLE)
+            cell = found.at(b1, b2)
+            assert cell is not None
+            assert cell.word is (Word.ASYMPTOTIC if p < critical else Word.UNSTABLE)

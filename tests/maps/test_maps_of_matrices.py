@@ -33,10 +33,10 @@ def plane(analysis: Any, x: tuple[str, Any, Any], y: tuple[str, Any, Any], **set
     return exact_map(analysis, axes, {name: F(value) for name, value in settings.items()})
 
 
-def at(found: Map | Map, *values: Any) -> Any:
-    stratum = found.at(*map(F, values))
-    assert stratum is not None
-    return stratum
+def at(found: Map, *values: Any) -> Any:
+    cell = found.at(*map(F, values))
+    assert cell is not None
+    return cell
 
 
 def test_gyroscopic_stabilisation_begins_at_the_sum_of_the_roots() -> None:

@@ -138,14 +138,14 @@ def test_the_swallowtail(tmp_path: Path) -> None:
         for _ in range(25):
             x, y = (Fraction(random.randint(-499, 499), 499 * k) for k in (1, 2))
             roots = np.roots([1, 0, float(layer.z), float(x), float(y)])
-            stratum = layer.plane.at(x, y)
+            cell = layer.plane.at(x, y)
             if min(abs(p - q) for p, q in combinations(roots, 2)) < 1e-3 or min(abs(roots.real)) < 1e-6:
                 continue
-            assert stratum is not None
-            assert stratum.judged is not None
+            assert cell is not None
+            assert cell.judged is not None
             right = [r for r in roots if r.real > 0]
-            assert stratum.judged.right == len(right)
-            assert stratum.judged.real_right == sum(abs(r.imag) < 1e-9 for r in right)
+            assert cell.judged.right == len(right)
+            assert cell.judged.real_right == sum(abs(r.imag) < 1e-9 for r in right)
 
 
 def test_a_slice_at_an_irrational_value_is_exact(tmp_path: Path) -> None:

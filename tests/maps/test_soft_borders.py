@@ -216,6 +216,15 @@ def test_a_pair_that_only_touches_the_axis_is_no_border(damping: str) -> None:
     assert {(x.soft.onset, x.soft.why) for x in borders(plane) if x.soft} == {(Onset.NEITHER, why)}
 
 
+def test_an_isolated_point_has_one_region_around_it() -> None:
+    """x is damped by (p - 1/3)^2 + (q - 1/5)^2, so everywhere but at a point: nothing is lost there."""
+    text = TOUCHING.replace("-DAMPING", "-((p - 1/3)**2 + (q - 1/5)**2)").replace("BESIDE", "1")
+    plane = mapped(text, "p", "q", k=1)
+    (point,) = [one for one in plane.corners if plane.place(one).kind == "isolated"]
+    assert point.soft is not None
+    assert (point.soft.onset, point.soft.why) == (Onset.NEITHER, Missing.NO_LOSS)
+
+
 def test_a_border_between_two_unstable_cells_is_none() -> None:
     """x is driven for p > 0, y for q > 0: at p = 0 stability is lost for q < 0 alone, and so with p and q exchanged."""
     text = TOUCHING.replace("-DAMPING", "p").replace("-BESIDE", "q")

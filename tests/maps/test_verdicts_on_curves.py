@@ -12,8 +12,9 @@ from typing import Any
 import pytest
 from flint import fmpq, fmpq_mpoly_ctx, fmpq_poly, fmpz_poly
 
+from mbsym.algebra.arrangements import decompose
 from mbsym.algebra.failures import TooLargeError
-from mbsym.algebra.plane import Box, decompose
+from mbsym.algebra.plane import Box
 from mbsym.algebra.plane.elements import Element, ElementMatrix, ElementPolynomial
 from mbsym.algebra.plane.numbers import number, roots_between
 from mbsym.algebra.plane.point_field import PointField, SimpleField

@@ -126,7 +126,7 @@ relations: {k: 2*s}
 motion: {x: 0}
 values: {s: 2, k: 4}
 """
-    from mbsym.picture.parts import modes_part
+    from mbsym.picture.page import modes_part
     from mbsym.simulation.request import read_values
 
     system = mbsym.loads(text).system

@@ -170,6 +170,36 @@ def test_the_variable_of_a_characteristic_polynomial_is_a_rate() -> None:
         assert damped_wheel(slip) == ["dimension"]
 
 
+def test_the_acceleration_of_a_speed_is_its_first_derivative() -> None:
+    """Euler's  p' = (J2 - J3) q r / J1  is 1/s^2; without r it is 1/s, alone among the claims or not."""
+
+    def complaints(*claimed: str) -> list[str]:
+        claims = "".join(f'  - {{claim: acceleration, of: p, equals: "{one}"}}\n' for one in claimed)
+        _, found = read(
+            f"""mbsym: 1
+name: a body that turns freely
+units: {{J1: kg*m^2, J2: kg*m^2, J3: kg*m^2}}
+parameters: {{J1: positive, J2: positive, J3: positive}}
+bodies:
+  - name: body
+    rotation: {{axes: [3, 1, 3], angles: [psi, th, phi]}}
+    mass: 0
+    inertia about: joint
+    inertia: [J1, J2, J3]
+    orientation: {{gamma: 3}}
+    speeds: {{p: omega1, q: omega2, r: omega3}}
+claims:
+{claims}""",
+            "x.yaml",
+        )
+        return [one.message for one in found.items]
+
+    assert complaints("(J2 - J3)*q*r/J1") == []
+    wrong = "'p_dot' is 1/s^2, '(J2 - J3)*q/J1' is 1/s: they cannot be equal"
+    assert complaints("(J2 - J3)*q/J1") == [wrong]
+    assert complaints("(J2 - J3)*q*r/J1", "(J2 - J3)*q/J1") == [wrong]
+
+
 def test_other_systems_of_units_are_told_in_their_own_names() -> None:
     text = """mbsym: 1
 name: small

@@ -10,6 +10,7 @@ import pytest
 from flint import fmpq
 
 import mbsym
+from mbsym.algebra.failures import Limit, TooLargeError
 from mbsym.maps.section import Axis, Section, section
 from mbsym.maps.verdicts import verdict_at
 from mbsym.sweeps import judged
@@ -71,6 +72,19 @@ def test_outside_the_assumptions_nothing_is_judged() -> None:
     measure = made("satellite", [("alpha", -2, 2), ("gamma", -2, 2)], {"p1": F(2, 5), "p2": F(1, 5)})
     words = [WORDS[code] for code in measure.at(np.array([[1.5, 0.5, 0.5, 0.9], [0.5, 1.5, 0.5, -0.8]]))[VERDICT.name]]
     assert words == [OUTSIDE, OUTSIDE, "stable", MASSLESS]
+
+
+def test_what_is_too_large_is_undecided_and_not_undefined(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No formula divides by zero there: a limit of the judge leaves the verdict open."""
+
+    def refused(*_: object) -> None:
+        raise TooLargeError("a field of a high degree", limit=Limit.DEGREE)
+
+    monkeypatch.setattr(judged.Judge, "judged", refused)
+    measure = made("satellite", [("alpha", -2, 2), ("gamma", -2, 2)], {"p1": F(2, 5), "p2": F(1, 5)})
+    found = measure.at(np.array([[0.5], [0.5]]))
+    assert [WORDS[code] for code in found[VERDICT.name]] == ["undecided"]
+    assert found[RIGHT.name].tolist() == [-1]
 
 
 def test_a_lost_quantity_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 from mbsym.editing.document.formulas import content, math, mathml_of
@@ -37,14 +36,13 @@ _NO_FORMULAS = ("name", "attached to", "rotation", "inertia about", "coordinates
 _TRIES = 4
 
 
-def look(text: str, name: str, folder: Path | None = None) -> Json:
+def look(text: str, name: str) -> Json:
     """What can be had of a text, which may be half typed: bodies, loads, constraints, the tree, all complaints.
 
     Offsets (``from``, ``to``) count the characters of ``text``.  Where a section cannot be read the others are shown;
     the complaints are always those of the whole text.
-    Files that it names are looked for in ``folder``.
     """
-    found = written(text, name, folder=folder)
+    found = written(text, name)
     shown = found if found.tree is not None else _what_can_be_had(found)
     tree = shown.tree if isinstance(shown.tree, Mapping) else None
     bodies = [] if tree is None else list(_bodies(shown, tree))

@@ -17,6 +17,9 @@ same accelerations and multipliers follow from a matrix that is positive, with a
 
     (M + J^T w J) q'' = f - J^T w c + J^T lambda
 
+So it is done, too, where M is singular at single positions of the open tree in which the rows hold what moves no mass
+(two massless links in line with each other): the elimination of M alone would fail there, at a regular position.
+
 Rows that follow from others make S singular: which of them are used is chosen locally (``dependence``), so that the
 pivots of S vanish only where all rows lose their rank, as those of a four-bar do whose links are in line.
 
@@ -28,8 +31,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from random import Random
 
-from mbsym.algebra.failures import Failure, SingularPoint
+from flint import fmpq, fmpq_mat
+
+from mbsym.algebra.failures import NOT_THERE, Failure, SingularPoint
+from mbsym.algebra.point import Rationals
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
 from mbsym.mechanics.articulation import articulation
@@ -40,8 +47,9 @@ from mbsym.mechanics.constraints.rows import Row, RowName, constraint_rows, kept
 from mbsym.mechanics.factorisation import Elimination
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.programs import scene_without_accelerations
+from mbsym.mechanics.states import SEED, drawn
 from mbsym.mechanics.variables import program_environment, ring_environment
-from mbsym.model.system import System
+from mbsym.model.system import Body, System
 
 DEPENDENT = "the constraints are dependent everywhere"
 
@@ -150,7 +158,7 @@ def _constrained_dynamics(
     holonomic = sum(row.position is not None for row in rows)
     masses: Sequence[Sequence[Node]] = mass_matrix(frames)
     forces: Sequence[Node] = forcing(frames, bias_forces(frames))
-    if massless:
+    if massless or _held_by_rows(scene, program, masses, partials):
         masses, forces = _added(scene, rows, masses, forces)
     tree = Elimination(program, masses, [forces, *partials])
     free, *weighted = tree.forward
@@ -197,6 +205,32 @@ def _constrained_dynamics(
         position_correction=carried(still, shift.solution()),
         velocity_correction=carried(still, change.solution()),
     )
+
+
+def _held_by_rows(
+    scene: Scene[Node], program: Program, masses: Sequence[Sequence[Node]], partials: Sequence[Sequence[Node]]
+) -> bool:
+    """Whether M is singular where all coordinates are zero, and M and J together have the full rank there.
+
+    Exactly, at some values of the parameters; False where there are irrational numbers among the entries.
+    """
+    system, ring = scene.system, scene.ring
+    if not any(body.coordinates and not _moves_mass(scene, body) for body in system.bodies):
+        return False
+    values = drawn(system, ring, Random(SEED)) | dict.fromkeys(system.coordinates, fmpq(0)) | {"pi": fmpq(355, 113)}
+    numbers = Rationals(dict.fromkeys(ring.angles, fmpq(0)), ring.angles)
+    nodes = [x for row in (*masses, *partials) for x in row]
+    try:
+        found = program.evaluate(nodes, values, numbers)
+    except NOT_THERE:
+        return False
+    n = len(masses)
+    return bool(fmpq_mat(n, n, found[: n * n]).det() == 0 and fmpq_mat(len(nodes) // n, n, found).rank() == n)
+
+
+def _moves_mass(scene: Scene[Node], body: Body) -> bool:
+    """Whether a body has mass of its own."""
+    return not scene.algebra.vanishes(scene.lower(body.mass))
 
 
 def _added(

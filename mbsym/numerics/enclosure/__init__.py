@@ -6,8 +6,7 @@
 ``disc``       how far the solution is analytic: a disc of complex times, by Picard's operator
 ``segment``    one step: Taylor series about a point, its tail by Cauchy's estimate, the set carried along
 ``enclose``    many of them, with as many bits as the width that is wanted needs
-``compare``    how far a computed trajectory is from the exact one
-``passages``   events of the exact solution, proved one by one
+``compare``    how far a computed trajectory is from the exact one; its events, proved one by one
 =============  ============================================================================================
 
 What is enclosed is the solution of the equations as they are integrated: irrational numbers of a description are

@@ -12,14 +12,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 
 from mbsym.algebra.base import Lowering
-from mbsym.algebra.program import Node, Program
-from mbsym.algebra.ring import Ring
+from mbsym.algebra.program import Node
 from mbsym.expressions.tree import Expression, names
 from mbsym.model.system import System, velocity_name
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.scenario import Scenario, initial_values
-from mbsym.numerics.specialise import Specialised, bound
+from mbsym.numerics.specialise import Names, Specialised, bound
 
 
 class Parametrised(Dynamics):
@@ -33,9 +32,8 @@ class Parametrised(Dynamics):
         scenario: Scenario,
         free: Sequence[str],
         overrides: Mapping[str, Expression] | None = None,
-        ring: Ring | None = None,
     ) -> None:
-        super().__init__(scenario, ring)
+        super().__init__(scenario)
         self.free = tuple(free)
         self.overrides = dict(overrides or {})
         self.inputs = (*self.inputs, *self.free)
@@ -67,17 +65,6 @@ class Parametrised(Dynamics):
         fresh = released(self.scenario, self.free)
         moving = (*self.free, *dependent(self.system, self.free))
         return Code(fresh, self.free, tuple(fresh.input(name) for name in moving))
-
-
-class Names(dict[str, Node]):
-    """What names stand for in a program, which knows which of them are bound."""
-
-    def __init__(self, program: Program) -> None:
-        super().__init__()
-        self.program = program
-
-    def __missing__(self, name: str) -> Node:
-        return self.program.input(name)
 
 
 def dependent(system: System, free: Iterable[str]) -> tuple[str, ...]:

@@ -87,9 +87,9 @@ class Compiled:
         return self.library.function("adaptive", *[pointer] * 10, *[whole] * 4, result=whole)
 
 
-def compiled(code: Code, tableau: Tableau, size: int, lanes: int | None = None) -> Compiled:
+def compiled(code: Code, tableau: Tableau, size: int) -> Compiled:
     """``size``: numbers of a state; what the code's inputs have behind (t, x) are parameters."""
-    lanes = lanes or lanes_here()
+    lanes = lanes_here()
     parameters = len(code.inputs) - 1 - size
     text = adaptive_text if tableau.errors else fixed_text
     made = library(code, text(tableau, size, parameters, lanes), lanes)

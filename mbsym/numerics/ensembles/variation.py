@@ -19,9 +19,10 @@ from mbsym.expressions.tree import names
 from mbsym.expressions.tree import text as spelled
 from mbsym.model.comparison import has_sign, holds
 from mbsym.model.system import System
-from mbsym.numerics.ensembles.parametrised import Names, Parametrised, dependent, released
+from mbsym.numerics.ensembles.parametrised import Parametrised, dependent, released
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import Code
+from mbsym.numerics.specialise import Names
 
 #: More members than this are refused.
 MOST_MEMBERS = 1_000_000

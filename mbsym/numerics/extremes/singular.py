@@ -25,6 +25,7 @@ from flint import arb, ctx, fmpq, fmpq_mat
 
 from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.matrices import components, determinant
+from mbsym.algebra.rationals import ball
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.zero_kinds import UNDECIDED, Zero, Zeros, ZeroSet
 from mbsym.algebra.zero_sets import zero_sets
@@ -36,7 +37,7 @@ from mbsym.mechanics.programs import programs
 from mbsym.mechanics.rest import at_numbers
 from mbsym.mechanics.variables import ring_environment, ring_of
 from mbsym.model.system import System
-from mbsym.numerics.extremes.singular_kinds import BITS, CHART, Kinds, exact_ball
+from mbsym.numerics.extremes.singular_kinds import BITS, CHART, Kinds
 from mbsym.numerics.scenario import Scenario, rounded
 
 #: Determinants of more coordinates are not expanded, nor ones that need more steps of polynomial arithmetic.
@@ -295,10 +296,10 @@ def _searched(given: Scenario, kinds: Kinds, joints: Sequence[tuple[str, ZeroSet
             continue
         for turns in _TWELFTHS:
             with ctx.workprec(BITS):
-                ball = arb.pi() * exact_ball(turns)
-            if kinds.singular({name: ball}):
-                value = Value(_multiple_of_pi(turns), _exact(ball))
-                kind = kinds.kind({name: ball})
+                angle = arb.pi() * ball(turns)
+            if kinds.singular({name: angle}):
+                value = Value(_multiple_of_pi(turns), _exact(angle))
+                kind = kinds.kind({name: angle})
                 found.append(SingularSet((name,), (value,), "", ({name: value.exact},), False, kind, "", False))
     how = f"multiples of pi/12 of one coordinate at a time; det M itself was not to be had: {reason}"
     return Singularities(_joined([*known, *found]), False, how, {})

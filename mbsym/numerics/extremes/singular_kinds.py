@@ -6,10 +6,11 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
-from flint import arb, arb_mat, ctx, fmpq
+from flint import arb, arb_mat, ctx
 
 from mbsym.algebra.point import Balls
 from mbsym.algebra.program import Node, Program
+from mbsym.algebra.rationals import ball
 from mbsym.algebra.ring import Ring
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.programs import programs
@@ -73,9 +74,9 @@ class Kinds:
         found: dict[str, Any] = {}
         for k, (name, value) in enumerate(zip(self.system.coordinates, self.given.positions, strict=True)):
             step = Fraction(beside * (7 + 3 * k), 50)
-            found[name] = place.get(name, exact_ball(value + step * self.sizes.get(name, Fraction(1))))
+            found[name] = place.get(name, ball(value + step * self.sizes.get(name, Fraction(1))))
         for name, (start, _) in self.given.prescribed.items():
-            found[name] = place.get(name, exact_ball(start))
+            found[name] = place.get(name, ball(start))
         found["t"], found["pi"] = place.get("t", arb(0)), arb.pi()
         return found
 
@@ -102,10 +103,6 @@ def _moved(scene: Scene) -> list[Node]:
         if motion.inertia is not None:
             nodes += [*(motion.inertia @ motion.angular_velocity)]
     return nodes
-
-
-def exact_ball(value: Fraction) -> Any:
-    return arb(fmpq(value.numerator, value.denominator))
 
 
 def _midpoints(balls: Sequence[Any]) -> list[Any]:

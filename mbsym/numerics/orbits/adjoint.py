@@ -25,14 +25,14 @@ from mbsym.algebra.derivative import gradient
 from mbsym.expressions.tree import Expression
 from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.ensembles.parametrised import Names, Parametrised
+from mbsym.numerics.ensembles.parametrised import Parametrised
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.orbits.variational import extended, require_smooth, start_column
 from mbsym.numerics.scenario import Scenario
-from mbsym.numerics.specialise import bound, substituted
+from mbsym.numerics.specialise import Names, bound, substituted
 
 #: Pieces into which the time is cut.
 CHECKPOINTS = 32

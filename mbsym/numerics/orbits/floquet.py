@@ -28,12 +28,13 @@ from itertools import combinations
 from math import ceil, gcd, lcm
 from typing import Any
 
-from flint import acb, acb_mat, arb, arb_mat, arb_series, ctx, fmpq
+from flint import acb, acb_mat, arb, arb_mat, arb_series, ctx
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
 from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.program import Node
+from mbsym.algebra.rationals import ball
 from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import Code
@@ -103,7 +104,7 @@ def judged(dynamics: Dynamics, order: int = ORDER, bits: int = BITS) -> Judged:
     code, rests = jacobian_on_motion(dynamics)
     frequency = common_frequency(code)
     with ctx.workprec(bits):
-        period = 2 * arb.pi() / _ball(frequency)
+        period = 2 * arb.pi() / ball(frequency)
         monodromy, steps = enclosed(code, period, len(dynamics.inputs) - 1, order)
         lagrangian = not without_potential(dynamics.system) or (dynamics.size == 1 and _traceless(code))
         multipliers, simple = _multipliers(monodromy, lagrangian)
@@ -156,9 +157,9 @@ def jacobian_on_motion(dynamics: Dynamics) -> tuple[Code, bool]:
 def _require_rest(code: Code, dynamics: Dynamics) -> None:
     with ctx.workprec(BITS):
         for at in (Fraction(0), Fraction(1, 3), Fraction(7, 5), Fraction(29, 7)):
-            for name, value in zip(dynamics.system.coordinates, series(code, arb_series([_ball(at)])), strict=True):
+            for name, value in zip(dynamics.system.coordinates, series(code, arb_series([ball(at)])), strict=True):
                 size = abs(_coefficient(value, 0))
-                if not size < _ball(AT_REST):
+                if not size < ball(AT_REST):
                     told = f"at t = {float(at):g} {name} is accelerated by {float(size.mid()):.3g}"
                     raise NotPeriodic(f"the unperturbed motion is none at these values: {told}")
 
@@ -237,7 +238,7 @@ def series(code: Code, time: arb_series) -> list[Any]:
         match operation, arguments:
             case "constant", _:
                 assert isinstance(payload, Fraction)
-                values[number] = arb_series([_ball(payload)])
+                values[number] = arb_series([ball(payload)])
             case "input", _:
                 values[number] = time
             case "negative", [a]:
@@ -268,10 +269,6 @@ def _hyperbolic(name: str, x: arb_series) -> arb_series:
 
 def _coefficient(value: arb_series, place: int) -> arb:
     return value[place] if place < value.length() else arb(0)
-
-
-def _ball(value: Fraction) -> arb:
-    return arb(fmpq(value.numerator, value.denominator))
 
 
 def _matrices(code: Code, time: arb, size: int, count: int) -> list[arb_mat]:
@@ -305,7 +302,7 @@ def _steps(code: Code, period: arb, size: int) -> int:
     if not largest.is_finite():
         largest = arb(64)
     fastest = max((abs(one) for one in _frequencies(code)), default=Fraction(0))
-    wanted = ceil(float((period * arb.max(largest, _ball(fastest)) / _ball(REACH)).upper()))
+    wanted = ceil(float((period * arb.max(largest, ball(fastest)) / ball(REACH)).upper()))
     if wanted > MOST_STEPS:
         raise NotPeriodic(
             f"a period would take {wanted} steps; at most {MOST_STEPS}: frequencies far apart, or a long period"
@@ -379,10 +376,10 @@ def _multipliers(monodromy: arb_mat, lagrangian: bool) -> tuple[tuple[Multiplier
     balls = [ball for block in _diagonal_blocks(monodromy) for ball in _eigenvalues(block)]
     simple = not any(one.overlaps(other) for one, other in combinations(balls, 2))
     found = []
-    for place, ball in enumerate(balls):
-        size = abs(ball)
+    for place, root in enumerate(balls):
+        size = abs(root)
         on_circle = size == 1 or (lagrangian and _alone(balls, place))
-        found.append(Multiplier(ball, float(size.lower()), float(size.upper()), on_circle))
+        found.append(Multiplier(root, float(size.lower()), float(size.upper()), on_circle))
     return tuple(sorted(found, key=lambda one: -one.greatest)), simple
 
 

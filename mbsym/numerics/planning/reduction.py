@@ -49,7 +49,7 @@ class Reduction:
         return (*free, *(len(names) + place for place in free)), whole.state
 
 
-def resting(scenario: Scenario, ring: Ring | None = None, among: Collection[str] | None = None) -> Reduction | None:
+def resting(scenario: Scenario, among: Collection[str] | None = None) -> Reduction | None:
     """The largest set of coordinates that provably rest in this scenario, or None where there is none.
 
     ``among`` names those worth looking at (all, by default).  Parameters keep their symbols unless their value here is
@@ -60,7 +60,7 @@ def resting(scenario: Scenario, ring: Ring | None = None, among: Collection[str]
     if not candidates or len(system.coordinates) < 2:
         return None
     try:
-        found = programs(system, ring if ring is not None else ring_of(system))
+        found = programs(system, ring_of(system))
     except Failure:
         return None
     how = Certainty.PROVED
@@ -179,7 +179,7 @@ def held(system: System, values: Mapping[str, Expression]) -> System:
     """The system with q_i = values[i] (and q_i' = 0) put in everywhere and those coordinates taken out.
 
     Forces on a coordinate that is held do no work and are left out with it.  Whether the coordinates stay where they
-    are held is another question (``mbsym.numerics.planning.reduction``); claims about the whole system are dropped.
+    are held is another question (``resting``); claims about the whole system are dropped.
     """
     images: dict[str, Expression] = {}
     for name, value in values.items():

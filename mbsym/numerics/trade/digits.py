@@ -22,10 +22,11 @@ from math import inf, isfinite, log10
 from typing import Any
 
 import numpy as np
-from flint import arb, ctx, fmpq
+from flint import arb, ctx
 
 from mbsym.algebra.derivative import gradient, jacobian
 from mbsym.algebra.program import Node, Program
+from mbsym.algebra.rationals import ball
 from mbsym.algebra.ring import Ring
 from mbsym.algebra.stable import stabilised
 from mbsym.mechanics.constraints.dynamics import ConstrainedDynamics
@@ -201,10 +202,6 @@ class Truth:
             parts = [float((s / tiny / size).mid()) if size > 0 else inf for s, size in pairs if not s.is_zero()]
         found = max(parts, default=1.0)
         return found if isfinite(found) else inf
-
-
-def ball(value: Fraction) -> arb:
-    return arb(fmpq(value.numerator, value.denominator))
 
 
 def tight(balls: Sequence[arb]) -> bool:

@@ -35,7 +35,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from mbsym.algebra.failures import Failure, NoClosedForm, SingularPoint
-from mbsym.algebra.matrices import cramer, determinant
+from mbsym.algebra.matrices import solved
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Column, Formula, Matrix, column
 from mbsym.formulas.notebook import Shown
@@ -193,8 +193,7 @@ def _solved(ring: Ring, matrix: Sequence[Sequence[Polynomial]], right: Sequence[
     """matrix^-1 right by Cramer's rule: the only denominator is the determinant."""
     if len(right) > MOST:
         raise NoClosedForm(f"the inverse of a matrix of {len(right)} rows: at most {MOST} are inverted in closed form")
-    whole = determinant(ring, matrix)
-    if ring.vanishes(whole):
-        raise SingularPoint("the mass matrix is singular")
-    inverse = ring.reciprocal(whole)
-    return [ring.reduce(ring.times(x, inverse)) for x in cramer(ring, matrix, right)]
+    try:
+        return [x for (x,) in solved(ring, matrix, [[x] for x in right])]
+    except SingularPoint:
+        raise SingularPoint("the mass matrix is singular") from None

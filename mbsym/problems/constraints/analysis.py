@@ -155,7 +155,7 @@ class _Analysis:
             raise Unsound([Fault("contradictory-constraints", message, impossible)])
         points = _Points(self.ring, self.programs, list(self.manifold.states(POINTS)))
         if not points.states:
-            raise Constrained("no configuration that keeps all constraints was found")
+            raise Constrained("no regular configuration that keeps all constraints was found")
         ranked = [self._ranked(jacobian) for jacobian in points.jacobians()]
         rank = max(one.rank for one in ranked)
         # Where it is lower a point is singular, or on another branch.

@@ -4,7 +4,8 @@ With  Mb v' = fb(s, v, t),  s' = g(s, V v + v0, t)  and v' = 0, s' = 0 on the mo
 
     delta s' = (dg/d(s, v)) x,      Mb_0 delta v' = (dfb/d(s, v)) x,      A = [dg/d(s, v); Mb_0^-1 dfb/d(s, v)].
 
-Positions are those on which fb depends, and on which their rates do.  Constraints on positions tie the deviations of
+Positions are those on which fb depends, and on which their rates do, and coordinates that have roots of their own since
+their rates depend on themselves, if these do not vary on the motion.  Constraints on positions tie the deviations of
 these, and are refused.
 
 Second route: what the coordinates have been expanded to (``mechanics.constraints.expansion``), q' = S eta + T x_q and
@@ -16,6 +17,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.matrices import ScalarMatrix, solved
 from mbsym.algebra.ring import Polynomial
 from mbsym.formulas.formula import Matrix, column
 from mbsym.mechanics.kinematics import Scene
@@ -25,7 +27,7 @@ from mbsym.mechanics.variables import ring_environment
 from mbsym.problems.checks import Check, check_identities
 from mbsym.problems.constraints.in_speeds import dependent_speeds
 from mbsym.problems.equilibrium import Equilibrium, unsolved
-from mbsym.problems.first_order import FirstOrder, product, solved
+from mbsym.problems.first_order import FirstOrder
 from mbsym.problems.in_speeds.speeds import SpeedEquations
 from mbsym.problems.reduction import Reduced
 
@@ -48,11 +50,14 @@ def first_order(form: SpeedForm, equations: SpeedEquations, reduced: Reduced, at
     speeds = [u for u in form.speeds if u.name in tied.free]
     forcing = [x.polynomial for x in embedded.forcing]
     rates = {x.name: ring.reduce(ring.substitute(form.rates[x.name], images)) for x in form.positions}
-    positions = _felt(form, forcing, rates)
-    variables = [*positions, *speeds]
     plain, motion = _motion(form, reduced, at)
-    values = {x.index: ring.substitute(_inner(form, x), motion) for x in variables}
-    varying = {name for value in values.values() for name in unsteady(plain, value)}
+    for own in (True, False):
+        positions = _felt(form, forcing, rates, own)
+        variables = [*positions, *speeds]
+        values = {x.index: ring.substitute(_inner(form, x), motion) for x in variables}
+        varying = {name for value in values.values() for name in unsteady(plain, value)}
+        if not varying:
+            break
     if varying:
         raise NoClosedForm(f"the motion is not steady in speeds and positions: they vary with {', '.join(varying)}")
     on = dict(motion) | values
@@ -108,7 +113,8 @@ def check(form: SpeedForm, found: FirstOrder, reduced: Reduced, at: Equilibrium)
 
     a, b, c = on(equations.A), on(equations.B), on(equations.C)
     below = solved(ring, a, [[*(-row[place[i]] for i in range(n)), *(-x for x in b[k])] for k, row in enumerate(c)])
-    left, right = product(ring, found.A.polynomials, rows), product(ring, rows, [*nu, *below])
+    change = ScalarMatrix(ring, rows)
+    left, right = ScalarMatrix(ring, found.A.polynomials) @ change, change @ ScalarMatrix(ring, [*nu, *below])
     differences = {
         f"the row of {name}, column {j}": ring.reduce(x - y - along(z))
         for name, one, other, moved in zip(found.names, left, right, rows, strict=True)
@@ -118,14 +124,29 @@ def check(form: SpeedForm, found: FirstOrder, reduced: Reduced, at: Equilibrium)
     return check_identities(ring, "first approximation in speeds", routes, differences, unsolved(plain, at))
 
 
-def _felt(form: SpeedForm, formulas: Sequence[Polynomial], rates: Mapping[str, Polynomial]) -> list[Variable]:
-    """The positions on which formulas depend, and on which the rates of these do."""
+def _felt(
+    form: SpeedForm, formulas: Sequence[Polynomial], rates: Mapping[str, Polynomial], own: bool
+) -> list[Variable]:
+    """The positions on which formulas depend, and on which the rates of these do.
+
+    With ``own`` the coordinates whose rates depend on themselves, too, directly or through others (the angle of a light
+    trailer): they have roots of their own although no equation of the speeds needs them.
+    """
     ring, names = form.ring, list(rates)
-    found: set[str] = set()
-    new = {name for x in formulas for name in ring.dependencies(x, names)}
-    while new:
-        found |= new
-        new = {name for one in new for name in ring.dependencies(rates[one], names)} - found
+    needs = {name: set(ring.dependencies(rates[name], names)) for name in names}
+
+    def reached(start: set[str]) -> set[str]:
+        found, pending = set(start), list(start)
+        while pending:
+            new = needs[pending.pop()] - found
+            found |= new
+            pending += new
+        return found
+
+    start = {name for x in formulas for name in ring.dependencies(x, names)}
+    if own:
+        start |= {name for name in form.coordinates if name in needs and name in reached(needs[name])}
+    found = reached(start)
     return [x for x in form.positions if x.name in found]
 
 

@@ -21,6 +21,7 @@ from flint import acb_poly, arb, ctx, fmpq, fmpq_poly
 
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.matrices import determinant_by_traces, faddeev, hurwitz
+from mbsym.algebra.rationals import fraction
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.kinematics import Scene
@@ -131,7 +132,7 @@ def along(
         for enclosure, factor in roots:
             zero = tuple(key for key, x in wanted.items() if _vanishes(tower, x, name, factor, enclosure))
             if zero:
-                exactly = _fraction(-factor[0] / factor[1]) if factor.degree() == 1 else None
+                exactly = fraction(-factor[0] / factor[1]) if factor.degree() == 1 else None
                 judged = judge(enclosure if exactly is None else exactly, zero)
                 told = tuple(int(x) for x in (factor * factor.denom()).coeffs())
                 specials.append(Special(enclosure, exactly, told, zero, judged))
@@ -267,10 +268,6 @@ def _bound(x: Any, upper: bool) -> Fraction:
         return x
     mantissa, exponent = (x.upper() if upper else x.lower()).mid().man_exp()
     return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
-
-
-def _fraction(x: fmpq) -> Fraction:
-    return Fraction(int(x.p), int(x.q))
 
 
 def _decides(

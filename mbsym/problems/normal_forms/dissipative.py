@@ -18,6 +18,7 @@ from mbsym.algebra.polynomial_field import PolynomialField, in_lowest_terms
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
 from mbsym.algebra.truncated import Space, Truncated
 from mbsym.formulas.formula import Formula
+from mbsym.mechanics.rest import rational_values
 from mbsym.model.system import velocity_name
 from mbsym.problems.normal_forms.centre import Reduced, matrix_of, on_pair, on_zero
 from mbsym.problems.normal_forms.exact import (
@@ -25,7 +26,6 @@ from mbsym.problems.normal_forms.exact import (
     in_ring,
     occurring_parameters,
     over_tower,
-    rational_values,
 )
 from mbsym.problems.normal_forms.expansion import Expansion, Numbers
 from mbsym.problems.normal_forms.result import Focus, Judged, Outcome, Theorem, Why

@@ -15,7 +15,7 @@
 
 What decides is enclosed; the normal forms are checked by substitution, delta A besides by the amplitude equation on the
 plane of the roots (``centre.on_double_pair``), which uses no Hamiltonian, and P by averages along the linear flow
-(``averages``), which use no eigenvectors.
+(``averaged``), which use no eigenvectors.
 
 Sources: A. G. Sokolskii, J. Appl. Math. Mech. 38 (1974) 741; A. M. Kovalev & A. N. Chudnenko, Dokl. AN UkrSSR A (1977)
 1011; D. S. Schmidt, in Hamiltonian Dynamical Systems, IMA 63 (1995) 331; H. E. Cabral & K. R. Meyer, Nonlinearity 12

@@ -40,11 +40,6 @@ def occurring_parameters(found: Expansion) -> list[str]:
     return [parameter.name for parameter in found.scene.system.parameters if parameter.name in held]
 
 
-def rational_values(values: Mapping[str, Any]) -> dict[str, Fraction]:
-    """Those of the values that are known exactly."""
-    return {name: value for name, value in values.items() if isinstance(value, Fraction)}
-
-
 class Resonant:
     """Whether k.w = 0 for the frequencies w of z = -w^2, q(z) = 0: by enclosures where it is not, exactly where it is.
 
@@ -163,19 +158,20 @@ def common_factor(tower: Tower, even: Sequence[Element], odd: Sequence[Element])
 
     Raises SingularPoint where a leading coefficient is a divisor of zero.
     """
-    a, b = _trimmed(even), _trimmed(odd)
+    a, b = trimmed(even), trimmed(odd)
     while b:
         lead = tower.reciprocal(b[-1])
         rest = list(a)
         while len(rest) >= len(b):
             factor, shift = rest[-1] * lead, len(rest) - len(b)
             rest = [x - factor * b[k - shift] if k >= shift else x for k, x in enumerate(rest)][:-1]
-        a, b = b, _trimmed(rest)
+        a, b = b, trimmed(rest)
     lead = tower.reciprocal(a[-1])
     return [x * lead for x in a]
 
 
-def _trimmed(polynomial: Sequence[Element]) -> list[Element]:
+def trimmed(polynomial: Sequence[Element]) -> list[Element]:
+    """Without leading zeros."""
     found = list(polynomial)
     while found and found[-1].is_zero():
         found.pop()

@@ -22,6 +22,7 @@ from mbsym.algebra.matrices import determinant_by_traces, faddeev
 from mbsym.algebra.tower import Element, Tower
 from mbsym.algebra.truncated import Truncated
 from mbsym.problems.normal_forms.centre import matrix_of, on_pair
+from mbsym.problems.normal_forms.exact import trimmed
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,7 @@ def on_curve(
     Raises SingularPoint where a divisor vanishes all along, NoClosedForm where formulas outgrow their budget.
     """
     coefficients = faddeev(matrix_of(field), tower.zero, tower.one)[1]
-    even, odd = _trimmed(coefficients[::2]), _trimmed(coefficients[1::2])
+    even, odd = trimmed(coefficients[::2]), trimmed(coefficients[1::2])
     resultant = subresultant(tower, even, odd, 0)[0]
     constant, slope = _linear(tower, even, odd)
     root = tower.square_root(-constant / slope)
@@ -89,10 +90,3 @@ def subresultant(tower: Tower, p: Sequence[Element], q: Sequence[Element], j: in
 def _shifted(tower: Tower, p: Sequence[Element], by: int, length: int) -> list[Element]:
     row = [tower.zero] * by + list(p)
     return row + [tower.zero] * (length - len(row))
-
-
-def _trimmed(polynomial: Sequence[Element]) -> list[Element]:
-    found = list(polynomial)
-    while found and found[-1].is_zero():
-        found.pop()
-    return found

@@ -15,6 +15,7 @@ from mbsym.algebra.tower import Element, Tower
 from mbsym.algebra.truncated import Truncated
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.rest import rational_values
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.normal_forms.birkhoff import diagonalised, matrix_of, normal_form
 from mbsym.problems.normal_forms.dissipative import focus, judged_field
@@ -27,7 +28,6 @@ from mbsym.problems.normal_forms.exact import (
     occurring_parameters,
     over_tower,
     primitive,
-    rational_values,
     resonance,
     two_eigenvectors,
 )

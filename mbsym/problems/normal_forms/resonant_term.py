@@ -20,8 +20,9 @@ from flint import arb, fmpq
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.tower import Element, Tower
 from mbsym.algebra.truncated import Space, Truncated
+from mbsym.mechanics.rest import rational_values
 from mbsym.problems.normal_forms.birkhoff import diagonalised, matrix_of
-from mbsym.problems.normal_forms.exact import even_part, over_tower, rational_squares, rational_values
+from mbsym.problems.normal_forms.exact import even_part, over_tower, rational_squares
 from mbsym.problems.normal_forms.expansion import Expansion
 
 

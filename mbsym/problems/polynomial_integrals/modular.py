@@ -100,13 +100,11 @@ class ModularField:
         return _reduced(terms, self.rules, self.prime)
 
 
-def at_random(
-    field: PolynomialField, prime: int, seed: str = "", values: Mapping[str, int] | None = None
-) -> ModularField:
+def at_random(field: PolynomialField, prime: int, seed: str = "") -> ModularField:
     """The field at parameters modulo ``prime`` at which its denominator does not vanish."""
     source = random.Random(f"{seed} {prime}")
     for _ in range(20):
-        numbers = {name: source.randrange(1, prime) for name in field.parameters} | dict(values or {})
+        numbers = {name: source.randrange(1, prime) for name in field.parameters}
         found = ModularField(field, prime, numbers)
         if found.terms(field.denominator):
             return found

@@ -15,6 +15,8 @@ from flint import arb, arb_mat, ctx
 
 from mbsym.algebra.ring import Polynomial, Ring
 
+#: Of the balls in which bounds are sought.
+BITS = 128
 #: Generators whose values lie in [-1, 1].
 _BOUNDED_FUNCTIONS = ("tanh",)
 
@@ -22,14 +24,14 @@ _BOUNDED_FUNCTIONS = ("tanh",)
 _Terms = dict[tuple[int, ...], Any]
 
 
-def reach(ring: Ring, equations: Sequence[Polynomial], plain: Sequence[str], bits: int = 128) -> dict[str, float]:
+def reach(ring: Ring, equations: Sequence[Polynomial], plain: Sequence[str]) -> dict[str, float]:
     """{q: b} such that |q| <= b at every common root of ``equations``, for those of ``plain`` that are bounded.
 
     ``plain`` are coordinates that occur outside sine and cosine.  Coordinates that are coupled linearly are taken
     apart first: with f = L q + (the rest), the equations L^-1 f are looked at, too.
     """
     at = {name: ring.index("coordinate", name) for name in plain}
-    with ctx.workprec(bits):
+    with ctx.workprec(BITS):
         sums = [_terms(ring, x) for x in equations]
         candidates = [*sums, *_decoupled(sums, list(at.values()))]
         known: dict[int, Any] = {}

@@ -8,7 +8,6 @@ by Schur vectors, in SciPy).
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -16,6 +15,7 @@ from typing import Any
 
 from flint import arb, fmpq, fmpq_mat, fmpq_mpoly_ctx, fmpq_poly
 
+from mbsym.algebra.rationals import fraction, rounded
 from mbsym.algebra.roots import count_roots
 from mbsym.problems.stabilisation.result import Feedback
 from mbsym.problems.stability.bundle import definite_combination_of
@@ -144,7 +144,7 @@ def feedback(there: AtValues) -> Feedback | str:
     if not np.isfinite(wanted).all():
         return "the Riccati equation was not solved in floating point"
     for digits in DIGITS:
-        gains = fmpq_mat(m, n, [_rounded(float(x), digits) for x in wanted.flatten()])
+        gains = fmpq_mat(m, n, [rounded(float(x), digits) for x in wanted.flatten()])
         closed = a - b * gains
         characteristic = closed.charpoly().coeffs()
         roots = count_roots(characteristic)
@@ -153,7 +153,7 @@ def feedback(there: AtValues) -> Feedback | str:
         verdict = _judged(there, gains)
         if not verdict.word.asymptotic:
             return "the two judges of the closed loop disagree"
-        return Feedback(_rows(gains), tuple(_fraction(x) for x in characteristic), verdict, lyapunov_function(closed))
+        return Feedback(_rows(gains), tuple(fraction(x) for x in characteristic), verdict, lyapunov_function(closed))
     return "no rounded feedback was proved to work"
 
 
@@ -185,7 +185,7 @@ def lyapunov_function(a: Numbers) -> tuple[tuple[Fraction, ...], ...] | None:
     if not np.isfinite(found).all():
         return None
     for digits in DIGITS:
-        rows = [[_rounded(float(found[min(i, j), max(i, j)]), digits) for j in range(n)] for i in range(n)]
+        rows = [[rounded(float(found[min(i, j), max(i, j)]), digits) for j in range(n)] for i in range(n)]
         candidate = fmpq_mat(n, n, [x for row in rows for x in row])
         if proves_decay(candidate, a):
             return _rows(candidate)
@@ -224,24 +224,12 @@ def energy_bundle(there: AtValues) -> tuple[Fraction, ...] | None:
         total += form * weight
     if not is_positive(total) or total * a + a.transpose() * total != total * 0:
         return None
-    return tuple(_fraction(w) for w in weights)
+    return tuple(fraction(w) for w in weights)
 
 
 def _float(x: Any) -> float:
-    return float(_fraction(x))
-
-
-def _fraction(x: Any) -> Fraction:
-    return Fraction(int(x.p), int(x.q))
+    return float(fraction(x))
 
 
 def _rows(matrix: Numbers) -> tuple[tuple[Fraction, ...], ...]:
-    return tuple(tuple(_fraction(x) for x in row) for row in matrix.tolist())
-
-
-def _rounded(x: float, digits: int) -> Any:
-    if x == 0:
-        return fmpq(0)
-    scale = Fraction(10) ** (digits - 1 - math.floor(math.log10(abs(x))))
-    value = Fraction(round(Fraction(x) * scale)) / scale
-    return fmpq(value.numerator, value.denominator)
+    return tuple(tuple(fraction(x) for x in row) for row in matrix.tolist())

@@ -23,7 +23,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
@@ -31,6 +30,7 @@ from flint import arb, arb_mat, fmpq, fmpq_poly
 
 from mbsym.algebra.matrices import leading_determinants, null_space
 from mbsym.algebra.polynomial_systems import Residues
+from mbsym.algebra.rationals import rounded
 
 Element = Any  # flint.fmpq_poly, an element of QQ[t]/modulus
 Rows = Sequence[Sequence[Element]]
@@ -97,7 +97,7 @@ def definite_combination_of(forms: Sequence[Sequence[Sequence[Any]]]) -> list[fm
     sizes = [float(np.abs(table).max()) or 1.0 for table in tables]
     for direction in _directions([table / size for table, size in zip(tables, sizes, strict=True)]):
         for digits in (3, 8, 14):
-            weights = [_rounded(x / size, digits) for x, size in zip(direction, sizes, strict=True)]
+            weights = [rounded(x / size, digits) for x, size in zip(direction, sizes, strict=True)]
             if _is_positive(forms, weights):
                 return weights
     return None
@@ -150,15 +150,6 @@ def _in_plane(a: Any, b: Any, best_only: bool = False) -> list[tuple[float, floa
     seen = [(float(np.linalg.eigvalsh(at(x))[0]), (math.cos(x), math.sin(x))) for x in middles]
     seen.sort(reverse=True)
     return [pair for value, pair in seen[:1] if best_only or value > 0] or ([seen[0][1]] if best_only else [])
-
-
-def _rounded(x: float, digits: int) -> fmpq:
-    """x to some significant digits."""
-    if x == 0:
-        return fmpq(0)
-    scale = Fraction(10) ** (digits - 1 - math.floor(math.log10(abs(x))))
-    value = Fraction(round(Fraction(x) * scale)) / scale
-    return fmpq(value.numerator, value.denominator)
 
 
 def _is_positive(forms: Sequence[Sequence[Sequence[Any]]], weights: Sequence[fmpq]) -> bool:

@@ -85,6 +85,10 @@ class Place(Part, frozen=True, kw_only=True):
     negative_eigenvalues_of_K: Annotated[int | None, "Poincare's degree of instability"]
     zero_eigenvalues_of_K: Annotated[int | None, "how many of K's eigenvalues vanish"]
     border: Annotated[Border | None, "of arcs and corners: what is special about the roots there"]
+    nonlinear: Annotated[
+        Verdict | UnsetType,
+        "of a verdict that leaves the motion open: what the nonlinear system shows at the exact point alone",
+    ] = UNSET
 
 
 class Region(Place, frozen=True, kw_only=True):

@@ -24,8 +24,8 @@ from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
-from mbsym.algebra.plane import Arrangement, polyline
-from mbsym.algebra.plane.drawing import Branches as Drawn
+from mbsym.algebra.arrangements import Arrangement, polyline
+from mbsym.algebra.arrangements.drawing import Branches as Drawn
 from mbsym.algebra.plane.line import Line
 from mbsym.formulas.latex import LatexNames
 from mbsym.maps.boxes import BoxMap
@@ -47,6 +47,7 @@ from mbsym.report.maps.frame import (
     TEXT,
     WIDEST,
     axis_label,
+    equal,
     framed,
     legend,
     named,
@@ -106,8 +107,7 @@ def panels(found: Map) -> list[tuple[Picture | None, Map]]:
 def look(found: Map, cell: Cell) -> Look:
     """Colour and hatch of a region."""
     if (counted := cell.counted) is not None:
-        counts = {one.counted.count for one in found.regions if one.counted is not None}
-        return look_of_count(counted.count, counts, counted.throughout or not counted.stable)
+        return look_of_count(counted.count, found.counts, counted.throughout or not counted.stable)
     judged = cell.judged
     if judged is None:
         return WHITE if cell.lack in (Lack.NOT_REACHED, Lack.UNPROVED) else NONE
@@ -191,7 +191,7 @@ def title(system: System, found: Stack, picture: Picture) -> str:
     """``C = 7/6`` and, on a second line, between which values the picture is the same."""
     symbol = named(LatexNames([found.axis.name]), found.axis.name)
     unit = pretty(unit_of(system, found.axis.name))
-    first = f"{symbol} = {number(found.layers[picture.shown].z)}" + (f" {unit}" if unit else "")
+    first = f"{symbol} {equal(found.layers[picture.shown].z)}" + (f" {unit}" if unit else "")
     if len(picture.layers) == 1 and found.layers[picture.shown].critical:
         return first
     low, closed_low, high, closed_high = found.ends(picture)

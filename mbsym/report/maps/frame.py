@@ -49,7 +49,7 @@ def values_lines(values: Mapping[str, Any]) -> list[str]:
     names = LatexNames(list(values))
     # as long as they are written, for where lines end; names are formulas
     plain = [f"{name}\u00a0=\u00a0{number(x)}," for name, x in values.items()]
-    shown = [f"{named(names, name)} = {number(x)}" for name, x in values.items()]
+    shown = [f"{named(names, name)} {equal(x)}" for name, x in values.items()]
     taken, lines = iter(shown), []
     for line in wrap(" ".join(plain), WIDEST + 8, break_long_words=False, break_on_hyphens=False):
         lines.append(", ".join(itertools.islice(taken, line.count(","))))
@@ -58,11 +58,16 @@ def values_lines(values: Mapping[str, Any]) -> list[str]:
 
 def number(x: Any) -> str:
     """A rational number as it is where it is short, the first digits of another."""
-    told = str(x)
-    rational = not hasattr(x, "polynomial")
-    if rational and len(told) <= LONGEST:
-        return told
-    return f"{float_of(x):.{DIGITS}g}"
+    return str(x) if _short(x) else f"{float_of(x):.{DIGITS}g}"
+
+
+def equal(x: Any) -> str:
+    """``= 2/5``; where digits are left out it is about equal."""
+    return f"{'=' if _short(x) else chr(0x2248)} {number(x)}"
+
+
+def _short(x: Any) -> bool:
+    return not hasattr(x, "polynomial") and len(str(x)) <= LONGEST
 
 
 def framed(axes: Axes, size: float = SMALL) -> None:

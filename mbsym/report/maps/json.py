@@ -301,7 +301,8 @@ def _check(found: Check | None) -> doc.MapCheck | None:
 
 
 def _place(one: Cell) -> dict[str, Any]:
-    return {"number": one.number, "point": _point(one.sample)} | asdict(_statement(one))
+    further = UNSET if one.nonlinear is None else verdict_data(one.nonlinear)
+    return {"number": one.number, "point": _point(one.sample), "nonlinear": further} | asdict(_statement(one))
 
 
 def _broken(one: Cell | Layer) -> list[str]:

@@ -45,7 +45,7 @@ def rows_line(known: Constraints) -> str:
     """``2 independent constraint rows, 1 velocity of 3 is free``; which rows follow from others."""
     kept = counted(len(known.kept), "independent constraint row", "independent constraint rows")
     free = f"{known.freedom} of {counted(known.size, 'velocity', 'velocities')} {'is' if known.freedom == 1 else 'are'}"
-    text = f"{kept}, {free} free"
+    text = f"{kept}, {'at most ' if known.more_is_held else ''}{free} free"
     if known.redundant:
         names = "; ".join(name.label for name in known.redundant)
         follow = "follows" if len(known.redundant) == 1 else "follow"

@@ -129,15 +129,31 @@ def _first_order(results: Results, found: Linearisation) -> Iterator[Block]:
         if known["no_first_order"]:
             yield paragraph(Said("There is no first-order form"), ": ", Words(known["no_first_order"]), ".")
         return
-    yield paragraph(
-        say(
+    if found.constrained is not None:
+        state = speeds(form.states)
+        said = (
+            say(
+                "In first-order form, in physical time, with the state $x = ([[state]])$ of independent coordinates "
+                "and velocities and the deviations $w$ of the outputs $([[outputs]])$:",
+                state=state,
+                outputs=named(form.outputs),
+            )
+            if form.outputs
+            else say(
+                "In first-order form, in physical time, with the state $x = ([[state]])$ of independent coordinates "
+                "and velocities:",
+                state=state,
+            )
+        )
+    elif form.outputs:
+        said = say(
             r"In first-order form, in physical time, with the state $x = (q, \dot q)$ and the deviations $w$ of the "
             "outputs $([[outputs]])$:",
             outputs=named(form.outputs),
         )
-        if form.outputs
-        else Said(r"In first-order form, in physical time, with the state $x = (q, \dot q)$:")
-    )
+    else:
+        said = Said(r"In first-order form, in physical time, with the state $x = (q, \dot q)$:")
+    yield paragraph(said)
     a, b, c, d = (Symbol(letter, look="script") for letter in "ABCD")
     x, v, plus = Symbol("x"), Symbol("v"), ("+",) if form.inputs else ()
     rates = Relation(Symbol("x", dots=1), "=", a, x, *((*plus, b, v) if form.inputs else ()))

@@ -198,7 +198,7 @@ class _System:
             self.expect(entry.rate, self.of(entry.coordinate).times(Form(RATE)), f"the rate of '{entry.coordinate}'")
         self.expect(system.time_scale, RATE, "the rate of dimensionless time")
         for claim in system.claims:
-            check_claim(claim, self.dimensions, system.time_scale is not None)
+            check_claim(claim, self.dimensions, system.time_scale is not None, system.variables)
 
     def body(self, body: Body) -> None:
         for angle in body.rotation.angles:
@@ -249,15 +249,18 @@ class _System:
             self.vector(point.position, LENGTH, "a point")
 
 
-def check_claim(claim: Claim, dimensions: Dimensions, scaled: bool, speeds: Container[str] = ()) -> None:
-    """Complains where what was printed cannot be the quantity that it is said to be; ``scaled``: time is a number."""
+def check_claim(claim: Claim, dimensions: Dimensions, scaled: bool, variables: Container[str]) -> None:
+    """Complains where what was printed cannot be the quantity that it is said to be; ``scaled``: time is a number.
+
+    ``variables`` are the speeds and components, whose first derivative is their acceleration.
+    """
     if claim.right is not None:
         dimensions.alike(claim.equals, claim.right, "compared")
     elif claim.kind in _FIXED:
         wanted, what = _FIXED[claim.kind]
         dimensions.expect(claim.equals, Form(wanted), what)
     elif claim.kind == "acceleration":
-        rate = Name(velocity_name(claim.of) if claim.of in speeds else acceleration_name(claim.of))
+        rate = Name(velocity_name(claim.of) if claim.of in variables else acceleration_name(claim.of))
         dimensions.alike(rate, claim.equals, "equal")
     elif claim.of_expression is not None and not CLAIMS[claim.kind].order:
         dimensions.alike(claim.of_expression, claim.equals, "equal")

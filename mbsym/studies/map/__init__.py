@@ -47,7 +47,7 @@ class Request:
     nothing is proved of them.
 
     With --of equilibria every region of the plane says how many relative equilibria there are, and how many of them
-    are stable; written are equilibria-map.svg, .pdf, .png, .json and .tex.
+    are stable; written are equilibria-map.svg, .pdf, .png, .json and .tex, and located.csv with the numbers at points.
 
     Where stability is lost by a pair of imaginary roots terms of third order say whether the border is soft or hard
     (problem 11): at the arc's exact point and, where formulas are small enough, along the whole arc, with points where

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from flint import fmpq
 
+from mbsym.algebra.plane import Point
 from mbsym.expressions.counting import counted
 from mbsym.maps.boundaries import Origin
 from mbsym.maps.boxes import BoxMap, Method
@@ -176,6 +177,7 @@ def remarks(found: Map, system: System | None = None) -> list[str]:
     if large:
         told.append(f"no verdict at {counted(large, 'exact point')} between regions: too large to be decided")
     told += borders_of_slices(planes) if isinstance(found, Stack) else borders(found)
+    told += _nonlinear(found, planes)
     return told + list(_checked(found, planes))
 
 
@@ -250,6 +252,24 @@ def _of_stack(found: Stack) -> list[str]:
     return told
 
 
+def _nonlinear(found: Map, planes: Sequence[Map]) -> Iterator[str]:
+    """What the nonlinear system shows at single points where the first approximation and the energy show nothing."""
+    decided: dict[str, list[str]] = {}
+    for plane in planes:
+        for one in plane.cells:
+            if one.nonlinear is not None:
+                point: tuple[Any, ...] = (one.sample,)
+                if isinstance(one.sample, Point):
+                    point = (one.sample.x, one.sample.y)
+                if isinstance(found, Stack):  # the slice's own value; without a rational one nothing is asked
+                    point = (*point, plane.values[found.axis.name])
+                at = ", ".join(f"{axis.name} = {x}" for axis, x in zip(found.axes, point, strict=True))
+                decided.setdefault(one.nonlinear.word.value, []).append(at)
+    for word, places in decided.items():
+        where = "; ".join(places[:MOST_POINTS]) + ("; ..." if len(places) > MOST_POINTS else "")
+        yield f"{word} by the nonlinear system, at the exact point alone: {where}"
+
+
 def _checked(found: Map, planes: Sequence[Map]) -> Iterator[str]:
     """What the map's own check tried, where it confirms all."""
     checks = [one.check for one in planes if one.check is not None]
@@ -272,6 +292,9 @@ def _checked(found: Map, planes: Sequence[Map]) -> Iterator[str]:
         beside = f" and {counted(arcs, 'arc')}" if arcs else ""
         yield f"check: {counted(points, 'more point')} in regions{beside} agree; {by_balls}"
 
+
+#: So many points are told; map.json has all.
+MOST_POINTS = 6
 
 #: What a border is called; the reason behind the last one is in map.json.
 ONSETS = {

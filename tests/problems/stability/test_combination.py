@@ -37,7 +37,7 @@ def sets_of(members: Any) -> list[frozenset[Any]]:
 def verdict_of(grounds: frozenset[Ground], flaws: frozenset[Flaw], theorem: str) -> Verdict:
     """The only verdict with these grounds, each laid by a theorem of this name."""
     row = row_of(grounds, flaws)
-    theorems = (theorem,) if row.arrangement is not None or row.word is Word.UNSTABLE else ()
+    theorems = (theorem,) if row.ground is not None or row.word is Word.UNSTABLE else ()
     return Verdict(row.word, theorems, (), tuple((ground, (theorem,)) for ground in grounds), flaws)
 
 

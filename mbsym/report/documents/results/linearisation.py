@@ -75,10 +75,10 @@ class StateSpace(Part, frozen=True):
     inputs and outputs; for descriptions with inputs or outputs
     """
 
-    states: Annotated[list[str], "coordinates and velocities"]
-    A: Annotated[list[list[Formula]], "2n rows and columns"]
-    B: Annotated[list[list[Formula]], "2n rows, a column for each input"]
-    C: Annotated[list[list[Formula]], "a row for each output, 2n columns"]
+    states: Annotated[list[str], "coordinates and velocities; under constraints the independent ones"]
+    A: Annotated[list[list[Formula]], "a row and a column for each state"]
+    B: Annotated[list[list[Formula]], "a row for each state, a column for each input"]
+    C: Annotated[list[list[Formula]], "a row for each output, a column for each state"]
     D: Annotated[list[list[Formula]], "a row for each output, a column for each input"]
 
 

@@ -16,7 +16,7 @@ from functools import cache
 
 from flint import fmpq
 
-from mbsym.algebra.plane.arrangement import Arc, Arrangement, Piece
+from mbsym.algebra.arrangements.arrangement import Arc, Arrangement, Piece
 from mbsym.algebra.plane.numbers import Rational, Root, high, low, primitive, roots_between
 from mbsym.algebra.plane.points import Point
 

@@ -13,8 +13,7 @@ from itertools import pairwise
 
 from flint import fmpq
 
-from mbsym.algebra.failures import Defect, Limit, TooLargeError
-from mbsym.algebra.plane.arrangement import (
+from mbsym.algebra.arrangements.arrangement import (
     Arc,
     Arrangement,
     Corner,
@@ -25,10 +24,11 @@ from mbsym.algebra.plane.arrangement import (
     sample_of,
     signs_of,
 )
+from mbsym.algebra.arrangements.stacks import BOTTOM, TOP, Column, Fibre, column, connected, points_over
+from mbsym.algebra.failures import Defect, Limit, TooLargeError
 from mbsym.algebra.plane.numbers import between_simply
 from mbsym.algebra.plane.points import Point
 from mbsym.algebra.plane.projection import Box, Budget, Curve, Polynomial, Progress, abscissas, nothing, parts
-from mbsym.algebra.plane.stacks import BOTTOM, TOP, Column, Fibre, column, connected, points_over
 
 Key = tuple[int, int]
 End = tuple[int, int, int]  # (strip, section, 0: its left end, 1: its right end)

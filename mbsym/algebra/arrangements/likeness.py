@@ -15,7 +15,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from mbsym.algebra.plane.arrangement import Arrangement
+from mbsym.algebra.arrangements.arrangement import Arrangement
 
 #: What else has to be the same of two parts: of regions, arcs and corners, by their numbers.
 Labels = Callable[[str, int], object]

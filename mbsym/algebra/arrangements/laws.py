@@ -14,8 +14,8 @@ from enum import StrEnum
 
 from flint import arb, arb_poly, ctx, fmpq
 
+from mbsym.algebra.arrangements.arrangement import Arc, Arrangement
 from mbsym.algebra.factors import irreducible_factors
-from mbsym.algebra.plane.arrangement import Arc, Arrangement
 from mbsym.algebra.plane.numbers import Ball
 from mbsym.algebra.plane.points import Point
 from mbsym.algebra.plane.projection import Box, Polynomial, coefficients

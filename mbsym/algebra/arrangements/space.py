@@ -20,11 +20,11 @@ from typing import Any
 
 from flint import fmpq, fmpq_mpoly_ctx
 
+from mbsym.algebra.arrangements.arrangement import Arrangement
+from mbsym.algebra.arrangements.decomposition import decompose
+from mbsym.algebra.arrangements.likeness import alike
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import Limit, TooLargeError
-from mbsym.algebra.plane.arrangement import Arrangement
-from mbsym.algebra.plane.decomposition import decompose
-from mbsym.algebra.plane.likeness import alike
 from mbsym.algebra.plane.line import Line, decompose_line
 from mbsym.algebra.plane.numbers import Number, Rational
 from mbsym.algebra.plane.projection import Box, Budget, Polynomial, Progress, nothing

@@ -11,10 +11,10 @@ from typing import Any
 
 from flint import fmpq
 
+from mbsym.algebra.arrangements.stacks import Column, Fibre
 from mbsym.algebra.plane.numbers import Rational, Root, compare, primitive, roots_between, sign
 from mbsym.algebra.plane.points import Point
 from mbsym.algebra.plane.projection import Box, Curve, Polynomial
-from mbsym.algebra.plane.stacks import Column, Fibre
 
 
 class CornerKind(StrEnum):

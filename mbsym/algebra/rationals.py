@@ -1,0 +1,31 @@
+"""Rational numbers of Python and of the number library, and as balls."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+
+from flint import arb, fmpq
+
+
+def fraction(x: fmpq) -> Fraction:
+    """Python's."""
+    return Fraction(int(x.p), int(x.q))
+
+
+def exact(value: Fraction) -> fmpq:
+    """The library's."""
+    return fmpq(value.numerator, value.denominator)
+
+
+def ball(value: Fraction) -> arb:
+    """As small as the working precision allows."""
+    return arb(exact(value))
+
+
+def rounded(x: float, digits: int) -> fmpq:
+    """A number to some significant digits."""
+    if x == 0:
+        return fmpq(0)
+    scale = Fraction(10) ** (digits - 1 - math.floor(math.log10(abs(x))))
+    return exact(Fraction(round(Fraction(x) * scale)) / scale)
