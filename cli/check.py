@@ -6,14 +6,18 @@ import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 import mbsym
-from mbsym.expressions.counting import counted
+from mbsym.report.language import Language
 from mbsym.source import is_description, load
-from mbsym_cli.console import BAD_INPUT, FAILED, OK, defect, printable, read_description
+from mbsym_cli.console import BAD_INPUT, FAILED, OK, asked_width, defect, printable, read_description, wrapped
 from mbsym_cli.options import Options
+
+if TYPE_CHECKING:
+    from mbsym.model.system import System
 
 #: How complaints are written: for people, or for a program that reads them on standard output.
 OUTPUT_FORMATS = ("text", "github", "sarif", "json")
@@ -88,12 +92,18 @@ def _check(path: Path) -> int:
     system = read_description(path)
     if system is None:
         return BAD_INPUT
-    bodies = counted(len(system.bodies), "body", "bodies")
-    if system.linear is not None:
-        bodies = f"given by {', '.join(one.key for one in system.linear.matrices)}"
-    freedom = counted(len(system.coordinates), "degree of freedom", "degrees of freedom")
-    if system.constraints:  # how many of them are free is another question
-        freedom = counted(len(system.coordinates), "coordinate", "coordinates")
-        freedom += f" and {counted(len(system.constraints), 'constraint', 'constraints')}"
-    print(f"{printable(path)}: ok: {system.name}; {bodies}, {freedom} ({', '.join(system.coordinates)})")
+    print(wrapped(f"{printable(path)}: ok: {system.name}; {_size(system)}", asked_width()))
     return OK
+
+
+def _size(system: System) -> str:
+    """What it consists of, in its language."""
+    say, count = Language(system.language).sentence, len(system.coordinates)
+    title = "State variables" if system.linear is not None and system.linear.of_first_order else "Coordinates"
+    told = [f"{say(title)}: {f'{count}: ' if count > 1 else ''}{', '.join(system.coordinates)}"]
+    if system.linear is not None:
+        given = ", ".join(one.key for one in system.linear.matrices)
+        return "; ".join([*told, f"{say('given by its matrices')}: {given}"])
+    if system.constraints:  # how many of the coordinates are free is another question
+        told.append(say("constraints: [[count]]", count=len(system.constraints)))
+    return "; ".join([*told, say("bodies and frames: [[count]]", count=len(system.bodies))])

@@ -113,8 +113,7 @@ def console(stderr: bool = False) -> Console:
                 for k, piece in enumerate(whole.divide(at)):
                     if k < len(at):
                         piece.rstrip()
-                    if margin is not None:
-                        piece.plain = piece.plain.replace(UNBROKEN, " ")
+                    piece.plain = piece.plain.replace(UNBROKEN, " ")
                     super().print(Text(indent if k else "") + piece, soft_wrap=True)
 
     terminal = (sys.stderr if stderr else sys.stdout).isatty()
@@ -153,11 +152,18 @@ def _breaks(line: str, width: int, margin: int | None = None) -> tuple[str, list
     """What stands before the further lines, and where these begin: at words, so that none is wider that need not be."""
     before = len(line) - len(line.lstrip(" "))
     indent, at, start, room = " " * (before + HANGING if margin is None else margin), list[int](), 0, width
-    for word in re.finditer(r"[^ \t\n]+", line):
-        if word.end() - start > room and word.start() > max(start, before):
-            at.append(word.start())
-            start, room = word.start(), width - len(indent)
+    for first, last in _words(line, width - len(indent)):
+        if last - start > room and first > max(start, before):
+            at.append(first)
+            start, room = first, width - len(indent)
     return indent, at
+
+
+def _words(line: str, widest: int) -> Iterator[tuple[int, int]]:
+    """Where words begin and end; a sign is one with what is behind it, and what would be too wide is several."""
+    for word in re.finditer(r"(?:[-+=<>]+ )?[^ \t\n]+", line):
+        inner = f"[^{UNBROKEN}]+" if word.end() - word.start() > widest else ".+"
+        yield from (part.span() for part in re.compile(inner).finditer(line, *word.span()))
 
 
 #: A space at which no line ends; it is printed as an ordinary one.
@@ -177,18 +183,18 @@ def tell(*parts: str | tuple[str, str], indent: int = 0, whole: bool = False, ma
     if sys.stdout.isatty() or any(name in os.environ for name in _FORCED):
         from rich.text import Text
 
-        assembled = Text.assemble(*parts)
-        if indent:
-            indented(assembled, indent)
-        elif margin is not None:
-            console().print(assembled, margin=margin)  # type: ignore[call-arg]
+        text = Text.assemble(" " * indent, *parts)
+        if whole or asked_width() is None:
+            text.plain = text.plain.replace(UNBROKEN, " ")
+        if margin is None:
+            console().print(text, soft_wrap=whole or None)
         else:
-            console().print(assembled, soft_wrap=whole or None)
+            console().print(text, margin=margin)  # type: ignore[call-arg]
         return
     words = " " * indent + "".join([part if isinstance(part, str) else part[0] for part in parts])
     width = None if whole else asked_width()
-    text = "\n".join([wrapped(line.expandtabs(), width, margin) for line in words.translate(_CONTROLS).split("\n")])
-    print(text if margin is None else text.replace(UNBROKEN, " "))
+    lines = [wrapped(line.expandtabs(), width, margin) for line in words.translate(_CONTROLS).split("\n")]
+    print("\n".join(lines).replace(UNBROKEN, " "))
 
 
 #: Columns of a wide table that does not go to a terminal.
@@ -282,7 +288,7 @@ def read_description(path: Path, unconstrained: str = "", moving: str = "") -> S
         message = f"'mbsym {moving}' is about bodies, and this system is given by its matrices"
         complaints.error("given-by-matrices", message, system.linear.span, "'mbsym run' judges its stability")
     for complaint in complaints.sorted():
-        print(render(complaint, text, str(path)), file=sys.stderr)
+        diagnose(render(complaint, text, str(path)))
     errors = len(complaints.errors)
     if errors:
         complain(path, f"{counted(errors, 'error', 'errors')}; nothing was written.")
@@ -314,6 +320,13 @@ def printable(path: Path | str) -> str:
 def complain(path: Path | str, text: str) -> None:
     """A line about a file on standard error."""
     print(wrapped(f"{printable(path)}: {text}", asked_width(stderr=True)), file=sys.stderr)
+
+
+def diagnose(text: str) -> None:
+    """A rendered complaint on standard error; on a terminal its lines are wrapped, but for what it quotes."""
+    width = asked_width(stderr=True)
+    for line in text.split("\n"):
+        print(line if re.match(r" *\d* \|", line) else wrapped(line, width), file=sys.stderr)
 
 
 def defect(error: BaseException, where: Path | str | None = None) -> None:

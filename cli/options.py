@@ -15,7 +15,7 @@ from mbsym.expressions.place import Complaint, Complaints, Span
 from mbsym.expressions.safe import quoted as ascii_safe
 from mbsym.problems import NUMBERS, ranges
 from mbsym.source import render_option
-from mbsym_cli.console import printable
+from mbsym_cli.console import diagnose, printable
 
 #: The text of an option has at most so many characters.
 MAX_LENGTH = 2_000
@@ -55,7 +55,7 @@ class Options:
         if not self.complaints:
             return False
         whose = "options" if file is None else printable(file)
-        print("\n".join(self.complaints), file=sys.stderr)
+        diagnose("\n".join(self.complaints))
         print(f"{whose}: {counted(len(self.complaints), 'error', 'errors')}; nothing was written.", file=sys.stderr)
         return True
 

@@ -6,6 +6,7 @@ Whatever fails stays where it happened: a formula in its problem, a problem in i
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -18,6 +19,7 @@ from mbsym_cli.console import (
     BAD_INPUT,
     FAILED,
     OK,
+    asked_width,
     complain,
     defect,
     described,
@@ -36,7 +38,12 @@ if TYPE_CHECKING:
     from mbsym.numerics.ledger.entry import Ledger
     from mbsym.numerics.ledger.work import Wanted
     from mbsym.report.figures.made_figures import MadeFigure
+    from mbsym.report.plain_writer import Line, Writer
     from mbsym.report.rendering import Rendered
+    from mbsym.report.results import Results
+
+#: Columns of what is drawn where nobody says how many there are.
+WIDEST = 100
 
 
 @dataclass(frozen=True)
@@ -157,33 +164,46 @@ def _show(
     """The run on the terminal."""
     if request.quiet:
         return
-    from mbsym_cli.show import show, show_brief, show_finding
+    from mbsym_cli.show import show_brief, show_finding
 
     if request.brief:
         from mbsym.report.brief import brief
 
         show_brief(brief(analysis, seconds), path.name, request.width)
         return
-    from mbsym.analysis.pipeline import USUAL_PROBLEMS
     from mbsym.formulas.tree import angles_as
+    from mbsym.report.plain_writer import LONGEST, Writer
     from mbsym.report.results import results
     from mbsym.report.sections.summary import finding
-    from mbsym.report.summary import summary
 
+    names = {x.name for x in written}
+    file = next((x for x in ("report.html", "report.tex", "results.json") if x in names), "")
+    language = Language(analysis.language or analysis.system.language)
     with angles_as(request.angles or "shorter"):
-        if request.verbose:
-            show(summary(analysis, analysis.problems, written), path, seconds)
-        else:
-            language = Language(analysis.language or analysis.system.language)
-            asked = [x for x in request.problems if x not in USUAL_PROBLEMS and request.named]
-            further = summary(analysis, asked, ()).problems
-            told = finding(results(analysis, analysis.problems))
-            show_finding(told, analysis.system.name, path, seconds, written, language, further)
+        known = results(analysis, analysis.problems)
+        writer = Writer(language, True, LONGEST, asked_width() or WIDEST, file)
+        lines = _documents(known, writer, request)
+        told = finding(known)
+        show_finding(told, analysis.system.name, path, seconds, written, writer, lines, not request.verbose)
     if found is not None:
         from mbsym.report.runs.ledger import ledger_lines
         from mbsym_cli.ledger import show_ledger
 
         show_ledger(ledger_lines(found), found.unmeasured)
+
+
+def _documents(known: Results, writer: Writer, request: Request) -> Iterator[Line]:
+    """What the reports say: with -v of all, else of further problems that were named."""
+    from mbsym.analysis.pipeline import USUAL_PROBLEMS
+    from mbsym.report.results import contents
+
+    written = contents(known, writer.document)
+    further = [x for x in known.problems if request.verbose or (request.named and x not in USUAL_PROBLEMS)]
+    for key in (*further, *(("claims", "checks") if request.verbose else ())):
+        for k, line in enumerate(written[key]()):
+            title = line.parts if k == 0 else (("  ", ""), *line.parts)
+            seconds = known.analysis.stage(key).seconds if k == 0 and isinstance(key, int) else None
+            yield line._replace(parts=title if seconds is None else (*title, (f"  {seconds:.3f} s", "dim")))
 
 
 def _remarks(path: Path, files: list[Rendered], request: Request) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 from mbsym.expressions.counting import counted
 from mbsym.expressions.place import Complaints
 from mbsym.source import read, render
-from mbsym_cli.console import complain, printable
+from mbsym_cli.console import complain, diagnose, printable
 
 #: Of a file so many bytes are read to see what it is, and at all.
 _LOOK, _MOST = 20_000, 40_000_000
@@ -57,7 +57,7 @@ def described(file: Path, text: str, choices: Choices) -> str | None:
             said = f"the description that it gives: {doubt.message}"
             (complaints.error if doubt.severity == "error" else complaints.warning)(doubt.code, said, None, doubt.hint)
     for complaint in complaints.sorted():
-        print(render(complaint, text, str(file)), file=sys.stderr)
+        diagnose(render(complaint, text, str(file)))
     errors = len(complaints.errors)
     if made is None or errors:
         complain(file, f"{counted(errors, 'error', 'errors')}; nothing was written.")

@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 @click.option("--strict-claims", is_flag=True, help="Exit code 1 unless every claim holds.")
 @click.option("--brief", "-b", is_flag=True, help="Print one line a file.")
 @ledger_options
-@click.option("--verbose", "-v", is_flag=True, help="Print what each problem gave, every claim and every check.")
+@click.option("--verbose", "-v", is_flag=True, help="Print what the reports say of problems, claims and checks.")
 @click.option("--quiet", "-q", is_flag=True, help="Print only what went wrong.")
 def command(
     files: tuple[Path, ...],
@@ -91,8 +91,8 @@ def command(
     With --accuracy X --until T what the equations leave out (orders of gravity, negligible masses) is held against the
     motion, as 'mbsym simulate --accuracy' does; what changes it too much is told to be needed.
 
-    With --language ru or es reports in LaTeX and HTML, and what was found on the terminal, are in Russian or Spanish;
-    -v, problems 8 to 12 on the terminal, generated code and JSON stay English.
+    With --language ru or es reports in LaTeX and HTML, and what the terminal tells of results, are in Russian or
+    Spanish; generated code and JSON stay English.
 
     With --angles sums formulas have cos(q1 - q2) in all files, where that is shorter part by part; with --angles
     products they have products of sines and cosines of single angles.

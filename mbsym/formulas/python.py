@@ -5,6 +5,9 @@ Exact: a rational coefficient is a quotient of integers, never a float.  Reading
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from weakref import WeakKeyDictionary
+
 from mbsym.algebra.ring import Generator, Polynomial, Ring
 from mbsym.expressions.rates import ENDINGS
 from mbsym.expressions.table import Tabulated
@@ -127,7 +130,18 @@ class _ReadablePrinter(_PythonPrinter):
     times = " "
 
     def symbol(self, generator: Generator) -> str:
-        return generator.name + _PRIMES.get(generator.kind, "")
+        return readable_name(self.ring, generator.name) + _PRIMES.get(generator.kind, "")
 
 
 _PRIMES = {"velocity": "'", "acceleration": "''"}
+_NAMES: WeakKeyDictionary[Ring, Mapping[str, str]] = WeakKeyDictionary()
+
+
+def write_as(ring: Ring, given: Mapping[str, str]) -> None:
+    """From now on names of the ring are written for people as ``given``: ``sin(theta)`` for ``sin_theta``."""
+    _NAMES[ring] = given
+
+
+def readable_name(ring: Ring, name: str) -> str:
+    """A name as people write it."""
+    return _NAMES.get(ring, {}).get(name, name)

@@ -9,11 +9,14 @@ from typing import TYPE_CHECKING
 
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL, SINGULAR, UNDECIDED, Check
 from mbsym.report.content import Inline, Phrase, Said, Words, joined
+from mbsym.report.language import Language
 from mbsym.report.plain_writer import Writer
 from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+
+NONE = Said("none")
 
 
 @dataclass(frozen=True)
@@ -32,18 +35,19 @@ class Brief:
 
 
 def brief(analysis: Analysis, seconds: float) -> Brief:
-    """One line on everything that was asked for."""
+    """One line on everything that was asked for, in the language of the description or of the reports."""
+    write = Writer(Language(analysis.language or analysis.system.language))
     stages = {number: analysis.stage(number) for number in analysis.problems}
     failures = [(number, stage.failure.short) for number, stage in stages.items() if stage.failure is not None]
     return Brief(
-        problems=ranges(number for number, stage in stages.items() if stage.failure is None) or "none",
+        problems=ranges(number for number, stage in stages.items() if stage.failure is None) or write.said(NONE),
         missing="; ".join(
-            f"{ranges(number for number, _ in group)}: {reason}"
+            f"{ranges(number for number, _ in group)}: {write.inline(Words(reason))}"
             for reason, group in groupby(failures, key=lambda item: item[1])
         ),
-        self_check=Writer().inline(self_check(analysis.checks)),
+        self_check=write.inline(self_check(analysis.checks)),
         worst=worst(analysis.checks),
-        claims=_claims([claim_line(result).word for result in analysis.claims]),
+        claims=write.inline(_claims([claim_line(result).word for result in analysis.claims])),
         seconds=seconds,
     )
 
@@ -79,5 +83,6 @@ def worst(checks: Sequence[Check]) -> str:
     return next((word for word in (FAILED, SINGULAR, UNDECIDED, NUMERICAL, EXACT) if word in outcomes), "")
 
 
-def _claims(words: Sequence[str]) -> str:
-    return ", ".join(f"{words.count(word)} {word}" for word in (HELD, REFUTED, OPEN) if word in words) or "no claims"
+def _claims(words: Sequence[str]) -> Inline:
+    counts = [Phrase((f"{words.count(word)} ", Words(word))) for word in (HELD, REFUTED, OPEN) if word in words]
+    return joined(counts, ", ") if counts else Said("no claims")

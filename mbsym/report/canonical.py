@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from mbsym.analysis.forms import BRACKETS, asked
-from mbsym.formulas.formula import Formula
 from mbsym.report.documents.results import canonical as doc
-from mbsym.report.plain import Write, column_text, matrix_text, shortened
+from mbsym.report.plain import Write, column_text, matrix_text
 
 if TYPE_CHECKING:
     from mbsym.algebra.ring import Ring
@@ -66,29 +65,6 @@ def forms_of(analysis: Analysis, problems: Sequence[int]) -> Forms:
 
 
 TITLES = {"routh": "Routh's form", "hamilton": "Hamilton's form", "brackets": "Poisson brackets"}
-
-
-def form_lines(analysis: Analysis) -> Iterator[str]:
-    """The lines in the terminal."""
-    found = forms_of(analysis, analysis.problems)
-    if found.routh is not None:
-        left, ignored = ", ".join(found.routh.coordinates), ", ".join(found.routh.ignored)
-        yield f"Routh's form in {left}, without {ignored}; constant: {', '.join(found.routh.momenta)}"
-        yield f"  reduced potential {_short(found.routh.reduced_potential)}"
-    if found.hamilton is not None:
-        yield f"Hamilton's form, momenta {', '.join(found.hamilton.momenta)}"
-        yield f"  H = {_short(found.hamilton.hamiltonian)}"
-    if found.brackets is not None and len(found.brackets.names) > 1:
-        known = found.brackets.in_involution
-        words = {True: "are in involution", False: "are not all in involution", None: "may be in involution or not"}
-        yield f"the first integrals {words[known]}"
-    for name, failure in found.failures:
-        yield f"{TITLES[name]}: no result: {failure.reason}"
-
-
-def _short(formula: Formula) -> str:
-    """A formula, or how long it is."""
-    return shortened(formula.text(), formula.terms)
 
 
 # --- results.json -----------------------------------------------------------------------------------------------------

@@ -17,7 +17,6 @@ from mbsym.formulas.wolfram import wolfram_name
 from mbsym.problems.stability.spectrum import RootNumbers, numbers
 from mbsym.report.conditions import Statement, label_meanings, statements
 from mbsym.report.content import Number
-from mbsym.report.sections.stability import root_text
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -238,16 +237,22 @@ def _text(value: Value) -> str:
     return _plain(value, Formula.readable, root_text, "({})")
 
 
+def root_text(root: RootNumbers) -> str:
+    """``-0.1 +- 2.3i (twice)``."""
+    real = f"{root.real:.6g}"
+    text = real if not root.imaginary else f"+-{root.imaginary:.6g}i"
+    if root.imaginary and root.real:
+        text = f"{real} +- {root.imaginary:.6g}i"
+    times = {1: "", 2: " (twice)"}.get(root.multiplicity, f" ({root.multiplicity} times)")
+    return text + times
+
+
 def _latex(value: Value) -> str:
     if isinstance(value, Matrix) and value.shape != (1, 1):
         return value.latex()
     return _plain(
         value, Formula.latex, lambda x: _both(x, "\\,\\mathrm{i}", lambda text: Number(text).tex), "({})", ",\\; "
     )
-
-
-def _latex_root(root: RootNumbers) -> str:
-    return _both(root, "\\,\\mathrm{i}", lambda text: Number(text).tex)
 
 
 def _wolfram(value: Value) -> str:

@@ -1,37 +1,70 @@
-"""Content as plain text, for the terminal and for comments: formulas in Python syntax."""
+"""Content as plain text, for the terminal and for comments: sentences, and documents line by line."""
 
 from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import singledispatchmethod
-from typing import Any
+from typing import Any, NamedTuple
 
-from mbsym.expressions.counting import counted
 from mbsym.expressions.tree import text
 from mbsym.formulas.formula import Formula
+from mbsym.formulas.python import readable_name
+from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.report import content
-from mbsym.report.content import Inline, Said
+from mbsym.report.content import Inline, Said, say
 from mbsym.report.language import Language
-from mbsym.report.plain import LONGEST
 
 _DOTS = ("", "'", "''")
+_SCRIPT = {"A": "\U0001d49c", "B": "\u212c", "C": "\U0001d49e", "D": "\U0001d49f"}
+_DIALECT = Dialect(call=lambda function, argument: f"{function}({argument})", local=lambda count: f"s{count}")
+#: A space at which no line ends: formulas are broken before their signs alone.
+UNBROKEN = "\u00a0"
+#: How what is good, bad or open looks on the terminal, and titles.
+STYLES = {"good": "green", "bad": "bold red", "open": "yellow"}
+TITLE = "bold cyan"
+#: More definitions of intermediate quantities, or steps of a program, are counted.
+MOST_DEFINITIONS = 24
+#: Longer formulas (in letters) are counted on the terminal: four lines of it.
+LONGEST = 320
+#: Longer relations may be broken, in letters.
+MOST_UNBROKEN = 40
+#: What is no longer stands in one line with the sign behind it.
+_SHORT = 16
+
+
+class Line(NamedTuple):
+    """A line of a document: parts with their styles; one that is ``whole`` is drawn and never broken.
+
+    ``margin``: where it goes on if it is broken.
+    """
+
+    parts: tuple[tuple[str, str], ...]
+    whole: bool = False
+    margin: int | None = None
+
+    @property
+    def text(self) -> str:
+        return "".join(part for part, _ in self.parts).replace(UNBROKEN, " ")
 
 
 @dataclass(frozen=True)
 class Writer:
-    """Sentences in a language; ``readable`` formulas are as people write them, others as Python reads them.
+    """Sentences in a language; ``readable`` formulas are as people write them, others as Python reads them, unbroken.
 
-    Formulas with a text of more than ``longest`` letters are counted.  ``images``: what stands for names that formulas
-    have for others.
+    Formulas with a text of more than ``longest`` letters are counted, with the ``file`` that has them if there is one.
+    What is drawn has at most ``width`` columns.
     """
 
     language: Language = field(default_factory=Language)
     readable: bool = False
     longest: int = sys.maxsize
-    images: Mapping[str, str] = field(default_factory=dict)
+    width: int = 100
+    file: str = ""
+
+    # --- text ---
 
     def said(self, sentence: Said) -> str:
         """A sentence with its gaps filled."""
@@ -46,7 +79,7 @@ class Writer:
             yield from self.pieces(value.text)
         elif isinstance(value, Said):
             parts = (
-                _notation(x) if inside else x.replace("---", "\u2014")
+                _notation(x, self._power) if inside else x.replace("---", "\u2014")
                 for inside, x in content.pieces(self.language.sentence(value.text))
             )
             for k, text in enumerate(re.split(r"\[\[(\w+)\]\]", "".join(parts))):
@@ -60,17 +93,17 @@ class Writer:
         else:
             yield self.inline(value), value
 
-    def line(self, block: content.Paragraph | content.Display) -> str:
-        """A paragraph, or a displayed formula a little to the right."""
-        if isinstance(block, content.Paragraph):
-            return self.inline(content.Phrase(block.parts))
-        value = block.value
-        return "  " + self.inline(content.Phrase(value) if isinstance(value, tuple) else value)
+    @property
+    def _power(self) -> str:
+        return "^" if self.readable else "**"
 
     @singledispatchmethod
     def inline(self, value: Any) -> str:
         """What stands in a line."""
-        return text(value)
+        if not self.readable:
+            return text(value)
+        primed = re.sub(r"_(d{1,2})ot\b", lambda m: "'" * len(m[1]), text(value))
+        return primed.replace("**", "^").replace("*", UNBROKEN)
 
     @inline.register
     def _(self, value: str) -> str:
@@ -82,10 +115,21 @@ class Writer:
 
     @inline.register
     def _(self, value: Formula) -> str:
-        written = value.readable() if self.readable else str(value)
-        if len(written) > self.longest:
-            return f"({counted(value.terms, 'term')}; see the reports)"
-        return re.sub(r"\b[A-Za-z_]\w*", lambda m: self.images.get(m[0], m[0]), written) if self.images else written
+        return self._formula(value)
+
+    @inline.register
+    def _(self, value: content.Readable) -> str:
+        return self._formula(value.value, "results.json" if value.kept and self.file else self.file)
+
+    def _formula(self, value: Formula, file: str | None = None) -> str:
+        if value.terms <= self.longest:
+            written = value.readable() if self.readable else str(value)
+            if len(written) <= self.longest:
+                return re.sub(r" (?![-+] )", UNBROKEN, written) if self.readable else written
+        return self._counted(say("[[count]] terms", count=str(value.terms)), self.file if file is None else file)
+
+    def _counted(self, size: Said, file: str) -> str:
+        return f"[{self.said(size)}{f': {file}' if file else ''}]"
 
     @inline.register
     def _(self, value: Said) -> str:
@@ -96,16 +140,13 @@ class Writer:
         return "".join(map(self.inline, value.parts))
 
     @inline.register
-    def _(self, value: content.Readable) -> str:
-        return self.inline(value.value)
-
-    @inline.register
     def _(self, value: content.Phrase) -> str:
         return "".join(text for text, _ in self.pieces(value))
 
     @inline.register
     def _(self, value: content.Words) -> str:
-        return self.language.say(value.text)
+        said = self.language.say(value.text)
+        return re.sub(r"\blambda\b", value.variable, said) if value.variable else said
 
     @inline.register(content.Strong)
     @inline.register(content.Graded)
@@ -125,13 +166,16 @@ class Writer:
 
     @inline.register
     def _(self, value: content.Name) -> str:
-        if value.name in self.images:
-            return "d/dt " * value.dots + self.images[value.name]
-        return value.name + _DOTS[value.dots] + (f"({value.at})" if value.at else "")
+        name = value.name if value.ring is None or not self.readable else readable_name(value.ring, value.name)
+        return name + _DOTS[value.dots] + (f"({value.at})" if value.at else "")
 
     @inline.register
     def _(self, value: content.Symbol) -> str:
-        return value.letter + (f"_{value.lower}" if value.lower else "") + _DOTS[value.dots]
+        letter = value.letter if value.look != "script" else _SCRIPT[value.letter]
+        between = "" if len(value.letter) == 1 and value.lower[:1].isdigit() else "_"
+        below = between + value.lower if value.lower else ""
+        above = f"^{value.upper}" if value.upper else ""
+        return letter + ("bar" if value.look == "bar" else "") + below + above + _DOTS[value.dots]
 
     @inline.register
     def _(self, value: content.Entry) -> str:
@@ -140,11 +184,11 @@ class Writer:
 
     @inline.register
     def _(self, value: content.Notation) -> str:
-        return _notation(value.tex)
+        return _notation(value.tex, self._power).strip()
 
     @inline.register
     def _(self, value: content.Power) -> str:
-        return f"{self.inline(value.base)}{'^' if self.readable else '**'}{value.exponent}"
+        return f"{self.inline(value.base)}{self._power}{value.exponent}"
 
     @inline.register
     def _(self, value: content.Listed) -> str:
@@ -153,7 +197,15 @@ class Writer:
 
     @inline.register
     def _(self, value: content.Relation) -> str:
-        return " ".join(map(self.inline, value.parts))
+        written, before = "", None
+        for x in value.parts:
+            piece = self.inline(x).strip()
+            called = isinstance(before, content.Symbol) and isinstance(x, content.Listed) and x.brackets
+            close = self.readable and (isinstance(before, str) or (x == "=" and len(written) <= _SHORT))
+            behind = UNBROKEN if close else " "
+            written += ("" if not written or called or piece[:1] in ":," or written == "-" else behind) + piece
+            before = x
+        return written
 
     @inline.register
     def _(self, value: content.Number) -> str:
@@ -169,15 +221,177 @@ class Writer:
 
     @inline.register
     def _(self, value: content.Polynomial) -> str:
-        written = in_powers(list(map(self.inline, value.coefficients)), value.variable)
-        return written if value.power == 1 else f"({written})**{value.power}"
+        signs = (self._power, UNBROKEN if self.readable else "*")
+        written = in_powers(list(map(self.inline, value.coefficients)), value.variable, *signs)
+        return written if value.power == 1 else f"({written}){self._power}{value.power}"
+
+    # --- blocks ---
+
+    def document(self, blocks: Iterable[content.Block]) -> Iterator[Line]:
+        """The blocks one after the other."""
+        for one in blocks:
+            yield from self.block(one)
+
+    def _line(self, *parts: Inline, indent: int = 0, style: str = "") -> Line:
+        shown = self._shown(parts, style)
+        return Line(((" " * indent, ""), *shown) if indent else shown, bool(indent) and not self.readable)
+
+    def _shown(self, parts: Iterable[Inline], style: str = "") -> tuple[tuple[str, str], ...]:
+        """Parts with their styles; a short relation stands in one line."""
+        pieces = [piece for part in parts for piece in self.pieces(part)]
+        return tuple((self._unbroken(text, value), _style(value) or style) for text, value in pieces)
+
+    def _unbroken(self, text: str, value: Inline) -> str:
+        short = self.readable and isinstance(value, content.Relation) and len(text) <= MOST_UNBROKEN
+        return text.replace(" ", UNBROKEN) if short else text
+
+    @singledispatchmethod
+    def block(self, value: Any) -> Iterator[Line]:
+        """The lines of a block; formulas stand a little to the right."""
+        raise TypeError(f"not a block: {value!r}")
+
+    @block.register
+    def _(self, value: content.Heading) -> Iterator[Line]:
+        yield self._line(value.title, style=TITLE)
+
+    @block.register
+    def _(self, value: content.Subheading) -> Iterator[Line]:
+        yield self._line(*value.parts, style=TITLE)
+
+    @block.register
+    def _(self, value: content.Paragraph) -> Iterator[Line]:
+        yield self._line(*value.parts, style=STYLES["open"] if value.missing else "")
+
+    @block.register
+    def _(self, value: content.Display) -> Iterator[Line]:
+        match value.value:
+            case content.Relation((*left, content.Rows(rows))):
+                drawn = self._drawn(self.inline(content.Relation(*left)), [list(map(self.inline, x)) for x in rows])
+                if drawn:
+                    yield from drawn
+                    return
+        parts = value.value if isinstance(value.value, tuple) else (value.value,)
+        notes = (part for note in value.notes for part in (" (", note, ")"))
+        yield self._line(*parts, *notes, indent=2)
+
+    @block.register
+    def _(self, value: content.Definitions) -> Iterator[Line]:
+        yield self._line(value.words, ":")
+        yield from (self._line(item, indent=2) for item in value.items)
+
+    @block.register
+    def _(self, value: content.Matrices) -> Iterator[Line]:
+        symbol, rows = self.inline(value.symbol), [list(map(self.inline, row)) for row in value.value]
+        if value.value.is_zero:
+            yield self._line(f"{symbol} = 0", indent=2)
+            return
+        drawn = [] if value.packed else self._drawn(f"{symbol} =", rows)
+        if drawn:
+            yield from drawn
+            return
+        comma = "," if len(rows) > 9 else ""
+        for i, row in enumerate(rows):
+            for j, entry in enumerate(row):
+                if entry != "0" and (j >= i or not value.symmetric):
+                    yield self._line(f"{symbol}[{i + 1}{comma}{j + 1}] =", UNBROKEN, entry, indent=2)
+
+    def _drawn(self, left: str, rows: list[list[str]]) -> list[Line]:
+        """Rows in brackets behind ``left``, none where they are too wide."""
+        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+        if len(left) + 5 + sum(widths) + 2 * len(widths) > self.width - 2:
+            return []
+        middle = (len(rows) - 1) // 2
+        before = [left if k == middle else " " * len(left) for k in range(len(rows))]
+        cells = ["  ".join(map(str.center, row, widths)) for row in rows]
+        return [Line(((f"  {x} [ {y} ]", ""),), whole=True) for x, y in zip(before, cells, strict=True)]
+
+    @block.register
+    def _(self, value: content.SideBySide) -> Iterator[Line]:
+        return self.document(value.matrices)
+
+    @block.register
+    def _(self, value: content.Components) -> Iterator[Line]:
+        symbol, entries = self.inline(value.symbol), list(map(self.inline, value.value))
+        whole = f"{symbol} = " + ("0" if set(entries) == {"0"} else f"({', '.join(entries)})")
+        if len(whole) <= self.width - 2:
+            yield self._line(whole, indent=2)
+            return
+        for k, entry in enumerate(entries, start=1):
+            yield self._line(f"{symbol}[{k}] =", UNBROKEN, entry, indent=2)
+
+    @block.register
+    def _(self, value: content.Itemised) -> Iterator[Line]:
+        for k, item in enumerate(value.items, start=1):
+            sign = f"{k}. " if value.numbered else "- "
+            for line in self.document(item):
+                yield Line(((sign, ""), *line.parts), line.whole)
+                sign = " " * len(sign)
+
+    @block.register
+    def _(self, value: content.Table) -> Iterator[Line]:
+        """Each row in a line."""
+        shown = [k for k, column in enumerate(value.columns) if column.width]
+        head = tuple((column.title,) for column in value.columns)
+        if value.title is not None:
+            yield self._line(value.title, style=TITLE)
+        for row in (head, *value.rows):
+            cells = (row[k] for k in shown if self.inline(content.Phrase(row[k])))
+            parts = [part for cell in cells for part in (" | ", *cell)][1:]
+            yield self._line(*parts, style="bold" if row is head else "")
+
+    @block.register
+    def _(self, value: content.Facts) -> Iterator[Line]:
+        """Names in a column, and beside it what is said."""
+        labels = [self.inline(fact.name) for fact in value.items]
+        width = max(map(len, labels), default=0) + 2
+        for label, fact in zip(labels, value.items, strict=True):
+            for k, said in enumerate(fact.lines):
+                name = (label.ljust(width), TITLE) if k == 0 else (" " * width, "")
+                yield Line((name, *self._shown((said,))), margin=width + 2)
+
+    @block.register
+    def _(self, value: content.Cited) -> Iterator[Line]:
+        """Nothing: there is no list of literature."""
+        yield from ()
+
+    @block.register
+    def _(self, value: content.Beside) -> Iterator[Line]:
+        return self.document(value.blocks)
+
+    @block.register
+    def _(self, value: content.Folded) -> Iterator[Line]:
+        """Nothing: it is said in front of it, in fewer words."""
+        yield from ()
+
+    @block.register
+    def _(self, value: content.Intermediates) -> Iterator[Line]:
+        count = sum(len(x.definitions) for x in value.passages)
+        if count > MOST_DEFINITIONS:
+            yield self._line(self._counted(say("[[count]] definitions", count=str(count)), self.file), indent=2)
+            return
+        for passage in value.passages:
+            yield self._line(content.Words(passage.words), f" {passage.coordinate}".rstrip(), ":")
+            for item in passage.definitions:
+                yield self._line(item.name, f"{UNBROKEN}={UNBROKEN}", item.formula, indent=2)
+
+    @block.register
+    def _(self, value: content.Steps) -> Iterator[Line]:
+        names = {name: self.inline(item) for name, item in value.names.items()} | {"pi": "pi"}
+        body = listing(value.program, [node for _, node in value.results], names, _DIALECT)
+        called = [(self.inline(symbol), x) for (symbol, _), x in zip(value.results, body.results, strict=True)]
+        steps = [*body.assignments, *called]
+        if len(steps) > MOST_DEFINITIONS:
+            yield self._line(self._counted(say("[[count]] steps", count=str(len(steps))), self.file), indent=2)
+            return
+        yield from (self._line(f"{left} =", UNBROKEN, right, indent=2) for left, right in steps)
 
 
-#: What the terminal shows: long formulas are left to the reports.
-TERMINAL = Writer(longest=LONGEST)
+def _style(value: object) -> str:
+    """That of a verdict or an outcome."""
+    return STYLES.get(value.grade, "") if isinstance(value, content.Strong | content.Graded) else ""
 
 
-def in_powers(coefficients: Sequence[str], variable: str) -> str:
+def in_powers(coefficients: Sequence[str], variable: str, power: str = "**", times: str = "*") -> str:
     """``m*z**2 + (a - b)*z - c`` of ``-c, a - b, m``: no factor 1, and brackets about sums only."""
     parts: list[str] = []
     for k, one in reversed(list(enumerate(coefficients))):
@@ -186,8 +400,9 @@ def in_powers(coefficients: Sequence[str], variable: str) -> str:
         minus = one.startswith("-") and not (k and _is_sum(one[1:]))
         factor = one[1:].lstrip() if minus else one
         if k:
-            power = variable if k == 1 else f"{variable}**{k}"
-            factor = power if factor == "1" else f"({factor})*{power}" if _is_sum(factor) else f"{factor}*{power}"
+            raised = variable if k == 1 else f"{variable}{power}{k}"
+            written = f"({factor})" if _is_sum(factor) else factor
+            factor = raised if factor == "1" else f"{written}{times}{raised}"
         parts.append((" - " if minus else " + ") + factor)
     found = "".join(parts).lstrip()
     return found[2:] if found.startswith("+ ") else found.replace("- ", "-", 1) or "0"
@@ -203,11 +418,29 @@ def _is_sum(text: str) -> bool:
     return False
 
 
-def _notation(tex: str) -> str:
+_ACCENTS = {"ddot": "''", "dot": "'", "bar": "bar"}
+#: What is read in notation, and what stands for it, one after the other.
+_NOTATION = (
+    (r"\\varphi", r"\\phi"),
+    (r"\\([{}])", lambda m: "\x01" if m[1] == "{" else "\x02"),
+    (r" ?\\cdot ?", "."),
+    (r" ?\\times ?", "\u00d7"),
+    (r"\\(?:[,;!] ?|quad|penalty\d+)", " "),
+    (r"\\(?:mathrm|text) ?", ""),
+    (r"\\(ddot|dot|bar) ?(?:\{\\?(\w+)\}|\\?(\w+))", lambda m: (m[2] or m[3]) + _ACCENTS[m[1]]),
+    (r"\\partial ?", "d"),
+    (r"\\frac(\d)(\d)", r"\1/\2"),
+    (r"\\frac ?\{([^{}]*)\}\{([^{}]*)\}", r"\1/\2"),
+    (r"(?<![A-Za-z][A-Za-z])_\{?(?=\d)", ""),
+    (r"\\([A-Za-z]+)", r"\1"),
+    (r"[{}]", ""),
+    (r" {2,}", " "),
+)  # fmt: skip
+
+
+def _notation(tex: str, power: str) -> str:
     """Notation without the signs that only TeX reads."""
-    plain = re.sub(r"\\(?:[,;!] ?|quad|penalty\d+)", " ", re.sub(r" ?\\cdot ?", ".", tex))
-    plain = re.sub(r"\\(?:mathrm|text) ?", "", re.sub(r"\^\{?(\w+)\}?", r"**\1", plain))
-    plain = re.sub(r"_\{?(?=\d)", "", plain)
-    plain = re.sub(r"\\ddot ?\{?(\w)\}?", r"\1''", plain)
-    plain = re.sub(r"\\dot ?\{?(\w)\}?", r"\1'", plain)
-    return re.sub(r" {2,}", " ", re.sub(r"\\([A-Za-z]+)", r"\1", plain)).replace("{", "").replace("}", "")
+    tex = re.sub(r"\^\{?(\d+)\}?", lambda m: power + m[1], tex)
+    for pattern, plain in _NOTATION:
+        tex = re.sub(pattern, plain, tex)
+    return tex.replace("\x01", "{").replace("\x02", "}")

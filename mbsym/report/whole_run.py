@@ -65,20 +65,27 @@ def derive_all(
     from mbsym.analysis import PROBLEMS
     from mbsym.analysis.forms import asked
     from mbsym.analysis.second_routes import carried_out
-    from mbsym.report.summary import title_of
+    from mbsym.report.canonical import TITLES
+    from mbsym.report.content import Said
+    from mbsym.report.language import Language
+    from mbsym.report.plain_writer import Writer
+    from mbsym.report.results import contents, results
     from mbsym.report.targets import FORMATS
+
+    write = Writer(Language(analysis.language or analysis.system.language))
+    known = contents(results(analysis, analysis.problems), write.document)
 
     def derive(late: bool) -> None:
         for number in analysis.problems:
             if late == (PROBLEMS[number].attribute == "stability"):
-                say(f"problem {number}, {title_of(analysis.system, number)}")
+                say(write.said(known[number].title))
                 analysis.stage(number)
 
     helped = beside is not unhelped
     with analysis.unvouched():
         derive(late=False)
         for name in asked(analysis):
-            say(f"problem 3, {name.capitalize()}'s form")
+            say(write.said(Said(TITLES[name])))
             analysis.optional(name)
         if any(FORMATS[name].program for name in formats):
             analysis.optional("programs")
@@ -97,11 +104,11 @@ def derive_all(
             derive(late=True)
             if helped:
                 _prepare(formats, analysis, writing)
-        say("self-check")
+        say(write.said(Said("Self-check")))
         checks, files = found()
     analysis.take(checks)
     if analysis.system.claims:
-        say("claims")
+        say(write.said(Said("Claims")))
         _ = analysis.claims
     _ = analysis.checks
     return files

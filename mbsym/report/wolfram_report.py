@@ -28,9 +28,8 @@ from mbsym.report.conditions import Statement, provided, statements
 from mbsym.report.environment import rendered
 from mbsym.report.first_order import first_order
 from mbsym.report.lengths import COUNTED, FILE, FILE_PROGRAM, formulas, not_printed, program_not_printed, withheld
-from mbsym.report.plain_writer import TERMINAL, Writer
-from mbsym.report.sections import section_of
-from mbsym.report.words.stabilisation_words import sentences
+from mbsym.report.plain_writer import LONGEST, Writer
+from mbsym.report.results import contents, results
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -48,6 +47,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
     """The file's text."""
     from mbsym.analysis import PROBLEMS
 
+    told = contents(results(analysis, problems), Writer(readable=True, longest=LONGEST, file="results.json").document)
     names = wolfram_names(analysis.ring)
     stages = {number: analysis.stage(number) for number in problems}
     found = {number: stage.value for number, stage in stages.items() if stage.failure is None}
@@ -81,8 +81,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         system=analysis.system,
         names=names,
         found=found,
-        stabilisation_sentences=[TERMINAL.said(said) for said in sentences(found[8])] if 8 in found else [],
-        lines={n: list(section_of(PROBLEMS[n]).lines(found[n], analysis)) for n in (9, 10, 11, 12) if n in found},
+        lines={n: [x.text for x in told[n]()][1:] for n in (8, 9, 10, 11, 12) if n in found},
         polynomial_formulas=[x.wolfram() for x in found[9].formulas] if 9 in found else [],
         small_parameter_formulas=list(_of_small_parameters(found[12], analysis.system)) if 12 in found else [],
         forms=forms,

@@ -11,19 +11,17 @@ from mbsym.studies.study import (
     Answer,
     Asked,
     Document,
-    Line,
     Refusal,
     Single,
     Study,
     Unfit,
     Watch,
     failed,
-    line,
+    told,
 )
 
 if TYPE_CHECKING:
     from mbsym.algebra.failures import Failure
-    from mbsym.analysis import Analysis
     from mbsym.model.system import System
     from mbsym.problems.small_parameter.averaging import Averaged
     from mbsym.simulation.averaged import Measured
@@ -93,7 +91,6 @@ def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[
 class Found:
     """The averaged system, and how far its motion is from the other; why that was not measured where it was not."""
 
-    analysis: Analysis
     averaged: Averaged
     system: System
     measured: Measured | str
@@ -120,52 +117,33 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Found:
         raise Unsound(broken.reason)
     averaged = averaged_system(asked.system, found)
     watch("measuring")
-    told = average_or_why(asked.system, averaged, found, request.time)
-    if contradicts(told):
-        raise Withdrawn(f"the result is withdrawn ({found.scaling}): {'; '.join(_measured(told))}")
-    return Found(analysis, found, averaged, told)
+    measured = average_or_why(asked.system, averaged, found, request.time)
+    if contradicts(measured):
+        raise Withdrawn(_withdrawn(asked.system, found, measured))
+    return Found(found, averaged, measured)
+
+
+def _withdrawn(system: System, found: Averaged, measured: Measured | str) -> str:
+    from mbsym.analysis.small import Averaging
+    from mbsym.report.content import Phrase, joined
+    from mbsym.report.language import Language
+    from mbsym.report.plain_writer import Writer
+    from mbsym.report.words.expansion_measured import JudgedAverage
+    from mbsym.report.words.expansion_words import of_averaging
+
+    said = of_averaging(JudgedAverage(Averaging(found.phase, found), measured, True))
+    return Writer(Language(system.language)).inline(Phrase((joined(said, " "),)))
 
 
 def answer(asked: Asked, request: Request, found: Found) -> Answer:
-    return Answer(_lines(found))
-
-
-def _lines(found: Found) -> Iterator[Line]:
-    for text in (*_told(found.averaged), *_verdict(found.system), *_measured(found.measured)):
-        yield line(f"  {text}")
-
-
-def _told(found: Averaged) -> Iterator[str]:
-    yield f"fast: {found.phase}; {found.scaling}"
-    yield f"vibrational potential: {found.vibrational}"
-    yield f"effective potential:   {found.potential}"
-    if found.beside:
-        yield f"beside it act the forces on {', '.join(found.beside)} that have no force function here, as they did"
-
-
-def _verdict(averaged: System) -> Iterator[str]:
     from mbsym.analysis import Analysis
-    from mbsym.report.sections.stability import lines
+    from mbsym.analysis.small import Averaging
+    from mbsym.report.content import ragged
+    from mbsym.report.words.expansion_measured import JudgedAverage
+    from mbsym.report.words.expansion_words import of_averaging
 
-    about = Analysis(averaged, (6,))
-    stage = about.stage(6)
-    if stage.failure is not None:
-        hint = f" ({stage.failure.hint})" if stage.failure.hint else ""
-        yield f"stability of the averaged motion: no result: {stage.failure.reason}{hint}"
-        return
-    yield "stability of the averaged motion, not of the motion itself (problem 6):"
-    yield from (f"  {line}" for line in lines(stage.value, about))
-
-
-def _measured(told: Measured | str) -> Iterator[str]:
-    if isinstance(told, str):
-        yield f"not measured: {told}"
-        return
-    parts = ("eps", "eps/2", "eps/4")
-    distances = ", ".join(f"{x:.2g} at {part}" for part, x in zip(parts, told.distances, strict=True))
-    yield f"measured over {told.time:.4g}: largest distance, as a part of the averaged motion: {distances}"
-    orders = ", ".join(f"{x:.2f}" for x in told.orders)
-    yield f"order of the distance: {orders} (1 is expected where eps is small enough)"
+    one = Averaging(found.averaged.phase, found.averaged, Analysis(found.system, (6,)))
+    return Answer(told(map(ragged, of_averaging(JudgedAverage(one, found.measured, False))), asked.system))
 
 
 def document(asked: Asked, request: Request, found: Found) -> Document:

@@ -12,25 +12,19 @@ from mbsym.studies.study import (
     Answer,
     Asked,
     Exit,
-    Line,
     Refusal,
     Study,
     Unfit,
     Watch,
     failed,
-    heading,
-    line,
     remedied,
+    told,
 )
 
 if TYPE_CHECKING:
-    from mbsym.algebra.quotients import Series
     from mbsym.analysis.expanding import Expansion
     from mbsym.model.system import System
     from mbsym.simulation.expanded import Measured
-
-MANIFOLD = "Slow integral manifold up to order [[order]] of [[small]]"
-FLOW = "The flow on it, up to order [[order]]"
 
 
 @dataclass(frozen=True)
@@ -91,37 +85,9 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Found:
 
 
 def answer(asked: Asked, request: Request, found: Found) -> Answer:
-    return Answer(_lines(found.expansion, found.measured))
+    from mbsym.report.sections.small_parameters import of_slow
 
-
-def _lines(found: Expansion, measured: Measured | str) -> Iterator[Line]:
-    from mbsym.report.content import say
-    from mbsym.report.plain_writer import Writer
-    from mbsym.report.words.expansion_words import of_measured, sentences
-
-    manifold, write = found.manifold, Writer()
-    small = manifold.field.small
-    for parameter, power in manifold.field.powers:
-        yield line(f"  {parameter} stands for {parameter} {small}^{power}")
-    for title, names, series, mark in (
-        (say(MANIFOLD, order=str(manifold.order), small=small), manifold.fast, manifold.functions, ""),
-        (say(FLOW, order=str(manifold.order)), manifold.slow, manifold.flow, "'"),
-    ):
-        yield heading(write.said(title))
-        for variable, one in zip(names, series, strict=True):
-            yield line(f"    {variable}{mark} =")
-            for text in _terms(found, small, one):
-                yield line(f"      {text}", whole=True)
-    for said in (*sentences(found), *of_measured(small, measured)):
-        yield line(f"    {write.said(said)}")
-
-
-def _terms(found: Expansion, small: str, one: Series) -> list[str]:
-    lines: list[str] = []
-    for k in sorted(one.coefficients):
-        factor = "" if k == 0 else f"{small} " if k == 1 else f"{small}^{k} "
-        lines.append(f"{'+ ' if lines else ''}{factor}({found.formula(one.coefficients[k])})")
-    return lines or ["0"]
+    return Answer(told(of_slow(found.expansion, found.measured), asked.system))
 
 
 def as_json(asked: Asked, request: Request, found: Found) -> str:

@@ -22,6 +22,7 @@ from mbsym.studies.study import (
     line,
     missing,
     remedied,
+    told,
 )
 
 if TYPE_CHECKING:
@@ -142,10 +143,10 @@ def answer(asked: Asked, request: Request, found: AtValues | Along) -> Answer:
 
 
 def _of_values(asked: Asked, found: AtValues) -> Iterator[Line]:
-    from mbsym.report.sections.normal_forms import lines
+    from mbsym.report.content import ragged
+    from mbsym.report.words.normal_form_words import sentences
 
-    for text in lines(found.forms, found.analysis):
-        yield line(f"  {text}")
+    yield from told(map(ragged, sentences(found.forms)), asked.system)
     if found.lacking:
         words = " ".join(f"--set {name}=NUMBER" for name in found.lacking)
         yield line(f"  At numbers nothing is said: {', '.join(found.lacking)} have none.  Give them:")

@@ -14,14 +14,13 @@ from mbsym.studies.study import (
     Asked,
     Exit,
     Folder,
-    Line,
     Refusal,
     Study,
     Unfit,
     Watch,
     failed,
-    line,
     remedied,
+    told,
 )
 
 if TYPE_CHECKING:
@@ -119,16 +118,12 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Found:
 
 
 def answer(asked: Asked, request: Request, found: Found) -> Answer:
+    from mbsym.report.sections.small_parameters import of_wave
+
     files, reason = _figures(asked.system, request, found.solution) if request.format else ({}, "")
     complaints = (f"no figures: {reason}",) if reason else ()
-    return Answer(_lines(found), files, complaints, Exit.FAILED if reason else Exit.OK)
-
-
-def _lines(found: Found) -> Iterator[Line]:
-    from mbsym.report.words.oscillation_lines import lines
-
-    for text, heading in lines(found.solution, found.measured):
-        yield line((text, "bold cyan" if heading else ""), whole=text.startswith("      "))
+    lines = told(of_wave(found.solution, found.measured), asked.system)
+    return Answer(lines, files, complaints, Exit.FAILED if reason else Exit.OK)
 
 
 def _figures(system: System, request: Request, found: Oscillating) -> tuple[dict[str, str | bytes], str]:

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from mbsym.algebra.failures import Failure
     from mbsym.model.system import System
     from mbsym.numerics.scenario import Scenario
+    from mbsym.report.content import Block
 
 
 class Exit(IntEnum):
@@ -63,6 +64,15 @@ def titled(pairs: Iterable[tuple[str, str]]) -> Iterator[Line]:
     """Lines with titles; one whose title is ``warning`` stands out."""
     for title, text in pairs:
         yield line("  ", (f"{title:<9} ", "yellow" if title == "warning" else "bold cyan"), text)
+
+
+def told(blocks: Iterable[Block], system: System) -> Iterator[Line]:
+    """What reports say, in the language of the description; formulas in Python syntax."""
+    from mbsym.report.language import Language
+    from mbsym.report.plain_writer import Writer
+
+    for parts, whole, _ in Writer(Language(system.language)).document(blocks):
+        yield line("  ", *parts, whole=whole)
 
 
 def heading(text: str) -> Line:

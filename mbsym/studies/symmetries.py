@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING
 
 from mbsym.studies.request import Numbers
-from mbsym.studies.study import Answer, Asked, Exit, Line, Refusal, Study, Watch, failed, heading, line
+from mbsym.studies.study import Answer, Asked, Exit, Refusal, Study, Watch, failed, told
 
 if TYPE_CHECKING:
     from mbsym.problems.symmetries import Symmetries
@@ -47,22 +46,9 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Symmetries:
 
 
 def answer(asked: Asked, request: Request, found: Symmetries) -> Answer:
-    return Answer(_lines(found), code=Exit.OK if found.complete else Exit.FAILED)
+    from mbsym.report.sections.polynomial_integrals import of_symmetries
 
-
-def _lines(found: Symmetries) -> Iterator[Line]:
-    from mbsym.report.content import Said
-    from mbsym.report.plain_writer import Writer
-    from mbsym.report.words.symmetry_words import HEADING, field_text, second_route, sentences, title
-
-    yield heading(Writer().said(Said(HEADING)))
-    for one in found.symmetries:
-        yield line("    field  ", (field_text(one), "bold" if one.is_new else ""), whole=True)
-        yield line(f"      {one.integral}", whole=True)
-        yield line(f"      {title(one)}")
-        yield line(f"      {second_route(one)}")
-    for said in map(Writer().said, sentences(found)):
-        yield line(f"    {said}")
+    return Answer(told(of_symmetries(found), asked.system), code=Exit.OK if found.complete else Exit.FAILED)
 
 
 def as_json(asked: Asked, request: Request, found: Symmetries) -> str:

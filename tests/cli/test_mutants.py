@@ -12,13 +12,13 @@ from typing import Any
 
 import pytest
 from mutants import mutant, variant
+from terminal import told
 from test_reports import uncommented
 
 from mbsym.analysis import Analysis
 from mbsym.model.system import System
 from mbsym.report.code.parsing import unreadable
 from mbsym.report.rendering import rendered
-from mbsym.report.summary import summary
 from mbsym.report.targets import TARGETS
 from mbsym.source import read, render
 
@@ -85,7 +85,7 @@ def check_files(number: int, folder: Path) -> dict[str, str]:
     assert not analysis.defects, text
     assert not [file for file in files if file.failure is not None or file.withheld], text
     assert {file.filename for file in files if file.text is None} <= NOT_ALWAYS
-    summary(analysis, analysis.problems, [])
+    assert all(told(analysis, problem) for problem in analysis.problems)
     texts = {file.filename: str(file.text) for file in files if file.text is not None}
     for name, content in texts.items():
         assert not unreadable(name, content), (name, text)

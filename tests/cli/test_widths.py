@@ -57,3 +57,40 @@ def test_words_are_never_cut() -> None:
     assert wrapped(f"  {long} {long} a b", 60) == f"  {long}\n    {long} a b"
     assert wrapped(long, 30) == long
     assert wrapped("  short", 30) == "  short"
+
+
+WRONG = """mbsym: 1
+name: P
+parameters: {m: positive}
+bodies:
+  - {name: p, attached to: 0, connection point: [x, 0, 0], mass: m, coordinates: [x], massx: 3}
+"""
+
+
+def test_complaints_are_wrapped_but_what_they_quote(tmp_path: Path) -> None:
+    """The hint lists all keys of a body: 150 letters; the line of the file stays as it is, with its underlining."""
+    path = tmp_path / "w.yaml"
+    path.write_text(WRONG, encoding="utf-8")
+    told = {x: CliRunner().invoke(main, ["check", str(path)], env={"COLUMNS": x}).stderr for x in ("60", "")}
+    quoted = "   5 |   - {name: p, attached to: 0, connection point: [x, 0, 0], mass: m, coordinates: [x], massx: 3}"
+    for text in told.values():
+        assert quoted in text.split("\n")
+    lines = told["60"].split("\n")
+    (hint,) = [k for k, line in enumerate(lines) if line.startswith("  hint: the keys are")]
+    assert lines[hint + 1].startswith("    ")
+    assert max(len(line) for line in lines[hint:] if str(tmp_path) not in line) <= 60
+    (whole,) = [line for line in told[""].split("\n") if line.startswith("  hint: the keys are")]
+    assert len(whole) > 120
+
+
+@pytest.mark.parametrize(
+    ("language", "said"),
+    [
+        ("ru", "Координаты: x; тела и системы координат: 1"),
+        ("es", "Coordenadas: x; cuerpos y sistemas de referencia: 1"),
+    ],
+)
+def test_check_speaks_the_language_of_the_description(language: str, said: str, tmp_path: Path) -> None:
+    path = tmp_path / "p.yaml"
+    path.write_text(WRONG.replace(", massx: 3", "").replace("name: P\n", f"name: P\nlanguage: {language}\n"), "utf-8")
+    assert CliRunner().invoke(main, ["check", str(path)]).stdout.endswith(f"ok: P; {said}\n")

@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from scipy.integrate import solve_ivp
+from terminal import told
 
 import mbsym
 from mbsym.algebra.failures import NoClosedForm
@@ -23,7 +24,6 @@ from mbsym.analysis import Analysis
 from mbsym.analysis.averaged import averaged_system, averaging_of
 from mbsym.problems.small_parameter import averaging
 from mbsym.report.schemas import schema
-from mbsym.report.sections.small_parameters import lines
 from mbsym.report.targets import TARGETS
 from mbsym.report.words.expansion_measured import averages, contradicts
 from mbsym.simulation.averaged import Measured, measured
@@ -329,7 +329,7 @@ def _texts(system):
     analysis = Analysis(system, (12,))
     for target in ("wolfram", "python", "json"):
         found[target] = TARGETS[target].render(analysis, (12,))
-    found["terminal"] = "\n".join(lines(analysis.small_parameters, analysis))
+    found["terminal"] = "\n".join(told(analysis, 12))
     return {name: " ".join(text.split()) for name, text in found.items()}
 
 
@@ -381,7 +381,7 @@ def test_the_scaling_stands_beside_the_result_on_every_surface(tmp_path):
     out = tmp_path / "averaged.yaml"
     done = CliRunner().invoke(main, ["average", str(path), "--out", str(out)])
     assert done.exit_code == 0, done.output
-    assert "nu of order eps^-1, v of order eps^-1, all else of order 1" in done.output
+    assert "Taken as of the order of the power -1 of epsilon: v." in done.output
     assert "nu of order eps^-1, v of order eps^-1, all else of order 1" in out.read_text()
     assert _value(mbsym.load(out).linearisation.K[0, 0], v=100, nu=40) == pytest.approx(100**2 / (2 * 40**2))
 
@@ -390,7 +390,7 @@ def test_the_command_takes_orders():
     path = str(CASES / "avgmean.yaml")
     done = CliRunner().invoke(main, ["average", path, "--order", "u=0", "--time", "1"])
     assert done.exit_code == 0, done.output
-    assert "effective potential:   u*x**2/4" in done.output
+    assert "Effective potential: u*x**2/4." in done.output
     refused = CliRunner().invoke(main, ["average", path, "--order", "q=1", "--order", "u", "--order", "u=x"])
     assert refused.exit_code == 2
     assert refused.output.count("--order: error[") == 3, refused.output

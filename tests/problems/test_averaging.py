@@ -251,7 +251,7 @@ def test_the_command(tmp_path):
     done = CliRunner().invoke(main, ["average", "systems/shaken-pendulum.yaml", "--out", str(out)])
     assert done.exit_code == 0, done.output
     assert "h**2*nu**2 - 2*l*g > 0" in done.output
-    assert "not of the motion itself" in done.output
+    assert "The averaged motion, not the motion itself, by problem 6" in done.output
     system, complaints = read(out.read_text())
     assert system is not None, complaints.sorted()
     assert system.prescribed == ()
@@ -266,7 +266,9 @@ def test_the_command_without_a_motion(tmp_path):
     path.write_text(text.replace("motion: {theta: 0}\n", ""))
     done = CliRunner().invoke(main, ["average", str(path), "--time", "0.1"])
     assert done.exit_code == 0, done.output
-    told = "stability of the averaged motion: no result: the description gives no unperturbed motion (add for example"
+    told = (
+        "Of the stability of the averaged motion there is no result: the description gives no unperturbed motion (add"
+    )
     assert told in " ".join(done.output.split())
     assert "NoResult" not in done.output
 

@@ -321,7 +321,7 @@ def test_the_restriction_is_in_every_report(tmp_path: Path) -> None:
     path.write_text(KEPLER + "claims:\n  - {claim: force function, equals: mu*m/r}\n", encoding="utf-8")
     words = ["run", "-v", str(path), "--out", str(tmp_path / "out"), "--problems", "1-3", "--format", "json,latex"]
     done = CliRunner().invoke(main, words, catch_exceptions=False)
-    assert "force function: holds exactly for r > 0 (it does not for r < 0)" in done.stdout
+    assert "force function | holds exactly for r > 0 (it does not for r < 0)" in done.stdout
     (written,) = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))["claims"]
     assert (written["word"], written["where"]) == ("held", "for r > 0 (it does not for r < 0)")
     assert "holds exactly for r" in (tmp_path / "out" / "report.tex").read_text(encoding="utf-8")

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+import terminal
 
 import mbsym
 from mbsym.algebra.vectors import Tensor
 from mbsym.problems.checks import EXACT, FAILED
 from mbsym.problems.stability.reasons import Because
-from mbsym.report.sections import stability
 
 #: A heavy gyrostat about a fixed point; what is put after its inertia says how it is told.
 GYROSTAT = """
@@ -234,7 +234,7 @@ def test_deviations_are_told_in_coordinates_where_these_are_regular(tmp_path):
     symmetric = load(tmp_path, symmetric.replace("    gyrostatic moment: [l1, l2, l3]\n", ""))
     assert symmetric.stage(4).failure.code == "singular-angles"
     assert symmetric.stability.verdict.because(Because.OTHER_ANGLES)
-    assert any("judged in other angles" in line for line in stability.lines(symmetric.stability, symmetric))
+    assert any("udged in other angles" in line for line in terminal.told(symmetric, 6))
     for told in (SPEEDS, POISSON):
         top = GYROSTAT.format(told=told).replace("axes: [3, 1, 3]", "axes: [1, 2, 3]")
         top = top.replace("[x0, y0, z0]", "[0, 0, z0]").replace("inertia: [A, B, C]", "inertia: [A, A, C]")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from fractions import Fraction
 from fractions import Fraction as F
 from typing import Any
 
@@ -11,6 +12,7 @@ import pytest
 from conftest import SHIPPED
 from flint import fmpq, fmpq_mat
 from jsonschema import Draft202012Validator
+from terminal import told
 
 import mbsym
 from mbsym.algebra.certainty import Certainty
@@ -23,7 +25,6 @@ from mbsym.report.language import Language
 from mbsym.report.plain_writer import Writer
 from mbsym.report.results_json import results
 from mbsym.report.schemas import schema
-from mbsym.report.sections.stabilisation import lines
 from mbsym.report.words.stabilisation_words import FEEDBACK, LYAPUNOV, sentences
 from mbsym.source import read
 
@@ -394,8 +395,9 @@ def test_every_sentence_has_its_translations(pole: Analysis) -> None:
 
 
 def test_the_terminal_tells_the_gains(pole: Analysis) -> None:
-    told = list(lines(pole.stabilisation, pole))
-    assert any(line.startswith("  k of F: (") for line in told)
+    (line,) = [text for text in told(pole, 8) if text.startswith("  k = ")]
+    gains = [Fraction(x) for x in line.removeprefix("  k = [ ").removesuffix(" ]").split()]
+    assert gains == list(pole.stabilisation.feedback.gains[0])
 
 
 def test_many_coordinates_are_told_to_be_many() -> None:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from types import SimpleNamespace
 
 import mbsym
 from mbsym.analysis import Analysis
 from mbsym.problems.invariant_sets import Definiteness, Gap, Kind
 from mbsym.report.messages import messages
+from mbsym.report.plain_writer import Writer
 from mbsym.report.sections import invariant_sets as section
 from mbsym.report.words import invariant_words
 
@@ -125,8 +127,9 @@ def test_a_rest_is_not_left_out_of_what_suffices():
 def test_a_family_without_stationary_points_is_told():
     """x' of a falling point is kept, and its gradient is nowhere zero."""
     found = _sets(PLANE.format(rest="loads:\n  - potential: 3*y"))
-    text = " ".join(section.lines(found, None))
-    assert "K = V0   It has no stationary points for almost all parameters (proved)." in text
+    known = SimpleNamespace(found={10: found}, missing=lambda number: ())
+    text = " ".join(line.text for line in Writer(readable=True).document(section.content(known)))
+    assert "K = V0: It has no stationary points for almost all parameters (proved)." in text
 
 
 def test_roots_that_are_not_listed_are_counted():

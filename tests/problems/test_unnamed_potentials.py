@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 from conftest import TESTS
+from terminal import told
 
 import mbsym
 from mbsym.problems.stability.word import Word
@@ -208,9 +209,7 @@ def test_the_energy_is_told_beside_the_theorem_that_stands_on_it() -> None:
 
 def test_no_closed_form_is_not_called_no_energy() -> None:
     """x'' = -atan x has one, with V = x atan x - log(1 + x^2)/2, which the ring does not hold: nothing denies it."""
-    from mbsym.report.sections.integrals import lines
-
     found = mbsym.loads(TRACK.replace("LOAD", 'generalized force: {x: "-k*atan(x)"}').replace("+ V", ""))
     assert found.integrals == ()
     assert found.stability.verdict.theorem == "Lagrange-Dirichlet"
-    assert [*lines(found.integrals, found)] == ["none in closed form of the kinds that are looked for"]
+    assert told(found, 7) == ["None in closed form of the kinds that are looked for."]

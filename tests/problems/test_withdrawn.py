@@ -98,7 +98,7 @@ def test_the_terminal_withdraws_and_the_exit_code_tells(
     assert not [word for word in SAID if word in done.output.split("Self-check:")[0]]
     assert "SELF-CHECK FAILED" in done.output
     done = CliRunner().invoke(main, ["run", str(LIFT), "--out", str(tmp_path), "-v", *asked])
-    assert not [word for word in SAID if word in done.output.split("6 stability")[1].split("self-check:")[0]]
+    assert not [word for word in SAID if word in done.output.split("Problem 6.")[1].split("Self-check\n")[0]]
 
 
 CLAIMS = """

@@ -12,6 +12,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from terminal import told
 
 import mbsym
 from mbsym.analysis import Analysis
@@ -20,7 +21,6 @@ from mbsym.problems.relative_equilibria.equilibria import CoordinateValue, equil
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.verdict import Verdict, combine
 from mbsym.problems.stability.word import Word
-from mbsym.report.summary import summary
 
 THREE_BODIES = """
 mbsym: 1
@@ -154,10 +154,8 @@ def test_theorems_of_other_parts_do_not_carry_a_weaker_verdict() -> None:
 def test_an_undecided_verdict_says_why(tmp_path: Path) -> None:
     a = analysed(tmp_path, THREE_BODIES.replace("sqrt(3)/2", "sqrt(3)/2 + mu"), MU="0.01")
     assert verdict(a).word == Word.UNDECIDED
-    (line,) = summary(a, [6], []).problems
-    assert any(
-        text.startswith("at the given values: undecided: the motion does not exist there") for text in line.lines
-    )
+    (line,) = [text for text in told(a, 6) if text.startswith("At the given values")]
+    assert line.startswith("At the given values of the parameters: undecided. The motion does not exist there: ")
 
 
 def test_families_are_written_without_inner_names(tmp_path: Path) -> None:

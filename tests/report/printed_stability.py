@@ -14,11 +14,14 @@ from dataclasses import dataclass, field
 from typing import Any
 from xml.etree import ElementTree as ET
 
+import terminal
 import tex_reader
 from flint import arb, fmpq
 from flint.utils.flint_exceptions import DomainError
 from mathml_reader import Reader as MathReader
 from mathml_reader import Token, tokens_of, tree
+
+from mbsym.problems.stability.word import Word
 
 #: The value of a formula, given that of each symbol in it, as the surface writes them.
 Value = Callable[[Mapping[str, Any]], Any]
@@ -198,17 +201,75 @@ def python(text: str) -> Value:
 
 def of_terminal(text: str) -> list[Part]:
     parts: list[Part] = []
-    for line in text.splitlines():
+    state = ""
+    for line in text.partition("Problem 6.")[2].splitlines():
+        words = line.strip()
         if not line.startswith("  "):
-            parts.append(Part())  # also of what is said after the last one: it has no conditions
-            continue
-        match = re.fullmatch(r"  (.*?)(:| =) (.*) (>|<|>=|<=|!=) 0(?: \(.*\)| never holds)?", line)
-        if match is not None:
-            symbol = match[1] if match[1].isidentifier() and match[2] == ":" else ""
-            parts[-1].lines.append(Line(match[1], python(match[3]), match[4], symbol=symbol))
-        elif counted := re.match(r"  (?!a condition is)(.*?)(?:: \(\d| (?:>|<|>=|<=|!=) 0)", line):
-            parts[-1].lines.append(Line(counted[1], None, ">"))
+            state = _terminal_state(words, parts, state)
+        elif state == "polynomial":
+            parts[-1].polynomial = readable(words.partition(" = ")[2])
+            state = "told"
+        elif state == "factors":
+            whole = words.partition(": ")[2]
+            raised = re.fullmatch(r"\((.*)\)\^(\d+)", whole)
+            parts[-1].factors.append((readable(raised[1]), int(raised[2])) if raised else (readable(whole), 1))
+        elif state not in ("", "told"):
+            into = _latex_lines(parts[-1], state)
+            letter = re.fullmatch(r"([av]\d+) = ([^<>!]*)", words)
+            if letter is not None:
+                into[-1].letters[letter[1]] = readable(letter[2])
+            else:
+                into.append(_terminal_line(words))
     return parts
+
+
+def _terminal_state(words: str, parts: list[Part], state: str) -> str:
+    """What follows a line that is no formula."""
+    if words.startswith("The characteristic polynomial"):
+        parts.append(Part())
+        return "polynomial"
+    if words.startswith("Number of its factors"):
+        return "factors"
+    if words.startswith("Conditions ("):
+        return "lines"
+    if words in ("and:", "and at least one of these holds:"):
+        return "any"
+    if words == "with:":
+        return state
+    case = re.fullmatch(r"(?:Otherwise )?(.*?)(?: \([^()]*\))?(?:, (if.*))?:", words)
+    if case is not None and parts and case[1] in [*Word]:
+        parts[-1].cases.append(Case(case[1]))
+        return "any" if "at least one" in (case[2] or "") else "all"
+    return ""
+
+
+def _terminal_line(words: str) -> Line:
+    match = re.fullmatch(r"(.*?) (>|<|!=|>=|<=) 0(?: \(.*\))?", words)
+    assert match is not None, words
+    relation = match[2]
+    label, colon, formula = match[1].partition(": ")
+    symbol = _terminal_label(label)
+    if not colon:  # label = formula > 0 (never holds), a reference, or what is not written
+        never = re.fullmatch(r"(.*?) = (.*)", label)
+        if never is not None:
+            return Line(_terminal_label(never[1]), readable(never[2]), relation)
+        return Line(symbol, None, relation, under=symbol)
+    if formula.startswith("["):
+        return Line(symbol, None, relation)
+    if re.fullmatch(r"-?[av]\d+\^\(\d+\)", formula) or re.search(r" of |, |minor|subdisc", formula):
+        return Line(symbol, None, relation, under=_terminal_label(formula))
+    return Line(
+        symbol, readable(formula), relation, symbol=label if re.fullmatch(r"[av]\d+", label) else "", alone=formula
+    )
+
+
+def _terminal_label(label: str) -> str:
+    return re.sub(r"([av]\d+)\^\((\d+)\)", r"\1 of factor \2", label)
+
+
+def readable(text: str) -> Value:
+    """As people write it: products without a sign, powers with ^."""
+    return python(re.sub(r"\blambda\b", "lambda_", terminal.python(text)))
 
 
 def of_json(text: str) -> list[Part]:
@@ -479,8 +540,10 @@ def equations(surface: str, text: str) -> list[Value | None]:
     """The left-hand sides of ``... = 0``; None of what is counted only."""
     match surface:
         case "terminal":
-            lines = [x for x in text.splitlines() if x.endswith(" = 0") or "see the reports" in x]
-            return [None if x.startswith("(") and "see the reports" in x else python(x[:-4]) for x in lines]
+            section = text.partition("Problem 4.")[2].partition("Problem 5.")[0].partition("if and only if")[2]
+            lines = section.partition("which problems")[0].splitlines()[1:]
+            assert all(x.endswith(" = 0") for x in lines if x.startswith("  "))
+            return [None if x.startswith("  [") else readable(x[2:-4]) for x in lines if x.startswith("  ")]
         case "json":
             return [python(x) for x in json.loads(text)["equilibrium"]["conditions"]]
         case "wolfram":
@@ -511,6 +574,8 @@ def equations(surface: str, text: str) -> list[Value | None]:
 def matrices(surface: str, text: str) -> dict[str, dict[tuple[int, int], Value]]:
     """What is written of M, D, G, K and N in physical time; of symmetric ones perhaps the upper half."""
     found: dict[str, dict[tuple[int, int], Value]] = {}
+    if surface == "terminal":
+        return _drawn(re.split(_OTHER_FORMS, text.partition("Problem 5.")[2].partition("Problem 6.")[0])[0])
     if surface == "json":
         listed = json.loads(text)["linearisation"]
         return {x: _numbered([[python(y) for y in row] for row in listed[x]]) for x in "MDGKN"}
@@ -542,6 +607,28 @@ def matrices(surface: str, text: str) -> dict[str, dict[tuple[int, int], Value]]
             elif name is not None and (table := [x for kind, x in tokens if kind == "table"]):
                 front = str(tokens[2][1]) if tokens[2][0] == "mn" else ""
                 found[name[1]] = _numbered([[_times(front, mathml(y)) for y in row] for row in table[0]])
+    return found
+
+
+_OTHER_FORMS = r"\n(?:With the deviations|In first-order form|The equations split|Derivatives are|  M1? q1?'')"
+
+
+def _drawn(text: str) -> dict[str, dict[tuple[int, int], Value]]:
+    """Square matrices in brackets, one below the other, and entries by their places."""
+    found: dict[str, dict[tuple[int, int], Value]] = {}
+    rows: list[list[str]] = []
+    names = ""
+    for line in text.splitlines():
+        drawn = re.fullmatch(r" +(?:([MDGKN]) =)? +\[ (.*) \]", line)
+        if drawn is not None:
+            names += drawn[1] or ""
+            rows.append(re.split(r" {2,}", drawn[2].strip()))
+            if len(rows) == len(rows[0]):
+                found[names] = _numbered([[readable(x) for x in row] for row in rows])
+                rows, names = [], ""
+        entry = re.fullmatch(r"  ([MDGKN])\[(\d)(\d)\] = (.*)", line)
+        if entry is not None:
+            found.setdefault(entry[1], {})[int(entry[2]), int(entry[3])] = readable(entry[4])
     return found
 
 

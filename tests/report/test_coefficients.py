@@ -5,11 +5,12 @@ from __future__ import annotations
 import json
 import random
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from fractions import Fraction
 
 import pytest
+import terminal
 from conftest import SHIPPED, derived, parsed
 
 import mbsym
@@ -19,7 +20,6 @@ from mbsym.problems.stability import SubsystemStability
 from mbsym.problems.stability.requirements import Requirement
 from mbsym.report.coefficients import WRITTEN_OUT, InCoefficients, in_coefficients
 from mbsym.report.conditions import Shown, statements
-from mbsym.report.sections import stability
 from mbsym.report.targets import TARGETS
 
 #: Banshchikov & Vetrov, condition (6).
@@ -101,11 +101,11 @@ FLUTTER = {"alpha": Fraction(-1, 2), "gamma": Fraction(1, 2), "p1": Fraction(2, 
 
 
 def printed(text: str) -> dict[str, tuple[str, str]]:
-    """The conditions of a terminal by their labels: formula and relation."""
+    """The conditions of a terminal by their labels: formula and relation, which letters have not."""
     return {
-        match[1]: (match[2], match[3])
+        match[1]: (terminal.python(match[2]), match[3] or "")
         for line in text.splitlines()
-        if (match := re.fullmatch(r"\s+([\w ,]+): (.*) (>|<|>=|!=) 0(?: \(.*\))?", line))
+        if (match := re.fullmatch(r"\s+([\w ,]+)(?:: | = )([^<>!]*?)(?: (>|<|>=|!=) 0(?: \(.*\))?)?", line))
     }
 
 
@@ -114,7 +114,7 @@ def test_letters_mean_on_the_terminal_what_stands_beside_them_there(text: str) -
     """Each formula is evaluated from the terminal's text alone, letters by what stands there under their names."""
     analysis = mbsym.loads(text)
     for part in analysis.stability.subsystems:
-        own = list(_block(stability.lines(analysis.stability, analysis), part.coordinates))
+        own = list(_block(terminal.told(analysis, 6, longest=10**6), part.coordinates))
         shown = printed("\n".join(own))
         names = {p.name for p in analysis.system.parameters} | {item.name for item in analysis.system.notation}
         truth = dict(_true_conditions(part))
@@ -124,23 +124,28 @@ def test_letters_mean_on_the_terminal_what_stands_beside_them_there(text: str) -
             point = {name: Fraction(source.randint(-9, 9), source.randint(1, 4)) for name in names}
             letters = {label: eval(formula, {}, dict(point)) for label, (formula, _) in shown.items() if label in OWN}
             for label, (formula, relation) in shown.items():
+                if not relation:
+                    continue
                 # A letter that is a parameter's name is the parameter: nobody can read it otherwise.
                 value = eval(formula, {}, {**letters, **point})
                 exact = truth[label.removeprefix("condition ")](point)
                 assert (value > 0, value < 0) == (exact > 0, exact < 0) or relation == "!=", label
 
 
-OWN = ("v0", "v2", "v4", "v6")
+OWN = ("v0", "v2", "v4", "v6", "a0", "a2", "a4", "a6")
 
 
-def _block(lines: Iterator[str], coordinates: tuple[str, ...]) -> Iterator[str]:
-    """The lines of one subsystem."""
-    inside = False
+def _block(lines: Iterable[str], coordinates: tuple[str, ...]) -> Iterator[str]:
+    """The conditions of one subsystem, with the letters in them."""
+    own = listed = False
     for line in lines:
-        if not line.startswith("  "):
-            inside = line.startswith(f"{', '.join(coordinates)}: ")
-        elif inside:
-            yield line
+        if line.startswith("  "):
+            if own and listed:
+                yield line
+        elif re.fullmatch(r"(Subsystem \d+: )?[\w, ]+ \(.*\)", line):
+            own = f"{', '.join(coordinates)} (" in line
+        else:
+            listed = line.startswith("Conditions (") or (listed and line == "with:")
 
 
 def _true_conditions(part: SubsystemStability) -> Iterator[tuple[str, Callable[[dict[str, Fraction]], Fraction]]]:
@@ -167,7 +172,7 @@ def test_the_point_at_which_the_satellite_flutters_is_told_by_what_is_printed() 
     assert found is not None
     # It is shown once, as the coefficient that the discriminant holds: 4 alpha (...), not alpha (...).
     assert r"v_{0} \colon\quad 4 \alpha" in TARGETS["latex"].render(analysis, (6,))
-    shown = printed("\n".join(_block(stability.lines(analysis.stability, analysis), ("psi", "phi", "sigma"))))
+    shown = printed("\n".join(_block(terminal.told(analysis, 6), ("psi", "phi", "sigma"))))
     assert eval(shown["v0"][0], {}, dict(FLUTTER)) == values["v0"]
 
 
@@ -175,6 +180,4 @@ def test_a_dropped_letter_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     """Planted: the terminal shows the form whether or not its letters stand there."""
     monkeypatch.setattr(Shown, "unshown", lambda self, told: ())
     with pytest.raises(NameError):
-        test_letters_mean_on_the_terminal_what_stands_beside_them_there(
-            (SHIPPED / "satellite.yaml").read_text(encoding="utf-8")
-        )
+        test_letters_mean_on_the_terminal_what_stands_beside_them_there(NAMED)

@@ -177,7 +177,7 @@ def test_a_program_is_a_listing_in_names_of_its_medium() -> None:
     analysis = derived(SHIPPED / "simple-pendulum.yaml")
     assert "s_{1} = \\dot{\\theta} + \\dot{\\theta}" in in_latex(analysis).block(steps)
     assert "M_{11} = s_{1}\\,s_{1}" in in_latex(analysis).block(steps)
-    assert "<pre>s1 = theta_dot + theta_dot\nM_11 = s1*s1</pre>" in in_html(analysis).block(steps)
+    assert "<pre>s1 = theta_dot + theta_dot\nM11 = s1*s1</pre>" in in_html(analysis).block(steps)
     assert "<summary>Программа</summary>" in in_html(analysis, "ru").block(steps)
 
 
@@ -214,5 +214,5 @@ def test_definitions_names_beside_and_literature(analysis: mbsym.Analysis) -> No
     assert not in_latex(analysis, form=Form.APPENDIX).block(cited)
     at = Relation(content.Text(Said("at"), " "), content.Power(Name("theta"), 2), ":", 1)
     assert in_latex(analysis).math(at) == r"\text{at } \theta^{2} \colon\quad 1"
-    assert plain_writer.Writer().inline(at) == "at  theta**2 : 1"
+    assert plain_writer.Writer().inline(at) == "at theta**2: 1"
     assert in_latex(analysis).math(Relation("-", Symbol("v", "4", "(2)"))) == "-v_{4}^{(2)}"

@@ -13,6 +13,7 @@ from fractions import Fraction
 import jsonschema
 import pytest
 from conftest import SHIPPED
+from terminal import told
 
 import mbsym
 from mbsym.analysis import Analysis
@@ -20,7 +21,7 @@ from mbsym.analysis.oscillating import oscillating
 from mbsym.report.content import Said
 from mbsym.report.language import Language
 from mbsym.report.schemas import schema
-from mbsym.report.sections.small_parameters import lines, told
+from mbsym.report.sections import small_parameters
 from mbsym.report.targets import TARGETS
 from mbsym.report.words.expansion_measured import orders_or_why
 
@@ -44,7 +45,7 @@ def point(potential="", force="0", small="eps", sign="real", more="", names="x",
 
 
 def said(analysis):
-    return " ".join(lines(analysis.small_parameters, analysis))
+    return " ".join(told(analysis, 12))
 
 
 @pytest.fixture(scope="module")
@@ -86,7 +87,7 @@ def test_an_amplitude_that_parameters_may_forbid(limit_cycle):
     """2 sqrt(k): told where it is real; not asked where k > 0 is known, refused where k < 0."""
     text = said(limit_cycle)
     assert "Secular terms are removed for certain amplitudes only. That of this solution" in text
-    assert "The amplitude is real and not zero where 4*k > 0." in text
+    assert "The amplitude is real and not zero where 4 k > 0." in text
     assert "The error of the periodic solution was not measured" not in text  # it needs no x(0)
     assert "fall more slowly" not in text
     known = point(force="eps*(k - x**2)*x_dot", sign="positive")
@@ -121,7 +122,7 @@ def test_where_there_is_none_it_is_told_why(duffing):
 def test_in_other_languages(language, duffing, limit_cycle):
     tongue, gaps = Language(language), re.compile(r"\[\[\w+\]\]")
     for analysis in (duffing, limit_cycle):
-        for block in told(analysis.small_parameters, analysis.system):
+        for block in small_parameters.told(analysis.small_parameters, analysis.system):
             for one in getattr(block, "parts", ()):
                 assert isinstance(one, Said)
                 assert tongue.sentence(one.text) != one.text

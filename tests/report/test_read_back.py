@@ -19,6 +19,7 @@ import pytest
 from conftest import SHIPPED, TESTS, derived, precision
 from flint import arb, fmpq
 from printed_stability import Part, Read, TwoMeanings, WithVariable, bare, both, truth
+from terminal import told
 
 import mbsym
 from mbsym.algebra.ring import ParameterRing, Ring
@@ -31,7 +32,7 @@ from mbsym.problems.stability import SubsystemStability
 from mbsym.problems.stability.requirements import Case, Requirement
 from mbsym.report import coefficients, conditions
 from mbsym.report.conditions import Shown
-from mbsym.report.sections import equilibrium, stability
+from mbsym.report.plain_writer import Line, Writer
 from mbsym.report.targets import TARGETS
 
 MANY = int(os.environ.get("MBSYM_READ_BACK", "16"))
@@ -103,7 +104,7 @@ def cases_behind(part: SubsystemStability) -> list[Case]:
 
 def rendered(analysis: Analysis, surface: str) -> str:
     if surface == "terminal":
-        return "\n".join(stability.lines(analysis.stability, analysis))
+        return "\n".join(x for n in (4, 5, 6) for x in (f"Problem {n}.", *told(analysis, n, longest=10**6)))
     text = TARGETS[surface].render(analysis, (4, 5, 6))
     assert isinstance(text, str)
     return text
@@ -139,8 +140,6 @@ def check(analysis: Analysis, surface: str) -> int:
 
 def _check_equations(analysis: Analysis, surface: str, text: str, source: random.Random) -> int:
     """The conditions of problem 4 are those behind it."""
-    if surface == "terminal":
-        text = "\n".join(equilibrium.lines(analysis.equilibrium, analysis))
     behind, ring = analysis.equilibrium.conditions, analysis.ring
     shown = printed.equations(surface, text)
     assert len(shown) == len(behind), surface
@@ -152,9 +151,7 @@ def _check_equations(analysis: Analysis, surface: str, text: str, source: random
 
 
 def _check_matrices(analysis: Analysis, surface: str, text: str, source: random.Random) -> int:
-    """The matrices of problem 5, in which what is not written is zero; the terminal does not write them."""
-    if surface == "terminal":
-        return 0
+    """The matrices of problem 5, in which what is not written is zero."""
     linear, ring = analysis.linearisation, analysis.ring
     shown = printed.matrices(surface, text)
     here = {name: arb(fmpq(source.randint(1, 40), 16)) for name in ring.names()}
@@ -215,7 +212,7 @@ def _check_at(shown: Part, part: SubsystemStability, here: Point, names: Mapping
             (p, q), *others = ratios
             assert all(_same(p * y, q * x) for x, y in others), f"{surface}: factors"
     told_cases = [case for case in shown.cases if surface != "json" or cases_behind(part)]
-    if surface in ("latex", "html", "json"):
+    if surface in ("terminal", "latex", "html", "json"):
         behind_cases = cases_behind(part)
         assert [x.word for x in told_cases] == [x.verdict.word.value for x in behind_cases], surface
         for case, real in zip(told_cases, behind_cases, strict=True):
@@ -383,8 +380,12 @@ def lost_sign(patch: pytest.MonkeyPatch) -> None:
 
 def turned(patch: pytest.MonkeyPatch) -> None:
     """> is written as <."""
-    text = stability.statement_text
-    patch.setattr(stability, "statement_text", lambda item: text(item).replace(" > ", " < "))
+    line = Writer._line
+
+    def other(self: Writer, *parts: Any, **how: Any) -> Line:
+        return Line(tuple((text.replace(">", "<"), style) for text, style in line(self, *parts, **how).parts))
+
+    patch.setattr(Writer, "_line", other)
 
 
 def turned_reference(patch: pytest.MonkeyPatch) -> None:

@@ -19,14 +19,16 @@ import numpy as np
 import pytest
 from conftest import SHIPPED, compiled_latex, needs_pdflatex, precision
 from flint import arb, fmpq
+from terminal import told
 
 import mbsym
 from mbsym.algebra.signs import Condition
 from mbsym.analysis import Analysis
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import Name, Number, Operation
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.latex import LatexNames
-from mbsym.problems.stability.requirements import Case, Requirement
+from mbsym.problems.stability.requirements import OF_FACTOR, PART, REVERSED, Case, Requirement
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.report.conditions import Labels, Reference, Shown, Statement, cases, statements
 from mbsym.report.content import Math, Readable
@@ -38,7 +40,6 @@ from mbsym.report.latex.labels import Labels as TexLabels
 from mbsym.report.latex.words import LINE, broken
 from mbsym.report.latex.writer import Writer
 from mbsym.report.sections.stability import label_of
-from mbsym.report.summary import summary
 from mbsym.report.targets import TARGETS
 
 #: Names that are reserved in some language, or look alike in another; forces of many kinds; a comment-closing name.
@@ -338,9 +339,10 @@ def test_what_was_shown_is_recognised_with_either_sign():
     ring = analysis_of("heavy-top.yaml").ring
     p = ring.context.gen(ring.index("parameter", "m")) - ring.context.gen(ring.index("parameter", "g"))
     shown = Shown()
-    shown.show(Statement("-(a)", Formula(ring, p), ">"))
+    reverse = Message(REVERSED, label="a")
+    shown.show(Statement(reverse, Formula(ring, p), ">"))
     assert shown.reference(Statement("a", Formula(ring, -p), ">")) == Reference("a", "a", ">")
-    assert shown.reference(Statement("-(a)", Formula(ring, p), ">=")) == Reference("a", "a", "<=")
+    assert shown.reference(Statement(reverse, Formula(ring, p), ">=")) == Reference("a", "a", "<=")
     assert shown.reference(Statement("b", Formula(ring, p), ">")) == Reference("b", "a", "<")
     assert shown.reference(Statement("b", Formula(ring, -p), "!=")) == Reference("b", "a", "!=")
     assert shown.reference(Statement("b", Formula(ring, 2 * p), "<")) == Reference("b", "a", ">")  # -p, shown, is a
@@ -408,7 +410,7 @@ def test_parts_of_a_condition_have_names_of_their_own():
     """g f^2 > 0 is g > 0 and f != 0; a reference by name must say which."""
     ring = analysis_of("heavy-top.yaml").ring
     m, g = (ring.context.gen(ring.index("parameter", name)) for name in ("m", "g"))
-    for label, opposite in (("a3", False), ("-(a3)", True)):
+    for label, opposite in (("a3", False), (Message(REVERSED, label="a3"), True)):
         whole = (m - g) * (m - 2 * g) ** 2
         condition = Condition("inequality", m - g, nonzero=(m - 2 * g,))
         required = Requirement(label, -whole if opposite else whole, condition)
@@ -419,7 +421,9 @@ def test_parts_of_a_condition_have_names_of_their_own():
         assert second.label == "a3, squared factor"
     alone = Requirement("a3", m - g, Condition("inequality", m - g))
     assert [item.label for item in statements(ring, [alone])] == ["a3"]
-    assert in_latex(label_of("a3 of factor 2, squared factor")) == r"a_{3}^{(2)} \text{, squared factor}"
+    label = Message(PART, label=Message(OF_FACTOR, label="a3", number=2), part="squared factor")
+    assert label == "a3 of factor 2, squared factor"
+    assert in_latex(label_of(label)) == r"a_{3}^{(2)} \text{, squared factor}"
 
 
 def test_a_number_stands_in_front_of_a_matrix():
@@ -455,19 +459,16 @@ def test_verdicts_presume_the_conditions_of_problem_4():
     presumed = "provided the condition of problem 4 holds"
     assert f"Verdict, {presumed}: " in TARGETS["latex"].render(analysis, (4, 6)).replace("\n", " ")
     assert presumed in TARGETS["wolfram"].render(analysis, (6,))
-    lines = [text for line in summary(analysis, (6,), []).problems for text in line.lines]
-    assert f"all this {presumed}" in lines
+    assert any(text.startswith(f"Verdict, {presumed}: ") for text in told(analysis, 6))
     assert "problem 4 holds" not in TARGETS["latex"].render(analysis_of("heavy-top.yaml"), (4, 6))
 
 
-def test_the_summary_says_what_a_verdict_depends_on():
-    (line,) = summary(analysis_of("heavy-top.yaml"), (6,), []).problems
-    heading = "necessary conditions, but for the case of equality"
-    assert line.lines[0] == f"alpha, beta: depends on the parameters; {heading}:"
-    assert "whole system: depends on the parameters" in line.lines
+def test_the_terminal_says_what_a_verdict_depends_on():
+    lines = told(analysis_of("heavy-top.yaml"), 6)
+    assert "Verdict: depends on the parameters; see the cases." in lines
+    assert any(text.endswith("For the whole system: depends on the parameters.") for text in lines)
     never = mbsym.loads(HOOP.replace("theta: theta0}", "theta: 0}") + "assumptions: [R*Omega**2 > g]\n")
-    (line,) = summary(never, (6,), []).problems
-    assert any(re.fullmatch(r"  v0 = .*g.* > 0 never holds", text) for text in line.lines), line.lines
+    assert any(re.fullmatch(r"  v0 = .*g.* > 0 \(never holds\)", text) for text in told(never, 6))
 
 
 # --- no closed form ---
@@ -485,9 +486,7 @@ def test_without_closed_form_reports_give_the_reason_and_the_program(tmp_path):
     assert "dynamics[t_" in texts["wolfram"]
     model = loaded(texts["python"], tmp_path)
     assert model.mass_matrix(np.zeros(5), dict.fromkeys(model.PARAMETERS, 1.0)).shape == (5, 5)
-    lines = {line.number: line for line in summary(analysis, analysis.problems, []).problems}
-    assert not lines[3].available
-    assert reason in lines[3].lines[0]
+    assert told(analysis, 3)[0].startswith(f"No result: {reason}")
 
 
 # --- determinism ---

@@ -8,6 +8,7 @@ import re
 import jsonschema
 import pytest
 from conftest import SHIPPED
+from terminal import told
 
 import mbsym
 from mbsym.algebra.quotients import Series
@@ -15,7 +16,7 @@ from mbsym.analysis import Analysis
 from mbsym.analysis.expanding import expansion
 from mbsym.report.language import Language
 from mbsym.report.schemas import schema
-from mbsym.report.sections.small_parameters import lines
+from mbsym.report.sections import small_parameters
 from mbsym.report.targets import TARGETS
 from mbsym.report.words import expansion_words
 from mbsym.simulation.expanded import measured
@@ -71,7 +72,7 @@ def test_where_there_is_nothing_to_expand_it_is_told_and_nothing_fails():
     for name in ("simple-pendulum", "clebsch-poisson"):
         analysis = Analysis(mbsym.load(SHIPPED / f"{name}.yaml").system, (12,))
         assert analysis.stage(12).failure is None
-        assert list(lines(analysis.small_parameters, analysis)) == [expansion_words.NOTHING]
+        assert told(analysis, 12) == [expansion_words.NOTHING]
         assert "nothing is expanded" in " ".join(text(analysis, "latex").split())
 
 
@@ -79,9 +80,9 @@ def test_a_small_parameter_in_coordinates_says_what_is_missing():
     source = (SHIPPED / "simple-pendulum.yaml").read_text(encoding="utf-8")
     name = mbsym.loads(source).system.parameter_names[0]
     analysis = Analysis(mbsym.loads(f"{source}\nsmall parameter: {name}\n").system, (12,))
-    told, further = lines(analysis.small_parameters, analysis)
+    slow, further = told(analysis, 12)
     assert further.startswith(f"No periodic solution was expanded in powers of {name}: the equations are not quasi-li")
-    assert told == f"No slow manifold was found in powers of {name}: expansions are made of equations in speeds."
+    assert slow == f"No slow manifold was found in powers of {name}: expansions are made of equations in speeds."
 
 
 def test_latex_html_and_wolfram_hold_the_coefficients(damper):
@@ -94,11 +95,9 @@ def test_latex_html_and_wolfram_hold_the_coefficients(damper):
 @pytest.mark.parametrize("language", ["ru", "es"])
 def test_every_sentence_is_said_in_other_languages(language, damper, shaken):
     tongue = Language(language)
-    from mbsym.report.sections.small_parameters import told
-
     listed = [expansion_words.NOTHING, *expansion_words._FAST.values(), *expansion_words._SLOW.values()]
     for analysis in (damper, shaken):
-        found = told(analysis.small_parameters, analysis.system)
+        found = small_parameters.told(analysis.small_parameters, analysis.system)
         listed += [one.text for block in found for one in getattr(block, "parts", ())]
     for sentence in listed:
         assert tongue.sentence(sentence) != sentence

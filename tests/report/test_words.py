@@ -11,13 +11,13 @@ from typing import Any
 import pytest
 from click.testing import CliRunner
 from conftest import OWN, SHIPPED, derived
+from terminal import told
 
 import mbsym
 from mbsym.analysis import Analysis
 from mbsym.problems.stability import sentences
 from mbsym.problems.stability.word import Word
 from mbsym.report.plain import LONGEST
-from mbsym.report.summary import summary
 from mbsym.report.targets import TARGETS
 from mbsym_cli.main import main
 
@@ -44,7 +44,7 @@ def verdict_words(found: Any) -> Iterator[str]:
 def said(analysis: Analysis) -> dict[str, str]:
     """What each output says of stability, as plain text in one line."""
     texts = {name: TARGETS[name].render(analysis, (6,)) for name in ("latex", "html", "wolfram", "json")}
-    texts["terminal"] = " ".join(line for item in summary(analysis, (6,), ()).problems for line in item.lines)
+    texts["terminal"] = " ".join(told(analysis, 6))
     return {name: re.sub(r"\s+", " ", text) for name, text in texts.items()}
 
 

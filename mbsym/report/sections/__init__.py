@@ -1,8 +1,8 @@
 """What each numbered problem shows, one problem a file, and what reports say besides.
 
-A problem's module is found by its attribute: ``content(results)`` is what reports say of it, ``lines(found, analysis)``
-its lines in the terminal, ``data(found, system, write)`` its section of results.json, and of problems 9 to 12
-``formulas(found, system)`` what model.py has.  Its part of report.wl is a template of that name in
+A problem's module is found by its attribute: ``content(results)`` is what reports and the terminal say of it,
+``data(found, system, write)`` its section of results.json, and of problems 9 to 12 ``formulas(found, system)`` what
+model.py has.  Its part of report.wl is a template of that name in
 ``templates/wolfram``.
 """
 

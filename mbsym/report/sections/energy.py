@@ -1,4 +1,4 @@
-"""Problem 2, energy: what results.json and the terminal show of it."""
+"""Problem 2, energy: what results.json and reports show of it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from msgspec import UNSET
 
-from mbsym.expressions.counting import counted
 from mbsym.model.system import System
 from mbsym.problems.energy import Energy
 from mbsym.report.content import (
@@ -28,7 +27,6 @@ from mbsym.report.documents.results import energy as doc
 from mbsym.report.plain import Write, column_text, matrix_text
 
 if TYPE_CHECKING:
-    from mbsym.analysis import Analysis
     from mbsym.report.results import Results
 
 
@@ -106,14 +104,3 @@ def _absent(found: Energy, system: System) -> tuple[list[str], list[str]]:
     """What L does not contain: coordinates, and prescribed quantities, which have no momentum."""
     cyclic = [name for name in found.cyclic if name in system.coordinates]
     return cyclic, [name for name in found.cyclic if name not in cyclic]
-
-
-def lines(found: Energy, analysis: Analysis) -> Iterator[str]:
-    """The lines in the terminal."""
-    kinetic, force = found.kinetic_energy.terms, found.force_function.terms
-    yield f"T: {counted(kinetic, 'term')}, U: {counted(force, 'term')}"
-    cyclic, prescribed = _absent(found, analysis.system)
-    if cyclic:
-        yield f"{'not in L' if analysis.system.constraints else 'cyclic'}: {', '.join(cyclic)}"
-    if prescribed:
-        yield f"not in L, prescribed: {', '.join(prescribed)}"

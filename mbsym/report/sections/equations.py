@@ -1,4 +1,4 @@
-"""Problem 3, equations: what results.json and the terminal show of it."""
+"""Problem 3, equations: what results.json and reports show of it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, cast
 
 from msgspec import UNSET, UnsetType
 
-from mbsym.expressions.counting import counted
 from mbsym.expressions.rates import acceleration_name, velocity_name
 from mbsym.expressions.tree import Expression, add, multiply, number, power
 from mbsym.expressions.tree import Name as Variable
@@ -39,7 +38,6 @@ from mbsym.report.content import (
 )
 from mbsym.report.documents.results import equations as doc
 from mbsym.report.plain import Write, column_text, matrix_text
-from mbsym.report.plain_writer import Writer
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -372,33 +370,3 @@ def _of_reactions(results: Results) -> Iterator[Block]:
         for i, (force, moment) in enumerate(one.per_multiplier, start=1):
             yield Components(Symbol("R", k, f"({i})"), force, f"R:{k}:per:{i}")
             yield Components(Symbol("L", k, f"({i})"), moment, f"L:{k}:per:{i}")
-
-
-def lines(found: Equations, analysis: Analysis) -> Iterator[str]:
-    """The lines in the terminal."""
-    n = len(found.forcing)
-    if found.in_speeds:
-        own = cast("SpeedEquations", found)
-        others = ", ".join(name for name, _ in own.kinematic)
-        yield f"Kane's equations in {Writer().inline(speeds(own.speeds))}" + (f"; with {others}" if others else "")
-    terms = sum(x.terms for x in found.forcing)
-    size = counted(found.mass_matrix.terms, "term")
-    yield f"{counted(n, 'equation')}; mass matrix {size}, right-hand sides {counted(terms, 'term')}"
-    if found.constraints is not None:
-        from mbsym.report.words.constraint_words import sentences
-
-        yield from map(Writer().said, sentences(found.constraints))
-    if found.embedded is not None:
-        yield f"without multipliers: {counted(found.embedded.terms, 'term')}"
-    elif found.constraints is not None:
-        yield "without multipliers: longer than the budget of terms"
-    for reaction in analysis.optional("reactions") or () if analysis.system.reactions else ():
-        yield f"reaction in the joint of {reaction.body}: {counted(reaction.terms, 'term')}"
-        if reaction.balances:
-            from mbsym.report.words.constraint_words import reaction_sentences
-
-            yield from map(Writer().said, reaction_sentences(reaction))
-    if analysis.forms:
-        from mbsym.report.canonical import form_lines
-
-        yield from form_lines(analysis)

@@ -1,4 +1,4 @@
-"""Problem 7, integrals: what results.json and the terminal show of it."""
+"""Problem 7, integrals: what results.json and reports show of it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from mbsym.report.documents import results as doc
 from mbsym.report.plain import Write
 
 if TYPE_CHECKING:
-    from mbsym.analysis import Analysis
     from mbsym.report.results import Results
 
 
@@ -54,11 +53,3 @@ def content(results: Results) -> Iterator[Block]:
             yield written
     if not found:
         yield paragraph(Said("None in closed form of the kinds that are looked for."))
-
-
-def lines(found: tuple[Integral, ...], analysis: Analysis) -> Iterator[str]:
-    """The lines in the terminal."""
-    for item in found:
-        yield f"{item.name}: {item.status}"
-    if not found:
-        yield "none in closed form of the kinds that are looked for"

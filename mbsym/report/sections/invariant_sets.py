@@ -1,4 +1,4 @@
-"""Problem 10, steady motions and invariant manifolds: what results.json and the terminal show of it."""
+"""Problem 10, steady motions and invariant manifolds: what results.json and reports show of it."""
 
 from __future__ import annotations
 
@@ -15,8 +15,7 @@ from mbsym.problems.invariant_sets import (
 )
 from mbsym.report.content import Block, Heading, Phrase, Said, ragged
 from mbsym.report.documents.results import invariant_sets as doc
-from mbsym.report.plain import LONGEST, Write
-from mbsym.report.plain_writer import Writer
+from mbsym.report.plain import Write
 from mbsym.report.words.invariant_words import (
     closing,
     family_title,
@@ -28,7 +27,6 @@ from mbsym.report.words.invariant_words import (
 )
 
 if TYPE_CHECKING:
-    from mbsym.analysis import Analysis
     from mbsym.formulas.formula import Formula
     from mbsym.report.results import Results
 
@@ -115,20 +113,6 @@ def content(results: Results) -> Iterator[Block]:
             yield ragged(*of_set(one, k, ring_of(found)))
     if found.generic:
         yield ragged(*closing(found))
-
-
-def lines(found: InvariantSets, analysis: Analysis) -> Iterator[str]:
-    """The lines in the terminal: sin(theta) for what has the name sin_theta in formulas."""
-    write = Writer(longest=LONGEST, images=dict(found.written))
-    yield from map(write.said, opening(found))
-    for family in told_families(found):
-        yield write.inline(family_title(family, found))
-        yield from (f"  {write.said(said)}" for said in of_family(family))
-        for k, one in enumerate(family.sets, start=1):
-            first, *rest = map(write.said, of_set(one, k, ring_of(found)))
-            yield f"  {first}"
-            yield from (f"    {text}" for text in rest)
-    yield from map(write.said, closing(found))
 
 
 def formulas(found: InvariantSets, system: System) -> Iterator[tuple[str, Formula]]:

@@ -1,11 +1,10 @@
-"""Problem 1, kinematics: what results.json and the terminal show of it."""
+"""Problem 1, kinematics: what results.json and reports show of it."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from mbsym.expressions.counting import counted
 from mbsym.model.system import System
 from mbsym.problems.kinematics import BodyKinematics, Kinematics
 from mbsym.problems.telling import ToldKinematics
@@ -25,7 +24,6 @@ from mbsym.report.documents.results import kinematics as doc
 from mbsym.report.plain import Write, column_text, matrix_text
 
 if TYPE_CHECKING:
-    from mbsym.analysis import Analysis
     from mbsym.report.results import Results
 
 
@@ -86,8 +84,3 @@ def _velocities(k: int, body: BodyKinematics | ToldKinematics) -> Iterator[Block
 def _terms(body: BodyKinematics | ToldKinematics) -> int:
     vectors = (body.angular_velocity, body.velocity_origin, body.velocity_mass_centre)
     return sum(x.terms for vector in vectors for x in vector)
-
-
-def lines(found: Kinematics, analysis: Analysis) -> Iterator[str]:
-    """The lines in the terminal."""
-    yield counted(len(found.bodies), "body", "bodies")

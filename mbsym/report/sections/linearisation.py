@@ -1,4 +1,4 @@
-"""Problem 5, linearisation: what results.json and the terminal show of it."""
+"""Problem 5, linearisation: what results.json and reports show of it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 from msgspec import UNSET
 
 from mbsym.expressions.tree import text
-from mbsym.formulas.formula import Matrix
 from mbsym.model.system import System
 from mbsym.problems.linearisation import Linearisation, Subsystem
 from mbsym.report.content import (
@@ -33,10 +32,8 @@ from mbsym.report.content import (
 from mbsym.report.documents.results import linearisation as doc
 from mbsym.report.first_order import first_order
 from mbsym.report.plain import Write, Written, matrix_text
-from mbsym.report.plain_writer import Writer
 
 if TYPE_CHECKING:
-    from mbsym.analysis import Analysis
     from mbsym.problems.first_order import FirstOrder
     from mbsym.problems.reduction import Reduction
     from mbsym.report.results import Results
@@ -90,6 +87,8 @@ def content(results: Results) -> Iterator[Block]:
         from mbsym.report.words.constraint_words import reduction_sentences
 
         yield paragraph(joined(reduction_sentences(found.constrained), " "))
+    if system.linear is not None and system.linear.of_first_order:
+        yield paragraph(Said("As $\\dot x = A x$ with $M = 0$, $D = 1$ and $K + N = -A$."))
     yield paragraph(
         say(
             "In physical time and the declared parameters, $q = ([[q]])$ meaning deviations; entries that are not "
@@ -220,32 +219,5 @@ def _in_speeds(state: FirstOrder) -> Iterator[Block]:
         yield paragraph(joined(zeros, " "))
 
 
-def lines(found: Linearisation, analysis: Analysis) -> Iterator[str]:
-    """The lines in the terminal."""
-    if found.constrained is not None:
-        from mbsym.report.words.constraint_words import reduction_sentences
-
-        yield from map(Writer().said, reduction_sentences(found.constrained))
-    if analysis.system.linear is not None and analysis.system.linear.of_first_order:
-        yield "x' = A x, as M = 0, D = 1, K + N = -A"
-    present = [name for name in "MDGKN" if not _is_zero(getattr(found, name))]
-    yield f"matrices that are not zero: {', '.join(present)}"
-    if found.B is not None:
-        yield (
-            f"B for {', '.join(found.inputs)}: {found.B}"
-            if found.B.terms <= SHORT
-            else f"B for {', '.join(found.inputs)}"
-        )
-    if len(found.subsystems) > 1:
-        yield "subsystems: " + "; ".join(", ".join(part.coordinates) for part in found.subsystems)
-    state = analysis.optional("first_order") if analysis.system.speeds else None
-    if state is not None:
-        yield f"in speeds and positions: x' = A x, x = ({Writer().inline(speeds(state.names))})"
-
-
 def _five(found: Any, write: Write) -> dict[str, list[list[Written]]]:
     return {name: matrix_text(getattr(found, name), write) for name in "MDGKN"}
-
-
-def _is_zero(matrix: Matrix) -> bool:
-    return matrix.is_zero

@@ -1,4 +1,4 @@
-"""Problem 11, terms of higher order: what results.json and the terminal show of it."""
+"""Problem 11, terms of higher order: what results.json and reports show of it."""
 
 from __future__ import annotations
 
@@ -13,11 +13,9 @@ from mbsym.report.content import Block, Heading, Said, ragged
 from mbsym.report.documents.nonlinear import Determinant
 from mbsym.report.documents.results import normal_forms as doc
 from mbsym.report.plain import Write
-from mbsym.report.plain_writer import TERMINAL
 from mbsym.report.words.normal_form_words import sentences
 
 if TYPE_CHECKING:
-    from mbsym.analysis import Analysis
     from mbsym.formulas.formula import Formula
     from mbsym.report.results import Results
 
@@ -86,11 +84,6 @@ def content(results: Results) -> Iterator[Block]:
     yield from results.missing(11)
     if 11 in results.found:
         yield from map(ragged, sentences(results.found[11]))
-
-
-def lines(found: NormalForms, analysis: Analysis) -> Iterator[str]:
-    """The lines in the terminal."""
-    yield from map(TERMINAL.said, sentences(found))
 
 
 def formulas(found: NormalForms, system: System) -> Iterator[tuple[str, Formula]]:

@@ -1,34 +1,33 @@
-"""Problem 9, polynomial integrals: what results.json and the terminal show of it."""
+"""Problem 9, polynomial integrals: what results.json and reports show of it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from mbsym.model.system import System
 from mbsym.problems.polynomial_integrals import Polynomials
-from mbsym.problems.symmetries import Symmetry
-from mbsym.report.content import Block, Display, Heading, Notation, Relation, Said, Words, ragged, say
+from mbsym.report.content import Block, Display, Heading, Inline, Notation, Relation, Said, Words, ragged, say
 from mbsym.report.documents import integrals
 from mbsym.report.documents.results import polynomial_integrals as doc
-from mbsym.report.plain import LONGEST, Write
-from mbsym.report.plain_writer import TERMINAL
+from mbsym.report.plain import Write
 from mbsym.report.symmetries_json import symmetries_data
 from mbsym.report.words import symmetry_words
 from mbsym.report.words.integrals_words import (
     LEVEL,
     LISTED,
+    NOT_UNIFORM,
     OPENING,
+    UNIFORM,
     level_title,
     sentences,
     title,
     weighted,
-    weights_text,
 )
 
 if TYPE_CHECKING:
-    from mbsym.analysis import Analysis
     from mbsym.formulas.formula import Formula
+    from mbsym.problems.polynomial_integrals import PolynomialIntegrals
     from mbsym.problems.symmetries import Symmetries
     from mbsym.report.results import Results
 
@@ -77,11 +76,7 @@ def content(results: Results) -> Iterator[Block]:
         return
     result: Polynomials = results.found[9]
     found = result.found
-    weights = weighted(result.variables, found.grading.weights)
-    yield ragged(say(OPENING, degree=str(found.degree), weights=weights))
-    for one, formula in zip(found.generators, result.formulas, strict=True):
-        yield ragged(say(LISTED, weight=str(one.weight), name=Words(title(one))))
-        yield _constant(formula)
+    yield from listed(found, result.variables, result.formulas)
     for level, formulas in zip(result.levels, result.on_levels, strict=True):
         zero, name = level.level, Words(title(level.level))
         for (weight, _), formula in zip(level.integrals, formulas, strict=True):
@@ -89,10 +84,21 @@ def content(results: Results) -> Iterator[Block]:
             yield _constant(formula)
     yield from map(ragged, sentences(found))
     if result.symmetries is not None:
-        yield from _symmetries(result.symmetries)
+        yield from of_symmetries(result.symmetries)
 
 
-def _symmetries(found: Symmetries) -> Iterator[Block]:
+def listed(found: PolynomialIntegrals, variables: Sequence[Inline], formulas: Sequence[Formula]) -> Iterator[Block]:
+    """What is looked for, and each integral."""
+    yield ragged(
+        say(OPENING, degree=str(found.degree), weights=weighted(variables, found.grading.weights)),
+        Said(UNIFORM if found.grading.homogeneous else NOT_UNIFORM),
+    )
+    for one, formula in zip(found.generators, formulas, strict=True):
+        yield ragged(say(LISTED, weight=str(one.weight), name=Words(title(one))))
+        yield _constant(formula)
+
+
+def of_symmetries(found: Symmetries) -> Iterator[Block]:
     """What each gives, with the integral where problem 7 does not list it; what is known of the list."""
     yield ragged(Said(symmetry_words.OPENING))
     for one in found.symmetries:
@@ -104,31 +110,6 @@ def _symmetries(found: Symmetries) -> Iterator[Block]:
 
 def _constant(formula: Formula) -> Display:
     return Display(Relation(formula, "=", Notation("\\mathrm{const}")))
-
-
-def lines(result: Polynomials, analysis: Analysis) -> Iterator[str]:
-    """The lines in the terminal."""
-    found, write = result.found, TERMINAL.inline
-    weights = weights_text(found.field.variables, found.grading.weights)
-    yield f"up to weighted degree {found.degree}; weights {weights}"
-    for one, formula in zip(found.generators, result.formulas, strict=True):
-        if one.is_new:
-            yield f"{title(one)} of weight {one.weight}: {write(formula)}"
-    for level, formulas in zip(result.levels, result.on_levels, strict=True):
-        for (weight, _), formula in zip(level.integrals, formulas, strict=True):
-            yield f"{level_title(weight, level)}: {write(formula)}"
-    yield from map(TERMINAL.said, sentences(found))
-    if result.symmetries is not None:
-        yield TERMINAL.said(Said(symmetry_words.OPENING))
-        for symmetry in result.symmetries.symmetries:
-            said = TERMINAL.said(symmetry_words.gives(symmetry, _field(symmetry)))
-            yield said if symmetry.name else f"{said} {write(symmetry.integral)}"
-        yield from map(TERMINAL.said, symmetry_words.sentences(result.symmetries))
-
-
-def _field(one: Symmetry) -> str:
-    text = symmetry_words.field_text(one)
-    return text if len(text) <= LONGEST else "(see the reports)"
 
 
 def formulas(found: Polynomials, system: System) -> Iterator[tuple[str, Formula]]:

@@ -1,4 +1,4 @@
-"""Problem 12, small parameters: what results.json and the terminal show of it."""
+"""Problem 12, small parameters: what results.json and reports show of it."""
 
 from __future__ import annotations
 
@@ -12,15 +12,17 @@ from mbsym.report.documents.results import small_parameters as doc
 from mbsym.report.expansion_json import expansion_data, measured_data
 from mbsym.report.oscillation_json import oscillation_data
 from mbsym.report.plain import Write
-from mbsym.report.plain_writer import TERMINAL
 from mbsym.report.words import oscillation_words
 from mbsym.report.words.expansion_measured import JudgedAverage, averages, flow_measured, oscillation_measured
 from mbsym.report.words.expansion_words import coefficients, of_averaging, of_measured, of_none, opening, sentences
 
 if TYPE_CHECKING:
-    from mbsym.analysis import Analysis
+    from mbsym.analysis.expanding import Expansion
+    from mbsym.analysis.oscillating import Oscillating
     from mbsym.formulas.formula import Formula
     from mbsym.report.results import Results
+    from mbsym.simulation.expanded import Measured
+    from mbsym.simulation.oscillating import MeasuredOrders
 
 
 def data(found: SmallParameters, system: System, write: Write) -> doc.SmallParameters:
@@ -74,30 +76,32 @@ def told(found: SmallParameters, system: System) -> Iterator[Paragraph | Display
     """Sentences, and coefficients where they stand between them."""
     yield from map(ragged, of_none(found))
     if found.slow is not None:
-        yield from map(ragged, opening(found.slow))
-        yield from (Display(x.equation) for x in coefficients(found.slow))
-        yield from map(ragged, sentences(found.slow))
-        yield from map(ragged, of_measured(found.small, flow_measured(found, system)))
-    yield from _wave(found, system)
+        yield from of_slow(found.slow, flow_measured(found, system))
+    if found.oscillation is not None:
+        yield from of_wave(found.oscillation, oscillation_measured(found, system))
+    elif found.small:
+        yield from map(ragged, oscillation_words.of_no_oscillation(found.small, found.no_oscillation))
     for one in averages(found, system):
         yield from map(ragged, of_averaging(one))
 
 
-def _wave(found: SmallParameters, system: System) -> Iterator[Paragraph | Display]:
-    """The periodic solution."""
-    told = found.oscillation
-    if told is not None:
-        yield from map(ragged, oscillation_words.opening(told))
-        yield from (Display(x.equation) for x in oscillation_words.coefficients(told))
-        yield from map(ragged, oscillation_words.sentences(told))
-        yield from map(ragged, oscillation_words.measured_sentences(told, oscillation_measured(found, system)))
-    elif found.small:
-        yield from map(ragged, oscillation_words.of_no_oscillation(found.small, found.no_oscillation))
+def of_slow(found: Expansion, measured: Measured | str) -> Iterator[Paragraph | Display]:
+    """The slow manifold, the flow on it, and its error."""
+    yield from map(ragged, opening(found))
+    yield from (Display(x.equation) for x in coefficients(found))
+    yield from map(ragged, sentences(found))
+    yield from map(ragged, of_measured(found.manifold.field.small, measured))
 
 
-def lines(found: SmallParameters, analysis: Analysis) -> Iterator[str]:
-    """The lines in the terminal."""
-    return map(TERMINAL.line, told(found, analysis.system))
+def of_wave(found: Oscillating, measured: MeasuredOrders | str) -> Iterator[Paragraph | Display]:
+    """The periodic solution, variables that follow from it, and its error."""
+    yield from map(ragged, oscillation_words.opening(found))
+    yield from (Display(x.equation) for x in oscillation_words.coefficients(found))
+    if found.found.drifts:
+        yield ragged(Said(oscillation_words.DRIFTS))
+        yield from map(Display, oscillation_words.drifting(found))
+    yield from map(ragged, oscillation_words.sentences(found))
+    yield from map(ragged, oscillation_words.measured_sentences(found, measured))
 
 
 def formulas(found: SmallParameters, system: System) -> Iterator[tuple[str, Formula]]:

@@ -1,4 +1,4 @@
-"""Problem 8, stabilisation: what results.json and the terminal show of it."""
+"""Problem 8, stabilisation: what results.json and reports show of it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from mbsym.report.content import (
     Block,
     Display,
     Heading,
-    Listed,
     Relation,
     Rows,
     Said,
@@ -26,12 +25,10 @@ from mbsym.report.content import (
 )
 from mbsym.report.documents.results import stabilisation as doc
 from mbsym.report.plain import Write
-from mbsym.report.plain_writer import TERMINAL
 from mbsym.report.sections.stability import verdict_data
 from mbsym.report.words.stabilisation_words import FEEDBACK, LYAPUNOV, sentences
 
 if TYPE_CHECKING:
-    from mbsym.analysis import Analysis
     from mbsym.report.results import Results
 
 
@@ -154,14 +151,3 @@ def content(results: Results) -> Iterator[Block]:
 
 def _rows(numbers: Sequence[Sequence[Fraction]]) -> Rows:
     return Rows(tuple(tuple(map(exact, row)) for row in numbers))
-
-
-def lines(found: Stabilisation, analysis: Analysis) -> Iterator[str]:
-    """The lines in the terminal."""
-    yield from map(TERMINAL.said, sentences(found))
-    if found.feedback is not None:
-        yield TERMINAL.said(Said(FEEDBACK))
-        for name, row in zip(analysis.system.input_names, found.feedback.gains, strict=True):
-            yield f"  k of {name}: {TERMINAL.inline(Listed(tuple(map(exact, row)), brackets=True))}"
-        if found.feedback.lyapunov is not None:
-            yield TERMINAL.said(Said(LYAPUNOV))

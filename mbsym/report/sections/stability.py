@@ -1,4 +1,4 @@
-"""Problem 6, stability: what results.json and the terminal show of it."""
+"""Problem 6, stability: what results.json and reports show of it."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from msgspec import UNSET, UnsetType
 from msgspec.structs import asdict
 
-from mbsym.expressions.counting import counted
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import names
 from mbsym.formulas.names import free_name
 from mbsym.mechanics.variables import expressions
@@ -21,10 +21,9 @@ from mbsym.problems.stability import Stability
 from mbsym.problems.stability.linear_form import CONSERVATIVE
 from mbsym.problems.stability.problem import SubsystemStability
 from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.requirements import Method, Place
-from mbsym.problems.stability.sentences import sentence, with_theorem
-from mbsym.problems.stability.spectrum import RootNumbers, Spectrum, numbers
-from mbsym.problems.stability.symbolic import Theory
+from mbsym.problems.stability.requirements import OF_FACTOR, PART, REVERSED, Place
+from mbsym.problems.stability.sentences import sentence
+from mbsym.problems.stability.spectrum import RootNumbers, numbers
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word
 from mbsym.report.conditions import (
@@ -34,7 +33,6 @@ from mbsym.report.conditions import (
     cases,
     factors,
     label_meanings,
-    provided,
     statements,
 )
 from mbsym.report.content import (
@@ -47,7 +45,7 @@ from mbsym.report.content import (
     Listed,
     Math,
     Notation,
-    Phrase,
+    Number,
     Polynomial,
     Readable,
     Relation,
@@ -63,27 +61,12 @@ from mbsym.report.content import (
 )
 from mbsym.report.documents import parts
 from mbsym.report.documents.results import stability as doc
-from mbsym.report.plain import LONGEST, Write, shortened, statement_text
-from mbsym.report.plain_writer import Writer as PlainWriter
+from mbsym.report.plain import Write
 from mbsym.report.references import keys_of, theorems_named
 from mbsym.report.words.verdicts import concluded, decided, verdict
 
 if TYPE_CHECKING:
-    from mbsym.analysis import Analysis
     from mbsym.report.results import Results
-
-#: A theorem on a subsystem of the first approximation says nothing of its coordinates where others run away: the
-#: nonlinear equations couple them.
-ALONE = "(each of these while the others keep to the unperturbed motion)"
-
-#: What the coordinates of a verdict are; it is told beside every verdict.
-_OF_COORDINATES = (Because.DISPLACEMENTS, Because.OTHER_ANGLES)
-
-#: Whether a drift of coordinates counts, which makes two words for one motion: it is told with the verdict.
-_OF_DRIFTS = (Because.LINEAR_DRIFTS, Because.COASTING)
-
-#: More eigenvalues of a subsystem are left to the files.
-MOST_ROOTS = 10
 
 #: A polynomial that never has the sign it should have is written out up to this length.
 SHORT = 60
@@ -214,16 +197,18 @@ def content(results: Results) -> Iterator[Block]:
             Words(found.numerical.explanation, variable),
         )
         for spectrum in found.spectra:
-            names = named(spectrum.coordinates)
             roots = [part for root in numbers(spectrum) for part in (", ", *_root(root))][1:]
             unit = rate_unit(results.system)
             yield paragraph(
-                say("Eigenvalues there, in physical time, of $[[names]]$", names=names),
+                say("Eigenvalues there, in physical time, of $[[names]]$", names=named(spectrum.coordinates)),
                 ": ",
                 *roots,
                 *((" ", Unit(unit)) if unit else ()),
                 ".",
             )
+    elif lacking := _without_numbers(results):
+        text = "At the given values of the parameters nothing is said of stability: $[[names]]$ have none."
+        yield paragraph(say(text, names=named(lacking)))
     theorems = [(name, keys_of(name)) for name in dict.fromkeys(theorems_named(found))]
     cited = tuple((Words(name), keys) for name, keys in theorems if keys)
     if cited:
@@ -278,8 +263,19 @@ def _conserved(results: Results) -> bool:
 
 def _verdict_told(found: Verdict, variable: str) -> tuple[Inline, ...]:
     if found.word is Word.DEPENDS:
-        return *concluded(found.word, ()), "; ", Said("see the cases.")
+        others = [sentence(one) for one in found.reasons if one.code is not Because.SEE_CASES]
+        said = (" ", Words(" ".join(others), variable)) if others else ()
+        return *concluded(found.word, ()), "; ", Said("see the cases."), *said
     return *verdict(found), ". ", Words(found.explanation, variable)
+
+
+def _without_numbers(results: Results) -> list[str]:
+    """The parameters that have no value, where others have one."""
+    system, motion = results.system, results.analysis.optional("equilibrium")
+    known = {one.name for one in system.relations} | {name for name, _ in (() if motion is None else motion.solved)}
+    lacking = [one.name for one in system.parameters if one.value is None and one.name not in known]
+    used = {name for x in expressions(system) for name in names(x)} if lacking else set()
+    return [name for name in lacking if name in used] if any(x.value is not None for x in system.parameters) else []
 
 
 def _case_told(case: CaseStatement, first: bool, seen: Shown, variable: str) -> Iterator[Block]:
@@ -327,18 +323,20 @@ def _condition_told(item: Statement, seen: Shown) -> Iterator[Block]:
         yield Display(Relation(label, ":", shown, item.relation, 0), notes=note or remark)
 
 
-def label_of(words: str) -> Math:
+def label_of(label: str) -> Math:
     """v6 as a coefficient's symbol, other labels as words."""
-    opposite = re.fullmatch(r"-\((.*)\)", words)
-    if opposite is not None:
-        return Relation("-", label_of(opposite[1]))
-    bare, comma, rest = words.partition(", ")
-    part: tuple[Inline, ...] = (", ", Words(rest)) if comma else ()
-    match = re.fullmatch(r"([av])(\d+)( of factor (\d+))?", bare)
+    gaps = label.gaps if isinstance(label, Message) else {}
+    made = label.text if isinstance(label, Message) else ""
+    if made == REVERSED:
+        return Relation("-", label_of(gaps["label"]))
+    if made == PART:
+        whole, part = label_of(gaps["label"]), (", ", Words(gaps["part"]))
+        return Text(*whole.parts, *part) if isinstance(whole, Text) else Relation(whole, Text(*part))
+    of_factor = made == OF_FACTOR
+    match = re.fullmatch(r"([av])(\d+)", gaps["label"] if of_factor else label)
     if match is None:
-        return Text(Words(bare), *part)
-    symbol = Symbol(match[1], match[2], f"({match[4]})" if match[4] else "")
-    return Relation(symbol, Text(*part)) if part else symbol
+        return Text(Words(label))
+    return Symbol(match[1], match[2], f"({gaps['number']})" if of_factor else "")
 
 
 def _root(root: RootNumbers) -> tuple[Inline, ...]:
@@ -349,116 +347,6 @@ def _root(root: RootNumbers) -> tuple[Inline, ...]:
     return Relation(*real, *imaginary), *times
 
 
-def _number(value: float) -> Notation:
+def _number(value: float) -> Number:
     """Six digits."""
-    digits, _, exponent = f"{value:.6g}".partition("e")
-    return Notation(f"{digits} \\cdot 10^{{{int(exponent)}}}" if exponent else digits)
-
-
-# --- the terminal -----------------------------------------------------------------------------------------------------
-
-
-def lines(found: Stability, analysis: Analysis) -> Iterator[str]:
-    """The lines in the terminal."""
-    presumed = provided(found.presumed, bool(analysis.system.inputs))
-    for part in found.subsystems:
-        # Of a motion that is proved to be stable, conditions of something stronger would be misread.
-        items = [] if part.theory.verdict.stable else list(statements(part.ring, part.theory.requirements))
-        verdict = _verdict(part.theory.verdict)
-        if part.theory.verdict.word in (Word.DEPENDS, Word.UNSTABLE_BUT_BORDERS) and items:
-            verdict += f"; {PlainWriter().inline(kind_of_conditions(part.theory, items))}:"
-        yield f"{', '.join(part.coordinates)}: {verdict}"
-        shown = Shown()
-        for item in items:
-            if item.told is None and item.formula is not None and len(statement_text(item)) <= LONGEST:
-                shown.show(item)
-        for item in items:
-            yield f"  {_condition(item, shown)}"
-        yield from _of_drifts(part.theory.verdict)
-    verdicts = [x for part in found.subsystems for x in (part.theory.verdict, *(y.verdict for y in part.theory.cases))]
-    for one in dict.fromkeys(reason for x in verdicts for reason in x.reasons if reason.code in _OF_COORDINATES):
-        yield _clause(sentence(one))
-    if len(found.subsystems) > 1:
-        yield ALONE
-        yield f"whole system: {_verdict(found.verdict)}"
-    if presumed:
-        yield f"all this {presumed}"
-    if found.numerical is not None:
-        why = found.numerical.explanation if found.numerical.word is Word.UNDECIDED else ""
-        yield f"at the given values: {_verdict(found.numerical)}" + (f": {_clause(why)}" if why else "")
-        if not any(part.theory.verdict.reasons == found.numerical.reasons for part in found.subsystems):
-            yield from _of_drifts(found.numerical)
-    elif lacking := _without_numbers(analysis):
-        yield f"at the given values: nothing, {', '.join(lacking)} {'has' if len(lacking) == 1 else 'have'} none"
-    for spectrum in found.spectra:
-        yield f"eigenvalues there ({', '.join(spectrum.coordinates)}): {_roots(spectrum)}"
-
-
-def _of_drifts(verdict: Verdict) -> Iterator[str]:
-    return (f"  {_clause(sentence(one))}" for one in verdict.reasons if one.code in _OF_DRIFTS)
-
-
-def _without_numbers(analysis: Analysis) -> list[str]:
-    """The parameters that have no value, where others have one."""
-    system = analysis.system
-    motion = analysis.optional("equilibrium")
-    known = {one.name for one in system.relations} | {name for name, _ in (() if motion is None else motion.solved)}
-    lacking = [one.name for one in system.parameters if one.value is None and one.name not in known]
-    used = {name for x in expressions(system) for name in names(x)} if lacking else set()
-    return [name for name in lacking if name in used] if any(x.value is not None for x in system.parameters) else []
-
-
-def _roots(spectrum: Spectrum) -> str:
-    listed = [root_text(x) for x in numbers(spectrum)]
-    more = len(listed) - MOST_ROOTS
-    return ", ".join(listed[:MOST_ROOTS]) + (f" and {more} more" if more > 0 else "")
-
-
-def root_text(root: RootNumbers) -> str:
-    """``-0.1 +- 2.3i (twice)``."""
-    real = f"{root.real:.6g}"
-    text = real if not root.imaginary else f"+-{root.imaginary:.6g}i"
-    if root.imaginary and root.real:
-        text = f"{real} +- {root.imaginary:.6g}i"
-    times = {1: "", 2: " (twice)"}.get(root.multiplicity, f" ({root.multiplicity} times)")
-    return text + times
-
-
-def _condition(item: Statement, shown: Shown) -> str:
-    """A condition as long as it can be read; in coefficients only where each of these stands in the terminal, too."""
-    if item.formula is None and item.never is None:
-        return f"a condition is {item.note}"
-    if item.never is not None:
-        value = str(item.never)
-        left = f"{item.label} = {value}" if len(value) <= LONGEST else item.label
-        return f"{left} {item.relation} 0 {item.note}"
-    remark = f" ({item.remark})" if item.remark else ""
-    if item.told is not None and item.formula is not None and not shown.unshown(item.told):
-        length = counted(item.formula.terms, "term")
-        return f"{item.label}: {item.told.formula} {item.relation} 0 (written out {length}){remark}"
-    return f"{item.label}: {shortened(statement_text(item), 0 if item.formula is None else item.formula.terms)}{remark}"
-
-
-def kind_of_conditions(theory: Theory, items: Sequence[Statement]) -> Inline:
-    """What the listed conditions are; some may say themselves what they are needed for."""
-    if theory.method is Method.EVEN and not theory.potential:
-        if any(item.remark for item in items):
-            return Said("conditions, necessary but for the case of equality where nothing else is said")
-        return Said("necessary conditions, but for the case of equality")
-    always = next((case.verdict for case in theory.cases if case.always), None)
-    if always is not None and always.stable:
-        text = "[[verdict]] in any case, asymptotically stable under these conditions"
-        return say(text, verdict=Phrase(concluded(always.word, always.theorems)))
-    if theory.method is Method.HURWITZ:  # a motion may be stable without them: where friction is zero, say
-        return say("conditions ([[wanted]])", wanted=Words(theory.wanted))
-    return Said("conditions")
-
-
-def _verdict(verdict: Verdict) -> str:
-    return with_theorem(verdict.word, verdict.theorem)
-
-
-def _clause(sentence: str) -> str:
-    """A sentence as the end of another one; the name of a matrix keeps its capital."""
-    first = sentence.split(" ")[0]
-    return (sentence if len(first) == 1 and first != "A" else sentence[:1].lower() + sentence[1:]).rstrip(".")
+    return Number(f"{value:.6g}")

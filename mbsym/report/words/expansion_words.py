@@ -249,10 +249,10 @@ def _of_averaged_motion(one: Averaging) -> Iterator[Said]:
     assert one.analysis is not None
     stage = one.analysis.stage(6)
     if stage.value is None:
-        yield say(
-            "Of the stability of the averaged motion there is no result: [[why]].",
-            why=Words("" if stage.failure is None else stage.failure.reason),
-        )
+        assert stage.failure is not None
+        hint = (" (", Words(stage.failure.hint), ")") if stage.failure.hint else ()
+        why = Phrase((Words(stage.failure.reason), *hint))
+        yield say("Of the stability of the averaged motion there is no result: [[why]].", why=why)
         return
     found: Stability = stage.value
     equilibrium = one.analysis.equilibrium

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import zip_longest
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.tower import Element
@@ -10,7 +11,20 @@ from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula
 from mbsym.problems.small_parameter.harmonics import Harmonics
 from mbsym.problems.small_parameter.oscillation_result import Amplitude
-from mbsym.report.content import Gaps, Name, Phrase, Relation, Said, Words, named, say
+from mbsym.report.content import (
+    Gaps,
+    Listed,
+    Math,
+    Name,
+    Notation,
+    Phrase,
+    Raised,
+    Relation,
+    Said,
+    Words,
+    named,
+    say,
+)
 from mbsym.report.words.expansion_measured import SLACK
 from mbsym.report.words.expansion_words import Coefficient, scaled
 
@@ -18,12 +32,10 @@ if TYPE_CHECKING:
     from mbsym.analysis.oscillating import Oscillating
     from mbsym.simulation.oscillating import MeasuredOrders
 
-SOLUTION = "Periodic solution up to order [[order]] of [[small]], led by [[leading]]"
-RATE = "The rate of the phase"
 FIGURE = "[[system]]: series to order [[order]] at [[small]] = [[value]], and the motion"
 NO_ANGLES = "(no angles: [[why]])"
 SERIES_LINE, MOTION_LINE = "series", "motion (simulation)"
-DRIFTS = "Variables that no equation needs, but for their initial values"
+DRIFTS = "Variables that no equation needs follow by integration, but for their initial values ($t$: the time):"
 
 _SERIES = (
     "Periodic solution up to order [[order]] of [[small]], led by [[leading]]: all variables as functions of "
@@ -77,7 +89,6 @@ _ZERO = "Without [[small]], [[names]] have the root zero: free displacements and
 _NOT_KNOWN = (
     "Without [[small]], not all roots of [[names]] were found: free motions that belong to the others are left out."
 )
-_ASIDE = "[[names]], on which no equation depends, follow by quadrature: see mbsym oscillations."
 _MEASURED = (
     "Measured at the given numbers, over one period, against motions that begin in the same state: with [[small]] "
     "halved from [[from]] to [[to]] the errors fall like its powers [[orders]] (not proved)."
@@ -111,8 +122,22 @@ def coefficients(told: Oscillating) -> Iterator[Coefficient]:
             yield Coefficient(told.phase, True, order, told.formula(found.frequency * x))
 
 
-def sentences(told: Oscillating, drifts: bool = False) -> Iterator[Said]:
-    """What kind of solution it is, what was checked and where it holds; ``drifts``: they are shown."""
+def drifting(told: Oscillating) -> Iterator[Relation]:
+    """Coefficients of variables that follow by integration: a rate times t, and what is periodic."""
+    for one in told.found.drifts:
+        plain = without_velocity(one.variable) if one.variable in told.velocities else one.variable
+        for order, (rate, wave) in enumerate(zip_longest(one.rates, one.waves)):
+            parts: list[Math | str] = []
+            if rate is not None and not rate.is_zero():
+                parts += [Notation("t"), Listed((told.formula(rate),), brackets=True)]
+            if wave is not None and not wave.is_zero:
+                parts += [*(["+"] if parts else []), told.wave(wave)]
+            if parts:
+                yield Relation(Raised(Name(plain, int(plain != one.variable)), order), "=", *parts)
+
+
+def sentences(told: Oscillating) -> Iterator[Said]:
+    """What kind of solution it is, what was checked and where it holds."""
     found, values = told.found, _values(told)
     if found.kind is Amplitude.FREE:
         yield say(_FREE, **values, amplitude=told.formula(found.amplitude), sine=_wave(told, False))
@@ -149,8 +174,6 @@ def sentences(told: Oscillating, drifts: bool = False) -> Iterator[Said]:
     for sentence, groups in ((_DAMPED, found.damped), (_ZERO, found.with_zero), (_NOT_KNOWN, found.not_known)):
         for group in groups:
             yield Said(sentence, values | {"names": named(group)})
-    if found.drifts and not drifts:
-        yield say(_ASIDE, names=named(one.variable for one in found.drifts))
 
 
 def _values(told: Oscillating) -> Gaps:

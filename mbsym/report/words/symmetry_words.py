@@ -18,8 +18,6 @@ DEPENDS = "The field [[field]] gives no further integral ([[name]]; verified at 
 GIVES = "The field [[field]] gives a further integral, no function of those known without it (proved):"
 OPEN = "The field [[field]] gives an integral of which it is undecided whether it is a function of those of problem 7:"
 
-HEADING = "Symmetries with fields of degree one in the positions and $\\Gamma$ of degree two, both free of the time"
-
 
 def field_text(one: Symmetry) -> str:
     """``x: -y, y: x; time: 1; Gamma = b*y``."""
@@ -47,22 +45,6 @@ def gives(one: Symmetry, field: Inline | Sequence[Inline]) -> Said:
     return say(GIVES if one.is_new else OPEN, field=field)
 
 
-def title(one: Symmetry) -> str:
-    """What its integral is called."""
-    if one.name:
-        return one.name
-    return "new: no function of those known without it (proved)" if one.is_new else "integral"
-
-
-def second_route(one: Symmetry) -> str:
-    """How dI/dt = 0 is known besides the identity."""
-    return {
-        Certainty.PROVED: "dI/dt = 0 by substitution of the accelerations, too (proved)",
-        Certainty.VERIFIED: "dI/dt = 0 at random states, too (verified exactly there)",
-        Certainty.UNDECIDED: "dI/dt by substitution was not decided within the budget",
-    }[one.substituted]
-
-
 def sentences(found: Symmetries) -> Iterator[Said]:
     """What is known of the list as a whole."""
     proof = say(_COMPARED if found.compared else _BY_RANK, unknowns=str(found.unknowns))
@@ -72,9 +54,19 @@ def sentences(found: Symmetries) -> Iterator[Said]:
         yield Said("None was found; that there is none is not proved.")
     else:
         yield Said("Each of them is an identity of the exact ring (proved).")
+        for certainty, text in _SUBSTITUTED.items():
+            count = sum(one.substituted is certainty for one in found.symmetries)
+            if count:
+                yield say(text, count=str(count))
         yield say(_NO_OTHER[found.symbols], proof=proof) if found.complete else Said(_MAYBE_OTHERS)
 
 
+#: How dI/dt = 0 is known besides the identity.
+_SUBSTITUTED = {
+    Certainty.PROVED: "$\\dot I = 0$ by substitution of the accelerations, too (proved), of integrals: [[count]].",
+    Certainty.VERIFIED: "$\\dot I = 0$ at random states, too (verified exactly there), of integrals: [[count]].",
+    Certainty.UNDECIDED: "Integrals of which $\\dot I$ was not decided by substitution within the budget: [[count]].",
+}
 #: Whether some parameters have no numbers.
 _NONE = {
     False: "There is none of this kind ([[proof]]).",

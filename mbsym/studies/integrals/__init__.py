@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from mbsym.maps.axis import Axis
 from mbsym.studies.request import Flag, Named, Number, Numbers, Range, Whole
-from mbsym.studies.study import Answer, Asked, Exit, Line, NotFit, Refusal, Study, Unfit, Watch, heading, line
+from mbsym.studies.study import Answer, Asked, Exit, Line, NotFit, Refusal, Study, Unfit, Watch, heading, line, told
 
 if TYPE_CHECKING:
     from mbsym.analysis.invariant_relations import InvariantRelations
@@ -140,25 +140,19 @@ def _unfit(there: Setting, request: Request) -> Iterator[Unfit]:
 
 
 def answer(asked: Asked, request: Request, found: Found) -> Answer:
-    return Answer(_lines(found), code=Exit.OK if found.integrals.complete else Exit.FAILED)
+    return Answer(_lines(found, asked.system), code=Exit.OK if found.integrals.complete else Exit.FAILED)
 
 
-def _lines(found: Found) -> Iterator[Line]:
-    """The table of integrals, what is known of it as a whole, and what is there besides."""
-    from mbsym.report.content import say
-    from mbsym.report.plain_writer import Writer
-    from mbsym.report.words.integrals_words import HEADING, sentences, title, weights_text
+def _lines(found: Found, system: System) -> Iterator[Line]:
+    """The integrals, what is known of them as a whole, and what is there besides."""
+    from mbsym.report.content import ragged
+    from mbsym.report.sections.polynomial_integrals import listed
+    from mbsym.report.words.integrals_words import sentences
 
     there, integrals = found.there, found.integrals
-    uniform = "quasi-homogeneous" if integrals.grading.homogeneous else "not quasi-homogeneous"
-    weights = weights_text(integrals.field.variables, integrals.grading.weights)
-    yield line(f"  weights {weights}; the equations are {uniform} under them")
-    yield heading(Writer().said(say(HEADING, degree=str(integrals.degree))))
-    for one in integrals.generators:
-        yield line(f"    weight {one.weight}  ", (title(one), "bold" if one.is_new else ""))
-        yield line(f"      {there.formula(one.polynomial)}", whole=True)
-    for said in map(Writer().said, sentences(integrals)):
-        yield line(f"    {said}")
+    formulas = [there.formula(one.polynomial) for one in integrals.generators]
+    yield from told(listed(integrals, integrals.field.variables, formulas), system)
+    yield from told(map(ragged, sentences(integrals)), system)
     for head, texts in _sections(found):
         yield heading(head)
         for text in texts:

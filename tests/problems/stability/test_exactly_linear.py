@@ -10,11 +10,11 @@ from fractions import Fraction
 from random import Random
 
 import pytest
+from terminal import told
 
 import mbsym
 from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.word import Word
-from mbsym.report.summary import summary
 from mbsym.report.targets import TARGETS
 
 # --- rational matrices, as lists of rows ---
@@ -422,7 +422,7 @@ def test_one_motion_in_two_descriptions_is_told_alike() -> None:
     assert "with them counted the motion is unstable" in free.stability.verdict.explanation
     assert "but for that drift the motion is stable" in given.stability.verdict.explanation
     for a, words in ((free, "with them counted the motion is unstable"), (given, "but for that drift the motion is")):
-        assert words in "\n".join(summary(a, (6,), []).problems[0].lines)
+        assert words in "\n".join(told(a, 6))
         for target in ("html", "latex"):
             assert words in " ".join(TARGETS[target].render(a, (6,)).split())
 
