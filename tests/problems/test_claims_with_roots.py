@@ -4,7 +4,8 @@ By hand: w < sqrt(k/m) is m w^2 < k for positive numbers.  Thomson and Tait's pa
 y'' - g x' - k2 y = 0, has (g^2 - k1 - k2)^2 > 4 k1 k2 with g^2 > k1 + k2, that is g > sqrt(k1) + sqrt(k2), for simple
 imaginary roots; with equality they are double and growing like t.  Ziegler's column without damping flutters from
 P l = (7/2 - sqrt(2)) k on (Ziegler 1952): 4 x^2 - 28 x + 41 = 0 and 2 x < 7.  A shaft with inner damping ci and outer
-damping ce whirls beyond w = (1 + ce/ci) sqrt(k/m), and does not where neither acts.
+damping ce whirls beyond w = (1 + ce/ci) sqrt(k/m), and does not where neither acts; with
+inner damping alone, turning to either side, beyond |w| = sqrt(k/m).
 """
 
 from __future__ import annotations
@@ -65,6 +66,9 @@ loads:
   - generalized force: {x: -ce*(x_dot - w*y), y: -ce*(y_dot + w*x)}
 motion: {}
 """
+FRAME = SHAFT.replace("ci: nonnegative, ce: nonnegative, w: positive", "ci: positive, w: real").replace(
+    "  - generalized force: {x: -ce*(x_dot - w*y), y: -ce*(y_dot + w*x)}\n", ""
+)
 TRUE = [
     (POINT, "w < sqrt(k/m)", "necessary", EXACT),
     (POINT, "w < sqrt(k/m)", "sufficient", EXACT),
@@ -78,9 +82,15 @@ TRUE = [
     (HILL, "g > sqrt(k1 + k2)", "necessary", EXACT),
     (ZIEGLER, "P*l/k <= 7/2 - sqrt(2)", "necessary", EXACT),
     (ZIEGLER, "P*l/k < 7/2 - sqrt(2)", "necessary", BORDERS),
+    (FRAME, "w > -sqrt(k/m)", "necessary", BORDERS),
+    (FRAME, "w >= -sqrt(k/m)", "necessary", EXACT),
+    (FRAME, "w <= sqrt(k/m)", "necessary", EXACT),
     (SHAFT, "ci*w*sqrt(m/k) < ci + ce", "necessary", BORDERS),
 ]
 FALSE = [
+    (FRAME, "w < sqrt(k/m)", "sufficient"),
+    (FRAME, "w < sqrt(k/m)/2", "necessary"),
+    (FRAME, "w > -sqrt(k/m)/2", "necessary"),
     (POINT, "w <= sqrt(k/m)", "sufficient"),
     (POINT, "w < sqrt(k/m)/2", "necessary"),
     (POINT, "w < 2*sqrt(k/m)", "sufficient"),

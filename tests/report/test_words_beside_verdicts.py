@@ -355,3 +355,20 @@ def test_zero_roots_are_not_said_to_be_negative() -> None:
     assert "but the zero ones" in field.theory.wanted
     free = mbsym.loads(TWO.replace("LOAD", "potential: k*(x**2 + y**2)/2")).stability.subsystems[0]
     assert "zero" not in free.theory.wanted
+
+
+def test_a_heavy_top_that_is_judged_in_other_angles_is_conservative() -> None:
+    """Of A = B the first approximation is steady in these angles, of A != B in others, where it is judged: the energy
+    is constant in both."""
+    top = """
+mbsym: 1
+name: top
+parameters: {A: positive, B: positive, C: positive, P: positive, n: positive}
+bodies:
+  - {name: top, mass: 0, rotation: {axes: [1, 2, 3], angles: [a, b, c]}, inertia about: joint, inertia: [A, B, C]}
+loads:
+  - potential: P*cos(a)*cos(b)
+motion: {c: {value: 0, rate: n}}
+"""
+    for text in (top, top.replace("[A, B, C]", "[A, A, C]")):
+        assert not any("in first approximation" in heading for heading in headings_of(text))

@@ -12,7 +12,6 @@ from mbsym.analysis.judge import Judge
 from mbsym.problems.normal_forms import Outcome, Why
 from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.word import Word
-from mbsym.report.language import Language
 from mbsym.report.words.normal_form_words import REASONS
 
 #: U = -x^2/2 - x^4/(b - 4): its first approximation knows nothing of the pole.
@@ -42,8 +41,9 @@ def test_at_a_pole_of_the_description_there_is_no_verdict(b, judged):
         assert any(f"At the given values of the parameters: undecided. {why}" in line for line in told(found, 6))
         assert REASONS[Why.POLE] in told(found, 11)
         for name in ("ru", "es"):
-            assert "b - 4" in Language(name).say(why)
-            assert Language(name).say(why) != why
+            lines = [line for line in told(found, 6, name) if "b - 4" in line]
+            assert lines
+            assert not any("divides by" in line for line in lines)
 
 
 def test_a_pole_of_what_is_derived_is_none_of_the_description():

@@ -117,8 +117,9 @@ def _necessary(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimResu
 
 def _need(region: Region, claim: Claim) -> Need:
     wanted, pieces = wanted_of(region, claim), pieces_of(region, claim)
-    closed = replace(wanted, relation=">=") if wanted.relation == ">" else wanted
-    edges = [replace(x, relation=">=") if x.relation == ">" else x for x in pieces]
+    closed = _closed(wanted)
+    rows = region.without_roots(_as_printed(region, claim))
+    edges = [tuple(map(_closed, row)) for row in rows]
     what, _ = _found_among(region, wanted, ("sufficient",))
     everywhere = beyond = but_borders = False
     exponential: tuple[str, ...] | None = None
@@ -126,7 +127,7 @@ def _need(region: Region, claim: Claim) -> Need:
     for bodies in (False, True):
         if bodies and region.signs_of_bodies is region.signs:
             continue
-        without = _unstable_without(region, pieces, bodies)
+        without = _unstable_without(region, rows, bodies)
         everywhere = without is Word.UNSTABLE
         but_borders = but_borders or without is Word.UNSTABLE_BUT_BORDERS
         beyond = everywhere or (
@@ -135,7 +136,7 @@ def _need(region: Region, claim: Claim) -> Need:
             and not is_certain(region.signs_of_bodies, closed)  # else there is nothing beyond
         )
         if not everywhere and (beyond or wanted.relation == "!="):
-            everywhere = region.on_border(pieces[-1], edges[:-1]).word is Word.UNSTABLE
+            everywhere = region.on_border(pieces[-1], list(map(_closed, pieces[:-1]))).word is Word.UNSTABLE
         exponential = region.exponential(wanted, bodies) if exponential is None else exponential
         bodies_used = bodies
         if everywhere or beyond or exponential is not None:
@@ -146,10 +147,19 @@ def _need(region: Region, claim: Claim) -> Need:
     return Need(everywhere, beyond, but_borders, because, exponential, "" if everywhere or beyond else note)
 
 
-def _unstable_without(region: Region, pieces: Sequence[Inequality], bodies: bool) -> Word:
-    """What the motion is where one of these does not hold, if it is unstable."""
-    open_ones = [one for one in pieces if len(pieces) == 1 or not is_certain(region.signs, one)]
-    words = [region.without(one, bodies).word for one in open_ones]
+def _closed(wanted: Inequality) -> Inequality:
+    return replace(wanted, relation=">=") if wanted.relation == ">" else wanted
+
+
+def _unstable_without(region: Region, rows: Sequence[Sequence[Inequality]], bodies: bool) -> Word:
+    """What the motion is where nothing of one of these rows holds, if it is unstable."""
+    open_ones = [row for row in rows if len(rows) == 1 or not any(is_certain(region.signs, one) for one in row)]
+    words = [
+        region.without(row[0], bodies).word
+        if len(row) == 1
+        else region.verdict([one.negated() for one in row], bodies).word
+        for row in open_ones
+    ]
     worst = (Word.UNSTABLE, Word.UNSTABLE_BUT_BORDERS)
     return max(words, key=worst.index) if all(word in worst for word in words) else Word.DEPENDS
 
@@ -227,8 +237,13 @@ def wanted_of(region: Region, claim: Claim) -> Inequality:
 
 
 def pieces_of(region: Region, claim: Claim) -> tuple[Inequality, ...]:
-    """The inequalities without roots that hold together where the claimed one does.  Raises NoClosedForm."""
-    return region.without_roots(_as_printed(region, claim))
+    """The inequalities, without roots if some were found, that hold together where the claimed one does.
+
+    Raises NoClosedForm.
+    """
+    printed = _as_printed(region, claim)
+    rows = region.without_roots(printed)
+    return tuple(one for row in rows for one in row) if all(len(row) == 1 for row in rows) else (printed,)
 
 
 def _as_printed(region: Region, claim: Claim) -> Inequality:

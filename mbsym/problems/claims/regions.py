@@ -95,30 +95,37 @@ class Region:
                 numerator = ring.times(numerator, factor)
         return numerator
 
-    def without_roots(self, wanted: Inequality) -> tuple[Inequality, ...]:
-        """Inequalities without roots that hold together where ``wanted`` does; itself where these were not found.
+    def without_roots(self, wanted: Inequality) -> tuple[tuple[Inequality, ...], ...]:
+        """Inequalities without roots, of each row of which one holds where ``wanted`` does; itself if none were found.
 
-        With roots r >= 0: a + b r has the sign of (a + b r)(a - b r) where a - b r is known to be positive, and where b
-        is known not to be positive it is if a and a^2 - b^2 r^2 are.  So g > sqrt(k1) + sqrt(k2) is g^2 > k1 + k2
-        and (g^2 - k1 - k2)^2 > 4 k1 k2, for positive g.
+        With roots r >= 0: a + b r has the sign of (a + b r)(a - b r) where a - b r is known to be positive; for b <= 0
+        it is positive if a and a^2 - b^2 r^2 are, for b >= 0 if a or b^2 r^2 - a^2 is.  So g > sqrt(k1) + sqrt(k2) is
+        g^2 > k1 + k2 and (g^2 - k1 - k2)^2 > 4 k1 k2, for positive g, and w < sqrt(k) is w < 0 or w^2 < k.
         """
-        ring, p, apart = self.derived.ring, wanted.polynomial, list[Inequality]()
+        ring, p, apart = self.derived.ring, wanted.polynomial, list[tuple[Inequality, ...]]()
         if wanted.relation not in (">", ">=") or not self._roots(p):
-            return (wanted,)
+            return ((wanted,),)
         known = signs_now(self.derived.parameters_scene)  # what claims hold was not there when the others were found
         try:
             for _ in range(_MOST_STEPS):
                 roots = self._roots(p)
                 if not roots:
-                    return (*apart, Inequality(p, wanted.relation))
+                    return (*apart, (Inequality(p, wanted.relation),))
                 norm = self._norm(p, roots, known)
-                if norm is None:
-                    first, norm = self._squared(p, roots, known)
-                    apart.append(Inequality(first, wanted.relation))
+                if norm is not None:
+                    p = self._numerator(ring.reduce(norm))
+                    continue
+                first, norm, both = self._squared(p, roots, known)
                 p = self._numerator(ring.reduce(norm))
+                if both:
+                    apart.append((Inequality(first, wanted.relation),))
+                elif not self._roots(p):
+                    return (*apart, (Inequality(first, wanted.relation), Inequality(p, wanted.relation)))
+                else:
+                    break
         except (Failure, LookupError):
             pass
-        return (wanted,)
+        return ((wanted,),)
 
     def _roots(self, p: Polynomial) -> list[int]:
         return [k for k in occurring([p]) if self.derived.ring.generators[k].kind == "root"]
@@ -134,15 +141,21 @@ class Region:
                     return self.derived.ring.times(p, other if sign == "positive" else -other)
         return None
 
-    def _squared(self, p: Polynomial, roots: Sequence[int], known: Signs) -> tuple[Polynomial, Polynomial]:
-        """(a, a^2 - b^2 r^2) of p = a + b r with b <= 0.  Raises LookupError where it is not of that form."""
+    def _squared(self, p: Polynomial, roots: Sequence[int], known: Signs) -> tuple[Polynomial, Polynomial, bool]:
+        """(a, a^2 - b^2 r^2, True) of p = a + b r with b <= 0, (a, b^2 r^2 - a^2, False) with b >= 0.
+
+        Raises LookupError where it is not of that form.
+        """
         times = self.derived.ring.times
         for k in roots:
             if p.degrees()[k] == 1:
                 a, b = coefficients_in(p, k)
-                if not self._roots(a) and known.sign(b) in ("negative", "nonpositive"):
-                    with_root = b * p.context().gen(k)
-                    return a, times(a, a) - times(with_root, with_root)
+                sign, with_root = known.sign(b), b * p.context().gen(k)
+                norm = times(a, a) - times(with_root, with_root)
+                if not self._roots(a) and sign in ("negative", "nonpositive"):
+                    return a, norm, True
+                if not self._roots(a) and sign in ("positive", "nonnegative"):
+                    return a, -norm, False
         raise LookupError("no root can be taken apart")
 
     # --- single conditions ---

@@ -257,7 +257,9 @@ def _told(part: SubsystemStability, number: int, several: bool, results: Results
 def _conserved(results: Results) -> bool:
     """Whether the energy of the system is constant near the motion, in all orders, if there are further ones."""
     found = results.analysis.optional("balance")
-    return found is not None and (found.exactly_linear or found.law is EnergyLaw.CONSERVED)
+    if found is None:  # other angles were judged
+        return any("energy" in one.name for one in results.analysis.optional("integrals") or ())
+    return found.exactly_linear or found.law is EnergyLaw.CONSERVED
 
 
 def _verdict_told(found: Verdict, variable: str) -> tuple[Inline, ...]:
