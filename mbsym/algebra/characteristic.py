@@ -19,6 +19,7 @@ from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.matrices import Operators
+from mbsym.expressions.message import Message
 
 Polynomial = Any  # a flint.fmpq_mpoly: python-flint carries no types
 Coefficients = tuple[Polynomial, ...]
@@ -75,7 +76,7 @@ class _Counted(Operators[Polynomial]):
     def spend(self, work: int) -> None:
         self._left -= OVERHEAD + work
         if self._left < 0:
-            raise TooLargeError(f"a determinant of order {self._order} with too many terms")
+            raise TooLargeError(Message("a determinant of order [[order]] with too many terms", order=self._order))
 
 
 def _eliminated(matrix: Matrix, budget: int) -> tuple[Polynomial, ...] | None:
@@ -132,7 +133,7 @@ def characteristic_polynomial(m: Matrix, c: Matrix, k: Matrix) -> Coefficients:
     lam = _Variable(m[0][0].context())
     value = determinant(_pencil(lam, m, c, k))
     if len(value) > LONGEST:
-        raise TooLargeError(f"a characteristic polynomial of {len(value)} terms")
+        raise TooLargeError(Message("a characteristic polynomial of [[count]] terms", count=len(value)))
     return lam.coefficients(value, 2 * n)
 
 
@@ -282,7 +283,7 @@ def lienard_chipart(coefficients: Sequence[Polynomial]) -> tuple[tuple[str, Poly
     if n >= 3:
         # Delta_1 .. Delta_(n-1) do not involve the last row and column, so they come from a smaller matrix.
         minors = leading_minors(matrices.hurwitz(p[::-1], p[0] * 0, n - 1))
-        result += [(f"Hurwitz minor {k}", minors[k - 1]) for k in range(n - 1, 1, -2)]
+        result += [(Message("Hurwitz minor [[k]]", k=k), minors[k - 1]) for k in range(n - 1, 1, -2)]
     return tuple(result)
 
 

@@ -7,6 +7,7 @@ from typing import Any
 from flint import fmpq_mpoly, fmpq_mpoly_ctx, fmpz_mpoly
 
 from mbsym.algebra.failures import Limit, NoClosedForm
+from mbsym.expressions.message import Message
 
 Polynomial = Any  # of flint: python-flint carries no types
 
@@ -20,7 +21,7 @@ def irreducible_factors(p: Polynomial) -> tuple[Any, list[tuple[Polynomial, int]
         unit, powers = _factored_among_its_own(p) if isinstance(p, fmpq_mpoly | fmpz_mpoly) else _factored(p)
         return unit, [(factor, int(exponent)) for factor, exponent in powers]
     except (ArithmeticError, ValueError, RuntimeError) as error:
-        reason = f"a polynomial cannot be factored: {type(error).__name__}: {error}"
+        reason = Message("a polynomial cannot be factored: [[name]]: [[why]]", name=type(error).__name__, why=error)
         raise NoClosedForm(reason, limit=Limit.FACTORS) from error
 
 

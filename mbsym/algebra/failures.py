@@ -22,6 +22,7 @@ import logging
 from enum import Enum
 
 from mbsym.algebra.parts import missing
+from mbsym.expressions.message import Message, worded
 
 LOG = logging.getLogger("mbsym")
 
@@ -56,14 +57,15 @@ class Failure(Exception):
     severity = Severity.ANSWER
 
     def __init__(self, message: str = "", *, limit: Limit | None = None, remedy: str = "") -> None:
-        super().__init__(message)
+        super().__init__(worded(message))
         self.limit = limit
-        self.remedy = remedy or (MORE_TERMS if limit is Limit.TERMS else "")
+        self.remedy = worded(remedy or (MORE_TERMS if limit is Limit.TERMS else ""))
 
     @property
-    def reason(self) -> str:
+    def reason(self) -> Message:
         """The message."""
-        return str(self)
+        message: Message = self.args[0]
+        return message
 
 
 class NoClosedForm(Failure):
@@ -113,12 +115,13 @@ class Defect(Failure):
     def of(cls, error: Exception) -> Failure:
         """What to say of it, once it is logged; running out of memory, or lacking a part, is nobody's mistake."""
         if part := missing(error):
-            return NotInstalled(f"{part} is not installed")
+            return NotInstalled(Message("[[part]] is not installed", part=part))
         if isinstance(error, MemoryError):
             found = cls("out of memory", limit=Limit.MEMORY, remedy="lower --terms, or ask for fewer --problems")
         else:
             said = str(error).strip()
-            found = cls(f"internal error: {type(error).__name__}" + (f": {said}" if said else ""))
+            kind = type(error).__name__ + (f": {said}" if said else "")
+            found = cls(Message("internal error: [[kind]]", kind=kind))
         found.__cause__ = error
         LOG.error("%s", found, exc_info=error)
         return found
@@ -141,8 +144,23 @@ class NoValue(Failure, KeyError):
 
     code = "no-value"
 
+    def __init__(self, name: str) -> None:
+        Exception.__init__(self, name)
+        self.limit = None
+        self.remedy = worded("")
+
     def __str__(self) -> str:
-        return f"no number for {self.args[0]}"
+        return str(self.reason)
+
+    @property
+    def reason(self) -> Message:
+        """Which number there is not."""
+        return Message("no number for [[name]]", name=self.args[0])
+
+
+def message_of(error: Exception) -> Message:
+    """What an exception says, ours or the number library's."""
+    return error.reason if isinstance(error, Failure) else worded(str(error))
 
 
 #: A formula cannot be had, or is not defined there, in our words or in the number library's.

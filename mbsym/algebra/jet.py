@@ -18,6 +18,7 @@ from mbsym.algebra.base import Algebra
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.angles import LinearForm, linear_form
+from mbsym.expressions.message import Message
 from mbsym.expressions.table import Tabulated
 from mbsym.expressions.tree import Expression
 
@@ -273,7 +274,9 @@ class Jets(Algebra[Jet]):
             return Jet(ring.function(name, x.value))
         if ring.is_zero(x.value) is not False:
             what = "kink" if name == "abs" else "jump"
-            raise NoClosedForm(f"{name} has a {what} at the motion that is expanded about")
+            raise NoClosedForm(
+                Message("[[name]] has a [[what]] at the motion that is expanded about", name=name, what=what)
+            )
         sign = ring.function("sign", x.value)
         if name == "sign":
             return Jet(sign)
@@ -293,7 +296,9 @@ class Jets(Algebra[Jet]):
             name.curve.kinked_at(knot) and ball.contains(fmpq(knot.numerator, knot.denominator))
             for knot in name.curve.knots
         ):
-            raise NoClosedForm(f"the table {name.table.name} has a kink at the motion that is expanded about")
+            raise NoClosedForm(
+                Message("the table [[table]] has a kink at the motion that is expanded about", table=name.table.name)
+            )
         coefficients, curve = [], name
         for k in range(self.order + 1):
             coefficients.append(ring.times(ring.number(Fraction(1, factorial(k))), ring.function(curve, x.value)))

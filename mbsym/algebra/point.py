@@ -18,6 +18,7 @@ from flint import acb, arb, fmpq
 from mbsym.algebra.base import Algebra, Scalar
 from mbsym.algebra.failures import NotRational, NoValue, SingularPoint
 from mbsym.expressions.angles import LinearForm
+from mbsym.expressions.message import Message
 from mbsym.expressions.table import Curve, Tabulated
 
 #: Multiples of an angle up to this one are formed from its sine and cosine.
@@ -71,7 +72,7 @@ class Rationals(Algebra[fmpq]):
         if isinstance(name, Tabulated):
             value = name.curve(Fraction(int(x.p), int(x.q)))
             return fmpq(value.numerator, value.denominator)
-        raise NotRational(f"{name} of a rational number")
+        raise NotRational(Message("[[name]] of a rational number", name=name))
 
 
 def sine_and_cosine(half_tangent: fmpq) -> tuple[fmpq, fmpq]:
@@ -188,7 +189,11 @@ class BallsAtRationals(Balls):
             sine, cosine = self.basic[name]
             multiple = coefficient * self.denominators[name]
             if multiple.denominator != 1:
-                raise NotRational(f"sin and cos of {coefficient}*{name} were not foreseen")
+                raise NotRational(
+                    Message(
+                        "sin and cos of [[coefficient]]*[[name]] were not foreseen", coefficient=coefficient, name=name
+                    )
+                )
             point *= acb(arb(cosine), arb(sine)) ** int(multiple)
         return point.imag, point.real
 

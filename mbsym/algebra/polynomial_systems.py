@@ -28,8 +28,9 @@ from flint import Ordering, arb, arb_poly, ctx, fmpq, fmpq_mat, fmpq_poly, fmpz,
 
 from mbsym.algebra.base import Algebra
 from mbsym.algebra.factors import irreducible_factors
-from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.failures import NoClosedForm, message_of
 from mbsym.algebra.matrices import echelon
+from mbsym.expressions.message import Message
 
 Polynomial = Any  # a flint.fmpz_mpoly
 Univariate = Any  # a flint.fmpq_poly
@@ -203,13 +204,13 @@ class _Solver:
             self.branches += 1
             branch = self.pending.pop()
             if self.branches > self.limits.branches:
-                self.unfinished.append(f"more than {self.limits.branches} cases")
+                self.unfinished.append(Message("more than [[branches]] cases", branches=self.limits.branches))
                 break
             try:
                 self._treat(branch)
             except _TooLarge as reason:
                 if branch.special or not self._specialised(branch):
-                    self.unfinished.append(str(reason))
+                    self.unfinished.append(message_of(reason))
         # Branches do not share solutions, but a point may still be the limit of a family of another branch.
         isolated = [p for p in self.points if not any(family.contains(p) for family in self.families)]
         return Solutions(tuple(isolated), tuple(self.families), tuple(dict.fromkeys(self.unfinished)))
@@ -232,7 +233,7 @@ class _Solver:
     def spend(self, work: int) -> None:
         self.work += work
         if self.work > self.limits.work:
-            raise _TooLarge(f"more than {self.limits.work} steps of polynomial arithmetic")
+            raise _TooLarge(Message("more than [[work]] steps of polynomial arithmetic", work=self.limits.work))
 
     def _treat(self, branch: _Branch) -> None:
         basis = self._basis(branch)
@@ -260,7 +261,7 @@ class _Solver:
     def _essential(self, x: Polynomial, nonzero: Sequence[Polynomial]) -> list[Polynomial]:
         """The irreducible factors of x that can vanish at a real solution; short ones first."""
         if len(x) > self.limits.terms:
-            raise _TooLarge(f"a polynomial of more than {self.limits.terms} terms")
+            raise _TooLarge(Message("a polynomial of more than [[terms]] terms", terms=self.limits.terms))
         self.spend(20 * len(x))
         known = {_key(y) for y in nonzero}
         kept = [y for y in _irreducible(x) if _key(y) not in known and self._can_vanish(y)]
@@ -320,7 +321,7 @@ class _Solver:
         if self.limits.reduction and current:
             bits = max(int(c).bit_length() for x in current for c in x.coeffs())
             if len(current) * sum(map(len, current)) * bits > self.limits.reduction:
-                raise _TooLarge(f"an interreduction of coefficients of {bits} bits")
+                raise _TooLarge(Message("an interreduction of coefficients of [[bits]] bits", bits=bits))
 
     # --- Buchberger --------------------------------------------------------------------------------------------------
 
@@ -338,7 +339,7 @@ class _Solver:
                 continue
             self.pairs += 1
             if self.pairs > self.limits.pairs:
-                raise _TooLarge(f"more than {self.limits.pairs} S-polynomials")
+                raise _TooLarge(Message("more than [[pairs]] S-polynomials", pairs=self.limits.pairs))
             x = basis[i].spoly(basis[j]).reduction_primitive_part(_vector(basis, self.context))
             self.spend(len(basis[i]) + len(basis[j]) + len(x) * len(basis))
             if x.is_zero():
@@ -359,14 +360,16 @@ class _Solver:
             basis.append(x)
             leads.append(lead)
             if len(basis) > self.limits.elements:
-                raise _TooLarge(f"a Groebner basis of more than {self.limits.elements} elements")
+                raise _TooLarge(
+                    Message("a Groebner basis of more than [[elements]] elements", elements=self.limits.elements)
+                )
         return list(_vector(basis, self.context).autoreduction(groebner=True))
 
     def _check(self, x: Polynomial) -> None:
         if len(x) > self.limits.terms:
-            raise _TooLarge(f"a polynomial of more than {self.limits.terms} terms")
+            raise _TooLarge(Message("a polynomial of more than [[terms]] terms", terms=self.limits.terms))
         if int(x.leading_coefficient()).bit_length() > self.limits.bits:
-            raise _TooLarge(f"a coefficient of more than {self.limits.bits} bits")
+            raise _TooLarge(Message("a coefficient of more than [[bits]] bits", bits=self.limits.bits))
 
     # --- finitely many solutions -------------------------------------------------------------------------------------
 
@@ -402,7 +405,10 @@ class _Solver:
         families = branch.families
         if sample is None:
             self.unfinished.append(
-                f"a set of solutions of complex dimension {len(free)} in which no regular real point was found"
+                Message(
+                    "a set of solutions of complex dimension [[count]] in which no regular real point was found",
+                    count=len(free),
+                )
             )
         else:
             family = Family(tuple(closure), len(free), free, sample)
@@ -567,7 +573,7 @@ def _standard_monomials(basis: Sequence[Polynomial], nvars: int, most: int) -> l
     while layer:
         found += layer
         if len(found) > most:
-            raise _TooLarge(f"more than {most} solutions in one case")
+            raise _TooLarge(Message("more than [[most]] solutions in one case", most=most))
         grown = {(*m[:k], m[k] + 1, *m[k + 1 :]) for m in layer for k in range(nvars)}
         layer = sorted(m for m in grown if not any(_divides(lead, m) for lead in leads))
     return found

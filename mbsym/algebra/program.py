@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 from mbsym.algebra.base import Algebra
 from mbsym.algebra.failures import NoClosedForm, NoValue, SingularPoint
 from mbsym.expressions.angles import LinearForm
+from mbsym.expressions.message import Message
 from mbsym.expressions.rates import is_velocity
 from mbsym.expressions.table import Tabulated
 
@@ -113,7 +114,12 @@ class Program(Algebra[Node]):
         exact = Fraction(value)
         longest = max(exact.numerator.bit_length(), exact.denominator.bit_length())
         if longest > MOST_BITS:
-            raise NoClosedForm(f"a number of {int(longest * 0.30103)} digits, beyond the range of floating point")
+            raise NoClosedForm(
+                Message(
+                    "a number of [[digits]] digits, beyond the range of floating point",
+                    digits=int(longest * 0.30103),
+                )
+            )
         node = self._node("constant", (), exact)
         if isinstance(value, int):
             self._whole[value] = node

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from mbsym.algebra.failures import Limit, NoClosedForm
+from mbsym.expressions.message import Message
 
 Polynomial = Any  # a flint.fmpq_mpoly: python-flint carries no types
 
@@ -41,7 +42,9 @@ class Quotient:
             top, bottom = top / unit, bottom / unit
         if len(top) > MOST_TERMS or len(bottom) > MOST_TERMS:
             raise NoClosedForm(
-                f"a coefficient of the expansion has more than {MOST_TERMS} terms", limit=Limit.TERMS, remedy=LOWER
+                Message("a coefficient of the expansion has more than [[most]] terms", most=MOST_TERMS),
+                limit=Limit.TERMS,
+                remedy=LOWER,
             )
         return cls(top, bottom)
 

@@ -34,6 +34,7 @@ from mbsym.algebra.failures import Limit, NoClosedForm, SingularPoint
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.point import enclosed
 from mbsym.expressions.angles import LinearForm
+from mbsym.expressions.message import Message
 from mbsym.expressions.rates import ENDINGS, acceleration_name, velocity_name
 from mbsym.expressions.table import Tabulated
 
@@ -209,7 +210,10 @@ class Ring(Algebra[Polynomial]):
         """Counts work, in candidate terms of products.  Raises NoClosedForm when the budget is used up."""
         self.work += work
         if self.work > self.work_budget:
-            raise NoClosedForm(f"more than {self.work_budget} steps of polynomial arithmetic in all", limit=Limit.WORK)
+            raise NoClosedForm(
+                Message("more than [[most]] steps of polynomial arithmetic in all", most=self.work_budget),
+                limit=Limit.WORK,
+            )
 
     def times(self, a: Polynomial, b: Polynomial) -> Polynomial:
         candidates = len(a) * len(b)
@@ -220,13 +224,21 @@ class Ring(Algebra[Polynomial]):
 
     def _check(self, x: Polynomial) -> None:
         if len(x) > self.most_terms:
-            raise NoClosedForm(f"{len(x)} terms are beyond the budget of {self.most_terms}", limit=Limit.TERMS)
+            raise NoClosedForm(
+                Message("[[count]] terms are beyond the budget of [[most]]", count=len(x), most=self.most_terms),
+                limit=Limit.TERMS,
+            )
 
     def factored(self, x: Polynomial) -> tuple[Any, list[tuple[Polynomial, int]]]:
         """The content of x and its irreducible factors with their exponents, if x is not too long to be factored."""
         if len(x) > MOST_FACTORED:
             raise NoClosedForm(
-                f"a denominator or root of {len(x)} terms: at most {MOST_FACTORED} are factored", limit=Limit.FACTORS
+                Message(
+                    "a denominator or root of [[count]] terms: at most [[most]] are factored",
+                    count=len(x),
+                    most=MOST_FACTORED,
+                ),
+                limit=Limit.FACTORS,
             )
         self._check(x)
         self.spend(100 * len(x))
@@ -260,7 +272,11 @@ class Ring(Algebra[Polynomial]):
         degrees = x.degrees()
         if max(degrees) > MOST_DEGREE:
             raise NoClosedForm(
-                f"a formula of degree {_size(int(max(degrees)))}: at most {MOST_DEGREE} is supported",
+                Message(
+                    "a formula of degree [[degree]]: at most [[most]] is supported",
+                    degree=_size(int(max(degrees))),
+                    most=MOST_DEGREE,
+                ),
                 limit=Limit.DEGREE,
             )
         _check_number(x.leading_coefficient())
@@ -315,7 +331,11 @@ class Ring(Algebra[Polynomial]):
                 continue
             multiple = coefficient * self.angles.get(name, 0)  # 0: no sine or cosine of it was foreseen
             if multiple.denominator != 1 or not multiple:
-                raise NoClosedForm(f"sin and cos of {coefficient}*{name} were not foreseen")
+                raise NoClosedForm(
+                    Message(
+                        "sin and cos of [[coefficient]]*[[name]] were not foreseen", coefficient=coefficient, name=name
+                    )
+                )
             s, c = self.multiple_angle(self.generator("sine", name), self.generator("cosine", name), int(multiple))
             sine, cosine = self.sum_of_angles(sine, cosine, s, c)
         return self.reduce(sine), self.reduce(cosine)
@@ -335,7 +355,13 @@ class Ring(Algebra[Polynomial]):
     def multiple_angle(self, s: Polynomial, c: Polynomial, n: int) -> tuple[Polynomial, Polynomial]:
         """sin(n x) and cos(n x) from s = sin x and c = cos x, by doubling."""
         if abs(n) > MOST_MULTIPLE:
-            raise NoClosedForm(f"sin and cos of {_size(n)} times an angle: at most {MOST_MULTIPLE} times is supported")
+            raise NoClosedForm(
+                Message(
+                    "sin and cos of [[n]] times an angle: at most [[most]] times is supported",
+                    n=_size(n),
+                    most=MOST_MULTIPLE,
+                )
+            )
         sine, cosine = self.zero, self.one
         for digit in f"{abs(n):b}":
             sine, cosine = map(self.reduce, self.sum_of_angles(sine, cosine, sine, cosine))
@@ -519,7 +545,9 @@ class Ring(Algebra[Polynomial]):
 
     def _adjoin(self, kind: str, argument: Polynomial, name: str = "") -> int:
         if self._free < 0:
-            raise NoClosedForm(f"more than {self.spare} reciprocals, roots and functions", limit=Limit.FUNCTIONS)
+            raise NoClosedForm(
+                Message("more than [[most]] reciprocals, roots and functions", most=self.spare), limit=Limit.FUNCTIONS
+            )
         index = self._free
         self._free -= 1
         self.generators[index] = Generator(kind, name or f"#{index}", 1, argument)
@@ -824,7 +852,11 @@ class Ring(Algebra[Polynomial]):
             powers *= comb(degree + length - 1, degree) if degree + length < 64 or length == 1 else 2**64
         if grown > MOST_DEGREE:
             raise NoClosedForm(
-                f"a substitution makes a formula of degree {_size(grown)}: up to {MOST_DEGREE} is supported"
+                Message(
+                    "a substitution makes a formula of degree [[grown]]: up to [[most]] is supported",
+                    grown=_size(grown),
+                    most=MOST_DEGREE,
+                )
             )
         if terms * powers <= SMALL:
             return
@@ -841,7 +873,14 @@ class Ring(Algebra[Polynomial]):
             lengths = [(index, len(images[index])) for index in touched]
             candidates = sum(min(dense, _expanded(monomial, lengths)) for monomial in x.monoms())
         if candidates > PRODUCT_BUDGET or min(candidates, dense) * _bytes(x, max(spans)) > MEMORY_BUDGET:
-            raise NoClosedForm(f"a substitution into {terms} terms may lead to {_size(candidates)}", limit=Limit.WORK)
+            raise NoClosedForm(
+                Message(
+                    "a substitution into [[terms]] terms may lead to [[candidates]]",
+                    terms=terms,
+                    candidates=_size(candidates),
+                ),
+                limit=Limit.WORK,
+            )
         self.spend(candidates)
 
     def _moved(self, index: int, images: dict[int, Polynomial]) -> Polynomial:
@@ -1043,14 +1082,20 @@ def _check_product(a: Polynomial, b: Polynomial) -> int:
     """
     candidates = len(a) * len(b)
     if candidates > PRODUCT_BUDGET:
-        raise NoClosedForm(f"a product of {len(a)} by {len(b)} terms is beyond the budget", limit=Limit.TERMS)
+        raise NoClosedForm(
+            Message("a product of [[count]] by [[other]] terms is beyond the budget", count=len(a), other=len(b)),
+            limit=Limit.TERMS,
+        )
     spans = [max(0, int(d)) + max(0, int(e)) for d, e in zip(a.degrees(), b.degrees(), strict=True)]
     dense = 1
     for span in spans:
         dense = min(dense * (1 + span), candidates)
     first, second = _words(a), _words(b)
     if dense * (_bytes(a, max(spans)) + 8 * (first + second)) > MEMORY_BUDGET:
-        raise NoClosedForm(f"a product of {len(a)} by {len(b)} terms may need too much memory", limit=Limit.MEMORY)
+        raise NoClosedForm(
+            Message("a product of [[count]] by [[other]] terms may need too much memory", count=len(a), other=len(b)),
+            limit=Limit.MEMORY,
+        )
     return 1 + first * second // 64
 
 
@@ -1068,7 +1113,10 @@ def _check_number(value: fmpq) -> None:
     """Raises NoClosedForm for a coefficient that nobody could read."""
     bits = int(value.p).bit_length() + int(value.q).bit_length()
     if bits > MOST_COEFFICIENT_BITS:
-        raise NoClosedForm(f"a formula with a number of {int(bits * 0.30103)} digits", limit=Limit.DIGITS)
+        raise NoClosedForm(
+            Message("a formula with a number of [[digits]] digits", digits=int(bits * 0.30103)),
+            limit=Limit.DIGITS,
+        )
 
 
 def _bytes(x: Polynomial, degree: int) -> int:
@@ -1120,7 +1168,8 @@ def _primes(n: int, distinct: bool = True) -> list[int]:
             elif int(factor).bit_length() > MOST_BITS:
                 digits = int(int(factor).bit_length() * 0.30103) + 1
                 raise NoClosedForm(
-                    f"the square root of a number whose {digits} digits cannot be factored", limit=Limit.DIGITS
+                    Message("the square root of a number whose [[digits]] digits cannot be factored", digits=digits),
+                    limit=Limit.DIGITS,
                 )
             else:
                 parts = [(p, int(e)) for p, e in factor.factor()]

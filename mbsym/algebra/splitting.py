@@ -26,6 +26,7 @@ from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Ring
+from mbsym.expressions.message import Message
 
 Polynomial = Any  # a flint.fmpq_mpoly
 
@@ -187,7 +188,7 @@ def _step(work: _Work, branch: Branch, equations: Sequence[Polynomial]) -> list[
         if p == 0:
             continue
         if len(p) > work.limits.terms:
-            raise NoClosedForm(f"an equation of {len(p)} terms")
+            raise NoClosedForm(Message("an equation of [[count]] terms", count=len(p)))
         factors = [f for f in work.factors(p) if not work.known(f, branch.nonzero)]
         if not factors:
             return []

@@ -19,6 +19,7 @@ from flint import Ordering, acb, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 from mbsym.algebra.base import Algebra
 from mbsym.algebra.failures import Limit, NoClosedForm, SingularPoint
 from mbsym.expressions.angles import LinearForm
+from mbsym.expressions.message import Message
 
 #: As many roots can be adjoined, and so many terms may an element have.
 MOST_ROOTS, MOST_TERMS = 8, 4_000
@@ -94,7 +95,7 @@ class Tower(Algebra[Element]):
         """Counts products of terms.  Raises NoClosedForm where they are too many."""
         self.work += 8 + work
         if self.work > MOST_WORK:
-            raise NoClosedForm(f"more than {MOST_WORK} products of terms", limit=Limit.WORK)
+            raise NoClosedForm(Message("more than [[most]] products of terms", most=MOST_WORK), limit=Limit.WORK)
 
     def element(self, x: Any) -> Element:
         if isinstance(x, Element):
@@ -115,7 +116,9 @@ class Tower(Algebra[Element]):
             if top.degrees()[MOST_ROOTS - 1 - k] > 1:
                 top = divmod(top, self._roots[k] ** 2 - self.squares[k])[1]
         if len(top) > MOST_TERMS:
-            raise NoClosedForm(f"more than {MOST_TERMS} terms of one coefficient", limit=Limit.TERMS)
+            raise NoClosedForm(
+                Message("more than [[most]] terms of one coefficient", most=MOST_TERMS), limit=Limit.TERMS
+            )
         return top
 
     def made(self, top: fmpq_mpoly, bottom: fmpq_mpoly) -> Element:
@@ -169,7 +172,7 @@ class Tower(Algebra[Element]):
             if square == x:
                 return root
         if len(self.squares) == MOST_ROOTS:
-            raise NoClosedForm(f"more than {MOST_ROOTS} square roots", limit=Limit.FUNCTIONS)
+            raise NoClosedForm(Message("more than [[most]] square roots", most=MOST_ROOTS), limit=Limit.FUNCTIONS)
         self.squares.append(self.reduced(x.top * x.bottom))
         root = self.made(self._roots[len(self.squares) - 1], x.bottom)
         self._asked.append((x, root))
@@ -217,7 +220,7 @@ class Tower(Algebra[Element]):
         )
 
     def function(self, name: str, x: Element) -> Element:
-        raise NoClosedForm(f"{name} in the coefficients: only square roots are exact here")
+        raise NoClosedForm(Message("[[name]] in the coefficients: only square roots are exact here", name=name))
 
     def enclosed(self, x: Element, values: Mapping[str, Any]) -> acb:
         """x at values of the parameters; roots by their principal values."""

@@ -31,6 +31,7 @@ from mbsym.algebra.zero_kinds import (
     ZeroSet,
 )
 from mbsym.algebra.zeros_in_boxes import Several
+from mbsym.expressions.message import Message
 
 
 def zero_sets(ring: Ring, polynomials: Sequence[Polynomial], ranges: Mapping[str, Fraction]) -> Zeros:
@@ -116,7 +117,7 @@ class HalfAngles:
         used = [ring.generators[k] for k in occurring([polynomial])]
         for g in used:
             if g.kind not in ("sine", "cosine", "coordinate", "prescribed", "time") or g.argument is not None:
-                raise NoClosedForm(f"a {g.kind} in a determinant", limit=Limit.TERMS)
+                raise NoClosedForm(Message("a [[kind]] in a determinant", kind=g.kind), limit=Limit.TERMS)
         self.angles = {g.name: g.denominator for g in used if g.kind in ("sine", "cosine")}
         plain = [g.name for g in used if g.kind not in ("sine", "cosine")]
         self.names = (*self.angles, *(name for name in plain if name not in self.angles))

@@ -11,6 +11,7 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.analysis.regular import regular_at_zero
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.expressions.angles import linear_form
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import Call, Expression, Name, children
 from mbsym.formulas.formula import Column, column
 from mbsym.mechanics import newton_euler
@@ -90,11 +91,13 @@ def _demand_motion(analysis: Analysis) -> None:
     if not analysis.system.motion:
         names = analysis.system.coordinates
         listed = names if len(names) <= MOST_LISTED else names[:1]
-        hint = "add for example  motion: {" + ", ".join(f"{name}: 0" for name in listed) + "}"
+        hint = Message("add for example  motion: {[[values]]}", values=", ".join(f"{name}: 0" for name in listed))
         if listed != names:
-            hint += "; what is left out is 0 at rest"
+            hint = Message("[[hint]]; what is left out is 0 at rest", hint=hint)
         if not regular_at_zero(analysis.system):
-            hint = "say with 'motion:' about which one; at rest with all coordinates 0 the description is singular"
+            hint = Message(
+                "say with 'motion:' about which one; at rest with all coordinates 0 the description is singular"
+            )
         reason = "the description gives no unperturbed motion"
         raise Unavailable("motion", NoResult(reason, hint, "no motion", "no-motion"))
 
@@ -110,11 +113,11 @@ def first_approximation(analysis: Analysis) -> Linearisation:
         return given.first_approximation(analysis)
     if analysis.equilibrium.impossible:
         never = ", ".join(f"{item} = 0" for item in analysis.equilibrium.impossible)
-        reason = f"the given motion does not exist: {never} is impossible"
+        reason = Message("the given motion does not exist: [[never]] is impossible", never=never)
         raise Unavailable("motion", NoResult(reason, "", "no such motion", "impossible-motion"))
     if analysis.equilibrium.unsteady:
         varying = ", ".join(analysis.equilibrium.unsteady)
-        reason = f"on the given motion the equations, in symbols, still vary with {varying}"
+        reason = Message("on the given motion the equations, in symbols, still vary with [[varying]]", varying=varying)
         hint = steady_order(analysis) or "it is no steady motion in these coordinates, or only at special parameters"
         raise Unavailable("motion", NoResult(reason, hint, "not steady", "not-steady"))
     if analysis.system.constraints:
@@ -131,9 +134,11 @@ def autonomous(analysis: Analysis) -> Linearisation:
     """
     found = analysis.first_approximation
     if found.varying:
-        hint = steady_order(analysis) or "choose coordinates in which the motion is steady, if there are any" + (
-            "" if _drifting(analysis, found) else f"; where it is periodic in time: mbsym floquet {FILE}"
-        )
+        hint = steady_order(analysis)
+        if not hint:
+            hint = Message("choose coordinates in which the motion is steady, if there are any")
+            if not _drifting(analysis, found):
+                hint = Message("[[hint]]; where it is periodic in time: mbsym floquet [[file]]", hint=hint, file=FILE)
         why = NoResult(found.time_dependence, hint, "time-dependent", "time-dependent")
         raise Unavailable("linearisation", why)
     return found
@@ -158,14 +163,17 @@ def judgeable(analysis: Analysis) -> Linearisation:
     scale = found.time_scale
     symmetric = _vanish(found.D, found.N) or _vanish(found.D, found.G)
     if scale is not None and not symmetric and analysis.signs.sign(scale.polynomial) != "positive":
-        reason = f"the rate of dimensionless time, {scale}, is not known to be positive: tau may run backwards"
+        reason = Message(
+            "the rate of dimensionless time, [[scale]], is not known to be positive: tau may run backwards", scale=scale
+        )
         hint = "declare it positive, or leave 'dimensionless time' out"
         raise Unavailable("stability", NoResult(reason, hint, "time may run backwards", "time-scale-sign"))
     growing = _growing(analysis)
     if growing:
-        reason = (
-            f"the equations may vary with {', '.join(growing)} otherwise than by sines and cosines, and terms of higher "
-            "order are not known to be small at all times alike; no theorem about the first approximation applies"
+        reason = Message(
+            "the equations may vary with [[names]] otherwise than by sines and cosines, and terms of higher order are "
+            "not known to be small at all times alike; no theorem about the first approximation applies",
+            names=", ".join(growing),
         )
         raise Unavailable("stability", NoResult(reason, "", "time-dependent", "time-dependent"))
     return found
@@ -233,5 +241,7 @@ def steady_order(analysis: Analysis) -> str:
             continue
         axes, angles = ", ".join(map(str, other.axes)), ", ".join(other.angles)
         order = f"rotation: {{axes: [{axes}], angles: [{angles}]}}"
-        return f"with '{order}' of body '{other.body}' the coefficients are constant"
+        return Message(
+            "with '[[order]]' of body '[[body]]' the coefficients are constant", order=order, body=other.body
+        )
     return ""

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.expressions.message import Message
 from mbsym.expressions.parser import parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import Expression, Name, names, number
@@ -44,7 +45,9 @@ def averaging_of(analysis: Analysis, phase: str, amplitudes: Sequence[str] | Map
     _refuse_company(system, phase, rate.name)
     told = amplitudes if isinstance(amplitudes, Mapping) else dict.fromkeys(amplitudes, 1)
     if rate.name in told:
-        raise NoClosedForm(f"{rate.name} is the rate of {phase}, and of order eps^-1")
+        raise NoClosedForm(
+            Message("[[rate]] is the rate of [[phase]], and of order eps^-1", rate=rate.name, phase=phase)
+        )
     orders = dict(told) or averaging.orders_of(analysis.scene, analysis.energy, phase, rate.name)
     _refuse_ties(system, phase, (rate.name, *orders))
     return averaging.averaged(analysis.scene, analysis.energy, phase, rate.name, orders)
@@ -54,7 +57,14 @@ def _refuse_company(system: System, phase: str, rate: str) -> None:
     """Raises NoClosedForm where another prescribed quantity is as fast: it takes part in the averages."""
     for item in system.prescribed:
         if item.name != phase and rate in names(item.rate):
-            raise NoClosedForm(f"{item.name} is as fast as {phase}: both have a rate with {rate}")
+            raise NoClosedForm(
+                Message(
+                    "[[other]] is as fast as [[phase]]: both have a rate with [[rate]]",
+                    other=item.name,
+                    phase=phase,
+                    rate=rate,
+                )
+            )
 
 
 def _refuse_ties(system: System, phase: str, scaled: Sequence[str]) -> None:
@@ -62,12 +72,22 @@ def _refuse_ties(system: System, phase: str, scaled: Sequence[str]) -> None:
     for item in system.prescribed:
         tied = [name for name in scaled if name in names(item.rate)]
         if tied and item.name != phase:
-            raise NoClosedForm(f"{tied[0]} takes part in the rate of {item.name}: what is small or large must be free")
+            raise NoClosedForm(
+                Message(
+                    "[[name]] takes part in the rate of [[other]]: what is small or large must be free",
+                    name=tied[0],
+                    other=item.name,
+                )
+            )
     for relation in system.relations:
         tied = [name for name in scaled if name == relation.name or name in names(relation.value)]
         if tied:
             raise NoClosedForm(
-                f"{tied[0]} is tied by the relation for {relation.name}: what is small or large must be free",
+                Message(
+                    "[[name]] is tied by the relation for [[relation]]: what is small or large must be free",
+                    name=tied[0],
+                    relation=relation.name,
+                ),
                 remedy="put the relation into the formulas",
             )
 

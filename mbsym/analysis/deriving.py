@@ -12,6 +12,7 @@ from mbsym.analysis import constrained, given
 from mbsym.analysis.judge import Judge
 from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
+from mbsym.expressions.message import Message, joined, worded
 from mbsym.mechanics.rest import given_values, missing_values
 from mbsym.mechanics.rotation_orders import Reordered, rotation_orders
 from mbsym.problems import dissipation, energy, equations, equilibrium, integrals, stability
@@ -106,7 +107,12 @@ def _demand_regular(analysis: Analysis) -> None:
     hint = ""
     for other, _ in _in_other_angles(analysis):
         axes, angles = ", ".join(map(str, other.axes)), ", ".join(other.angles)
-        hint = f"with 'rotation: {{axes: [{axes}], angles: [{angles}]}}' of body '{other.body}' it is derived"
+        hint = Message(
+            "with 'rotation: {axes: [[[axes]]], angles: [[[angles]]]}' of body '[[body]]' it is derived",
+            axes=axes,
+            angles=angles,
+            body=other.body,
+        )
         break
     raise Unavailable("stabilisation", NoResult(reason, hint, "singular coordinates", "singular-coordinates"))
 
@@ -204,8 +210,11 @@ def equilibria_of(analysis: Analysis) -> Equilibria:
     values = given_values(analysis.system, {})
     missing = missing_values(analysis.system, values)
     if missing:
-        hint = f"add for example  values: {{{missing[0]}: 1, ...}}"
-        raise Unavailable("values", NoResult(f"no number for {', '.join(missing)}", hint, "no values", "no-value"))
+        hint = Message("add for example  values: {[[name]]: 1, ...}", name=missing[0])
+        raise Unavailable(
+            "values",
+            NoResult(Message("no number for [[name]]", name=", ".join(missing)), hint, "no values", "no-value"),
+        )
     from mbsym.analysis import resting
     from mbsym.problems.relative_equilibria import equilibria
 
@@ -235,5 +244,9 @@ def first_integrals(analysis: Analysis) -> tuple[Integral, ...]:
         if check is None or check.outcome not in (EXACT, NUMERICAL):
             raise
         without = NoResult.of(failure)
-        reason = f"{without.reason}; conserved all the same, by structure: {', '.join(known)}"
+        reason = Message(
+            "[[why]]; conserved all the same, by structure: [[known]]",
+            why=without.reason,
+            known=joined(map(worded, known), ", "),
+        )
         raise Unavailable("integrals", replace(without, reason=reason)) from failure

@@ -11,6 +11,7 @@ from mbsym.algebra.failures import NOT_THERE
 from mbsym.analysis.higher import ignorable
 from mbsym.analysis.judge import Judge
 from mbsym.analysis.stages import NoResult, Unavailable
+from mbsym.expressions.message import Message
 from mbsym.problems.stability.word import Word
 
 if TYPE_CHECKING:
@@ -41,7 +42,7 @@ def exceptional(
         raise Unavailable("conditions", NoResult(reason, "see problem 4", "conditions", "unsolved-conditions"))
     solved = {one for one, _ in found.solved}
     if name in solved:
-        reason = f"the motion needs one value of {name}, which the other parameters give"
+        reason = Message("the motion needs one value of [[name]], which the other parameters give", name=name)
         raise Unavailable("conditions", NoResult(reason, "vary another one", "conditions", "solved"))
     conservative, cyclic = ignorable(analysis)
     numbers = {key: value for key, value in values.items() if key != name and key not in solved}

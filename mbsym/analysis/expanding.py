@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 from flint import fmpq
 
-from mbsym.algebra.failures import Failure, NoClosedForm
+from mbsym.algebra.failures import Failure, NoClosedForm, message_of
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.quotients import Quotient
 from mbsym.algebra.signs import Condition, Signs
 from mbsym.algebra.signs import conditions as sharpest
 from mbsym.analysis.stages import Unavailable
+from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.motion import relations
@@ -73,7 +74,7 @@ def expansion(analysis: Analysis, order: int, values: Mapping[str, Fraction] | N
     form = analysis.speed_form
     if form is None:
         first = next((f"{name}_dot" for name in analysis.system.coordinates), "x_dot")
-        remedy = f"declare 'speeds' in the bodies, as in  speeds: {{v: {first}}}"
+        remedy = Message("declare 'speeds' in the bodies, as in  speeds: {v: [[first]]}", first=first)
         raise NoClosedForm("expansions are made of equations in speeds", remedy=remedy)
     images = relations(analysis.parameters_scene)
     _refuse(analysis, small, values or {}, images)
@@ -84,13 +85,16 @@ def expansion(analysis: Analysis, order: int, values: Mapping[str, Fraction] | N
     for name, _ in small.powers:
         if name in whole.variables:
             raise NoClosedForm(
-                f"{name} is a variable that is small itself: slow manifolds take powers of parameters only",
+                Message(
+                    "[[name]] is a variable that is small itself: slow manifolds take powers of parameters only",
+                    name=name,
+                ),
                 remedy="see 'mbsym oscillations'",
             )
     numbers = {n: fmpq(x.numerator, x.denominator) for n, x in (values or {}).items() if n in whole.parameters}
     field = whole.at(numbers) if numbers else whole
     if small.name not in field.parameters and not any(name in field.parameters for name, _ in small.powers):
-        raise NoClosedForm(f"the equations do not depend on {small.name}")
+        raise NoClosedForm(Message("the equations do not depend on [[name]]", name=small.name))
     there = scaled(field, small.name, dict(small.powers))
     fast = _declared(small, field.variables) or slow.fast_variables(there, small.slow)
     functions = slow.manifold(there, fast, order)
@@ -118,13 +122,17 @@ def expansion(analysis: Analysis, order: int, values: Mapping[str, Fraction] | N
             at.setdefault(name, Quotient.of(field.context.constant(0)))
         steady_found = steady_states(there, moving, dict(zip(fast, functions, strict=True)), at, order)
     except Failure as reason:
-        return replace(plain, missing=str(reason))
+        return replace(plain, missing=message_of(reason))
     except ZeroDivisionError:
         return replace(plain, missing="a denominator of the expansion vanishes on the motion")
     if steady_found.fast.bounded:
         raise NoClosedForm(
-            f"not all of {', '.join(fast)} are fast: of the roots that would belong to them one stays bounded as "
-            f"{small.name} tends to 0; of a slow manifold over more variables nothing is said",
+            Message(
+                "not all of [[fast]] are fast: of the roots that would belong to them one stays bounded as "
+                "[[small]] tends to 0; of a slow manifold over more variables nothing is said",
+                fast=", ".join(fast),
+                small=small.name,
+            ),
             remedy=slow.DECLARE,
         )
     plain = replace(plain, manifold=replace(found, steady=steady_found))
@@ -142,17 +150,23 @@ def _refuse(
     for name in scales:
         if name in related:
             raise NoClosedForm(
-                f"{name} is given by a relation: it is not small, or scaled, by itself",
+                Message("[[name]] is given by a relation: it is not small, or scaled, by itself", name=name),
                 remedy="solve the relation for another parameter",
             )
         if name in values:
-            raise NoClosedForm(f"{name} depends on the small parameter: it cannot be a number")
+            raise NoClosedForm(Message("[[name]] depends on the small parameter: it cannot be a number", name=name))
     for name in values:
         if name in related:
-            raise NoClosedForm(f"{name} is given by a relation: it cannot be another number")
+            raise NoClosedForm(Message("[[name]] is given by a relation: it cannot be another number", name=name))
     signs = {one.name: one.sign for one in analysis.system.parameters}
     if signs.get(small.name) in ("negative", "nonpositive", "zero"):
-        raise NoClosedForm(f"expansions are about {small.name} > 0, and it is declared {signs[small.name]}")
+        raise NoClosedForm(
+            Message(
+                "expansions are about [[small]] > 0, and it is declared [[sign]]",
+                small=small.name,
+                sign=signs[small.name],
+            )
+        )
 
 
 def _open(analysis: Analysis, divided: Iterable[Formula]) -> Iterator[Formula]:
@@ -167,7 +181,9 @@ def _declared(small: SmallParameter, variables: Sequence[str]) -> tuple[str, ...
     """The fast variables that are declared.  Raises NoClosedForm for one on which the equations do not depend."""
     for name in (*small.fast, *small.slow):
         if name not in variables:
-            raise NoClosedForm(f"the equations do not depend on {name}, which is declared fast or slow")
+            raise NoClosedForm(
+                Message("the equations do not depend on [[name]], which is declared fast or slow", name=name)
+            )
     return small.fast
 
 
@@ -180,7 +196,7 @@ def _motion(analysis: Analysis) -> dict[str, Any] | str:
     except Unavailable as unavailable:
         return unavailable.reason
     except Failure as reason:
-        return str(reason)
+        return message_of(reason)
     return {name: value.polynomial for name, value in zip(found.names, found.values, strict=True)}
 
 

@@ -11,6 +11,7 @@ from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
 from mbsym.analysis.polynomial import DEGREE, Setting, integrals_of, setting, with_known
 from mbsym.analysis.symmetric import symmetries_of
+from mbsym.expressions.message import Message
 from mbsym.problems.integrals import Integral
 
 if TYPE_CHECKING:
@@ -62,7 +63,15 @@ def _of_symmetries(symmetries: Symmetries) -> list[Integral]:
     found = []
     for one in symmetries.new:
         along = ", ".join(name for name, _ in one.directions) or "time"
-        found.append(Integral(f"integral of a symmetry ({along})", SYMMETRY, along, one.integral, Certainty.PROVED))
+        found.append(
+            Integral(
+                Message("integral of a symmetry ([[along]])", along=along),
+                SYMMETRY,
+                along,
+                one.integral,
+                Certainty.PROVED,
+            )
+        )
     return found
 
 
@@ -75,5 +84,9 @@ def _polynomials(there: Setting, found: PolynomialIntegrals) -> list[Integral]:
             number = count[one.weight] = count.get(one.weight, 0) + 1
             which = str(one.weight) if number == 1 else f"{one.weight} ({number})"
             formula = there.formula(one.polynomial)
-            listed.append(Integral(f"integral of weight {which}", POLYNOMIAL, which, formula, Certainty.PROVED))
+            listed.append(
+                Integral(
+                    Message("integral of weight [[weight]]", weight=which), POLYNOMIAL, which, formula, Certainty.PROVED
+                )
+            )
     return listed

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from mbsym.analysis.stages import NoResult, Unavailable
+from mbsym.expressions.message import Message
 from mbsym.mechanics.given_matrices import HINT, WITHOUT_BODIES
 from mbsym.mechanics.given_matrices import refuse_matrices as refuse_matrices
 from mbsym.model.system import System
@@ -37,7 +38,12 @@ def chosen(system: System, problems: tuple[int, ...]) -> tuple[int, ...]:
 
 
 def refuse() -> None:
-    why = NoResult(f"not derived: {WITHOUT_BODIES}", HINT, "no bodies", "given-by-matrices")
+    why = NoResult(
+        Message("not derived: [[why]]", why=WITHOUT_BODIES),
+        HINT,
+        "no bodies",
+        "given-by-matrices",
+    )
     raise Unavailable("bodies", why)
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
+from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.generalized import generalized_forces
 from mbsym.problems import stability
@@ -127,7 +128,12 @@ def check(analysis: Analysis) -> Check | None:
     routes = ("normal form at the given values", "its formula in parameters, and problem 6")
     word, said = found.first, found.at_values.outcome.value
     if word is not None and ((word is Word.UNSTABLE and said in _STABLE) or (word.stable and said == "unstable")):
-        return Check("normal forms", *routes, FAILED, f"problem 6 says {word.value}, terms of higher order {said}")
+        return Check(
+            "normal forms",
+            *routes,
+            FAILED,
+            Message("problem 6 says [[value]], terms of higher order [[said]]", value=word.value, said=said),
+        )
     values = stability.parameter_values(analysis.parameters_scene, analysis.equilibrium)
     agree = symbols_agree(found, values or {})
     if agree is None:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.ring import Ring
+from mbsym.expressions.message import Message
 from mbsym.formulas import latex, mathml, python
 from mbsym.problems.claims.forms import in_parameters
 from mbsym.problems.claims.symbols import Symbols
@@ -46,16 +47,23 @@ def invariant_sets_of(analysis: Analysis) -> InvariantSets:
     count = len(analysis.system.coordinates)
     if analysis.speed_form is None and count > MOST_ANGLES:
         raise NoClosedForm(
-            f"{count} coordinates: without speeds of their own, families of integrals of at most {MOST_ANGLES} are "
-            "looked at",
+            Message(
+                "[[count]] coordinates: without speeds of their own, families of integrals of at most "
+                "[[most]] are looked at",
+                count=count,
+                most=MOST_ANGLES,
+            ),
             remedy=_remedy(analysis.system),
         )
     there = polynomial.setting(analysis)
     field = there.whole
     if analysis.speed_form is None and len(field.variables) > MOST_IN_ANGLES:
         raise NoClosedForm(
-            f"{len(field.variables)} rates, sines, cosines and positions: families of at most {MOST_IN_ANGLES} are "
-            "looked at",
+            Message(
+                "[[count]] rates, sines, cosines and positions: families of at most [[most]] are looked at",
+                count=len(field.variables),
+                most=MOST_IN_ANGLES,
+            ),
             remedy=_remedy(analysis.system),
         )
     found = [(name, _without_constants(field, p)) for name, p in _known(analysis, there)]
@@ -79,11 +87,15 @@ def _remedy(system: System) -> str:
         if len(body.own_angles) == 3 and not body.speeds:
             taken = {*system.parameter_names, *system.coordinates, *(one.name for one in system.prescribed)}
             free = {*taken} & {"p", "q", "r", "e0", "e1", "e2", "e3"}
-            other = f" (other names for {', '.join(sorted(free))}, which are taken)" if free else ""
-            return (
-                f"told by a quaternion the equations of '{body.name}' are shorter: write "
-                f"'speeds: {{p: omega1, q: omega2, r: omega3}}' and 'orientation: {{e: quaternion}}'{other} into it, "
-                "as systems/gravity-gradient-quaternion.yaml does"
+            other = ""
+            if free:
+                other = Message(" (other names for [[names]], which are taken)", names=", ".join(sorted(free)))
+            return Message(
+                "told by a quaternion the equations of '[[body]]' are shorter: write 'speeds: {p: omega1, q: "
+                "omega2, r: omega3}' and 'orientation: {e: quaternion}'[[other]] into it, as "
+                "systems/gravity-gradient-quaternion.yaml does",
+                body=body.name,
+                other=other,
             )
     return "with speeds and unit vectors (mbsym explain description) equations are shorter"
 
@@ -97,7 +109,7 @@ def _known(analysis: Analysis, there: Setting) -> list[tuple[str, Any]]:
 
     field = there.whole
     energies = {one.name for one in analysis.integrals if one.kind == ENERGY}
-    energies |= {name + polynomial.MULTIPLE for name in energies}
+    energies |= {Message(polynomial.MULTIPLE, name=name) for name in energies}
     known = [(name, p) for name, p in there.known if field.reduced(_without_constants(field, p)) != 0]
     # Claimed integrals are looked at here once more: ``analysis.claims`` asks for every result, this one among them.
     for k, claim in enumerate(analysis.system.claims):
@@ -106,12 +118,17 @@ def _known(analysis: Analysis, there: Setting) -> list[tuple[str, Any]]:
                 stated = Symbols.of(analysis).polynomial(analysis.parameters_scene, claim)
                 top, bottom = there.transfer.fraction(in_parameters(analysis, stated))
                 if not any(bottom.degrees()[place] for place in field.places):
-                    known.append((claim.place or f"claim {k + 1}", top))
+                    known.append((claim.place or Message("claim [[number]]", number=k + 1), top))
     with suppress(Failure):
         most = 2 * max(polynomial.weights_of(there).weights)
         new = [one for one in polynomial.integrals_of(there, most).new if one.certainty is Certainty.PROVED]
         for k, one in enumerate(new, 1):
-            known.append((f"further integral {k}" if len(new) > 1 else "further integral", one.polynomial))
+            known.append(
+                (
+                    Message("further integral [[k]]", k=k) if len(new) > 1 else Message("further integral"),
+                    one.polynomial,
+                )
+            )
     order = sorted(range(len(known)), key=lambda k: (known[k][0] not in energies, -_degree(field, known[k][1]), k))
     return [known[k] for k in order]
 
@@ -150,8 +167,9 @@ def _independent(field: PolynomialField, found: list[tuple[str, Any]]) -> tuple[
     if not kept:
         return [], ()
     for k, relation in enumerate(field.relations):
-        number = f" {k + 1}" if len(field.relations) > 1 else ""
-        kept.append((f"geometry{number}", _without_constants(field, relation)))
+        several = len(field.relations) > 1
+        name = Message("geometry [[number]]", number=k + 1) if several else Message("geometry")
+        kept.append((name, _without_constants(field, relation)))
     return kept, tuple(left)
 
 

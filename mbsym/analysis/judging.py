@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from mbsym.algebra.failures import Failure
+from mbsym.algebra.failures import Failure, message_of
 from mbsym.analysis.judge import Judge
+from mbsym.expressions.message import Message
 from mbsym.mechanics.constraints.refusal import refuse_constraints, refused
 from mbsym.mechanics.variables import angle_denominators, angles_of
 from mbsym.model.claims import CLAIMS, Claim
@@ -37,7 +38,7 @@ def judged_claims(analysis: Analysis) -> tuple[ClaimResult, ...]:
     """Every claim's outcome, in the order of the description, which has some."""
     system = analysis.system
     if system.constraints and system.speeds:
-        reason = refused(system, "not judged in speeds")
+        reason = refused(system, Message("not judged in speeds"))
         return tuple(claims.undecided(system, claim, reason) for claim in system.claims)
     for number in analysis.problems:  # not under the small budget of a claim, whose failures would be remembered
         analysis.stage(number)
@@ -77,9 +78,9 @@ def _judged(source: Analysis, claim: Claim, allowance: int) -> tuple[ClaimResult
             with source.strictly():  # a claim is no better than the checks of what it is compared with
                 result = claims.examine(source, claim)
         except Failure as reason:
-            result = claims.undecided(source.system, claim, str(reason))
+            result = claims.undecided(source.system, claim, message_of(reason))
         except Exception as error:
-            result = claims.undecided(source.system, claim, str(source.contained(error)))
+            result = claims.undecided(source.system, claim, source.contained(error).reason)
     return result, spent.work
 
 
@@ -87,7 +88,7 @@ def claimed_oscillation(analysis: Analysis) -> Oscillating:
     """The periodic solution of problem 12, to the highest order that is claimed."""
     from mbsym.analysis.oscillating import oscillating
 
-    refuse_constraints(analysis.system, "not expanded")
+    refuse_constraints(analysis.system, Message("not expanded"))
     return oscillating(analysis, _order(analysis, "oscillation"))
 
 
@@ -95,7 +96,7 @@ def claimed_manifold(analysis: Analysis) -> Expansion:
     """The slow manifold of problem 12, to the highest order that is claimed."""
     from mbsym.analysis.expanding import expansion
 
-    refuse_constraints(analysis.system, "not expanded")
+    refuse_constraints(analysis.system, Message("not expanded"))
     return expansion(analysis, _order(analysis, "slow manifold"))
 
 

@@ -18,6 +18,7 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
+from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.motion import relations
 from mbsym.model.oscillation_names import names_in, oscillation_names
@@ -141,7 +142,7 @@ def oscillating(
     for name in (small.name, *(one for one, _ in small.powers), *given):
         if name in related:
             raise NoClosedForm(
-                f"{name} is given by a relation: it is not small, scaled, or a number by itself",
+                Message("[[name]] is given by a relation: it is not small, scaled, or a number by itself", name=name),
                 remedy="solve the relation for another parameter",
             )
     whole, taylor = _field(analysis, small, order)
@@ -154,7 +155,7 @@ def oscillating(
         if name in powers and velocity_name(name) in field.variables:
             powers[velocity_name(name)] = powers[name]
     if small.name not in field.parameters and not powers:
-        raise NoClosedForm(f"the equations do not depend on {small.name}")
+        raise NoClosedForm(Message("the equations do not depend on [[name]]", name=small.name))
     kept = [name for name in field.parameters if name != small.name]
     most = order if taylor else order + LATEST
     left = {*kept, small.name, *related, *given}
@@ -183,7 +184,11 @@ def oscillating(
     sign = _sign(analysis, tower, found.frequency * found.frequency)
     if sign == "negative":
         raise NoClosedForm(
-            f"{found.leading} does not oscillate where {small.name} = 0: the square of its frequency is < 0"
+            Message(
+                "[[leading]] does not oscillate where [[small]] = 0: the square of its frequency is < 0",
+                leading=found.leading,
+                small=small.name,
+            )
         )
     size = _sign(analysis, tower, found.amplitude * found.amplitude)
     return Oscillating(
@@ -250,8 +255,11 @@ def _field(analysis: Analysis, small: SmallParameter, order: int) -> tuple[Polyn
     for name in names:
         if weights.get(name) and any(f"({name}" in one for one in field.variables):
             raise NoClosedForm(
-                f"{name} is small, but stands under sines and cosines: they are expanded about a motion in which all "
-                "coordinates are small only",
+                Message(
+                    "[[name]] is small, but stands under sines and cosines: they are expanded about a motion in "
+                    "which all coordinates are small only",
+                    name=name,
+                ),
                 remedy="give the 'motion', and a power to every coordinate",
             )
     return field, False

@@ -26,6 +26,7 @@ from mbsym.analysis import (
 )
 from mbsym.analysis.forms import FORMS
 from mbsym.analysis.stages import Derived, NoResult, Stage, Stages, Unavailable, later
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import Expression
 from mbsym.formulas.formula import Column
 from mbsym.mechanics.constraints.refusal import refuse_constraints
@@ -228,7 +229,7 @@ class Analysis(Stages):
         return super().result(name, compute)
 
     def _without_constraints(self) -> None:
-        refuse_constraints(self.system, "not derived")
+        refuse_constraints(self.system, Message("not derived"))
 
     # --- what everything stands on: the system over the ring, over its parameters alone, over jets, as a program ---
 
@@ -410,7 +411,11 @@ class Analysis(Stages):
         for name in names:
             check = self.check(name)
             if check is not None and check.failed:
-                reason = f"withdrawn, because the self-check '{name}' failed: {check.detail}"
+                reason = Message(
+                    "withdrawn, because the self-check '[[name]]' failed: [[detail]]",
+                    name=check.name,
+                    detail=check.detail,
+                )
                 return NoResult(reason, "", "withdrawn", "withdrawn", severity=Severity.DEFECT)
         return None
 

@@ -16,6 +16,7 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.signs import Signs
 from mbsym.analysis.symmetric import symmetries_of
+from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.motion import relations
 from mbsym.mechanics.oracle import Oracle, State
@@ -143,7 +144,7 @@ def with_known(there: Setting, listed: Sequence[Integral]) -> Setting:
 
 
 #: What the name of an integral gets where only its numerator is told: the denominator holds parameters alone.
-MULTIPLE = ", but for a constant factor (its denominator is left out)"
+MULTIPLE = "[[name]], but for a constant factor (its denominator is left out)"
 
 
 def _known(
@@ -161,7 +162,7 @@ def _known(
         except Failure:
             continue  # it holds the time, or positions on which the equations do not depend
         if not any(bottom.degrees()[k] for k in whole.places):
-            name = one.name if bottom.is_constant() else one.name + MULTIPLE
+            name = one.name if bottom.is_constant() else Message(MULTIPLE, name=one.name)
             known.append((name, _at(whole, field, numbers, top)))
     return known
 
@@ -252,13 +253,15 @@ def check(analysis: Analysis) -> Check | None:
     if found is None:
         return None
     new = [
-        Integral(f"integral of weight {one.weight}", "polynomial", "", formula, Certainty.PROVED)
+        Integral(
+            Message("integral of weight [[weight]]", weight=one.weight), "polynomial", "", formula, Certainty.PROVED
+        )
         for one, formula in zip(found.found.generators, found.formulas, strict=True)
         if one.is_new
     ]
     if found.symmetries is not None:
         new += [
-            Integral(f"integral of symmetry {k}", "symmetry", "", one.integral, Certainty.PROVED)
+            Integral(Message("integral of symmetry [[k]]", k=k), "symmetry", "", one.integral, Certainty.PROVED)
             for k, one in enumerate(found.symmetries.symmetries, start=1)
             if not one.name
         ]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from mbsym.algebra.failures import Failure, NotInstalled
+from mbsym.algebra.failures import Failure, NotInstalled, message_of
 from mbsym.analysis import constrained, forms
 from mbsym.analysis.stages import later
 from mbsym.formulas.formula import Column
@@ -62,12 +62,12 @@ def check(analysis: Analysis, name: str) -> Check | None:
         with ring.budget(ring.work_budget // CHECK_SHARE):
             return SECOND_ROUTES[name](analysis)
     except Failure as reason:
-        return Check(name, "", "", comparison.UNDECIDED, str(reason))
+        return Check(name, "", "", comparison.UNDECIDED, message_of(reason))
     except Exception as error:
         failure = analysis.contained(error)
         if isinstance(failure, NotInstalled):
             return None
-        return Check(name, "", "", comparison.UNDECIDED, str(failure))
+        return Check(name, "", "", comparison.UNDECIDED, failure.reason)
 
 
 # --- one by one: None where there is nothing to compare ---

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from mbsym.algebra.failures import Failure, NoClosedForm
+from mbsym.algebra.failures import Failure, NoClosedForm, message_of
 from mbsym.analysis.averaged import averaged_system, averaging_of, fast_phases
+from mbsym.expressions.message import Message, joined
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.model.system import System
@@ -68,7 +69,7 @@ def small_parameters_of(analysis: Analysis) -> SmallParameters:
     if system.small is None and not phases:
         return SmallParameters()
     if system.small is not None:
-        refuse_constraints(system, "not expanded")
+        refuse_constraints(system, Message("not expanded"))
     averaged = tuple(_averaging(analysis, phase) for phase in phases)
     if system.small is None:
         return SmallParameters(averaged=averaged)
@@ -83,9 +84,13 @@ def _oscillation(analysis: Analysis) -> tuple[Oscillating | None, str]:
     try:
         return oscillating(analysis, OSCILLATION_ORDER), ""
     except Failure as reason:
-        return None, f"{reason}; {reason.remedy}" if reason.remedy else str(reason)
+        return None, _with_remedy(reason)
     except ZeroDivisionError as reason:
-        return None, str(reason)
+        return None, message_of(reason)
+
+
+def _with_remedy(failure: Failure) -> str:
+    return joined((failure.reason, failure.remedy), "; ") if failure.remedy else failure.reason
 
 
 def _slow(analysis: Analysis) -> tuple[Expansion | None, str]:
@@ -96,7 +101,7 @@ def _slow(analysis: Analysis) -> tuple[Expansion | None, str]:
         try:
             further = expansion(analysis, order)
         except (Failure, ZeroDivisionError) as reason:
-            return (found, "") if found is not None else (None, str(reason))
+            return (found, "") if found is not None else (None, message_of(reason))
         decided = further.manifold.steady is None or further.slow[0] is not Outcome.UNDECIDED
         if found is None or decided:
             found = further
@@ -114,6 +119,6 @@ def _averaging(analysis: Analysis, phase: str) -> Averaging:
         if broken is not None:
             raise NoClosedForm(broken.reason)
     except Failure as reason:
-        return Averaging(phase, failure=f"{reason}; {reason.remedy}" if reason.remedy else str(reason))
+        return Averaging(phase, failure=_with_remedy(reason))
     averaged: System = averaged_system(analysis.system, found)
     return Averaging(phase, found, Whole(averaged, (6,)))

@@ -11,6 +11,7 @@ from typing import Any, Generic, Self, TypeVar, overload
 
 from mbsym.algebra.failures import Defect, Failure, Limit, NotInstalled, Severity, SingularPoint
 from mbsym.expressions.guessing import GuessesNames
+from mbsym.expressions.message import Message, worded
 
 T = TypeVar("T")
 Owner = TypeVar("Owner", bound="Stages")
@@ -32,6 +33,10 @@ class NoResult:
     severity: Severity = Severity.ANSWER
     error: Exception | None = field(default=None, compare=False, repr=False)
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "reason", worded(self.reason))
+        object.__setattr__(self, "hint", worded(self.hint))
+
     @staticmethod
     def of(failure: Failure) -> NoResult:
         """The value of a failure that was raised."""
@@ -39,7 +44,7 @@ class NoResult:
             return failure.failure
         if isinstance(failure, SingularPoint):
             hint = "choose another motion or other coordinates"
-            return NoResult(f"singular: {failure}", hint, "singular", failure.code)
+            return NoResult(Message("singular: [[why]]", why=failure.reason), hint, "singular", failure.code)
         if isinstance(failure, Defect):
             cause = failure.__cause__
             short = "out of memory" if failure.limit is Limit.MEMORY else "internal error"
@@ -62,15 +67,16 @@ class Unavailable(Failure):
     code = "unavailable"
 
     def __init__(self, stage: str, failure: NoResult) -> None:
-        sentence = failure.reason + (f" ({failure.hint})" if failure.hint else "")
+        reason, hint = failure.reason, failure.hint
+        sentence = Message("[[reason]] ([[hint]])", reason=reason, hint=hint) if hint else reason
         super().__init__(sentence, limit=failure.limit, remedy=failure.hint)
         self.stage = stage
         self.failure = failure
 
     @property
-    def reason(self) -> str:
+    def reason(self) -> Message:
         """Why, without what to do."""
-        return self.failure.reason
+        return worded(self.failure.reason)
 
 
 @dataclass(frozen=True)

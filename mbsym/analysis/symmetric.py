@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
+from mbsym.expressions.message import Message
 from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.mechanics.motion import relations
 from mbsym.problems.symmetries import Symmetries, in_coordinates, in_speeds, symmetries
@@ -20,7 +21,7 @@ def symmetries_of(analysis: Analysis, values: Mapping[str, Fraction] | None = No
     Raises Failure where equations or their coefficients outgrow a bound, SingularPoint where formulas divide by zero at
     the ``values``.
     """
-    refuse_constraints(analysis.system, "symmetries are not looked for")
+    refuse_constraints(analysis.system, Message("symmetries are not looked for"))
     ring, form = analysis.ring, analysis.speed_form
     numbers = {
         ring.index("parameter", name): ring.number(x)

@@ -8,10 +8,11 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
-from msgspec import convert, to_builtins
+from msgspec import convert
 
 from mbsym.batch.outcome import CheckRow, ClaimRow, ComplaintRow, FileRow, Outcome, ProblemRow, Row
 from mbsym.batch.task import Asked, Finished, Task
+from mbsym.report.documents.writer import plain
 
 #: What a reader of foreign data has to expect.
 MALFORMED = (ValueError, TypeError, KeyError, AttributeError, RecursionError)
@@ -62,7 +63,7 @@ def _read_content(found: Any) -> str | bytes:
 
 def row_data(row: Row) -> dict[str, Any]:
     """A row without what differs from batch to batch: its seconds, and whether it was up to date."""
-    found: dict[str, Any] = to_builtins(row)
+    found: dict[str, Any] = plain(row)
     del found["seconds"], found["cached"]
     return found
 

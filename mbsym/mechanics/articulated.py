@@ -27,6 +27,7 @@ from typing import Generic
 from mbsym.algebra.base import Algebra, S
 from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.vectors import Tensor, Vector, axis_vector, symmetric_tensor, tensor_of
+from mbsym.expressions.message import Message
 from mbsym.mechanics.articulation import Articulation, Frame, MassProperties, turned_symmetric
 from mbsym.mechanics.bias_forces import BiasForces
 from mbsym.mechanics.frames import Turn
@@ -94,7 +95,9 @@ class _Articulated(Generic[S]):
             self._inwards(number)
         lacking = [name for name in self.system.coordinates if name not in self.pivots]
         if lacking:
-            raise SingularPoint(f"the mass matrix is singular everywhere: {', '.join(lacking)} moves no body")
+            raise SingularPoint(
+                Message("the mass matrix is singular everywhere: [[names]] moves no body", names=", ".join(lacking))
+            )
         accelerations = self._outwards()
         names = self.system.coordinates
         return tuple(accelerations[name] for name in names), tuple(self.pivots[name] for name in names)
@@ -139,7 +142,9 @@ class _Articulated(Generic[S]):
         """The inertia that is left, and the joint with its pivot inverted; the frame's wrench is updated."""
         algebra, pivot = self.algebra, joint.inverse
         if algebra.vanishes(pivot):
-            raise SingularPoint(f"the mass matrix is singular everywhere: {joint.name} moves no mass")
+            raise SingularPoint(
+                Message("the mass matrix is singular everywhere: [[joint]] moves no mass", joint=joint.name)
+            )
         self.pivots[joint.name] = algebra.times(pivot, algebra.times(joint.slope, joint.slope))
         inverse = algebra.reciprocal(pivot)
         ratio_force = _scaled(joint.force, inverse)

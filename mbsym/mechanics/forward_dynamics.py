@@ -17,6 +17,7 @@ from dataclasses import dataclass
 
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
+from mbsym.expressions.message import Message
 from mbsym.mechanics import articulated, factorisation
 from mbsym.mechanics.articulation import Articulation, articulation
 from mbsym.mechanics.bias_forces import bias_forces, forcing
@@ -54,7 +55,7 @@ def forward_dynamics(system: System, ring: Ring, method: str | None = None, apar
     Raises SingularPoint if M is singular everywhere, NoClosedForm as the loads do, Constrained, ValueError for a
     method that does not apply.
     """
-    refuse_constraints(system, "accelerations")
+    refuse_constraints(system, Message("accelerations"))
     program = Program()
     inputs = program_environment(system, program)
     frames = articulation(scene_without_accelerations(system, ring, program, inputs), apart)

@@ -13,6 +13,7 @@ from typing import Generic, NamedTuple
 from mbsym.algebra.base import S
 from mbsym.algebra.failures import GivenByMatrices
 from mbsym.algebra.matrices import ScalarMatrix
+from mbsym.expressions.message import Message
 from mbsym.mechanics.kinematics import Scene
 from mbsym.model.linear import LinearModel
 from mbsym.model.system import System
@@ -53,13 +54,13 @@ def given_matrices(scene: Scene[S], linear: LinearModel) -> Given[S]:
     return Given(lowered("M", size), total(("D", "G", "C")), total(("K", "N", "S")), lowered("B", inputs))
 
 
-WITHOUT_BODIES = "the system is given by its matrices, and has no bodies"
+WITHOUT_BODIES = Message("the system is given by its matrices, and has no bodies")
 
 
 def refuse_matrices(system: System, what: str) -> None:
     """Raises GivenByMatrices if the system has matrices in place of bodies."""
     if system.linear is not None:
-        raise GivenByMatrices(f"{what}: {WITHOUT_BODIES}", remedy=HINT)
+        raise GivenByMatrices(Message("[[what]]: [[why]]", what=what, why=WITHOUT_BODIES), remedy=HINT)
 
 
 HINT = "the linear equations themselves are in problem 5"

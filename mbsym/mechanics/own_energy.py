@@ -13,6 +13,7 @@ from typing import Any
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.matrices import determinant
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import names
 from mbsym.mechanics.articulation import mass_properties
 from mbsym.mechanics.energy import body_energy
@@ -48,7 +49,7 @@ def own_determinants(system: System, ring: Ring) -> list[Polynomial]:
             done.update(own)
     left = [name for name in system.coordinates if name not in done]
     if left:
-        raise NoClosedForm(f"no body alone tells {', '.join(left)}")
+        raise NoClosedForm(Message("no body alone tells [[names]]", names=", ".join(left)))
     return found
 
 
@@ -88,7 +89,9 @@ class _Energies:
         tensor = central_tensor(scene, body)
         minors = [ring.reduce(determinant(ring, [[tensor[i][j] for j in k] for i in k])) for k in _PRINCIPAL]
         if any(not x.is_constant() or _constant(x) < 0 for x in (ring.reduce(motion.mass), *minors)):
-            raise NoClosedForm(f"the mass and tensor of {body} are not those of a body at rest in its own axes")
+            raise NoClosedForm(
+                Message("the mass and tensor of [[body]] are not those of a body at rest in its own axes", body=body)
+            )
 
     def hessian(self, body: str, moving: Sequence[str]) -> list[list[Polynomial]]:
         """d2 T_k / dv_i dv_j = T_k(e_i + e_j) - T_k(e_i) - T_k(e_j)."""

@@ -20,6 +20,7 @@ from mbsym.algebra.derivative import gradient
 from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import names
 from mbsym.mechanics.articulation import articulation
 from mbsym.mechanics.bias_forces import bias_forces, forcing
@@ -67,9 +68,9 @@ def programs(system: System, ring: Ring, apart: bool = False, open_tree: bool = 
 
     Raises Constrained for a system with constraints, which are not in M and f, unless the ``open_tree`` is wanted.
     """
-    refuse_matrices(system, "mass matrix and forcing")
+    refuse_matrices(system, Message("mass matrix and forcing"))
     if not open_tree:
-        refuse_constraints(system, "mass matrix and forcing")
+        refuse_constraints(system, Message("mass matrix and forcing"))
     program = Program()
     inputs = program_environment(system, program)
     scene = scene_without_accelerations(system, ring, program, inputs)

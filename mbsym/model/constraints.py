@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from mbsym.expressions.message import Message, joined
 from mbsym.expressions.place import Span
 from mbsym.expressions.tree import Expression
 from mbsym.model.system import Point, Vector, _span
@@ -110,9 +111,10 @@ def kind_name(constraint: Constraint) -> str:
     return KIND_NAMES[type(constraint)]
 
 
-def listed(constraints: tuple[Constraint, ...]) -> str:
+def listed(constraints: tuple[Constraint, ...]) -> Message:
     """``coincide 1, rolling 2``: each constraint by its kind and its number in the description."""
-    return ", ".join(f"{kind_name(one)} {number}" for number, one in enumerate(constraints, start=1))
+    named = ((Message(kind_name(one)), number) for number, one in enumerate(constraints, start=1))
+    return joined((Message("[[kind]] [[number]]", kind=kind, number=number) for kind, number in named), ", ")
 
 
 def is_holonomic(constraint: Constraint) -> bool:

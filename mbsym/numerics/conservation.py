@@ -258,14 +258,24 @@ def _beside(dynamics: Dynamics, held: Collection[str]) -> list[list[float]]:
     return found
 
 
-def between_switches(times: Any, states: Any, switches: Sequence[float]) -> list[list[float]]:
+def between_switches(
+    times: Any, states: Any, switches: Sequence[float], inside: Sequence[tuple[float, Any]]
+) -> list[list[float]]:
     """(t, q, q') between switches that follow each other within one distance of rows: what acts there alone is seen in
     no row.  The states lie on straight lines between those of the rows, beside the motion.
+
+    A straight line need not lead to where the motion was (into a wall that it bounces off): there are also the states
+    ``inside`` steps on each side of the switches, in which what is not known of them is as in the rows.
     """
+    rows = np.asarray(states, dtype=float)
     found: list[list[float]] = []
+    for time, state in inside:
+        if times[0] <= time <= times[-1]:
+            beside = [float(np.interp(time, times, row)) for row in rows]
+            found.append([time, *(b if np.isnan(x) else float(x) for x, b in zip(state, beside, strict=True))])
     for one, later in pairwise(switches):
         row = int(np.searchsorted(times, one))
-        if 0 < row < len(times) and later <= times[row] and len(found) < MOST_BETWEEN:
+        if 0 < row < len(times) and later <= times[row] and len(found) < MOST_BETWEEN + len(inside):
             middle = 0.5 * (one + later)
             share = (middle - times[row - 1]) / (times[row] - times[row - 1])
             state = np.asarray(states[:, row - 1], float) * (1 - share) + np.asarray(states[:, row], float) * share

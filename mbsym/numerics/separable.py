@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -141,7 +142,13 @@ class _Beside:
     @property
     def passed(self) -> Passed | None:
         """What the parts have met on their way."""
-        return together(self.runs)
+        return together(self.runs, [partial(self._of_part, part) for part in self.parts])
+
+    def _of_part(self, part: Part, state: Any) -> Any:
+        """A whole state that tells of one part only."""
+        found = np.full(sum(len(one.places) for one in self.parts), np.nan)
+        found[list(part.places)] = state
+        return found
 
     def _count(self) -> None:
         """The work of all parts together."""

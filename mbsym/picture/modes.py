@@ -15,7 +15,6 @@ from math import hypot, inf, pi
 from typing import Any
 
 import numpy as np
-from msgspec import to_builtins
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.roots import Root
@@ -25,6 +24,7 @@ from mbsym.picture.encode import number
 from mbsym.problems.linearisation import Linearisation
 from mbsym.problems.stability.problem import matrices_at, parameter_values, ring_numbers
 from mbsym.problems.stability.verdict import Verdict
+from mbsym.report.documents.writer import plain
 from mbsym.report.sections.stability import verdict_data
 
 #: A singular value of the pencil below this part of its largest belongs to a shape.
@@ -175,7 +175,7 @@ def modes_json(found: Modes) -> dict[str, Any]:
     return {
         "base": {name: number(value) for name, value in found.base.items()},
         "turning": {name: number(value) for name, value in found.turning.items()},
-        "verdict": to_builtins(verdict_data(found.verdict)),
+        "verdict": plain(verdict_data(found.verdict)),
         "still": list(found.still),
         "modes": [
             {

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from msgspec import to_builtins
-
 from mbsym.algebra.failures import NoValue
 from mbsym.analysis.resting import relative_equilibria
 from mbsym.analysis.stages import Unavailable
@@ -17,6 +15,7 @@ from mbsym.model.system import System
 from mbsym.picture.encode import number
 from mbsym.problems.relative_equilibria.equilibria import CoordinateValue
 from mbsym.problems.stability.verdict import Verdict
+from mbsym.report.documents.writer import plain
 from mbsym.report.sections.stability import verdict_data
 
 
@@ -84,7 +83,7 @@ def at_rest_json(found: AtRest) -> dict[str, Any]:
                 "values": {name: number(value) for name, value in x.values.items()},
                 "texts": dict(x.texts),
                 "free": list(x.free),
-                "verdict": to_builtins(verdict_data(x.verdict)),
+                "verdict": plain(verdict_data(x.verdict)),
                 "proof": x.proof,
                 "otherAngles": x.other_angles,
                 "family": x.family,

@@ -23,9 +23,10 @@ from flint import arb, arb_mat, ctx, fmpq_mat
 from mbsym.algebra.base import Scalar
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.evaluate import Carrier
-from mbsym.algebra.failures import NotRational, SingularPoint
+from mbsym.algebra.failures import NotRational, SingularPoint, message_of
 from mbsym.algebra.ring import Ring
 from mbsym.algebra.splitting import vanishes_with
+from mbsym.expressions.message import Message, joined, worded
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.newton_euler import residuals
@@ -69,7 +70,9 @@ class Check:
 
     def __post_init__(self) -> None:
         if self.failed and not self.detail:
-            object.__setattr__(self, "detail", "the two routes differ")
+            object.__setattr__(self, "detail", Message("the two routes differ"))
+        for part in ("name", "first", "second", "detail"):
+            object.__setattr__(self, part, worded(getattr(self, part)))
 
     @property
     def failed(self) -> bool:
@@ -114,7 +117,16 @@ def extent(lengths: Mapping[str, int], what: str, fixed: int = 0) -> Extent:
         if chosen and fixed > MOST_EVALUATED:
             break
         chosen.append(name)
-    remark = f"{len(chosen)} of {len(lengths)} {what}, the others are longer" if len(chosen) < len(lengths) else ""
+    remark = (
+        Message(
+            "[[count]] of [[all]] [[what]], the others are longer",
+            count=len(chosen),
+            all=len(lengths),
+            what=what,
+        )
+        if len(chosen) < len(lengths)
+        else ""
+    )
     return Extent(tuple(name for name in lengths if name in chosen), 1, remark)
 
 
@@ -128,7 +140,7 @@ def compare(
     check = _compared(truth, name, routes, pairs, states)
     if not remark or check.outcome not in (EXACT, NUMERICAL):
         return check
-    return replace(check, detail=f"{check.detail}; {remark}")
+    return replace(check, detail=joined((check.detail, remark), "; "))
 
 
 def _compared(truth: Oracles, name: str, routes: tuple[str, str], pairs: Pairs, states: int) -> Check:
@@ -154,8 +166,12 @@ def _compare(truth: Sequence[Oracle], pairs: Pairs, wanted: int) -> tuple[str, s
             return outcome, detail, done
         done += outcome == EXACT
         if done == wanted:
-            return EXACT, f"{done} state{'s' * (done > 1)}", done
-    return UNDECIDED, f"only {done} of {wanted} states without a singularity were found", done
+            return EXACT, Message("1 state") if done == 1 else Message("[[count]] states", count=done), done
+    return (
+        UNDECIDED,
+        Message("only [[done]] of [[wanted]] states without a singularity were found", done=done, wanted=wanted),
+        done,
+    )
 
 
 def decide(name: str, routes: tuple[str, str], exact: bool, pairs: Callable[[bool], list[Pair]]) -> Check:
@@ -171,14 +187,19 @@ def decide(name: str, routes: tuple[str, str], exact: bool, pairs: Callable[[boo
             outcome, detail = _verdict(pairs(True))
         return Check(name, *routes, NUMERICAL if outcome == EXACT else outcome, detail or "random parameters")
     except ZeroDivisionError as reason:
-        return Check(name, *routes, UNDECIDED, f"singular: {reason}")
+        return Check(name, *routes, UNDECIDED, Message("singular: [[why]]", why=message_of(reason)))
 
 
 def _verdict(found: Sequence[Pair]) -> tuple[str, str]:
     agreements = [(label, first, second, agreement(first, second)) for label, first, second in found]
     for label, first, second, agree in agreements:
         if agree is False:
-            return FAILED, f"{label} differs: {_short(first)} against {_short(second)}"
+            return FAILED, Message(
+                "[[label]] differs: [[first]] against [[second]]",
+                label=label,
+                first=_short(first),
+                second=_short(second),
+            )
     return (UNDECIDED, "enclosures too wide") if any(agree is None for *_, agree in agreements) else (EXACT, "")
 
 
@@ -200,20 +221,20 @@ def _short(x: Scalar) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-D_ALEMBERT = "d'Alembert's principle in inertial axes"
+D_ALEMBERT = Message("d'Alembert's principle in inertial axes")
 
 
 def check_equations(truth: Oracles, equations: Equations) -> Check:
     """Lagrange's closed equations against d'Alembert's principle."""
     names = truth.system.coordinates
     rows = zip(names, equations.mass_matrix, equations.forcing, strict=True)
-    chosen = extent({name: sum(x.terms for x in (*row, f)) for name, row, f in rows}, "equations")
+    chosen = extent({name: sum(x.terms for x in (*row, f)) for name, row, f in rows}, Message("equations"))
 
     def pairs(oracle: Oracle) -> list[Pair]:
         state = oracle.state
         carry = Carrier(truth.ring, state.numbers, state.values)
         needed = oracle.residuals
-        found = []
+        found: list[Pair] = []
         for i, name in enumerate(names):
             if name not in chosen.chosen:
                 continue
@@ -221,7 +242,7 @@ def check_equations(truth: Oracles, equations: Equations) -> Check:
             for j, other in enumerate(names):
                 entry = carry(equations.mass_matrix[i, j].polynomial)
                 total = total + entry * state.values[acceleration_name(other)]
-            found.append((f"equation {name}", total, needed[name]))
+            found.append((Message("equation [[name]]", name=name), total, needed[name]))
         return found
 
     routes = ("Lagrange, closed form", D_ALEMBERT)
@@ -239,13 +260,15 @@ def check_program(truth: Oracles, programs: Programs) -> Check:
         values = programs.program.evaluate(nodes, state.values, state.numbers)
         needed = oracle.residuals
         n = len(names)
-        found = [("energy", values[-1], oracle.energy_of_motion - oracle.force_function)]
+        found: list[Pair] = [(Message("energy"), values[-1], oracle.energy_of_motion - oracle.force_function)]
         for i, name in enumerate(names):
             total = -values[n * n + i]
             for j, other in enumerate(names):
                 total = total + values[i * n + j] * state.values[acceleration_name(other)]
-            found.append((f"equation {name}", total, needed[name]))
-            found.append((f"equation {name} of the general recursion", recursion[name], needed[name]))
+            found.append((Message("equation [[name]]", name=name), total, needed[name]))
+            found.append(
+                (Message("equation [[name]] of the general recursion", name=name), recursion[name], needed[name])
+            )
         return found
 
     states = 1 if len(names) * len(truth.system.bodies) > MOST_DISPLACED else STATES
@@ -278,15 +301,18 @@ def check_mass_matrix(truth: Oracles, programs: Programs) -> Check:
     if not deficient and not any(all(programs.program.vanishes(x) for x in row) for row in programs.mass_matrix):
         return Check("mass matrix", *routes, UNDECIDED, "enclosures too wide to tell whether M is regular")
     idle = [name for i, name in enumerate(names) if all(programs.program.vanishes(x) for x in programs.mass_matrix[i])]
-    which = ", ".join(idle) if idle else f"some combination of {', '.join(names)}"
+    which = ", ".join(idle) if idle else Message("some combination of [[names]]", names=", ".join(names))
     return Check(
-        "mass matrix", *routes, SINGULAR, f"{which} carries no inertia: no equation determines its acceleration"
+        "mass matrix",
+        *routes,
+        SINGULAR,
+        Message("[[which]] carries no inertia: no equation determines its acceleration", which=which),
     )
 
 
 def check_kinematics(truth: Oracles, kinematics: Kinematics) -> Check:
     """Direction cosines, angular velocities and velocities against the placement of the bodies in inertial axes."""
-    chosen = extent({body.name: _terms(body) for body in kinematics.bodies}, "bodies")
+    chosen = extent({body.name: _terms(body) for body in kinematics.bodies}, Message("bodies"))
 
     def pairs(oracle: Oracle) -> list[Pair]:
         state = oracle.state
@@ -302,7 +328,9 @@ def check_kinematics(truth: Oracles, kinematics: Kinematics) -> Check:
             for i in range(3):
                 for j in range(3):
                     cosine = sum((axes[k][i] * parent[k][j] for k in range(3)), state.numbers.zero)
-                    found.append((f"R of {body.name}", carry(own.rotation[i, j].polynomial), cosine))
+                    found.append(
+                        (Message("R of [[body]]", body=body.name), carry(own.rotation[i, j].polynomial), cosine)
+                    )
             spin = place.spin(body.name)[0]
             relative = spin
             if body.attached_to != INERTIAL:
@@ -310,14 +338,20 @@ def check_kinematics(truth: Oracles, kinematics: Kinematics) -> Check:
             origin = [x.b for x in place.origin[body.name]]
             centre = [x.b for x in place.mass_centre(body)]
             for label, ours, world in (
-                ("relative angular velocity", own.relative_angular_velocity, relative),
-                ("angular velocity", own.angular_velocity, spin),
-                ("velocity of the origin", own.velocity_origin, origin),
-                ("velocity of the mass centre", own.velocity_mass_centre, centre),
+                (Message("relative angular velocity"), own.relative_angular_velocity, relative),
+                (Message("angular velocity"), own.angular_velocity, spin),
+                (Message("velocity of the origin"), own.velocity_origin, origin),
+                (Message("velocity of the mass centre"), own.velocity_mass_centre, centre),
             ):
                 for i in range(3):
                     turned = sum((axes[k][i] * world[k] for k in range(3)), state.numbers.zero)
-                    found.append((f"{label} of {body.name}", carry(ours[i].polynomial), turned))
+                    found.append(
+                        (
+                            Message("[[label]] of [[body]]", label=label, body=body.name),
+                            carry(ours[i].polynomial),
+                            turned,
+                        )
+                    )
         return found
 
     routes = ("recursion in body axes", "placement in inertial axes")
@@ -339,7 +373,7 @@ def check_energy(truth: Oracles, energy: Energy) -> Check:
     """T, its parts A2, A1, A0, and U against sums over bodies in inertial axes."""
     names = truth.system.coordinates
     length = energy.kinetic_energy.terms + energy.A2.terms + energy.A0.terms + energy.force_function.terms
-    chosen = extent({"energy": length}, "formulas")
+    chosen = extent({"energy": length}, Message("formulas"))
 
     def pairs(oracle: Oracle) -> list[Pair]:
         state = oracle.state
@@ -352,9 +386,9 @@ def check_energy(truth: Oracles, energy: Energy) -> Check:
                 half = state.numbers.number(Fraction(1, 2))
                 parts = parts + half * carry(energy.A2[i, j].polynomial) * speed * other
         return [
-            ("kinetic energy", carry(energy.kinetic_energy.polynomial), oracle.kinetic_energy),
+            (Message("kinetic energy"), carry(energy.kinetic_energy.polynomial), oracle.kinetic_energy),
             ("A2, A1, A0", parts, oracle.kinetic_energy),
-            ("force function", carry(energy.force_function.polynomial), oracle.force_function),
+            (Message("force function"), carry(energy.force_function.polynomial), oracle.force_function),
         ]
 
     return compare(truth, "energy", ("recursion in body axes", "sums in inertial axes"), pairs, chosen.states)
@@ -370,7 +404,7 @@ def check_linearisation(ring: Ring, first: Linearisation, second: Linearisation)
         outcomes["B"] = how_equal(ring, first.B.polynomials, second.B.polynomials)
     wrong = [name for name, outcome in outcomes.items() if outcome == FAILED]
     outcome = _worst(outcomes.values())
-    detail = f"differs in {', '.join(wrong)}" if wrong else HOW_EQUAL[outcome]
+    detail = Message("differs in [[wrong]]", wrong=", ".join(wrong)) if wrong else HOW_EQUAL[outcome]
     return Check("linearisation", first.route, second.route, outcome, detail)
 
 
@@ -397,11 +431,25 @@ def check_identities(
         if not zero and conditions:
             zero, needed = vanishes_with(ring, x, conditions), True
         if zero is False:
-            return Check(name, *routes, FAILED, f"{label} differs by {_short(ring.fraction(ring.reduce(x))[0])}")
+            return Check(
+                name,
+                *routes,
+                FAILED,
+                Message(
+                    "[[label]] differs by [[difference]]",
+                    label=label,
+                    difference=_short(ring.fraction(ring.reduce(x))[0]),
+                ),
+            )
         if zero is None:
             open_entries.append(label)
     if open_entries:
-        return Check(name, *routes, UNDECIDED, f"open whether they agree in {', '.join(open_entries)}")
+        return Check(
+            name,
+            *routes,
+            UNDECIDED,
+            Message("open whether they agree in [[names]]", names=joined(open_entries, ", ")),
+        )
     return Check(name, *routes, EXACT, WHERE_IT_EXISTS if needed else HOW_EQUAL[EXACT])
 
 

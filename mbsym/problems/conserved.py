@@ -15,6 +15,7 @@ from itertools import combinations
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.message import Message, enumerated, worded
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.programs import programs
 from mbsym.mechanics.symmetry import is_free_about_the_origin
@@ -81,7 +82,7 @@ class Conserved:
 
 def by_integrals(names: Sequence[str], drift: bool) -> Verdict:
     """Stability by the integrals called ``names``; ``drift``: with respect to what is not cyclic."""
-    found = concluded({Fact.INTEGRALS_DEFINITE}, Reason(Because.INTEGRALS, tuple(names)))
+    found = concluded({Fact.INTEGRALS_DEFINITE}, Reason(Because.INTEGRALS, tuple(map(worded, names))))
     return drifting(found) if drift else found
 
 
@@ -117,10 +118,15 @@ def of_integrals(scene: Scene, known: Sequence[Integral], left_out: Sequence[str
             for chosen in combinations(parts, count):
                 if any(len(item.formula.polynomial) > MOST_TERMS for item in chosen):
                     continue
-                axes = " and ".join(item.of for item in chosen)
+                axes = enumerated([item.of for item in chosen])
                 try:
                     square = sum((ring.times(x, x) for item in chosen if (x := item.formula.polynomial)), ring.zero)
-                    found.append((f"{SQUARE}{kind} across ({axes})", ring.reduce(square)))
+                    found.append(
+                        (
+                            Message("square of the [[kind]] across ([[axes]])", kind=Message(kind), axes=axes),
+                            ring.reduce(square),
+                        )
+                    )
                 except Failure:
                     continue
     seen = [(name, x) for name, x in found if not ring.dependencies(x, hidden)]

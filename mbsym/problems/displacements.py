@@ -34,6 +34,7 @@ from itertools import combinations
 from mbsym.algebra.matrices import ScalarMatrix, determinant
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs
+from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
 
 #: Formulas with more terms together are not looked at.
@@ -325,7 +326,7 @@ def _left(ring: Ring, found: Displacements, places: Sequence[int], i: int) -> st
     if not moving:
         return name
     if len(found.directions) > 1:
-        return f"{name} without the displacements"
+        return Message("[[name]] without the displacements", name=name)
     (c,), (place,) = moving, places
 
     def times(factor: Polynomial, of: str) -> str:

@@ -21,6 +21,7 @@ from dataclasses import dataclass
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.matrices import ScalarMatrix, solved
 from mbsym.algebra.ring import Polynomial
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import divide, number, substitute
 from mbsym.expressions.tree import names as names_in
 from mbsym.formulas.formula import Column, Matrix, column
@@ -69,7 +70,12 @@ def first_order(form: SpeedForm, equations: SpeedEquations, equilibrium: Equilib
     values = {x.index: turned[x.name] if x.name in turned else _value(form, x, at) for x in variables}
     varying = {name for value in values.values() for name in unsteady(plain, value)}
     if varying:
-        raise NoClosedForm(f"the motion is not steady in speeds and positions: they vary with {', '.join(varying)}")
+        raise NoClosedForm(
+            Message(
+                "the motion is not steady in speeds and positions: they vary with [[names]]",
+                names=", ".join(varying),
+            )
+        )
     on = dict(at) | values
     kinematic = [form.rates[x.name] for x in variables[: len(variables) - len(form.speeds)]]
     forcing = [x.polynomial for x in equations.forcing]
@@ -116,8 +122,8 @@ def check(
     change = ScalarMatrix(ring, rows)
     left, right = ScalarMatrix(ring, found.A.polynomials) @ change, change @ ScalarMatrix(ring, whole)
     states = [*names, *(velocity_name(name) for name in names)]
-    differences = {
-        f"the row of {x.name} by {by}": ring.reduce(a - b - rate)
+    differences: dict[str, Polynomial] = {
+        Message("the row of [[name]] by [[by]]", name=x.name, by=by): ring.reduce(a - b - rate)
         for x, one, other, moved in zip(variables, left, right, moving, strict=True)
         for by, a, b, rate in zip(states, one, other, moved, strict=True)
     }
@@ -152,7 +158,9 @@ def _quaternions(form: SpeedForm, plain: Scene) -> dict[str, Polynomial]:
         varying = used & {*turning(plain), *(item.name for item in form.system.prescribed), "t"}
         if varying:
             names = ", ".join(sorted(varying))
-            raise NoClosedForm(f"the motion is not steady in speeds and positions: they vary with {names}")
+            raise NoClosedForm(
+                Message("the motion is not steady in speeds and positions: they vary with [[names]]", names=names)
+            )
         turns = []
         for axis, angle in body.rotation.turns():
             sine, cosine = plain.lower.angle(divide(substitute(angle, values), number(2)))

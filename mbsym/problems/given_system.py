@@ -18,10 +18,11 @@ from flint import arb, ctx, fmpq, fmpq_mat
 
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.evaluate import Carrier
-from mbsym.algebra.failures import Failure
+from mbsym.algebra.failures import Failure, message_of
 from mbsym.algebra.matrices import added, determinant
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import Signs
+from mbsym.expressions.message import Message
 from mbsym.expressions.place import Span
 from mbsym.mechanics.given_matrices import given_matrices
 from mbsym.mechanics.kinematics import Scene
@@ -92,7 +93,7 @@ def check_matrices(scene: Scene[Polynomial], found: Linearisation) -> Check:
                 derived = [[[carry(x) for x in row] for row in matrix.polynomials] for matrix in found.matrices]
                 gains = [] if found.B is None else [[carry(x) for x in row] for row in found.B.polynomials]
             except Failure as reason:
-                return Check("linearisation", ROUTE, second, UNDECIDED, str(reason))
+                return Check("linearisation", ROUTE, second, UNDECIDED, message_of(reason))
             mass, damping, gyroscopic, stiffness, circulatory = derived
             pairs: list[tuple[str, Any, Any]] = [("M", mass, given.mass), ("B", gains, given.inputs)]
             pairs.append(("D + G", added(damping, gyroscopic), given.rates))
@@ -101,8 +102,17 @@ def check_matrices(scene: Scene[Polynomial], found: Linearisation) -> Check:
             wrong |= {name for name, rows in zip("MDK", (mass, damping, stiffness), strict=True) if not _is(rows, 1)}
             wrong |= {name for name, rows in zip("GN", (gyroscopic, circulatory), strict=True) if not _is(rows, -1)}
     if wrong:
-        return Check("linearisation", ROUTE, second, FAILED, f"differs in {', '.join(sorted(wrong))}")
-    return Check("linearisation", ROUTE, second, NUMERICAL, f"to {PRECISION} bits at {POINTS} random points", POINTS)
+        return Check(
+            "linearisation", ROUTE, second, FAILED, Message("differs in [[wrong]]", wrong=", ".join(sorted(wrong)))
+        )
+    return Check(
+        "linearisation",
+        ROUTE,
+        second,
+        NUMERICAL,
+        Message("to [[bits]] bits at [[count]] random points", bits=PRECISION, count=POINTS),
+        POINTS,
+    )
 
 
 def _follow(scene: Scene[Polynomial], algebra: Any, values: dict[str, Any]) -> None:

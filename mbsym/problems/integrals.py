@@ -44,6 +44,7 @@ from mbsym.algebra.failures import NOT_THERE, Failure, NotRational
 from mbsym.algebra.matrices import adjugate, determinant
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.vectors import axis_vector
+from mbsym.expressions.message import Message, worded
 from mbsym.expressions.tree import names
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.notebook import Shown
@@ -80,6 +81,9 @@ class Integral(Shown):
     of: str
     formula: Formula
     status: Certainty
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "name", worded(self.name))
 
 
 def identifiers(found: Iterable[Integral], taken: Iterable[str] = ()) -> list[str]:
@@ -134,7 +138,9 @@ def by_structure(system: System, programs: Programs) -> tuple[str, ...]:
     if not given & rates:
         pairs = zip(system.coordinates, system.velocities, strict=True)
         # What L does not read at all has no inertia: its momentum is zero.
-        found += [f"the momentum of {name}" for name, rate in pairs if name not in read and rate in read]
+        found += [
+            Message("the momentum of [[name]]", name=name) for name, rate in pairs if name not in read and rate in read
+        ]
     return tuple(found)
 
 
@@ -200,7 +206,13 @@ def _cyclic_momenta(scene: Scene, energy: Energy, equations: Equations) -> Itera
     for i, name in enumerate(scene.system.coordinates):
         momentum = ring.velocity_derivative(energy.kinetic_energy.polynomial, name)
         if name in energy.cyclic and ring.is_zero(total_rate(scene, momentum) - residual(scene, equations, i)):
-            yield Integral(f"momentum of {name}", "cyclic momentum", name, Formula(ring, momentum), Certainty.PROVED)
+            yield Integral(
+                Message("momentum of [[name]]", name=name),
+                "cyclic momentum",
+                name,
+                Formula(ring, momentum),
+                Certainty.PROVED,
+            )
 
 
 # --- momenta of the whole system ---
@@ -243,7 +255,11 @@ def _momenta(
             others = [*known, *(item.formula.polynomial for item in found)]
             wanted = (kind, axis) in conserved and _is_new(formula, others)
             if wanted and is_conserved(scene, equations, formula):
-                name = f"{kind} about axis {axis}" if kind == "angular momentum" else f"{kind} along axis {axis}"
+                name = (
+                    Message("angular momentum about axis [[axis]]", axis=axis)
+                    if kind == "angular momentum"
+                    else Message("linear momentum along axis [[axis]]", axis=axis)
+                )
                 status = Certainty.PROVED if is_proved(scene, equations, formula) else Certainty.VERIFIED
                 if status is Certainty.VERIFIED and scene.ring.kinked:
                     continue  # a force that comes late vanishes at every state before

@@ -14,6 +14,7 @@ from flint import arb
 from mbsym.algebra.failures import Failure, SingularPoint
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import names
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import relations
@@ -114,7 +115,7 @@ def definition_in_parameters(scene: Scene, name: str) -> Polynomial:
     """
     found = _definitions(scene)
     if name not in found:
-        raise SingularPoint(f"the symbol {name} has no closed form")
+        raise SingularPoint(Message("the symbol [[name]] has no closed form", name=name))
     return found[name]
 
 

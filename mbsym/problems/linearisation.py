@@ -39,6 +39,7 @@ from mbsym.algebra.jet import Jet, Jets
 from mbsym.algebra.matrices import ScalarMatrix, skew, symmetric
 from mbsym.algebra.matrices import components as connected
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.message import Message, joined
 from mbsym.formulas.formula import Formula, Matrix
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.energy import kinetic_energy
@@ -131,10 +132,12 @@ class Linearisation(Shown):
         among = ", ".join(dict.fromkeys(name for entry in self.varying for name in entry.among))
         entries = [entry.named for entry in self.varying[:MOST_NAMED]]
         if len(self.varying) > MOST_NAMED:
-            entries.append(f"{len(self.varying) - MOST_NAMED} more")
-        return (
-            f"the first approximation is time-dependent, its coefficients vary with {among} ({', '.join(entries)}); "
-            "no theorem about constant coefficients applies"
+            entries.append(Message("[[count]] more", count=len(self.varying) - MOST_NAMED))
+        return Message(
+            "the first approximation is time-dependent, its coefficients vary with [[among]] "
+            "([[entries]]); no theorem about constant coefficients applies",
+            among=among,
+            entries=joined(entries, ", "),
         )
 
 

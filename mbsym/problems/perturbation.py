@@ -24,6 +24,7 @@ from mbsym.algebra.base import Algebra, Lowering, Scalar
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import ZERO, Expression
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.motion import in_step
@@ -54,7 +55,7 @@ class Dependent:
 
 def check_perturbed_motion(system: System, ring: Ring, linear: Linearisation, dependent: Dependent) -> Check:
     """Problem 5 against the disturbed derivation, at random parameter values."""
-    routes = ("matrices of the first approximation", f"{D_ALEMBERT}, disturbed")
+    routes = ("matrices of the first approximation", Message("[[principle]], disturbed", principle=D_ALEMBERT))
     exact = has_rational_states(system, ring, dependent)
     return decide("perturbed motion", routes, exact, lambda balls: _pairs(system, ring, linear, dependent, balls))
 
@@ -73,7 +74,8 @@ def check_motion(system: System, ring: Ring, residuals: Sequence[Formula], depen
         needed = Oracle(system, state).residuals
         names = system.coordinates
         return [
-            (f"equation {name}", -carry(x.polynomial), needed[name]) for name, x in zip(names, residuals, strict=True)
+            (Message("equation [[name]]", name=name), -carry(x.polynomial), needed[name])
+            for name, x in zip(names, residuals, strict=True)
         ]
 
     return decide("equilibrium", routes, exact, pairs)
@@ -109,12 +111,12 @@ def matrix_pairs(
             total = total + (stiffness[i][j] + circulatory[i][j]) * shift
         for k, push in enumerate(pushes):
             total = total - gains[i][k] * push
-        found.append((f"equation {name}", total, residuals[name]))
+        found.append((Message("equation [[name]]", name=name), total, residuals[name]))
     for symbol, matrix in zip("MDGKN", matrices, strict=True):
         for i in range(n):
             for j in range(i + 1):
                 mirrored = -matrix[j][i] if symbol in "GN" else matrix[j][i]
-                found.append((f"symmetry of {symbol}", matrix[i][j], mirrored))
+                found.append((Message("symmetry of [[symbol]]", symbol=symbol), matrix[i][j], mirrored))
     return found + _blocks(ring, linear, dependent, state, matrices)
 
 
@@ -133,7 +135,17 @@ def _blocks(ring: Ring, linear: Linearisation, dependent: Dependent, state: Stat
             for i, a in enumerate(places):
                 for j, b in enumerate(places):
                     value = carry(block[i, j].polynomial) * power
-                    found.append((f"{symbol} of subsystem {', '.join(part.coordinates)}", value, matrix[a][b]))
+                    found.append(
+                        (
+                            Message(
+                                "[[symbol]] of subsystem [[coordinates]]",
+                                symbol=symbol,
+                                coordinates=", ".join(part.coordinates),
+                            ),
+                            value,
+                            matrix[a][b],
+                        )
+                    )
     return found
 
 

@@ -27,6 +27,7 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.matrices import determinant
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.vectors import Vector
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import ZERO, Name, add
 from mbsym.formulas.formula import Column, column
 from mbsym.formulas.notebook import Shown
@@ -275,16 +276,16 @@ def _pairs(system: System, ring: Any, one: Reaction, state: State, tied: Constra
         for k, i in enumerate(tied.independent):
             row = tied.names[i]
             partials = rows[row.constraint][max(row.component - 1, 0)].partials
-            along.append((f" per {row.label}", k, [-partials[place] for place in places]))
+            along.append((row.label, k, [-partials[place] for place in places]))
     for label, k, values in along:
         force, moment = (one.force, one.moment) if k is None else one.per_multiplier[k]
-        for what, mine, released_ in (("force", force, values[:3]), ("moment", moment, values[3:])):
+        for what, mine, released_ in ((Message("force"), force, values[:3]), (Message("moment"), moment, values[3:])):
             inertial = [sum((before[i][j].a * released_[j] for j in range(3)), zero) for i in range(3)]
             for c in range(3):
                 theirs = sum((own[i][c].a * inertial[i] for i in range(3)), zero)
-                compared.append(
-                    (f"{what} {c + 1} in the joint of {one.body}{label}", carry(mine[c].polynomial), theirs)
-                )
+                name = Message("[[what]] [[number]] in the joint of [[body]]", what=what, number=c + 1, body=one.body)
+                name = Message("[[name]] per [[label]]", name=name, label=label) if label else name
+                compared.append((name, carry(mine[c].polynomial), theirs))
     return compared
 
 

@@ -29,6 +29,7 @@ from mbsym.algebra.generators import occurring
 from mbsym.algebra.matrices import ScalarMatrix
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import names as names_of
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.notebook import Shown
@@ -116,8 +117,13 @@ def reduction(scene: Scene, found: Expansion, equations: Projected, leaf: int = 
     """
     if found.lost and (demanded := [x for x in found.conditions if not x.is_zero()]):
         told = ", ".join(f"{Formula(scene.ring, x)} = 0" for x in demanded)
-        message = f"the motion keeps the constraints only where {told}, and elsewhere they have another rank"
-        raise SingularPoint(f"{message}: write numbers in the place of these parameters")
+        raise SingularPoint(
+            Message(
+                "the motion keeps the constraints only where [[told]], and elsewhere they have another rank: write "
+                "numbers in the place of these parameters",
+                told=told,
+            )
+        )
     if found.lost:
         raise SingularPoint("the constraints are not independent on this motion although they are near it")
     names, ring = scene.system.coordinates, scene.ring

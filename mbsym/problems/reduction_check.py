@@ -22,6 +22,7 @@ from mbsym.algebra.base import Scalar
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.ring import Ring
+from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.constraints.rows import Row, constraint_rows
 from mbsym.mechanics.kinematics import Scene
@@ -33,7 +34,7 @@ from mbsym.problems.linearisation import Linearisation
 from mbsym.problems.perturbation import Dependent, has_rational_states, matrix_pairs, unperturbed_state
 from mbsym.problems.reduction import Reduction
 
-ROUTE = f"{D_ALEMBERT}, with multipliers"
+ROUTE = Message("[[principle]], with multipliers", principle=D_ALEMBERT)
 
 
 def check_reduced_motion(
@@ -47,10 +48,12 @@ def check_reduced_motion(
         carry = Carrier(ring, place.state.numbers, place.state.values)
         free = place.free_residuals()
         named = zip(about.speeds, own, strict=True)
-        found = [(f"equation {name}", -carry(x.polynomial), free[name].a) for name, x in named]
+        found = [(Message("equation [[name]]", name=name), -carry(x.polynomial), free[name].a) for name, x in named]
         satisfied = all(x.is_zero for x in residuals[: len(residuals) - len(about.speeds)])
         zero = place.state.numbers.zero
-        return found + [(f"{label} on the motion", x, zero) for label, x in place.left_over if satisfied]
+        return found + [
+            (Message("[[label]] on the motion", label=label), x, zero) for label, x in place.left_over if satisfied
+        ]
 
     exact = has_rational_states(system, ring, dependent, about.rates_by_name)
     return decide("equilibrium", ("equations projected on the motion", ROUTE), exact, pairs)
@@ -70,7 +73,12 @@ def check_reduced_perturbation(system: System, ring: Ring, linear: Linearisation
         return matrix_pairs(ring, linear, dependent, place.state, direction, place.pushes, rows)
 
     exact = has_rational_states(system, ring, dependent, about.rates_by_name)
-    return decide("perturbed motion", ("matrices of the first approximation", f"{ROUTE}, disturbed"), exact, pairs)
+    return decide(
+        "perturbed motion",
+        ("matrices of the first approximation", Message("[[principle]], disturbed", principle=ROUTE)),
+        exact,
+        pairs,
+    )
 
 
 class _Disturbed:
@@ -99,7 +107,9 @@ class _Disturbed:
         missing, rest = _eliminated(self.rows, moving, speeds)
         #: What the velocities of the motion leave of each constraint: by how much a dependent one is wrong, and the
         #: rows that determine none.
-        self.left_over = [(f"velocity of {system.coordinates[i]}", x) for i, x in missing.items()]
+        self.left_over = [
+            (Message("the velocity of [[name]]", name=system.coordinates[i]), x) for i, x in missing.items()
+        ]
         self.left_over += [(self.rows[k].name.label, x) for k, x in rest]
 
     def _follow(self, values: dict[str, Scalar], parts: dict[str, list[Any]]) -> None:

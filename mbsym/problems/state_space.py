@@ -35,6 +35,7 @@ from functools import partial
 from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.algebra.matrices import adjugate, components, determinant
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Matrix
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.constraints.expansion import combined, on_base
@@ -155,7 +156,13 @@ def _steady(scene: Scene, found: StateSpace) -> StateSpace:
     for letter, matrix in (("A", found.A), ("B", found.B), ("C", found.C), ("D", found.D)):
         among = {name for row in matrix.polynomials for x in row for name in unsteady(scene, x)}
         if among:
-            raise NoClosedForm(f"{letter} of the first-order form varies with {', '.join(sorted(among))}")
+            raise NoClosedForm(
+                Message(
+                    "[[letter]] of the first-order form varies with [[names]]",
+                    letter=letter,
+                    names=", ".join(sorted(among)),
+                )
+            )
     return found
 
 
@@ -169,8 +176,12 @@ def _solved(ring: Ring, mass: Rows, right: Rows) -> Rows:
     found: Rows = [[] for _ in range(n)]
     for block in components(n, lambda i, j: not mass[i][j].is_zero()):
         if len(block) > MOST_COUPLED:
-            listed = f"the mass matrix couples {len(block)} coordinates, and its inverse is written for {MOST_COUPLED}"
-            raise NoClosedForm(f"{listed} at most", limit=Limit.TERMS)
+            listed = Message(
+                "the mass matrix couples [[count]] coordinates, and its inverse is written for [[most]] at most",
+                count=len(block),
+                most=MOST_COUPLED,
+            )
+            raise NoClosedForm(listed, limit=Limit.TERMS)
         own = [[mass[i][j] for j in block] for i in block]
         inverse = ring.reciprocal(determinant(ring, own))
         for i, row in zip(block, adjugate(own, partial(determinant, ring)), strict=True):

@@ -16,6 +16,7 @@ from mbsym.algebra.base import Scalar
 from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.program import Node
 from mbsym.algebra.ring import Ring
+from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Column, Formula, Matrix
 from mbsym.formulas.latex import latex_symbol
 from mbsym.formulas.names import free_name
@@ -101,7 +102,9 @@ def told_system(system: System, ring: Ring, terms: int) -> ToldSystem:
     outputs = _outputs(found)
     operations = len(found.program.live(outputs))
     if operations > MOST_OPERATIONS:
-        raise TooLargeError(f"{operations} operations are too many to be told through intermediates")
+        raise TooLargeError(
+            Message("[[operations]] operations are too many to be told through intermediates", operations=operations)
+        )
     numbers = {body.name: k for k, body in enumerate(system.bodies, start=1)}
     proposed = _names(ring, found, numbers)
     cosines = {name for k, name in proposed.items() if found.meanings[k].quantity is Quantity.DIRECTION_COSINE}
@@ -237,7 +240,7 @@ def _disagreement_at(found: ToldSystem, system: System, ring: Ring, state: State
         formulas += [*own.angular_velocity, *own.velocity_origin, *own.velocity_mass_centre]
         vectors = (motion.angular_velocity, motion.velocity_origin, motion.velocity_mass_centre)
         for what, v in zip(("omega", "V_O", "V_C"), vectors, strict=True):
-            expected += [(f"{what} of {name}", x) for x in v]
+            expected += [(Message("[[what]] of [[name]]", what=what, name=name), x) for x in v]
     needed = residuals(scene)
     n = len(system.coordinates)
     formulas += [x for row in found.mass_matrix for x in row] + [*found.forcing]
@@ -249,11 +252,11 @@ def _disagreement_at(found: ToldSystem, system: System, ring: Ring, state: State
         for j, other in enumerate(system.coordinates):
             total = total + equations[n * i + j] * state.values[acceleration_name(other)]
         values.append(total)
-        expected.append((f"the equation of {name}", needed[name]))
+        expected.append((Message("the equation of [[name]]", name=name), needed[name]))
     undecided = False
     for (what, derived), told in zip(expected, values, strict=True):
         agree = agreement(derived, told)
         if agree is False:
-            return f"{what}, told through intermediates, differs"
+            return Message("[[what]], told through intermediates, differs", what=what)
         undecided = undecided or agree is None
     return None if undecided else ""

@@ -11,6 +11,7 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.polynomial_field import PolynomialField, in_lowest_terms
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.message import Message
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.problems.in_speeds.speed_integrals import Field
 from mbsym.problems.in_speeds.speeds import SpeedEquations
@@ -100,7 +101,10 @@ class Transfer:
         for k, degree in enumerate(degrees):
             if degree > 0 and k not in self.places:  # of 0 they are all -1
                 raise NoClosedForm(
-                    f"{_told(self.ring, k)} occurs: the equations are not polynomial in speeds and positions"
+                    Message(
+                        "[[what]] occurs: the equations are not polynomial in speeds and positions",
+                        what=_told(self.ring, k),
+                    )
                 )
         return self.context.from_dict({tuple(m[k] for k in self.places): c for m, c in p.to_dict().items()})
 
@@ -134,7 +138,11 @@ def transfer_of(
 def _told(ring: Ring, k: int) -> str:
     g = ring.generators[k]
     if g.kind == "prescribed":  # an input, too
-        return f"{g.name}, a function of the time,"
-    return (
-        "the time" if g.kind == "time" else f"{g.kind} of {g.name}" if g.name and not g.name.startswith("#") else g.kind
-    )
+        return Message("[[name]], a function of the time,", name=g.name)
+    if g.kind == "time":
+        return Message("the time")
+    if not g.name or g.name.startswith("#"):
+        return Message(g.kind)
+    if g.kind == "function":
+        return Message("the function [[name]]", name=g.name)
+    return Message("[[kind]] of [[name]]", kind=Message(g.kind), name=g.name)

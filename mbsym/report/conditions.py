@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import TypeGuard
 
 from mbsym.algebra.factors import rational_ratio
 from mbsym.algebra.ring import Ring
+from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
 from mbsym.problems.stability import SubsystemStability
-from mbsym.problems.stability.requirements import Case, Place, Requirement
+from mbsym.problems.stability.requirements import PART, REVERSED, Case, Place, Requirement
 from mbsym.problems.stability.word import Word
 from mbsym.report.coefficients import InCoefficients, in_coefficients, names_in
 
@@ -56,7 +58,8 @@ class Labels:
         bare = _bare(label)
         if bare.partition(" ")[0] not in self.taken:
             return label
-        return f"condition {bare}" if bare == label else f"-(condition {bare})"
+        named = Message("condition [[label]]", label=bare)
+        return named if bare == label else Message(REVERSED, label=named)
 
 
 def label_meanings(ring: Ring, requirements: Sequence[Requirement]) -> Labels:
@@ -91,7 +94,7 @@ def _stated(ring: Ring, requirement: Requirement, told: Labels) -> Iterator[Stat
     if condition.kind == "inequality":
         form = in_coefficients(ring, requirement)
         formula = Formula(ring, condition.polynomial)
-        own = _part(label, "without squares") if condition.nonzero else label
+        own = _part(label, Message("without squares")) if condition.nonzero else label
         yield Statement(own, formula, requirement.relation, note, None, place, form)
     elif condition.kind == "unwritten":
         yield Statement(label, None, requirement.relation, "too long to be written out", None, place)
@@ -99,25 +102,28 @@ def _stated(ring: Ring, requirement: Requirement, told: Labels) -> Iterator[Stat
         never = Formula(ring, requirement.polynomial)
         yield Statement(label, None, requirement.relation, "never holds", never, place)
     for number, polynomial in enumerate(condition.nonzero, 1):
-        which = f"squared factor {number}" if len(condition.nonzero) > 1 else "squared factor"
+        which = Message("squared factor")
+        if len(condition.nonzero) > 1:
+            which = Message("squared factor [[number]]", number=number)
         own = _part(_bare(label), which) if several else label
         yield Statement(own, Formula(ring, polynomial), "!=", note, None, requirement.strict)
 
 
-def _is_opposite(label: str) -> bool:
+def _is_opposite(label: str) -> TypeGuard[Message]:
     """Whether it is the label of a condition reversed, as ``requirements.against`` makes it."""
-    return label.startswith("-(") and label.endswith(")")
+    return isinstance(label, Message) and label.text == REVERSED
 
 
 def _bare(label: str) -> str:
     """v4 for -(v4)."""
-    return label[2:-1] if _is_opposite(label) else label
+    return label.gaps["label"] if _is_opposite(label) else label
 
 
-def _part(label: str, which: str) -> str:
+def _part(label: str, which: Message) -> Message:
     """v4, squared factor; -(v4, without squares)."""
     bare = _bare(label)
-    return f"{bare}, {which}" if bare == label else f"-({bare}, {which})"
+    part = Message(PART, label=bare, part=which)
+    return part if bare == label else Message(REVERSED, label=part)
 
 
 def _alternative(ring: Ring, requirement: Requirement, told: Labels) -> Statement:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from mbsym.algebra.failures import Failure
+from mbsym.algebra.failures import Failure, message_of
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -18,4 +18,4 @@ def first_order(analysis: Analysis, linear: Linearisation | None) -> dict[str, A
     try:
         return {"first_order": analysis.state_space, "no_first_order": ""}
     except Failure as reason:
-        return {"first_order": None, "no_first_order": str(reason)}
+        return {"first_order": None, "no_first_order": message_of(reason)}

@@ -9,7 +9,7 @@ import hashlib
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from msgspec import UNSET, to_builtins
+from msgspec import UNSET
 
 from mbsym.expressions.tree import text
 from mbsym.formulas.formula import Formula
@@ -22,7 +22,7 @@ from mbsym.report.documents import results as doc
 from mbsym.report.documents.parts import Counted
 from mbsym.report.documents.results import linearisation
 from mbsym.report.documents.results.claims import Claim, ClaimPart, Counterexample, Repair
-from mbsym.report.documents.writer import written
+from mbsym.report.documents.writer import plain, written
 from mbsym.report.first_order import first_order
 from mbsym.report.inertias import accepted_inertias
 from mbsym.report.lengths import COUNTED, FILE, withheld
@@ -43,7 +43,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
 
 def results(analysis: Analysis, problems: Sequence[int]) -> dict[str, Any]:
     """The file as nested lists and dictionaries."""
-    found: dict[str, Any] = to_builtins(results_document(analysis, problems))
+    found: dict[str, Any] = plain(results_document(analysis, problems))
     return found
 
 

@@ -51,7 +51,8 @@ def _seen(found: Trajectory, name: str, values: Any) -> Any:
 
 def _near(found: Trajectory) -> list[list[float]]:
     """States beside the motion, where something acts for less than the distance of two rows."""
-    return [] if found.passed is None else between_switches(found.times, found.states, found.passed.switches)
+    met = found.passed
+    return [] if met is None else between_switches(found.times, found.states, met.switches, met.inside)
 
 
 def kept_integrals(

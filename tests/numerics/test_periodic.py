@@ -271,3 +271,27 @@ initial: {r: 1, f: {position: 0, velocity: 6/5}}
         orbit(polar, 15)
     assert "rest" not in str(refused.value)
     assert orbit(polar, 15, turns={"f": 1}).period == pytest.approx(2 * np.pi * (25 / 14) ** 1.5, rel=1e-6)
+
+
+def pushed(force: str, start: str = "1") -> str:
+    text = PENDULUM.replace("  - uniform gravity: {vector: [0, -1, 0]}", f"  - generalized force: {{theta: {force}}}")
+    return text.replace("initial: {theta: 1}", f"initial: {{theta: {start}}}")
+
+
+@pytest.mark.parametrize(
+    ("force", "linear"), [("theta", True), ("-(1 - 2*cos(2*t))*theta", True), ("theta - theta**3", False)]
+)
+def test_motions_of_linear_equations_are_not_likened_to_chaotic_ones(force: str, linear: bool) -> None:
+    """x'' = x and Mathieu's equation are linear: motions part, and none is chaotic; x'' = x - x^3 is not linear."""
+    found = exponents(dynamics(pushed(force)), 60, 1.0)
+    told = dict(sentences(found))["motion"]
+    assert found.linear is linear
+    assert ("none is chaotic" in told or "none of their motions is chaotic" in told) is linear
+    assert not (linear and "as chaotic ones do" in told)
+
+
+def test_a_rest_is_not_likened_to_a_chaotic_motion() -> None:
+    """x'' = x - x^3 at x = 0: neighbouring motions leave it like e^t."""
+    found = exponents(dynamics(pushed("theta - theta**3", "0")), 60, 1.0)
+    assert found.values[0] == pytest.approx(1, abs=1e-2)
+    assert dict(sentences(found))["motion"].startswith("the motion is a rest")

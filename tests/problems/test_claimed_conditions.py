@@ -445,3 +445,26 @@ claims:
     strict, weak = mbsym.loads(given).claims
     assert weak.outcome == FAILS
     assert "nothing is proved" not in strict.remark or "nothing is proved in general" in strict.remark
+
+
+def test_of_what_is_stable_always_any_condition_is_sufficient() -> None:
+    """A free body that turns about its axis of greatest moment; in these angles, of which other ones are judged, no
+    parameters could be tried."""
+    (found,) = mbsym.loads(
+        """
+mbsym: 1
+name: free body
+parameters: {A: positive, B: positive, C: positive, n: positive}
+assumptions: [A < B, B < C, C < A + B]
+bodies:
+  - name: body
+    mass: 1
+    rotation: {axes: [1, 2, 3], angles: [a, b, c]}
+    inertia about: mass centre
+    inertia: [A, B, C]
+motion: {c: {value: 0, rate: n}}
+claims:
+  - {claim: condition, that: n > 1, as: sufficient}
+"""
+    ).claims
+    assert found.outcome == EXACT

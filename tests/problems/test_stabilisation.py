@@ -474,3 +474,28 @@ def test_what_is_not_known_is_not_told_as_false() -> None:
     feeding = found("{coordinates: [x, y], K: [[1, 2], [2, 5]], D: [[1, 0], [0, -1]]}")
     said = [one.text for one in sentences(feeding)]
     assert "$D$ is not positive semidefinite for [[names]] (proved)." in said
+
+
+HILL = """
+mbsym: 1
+name: hill
+parameters: {a: positive, b: positive, c: positive}
+bodies:
+  - {name: p, mass: 1, connection point: [x, y, z], coordinates: [x, y, z]}
+loads:
+  - potential: V
+motion: {}
+"""
+
+
+@pytest.mark.parametrize(
+    ("potential", "words"), [("-a*x**2 - b*y**2 + c*z**2", "even"), ("-a*x**2 - b*y**2 - c*z**2", "odd")]
+)
+def test_parts_of_odd_degree_are_told_what_gyroscopic_forces_between_them_can_do(potential: str, words: str) -> None:
+    """On a hill x'' + g y' = a x, y'' - g x' = b y is stable for g > sqrt(a) + sqrt(b) (Thomson and Tait): a degree of
+    one along x and one along y does not mean that no gyroscopic forces help; of three directions it does."""
+    found = mbsym.loads(HILL.replace("V", potential)).stabilisation
+    told = [x.text for x in sentences(found)]
+    assert sum("no gyroscopic forces among" in x for x in told) == (2 if words == "even" else 3)
+    (together,) = [x for x in told if "together" in x]
+    assert words in together

@@ -1,21 +1,44 @@
-"""The other languages: each message has its translation with the same gaps, and is one that is said."""
+"""Messages: each that is said has its translation with the same gaps, and each translation is one that is said."""
 
 from __future__ import annotations
 
 import ast
+import importlib
+import pickle
+import pkgutil
 import re
-from itertools import pairwise
+from collections.abc import Iterator
+from fractions import Fraction
+from itertools import product
 from pathlib import Path
 
 import mbsym_templates
 import polib
 import pytest
+from flint import Ordering, fmpq_mpoly_ctx
 
 import mbsym
 import mbsym_cli
-from mbsym.problems.stability.requirements import Place
-from mbsym.report.language import LANGUAGES
+from mbsym.algebra.certainty import Certainty
+from mbsym.algebra.failures import NoClosedForm, NoValue, message_of
+from mbsym.analysis.stages import NoResult
+from mbsym.expressions.message import GAP, Message
+from mbsym.model.claims import CLAIMS, SUMS
+from mbsym.model.constraints import KIND_NAMES
+from mbsym.problems.checks import HOW_EQUAL
+from mbsym.problems.claims.remarks import Remark, Said, text
+from mbsym.problems.normal_forms.result import Outcome, Theorem
+from mbsym.problems.stability import theorems
+from mbsym.problems.stability.linear_form import LinearSystem, kind_of
+from mbsym.problems.stability.requirements import BUT_TURNED, BUT_ZERO, Method, Place
+from mbsym.problems.stability.sentences import _SENTENCES as because
+from mbsym.problems.stability.word import Word
+from mbsym.report.language import LANGUAGES, Language
+from mbsym.report.latex.words import escaped
 from mbsym.report.messages import messages
+from mbsym.report.words.normal_form_words import REASONS
+from mbsym.report.words.passages import _FROM_ORIGIN, _LESS_GRAVITY, _WORDS
+from tests.report import said
 
 OTHERS = [name for name in LANGUAGES if name != "en"]
 FOLDER = Path(mbsym.__file__).parent
@@ -23,7 +46,7 @@ FOLDER = Path(mbsym.__file__).parent
 
 @pytest.mark.parametrize("name", OTHERS)
 def test_a_catalogue_is_whole(name: str) -> None:
-    """What msgfmt --check looks at, and the gaps: [[name]] of templates, {} of what results say, by numbers."""
+    """What msgfmt --check looks at, the gaps, and that TeX can set it: a dash was a question mark in LaTeX."""
     entries = polib.pofile(str(FOLDER / "report" / "messages" / f"{name}.po"))
     assert len({(x.msgctxt, x.msgid) for x in entries}) == len(entries), "each message once"
     for entry in entries:
@@ -33,9 +56,7 @@ def test_a_catalogue_is_whole(name: str) -> None:
         gaps = [set(re.findall(r"\[\[\w+\]\]", text)) for text in (entry.msgid, entry.msgstr)]
         assert gaps[0] == gaps[1], entry.msgid
         assert entry.msgstr.count("$") % 2 == 0, entry.msgid
-        if "[[" not in entry.msgid:
-            used = {int(x) for x in re.findall(r"\{(\d+)(?::\w+)?\}", entry.msgstr)}
-            assert used <= set(range(entry.msgid.count("{}"))), entry.msgid
+        assert escaped(entry.msgstr).count("?") == entry.msgstr.count("?"), entry.msgstr
 
 
 def test_all_languages_have_the_same_messages() -> None:
@@ -44,53 +65,152 @@ def test_all_languages_have_the_same_messages() -> None:
         assert known[name] == known[OTHERS[0]], known[name] ^ known[OTHERS[0]]
 
 
-class _Texts(ast.NodeVisitor):
-    """All strings of a module; those with values have {} for each."""
-
-    def __init__(self) -> None:
-        self.found: set[str] = set()
-
-    def visit_Constant(self, node: ast.Constant) -> None:
-        if isinstance(node.value, str):
-            self.found.add(node.value)
-
-    def visit_JoinedStr(self, node: ast.JoinedStr) -> None:
-        parts = [x.value if isinstance(x, ast.Constant) else "{}" for x in node.values]
-        self.found.add("".join(map(str, parts)))
-        for part in node.values:
-            self.visit(part)
-
-
-def said() -> str:
+def strings() -> set[str]:
     """Whatever stands in a string of the package, of a command or in a template."""
-    texts = _Texts()
-    for path in (*FOLDER.rglob("*.py"), *Path(next(iter(mbsym_cli.__path__))).rglob("*.py")):
-        texts.visit(ast.parse(path.read_text(encoding="utf-8")))
-    templates = Path(next(iter(mbsym_templates.__path__)))
-    for path in templates.rglob("*.j2"):
-        for match in re.finditer(r'"(?:[^"\\\n]|\\.)*"', path.read_text(encoding="utf-8")):
-            texts.found.add(ast.literal_eval(match[0]))
-    return "\n".join(texts.found)
-
-
-def fragments(english: str) -> set[str]:
-    """Neighbouring words, of a short phrase each word: sentences that are put together are found by these."""
-    parts = [re.findall(r"[\w'-]+", part) for part in re.split(r"\{\}|\[\[\w+\]\]|[,:;().]", english.lower())]
-    if sum(map(len, parts)) < 6:
-        return {word for part in parts for word in part}
-    return {f"{a} {b}" for part in parts for a, b in pairwise(part)}
+    found: set[str] = set()
+    commands = Path(next(iter(mbsym_cli.__path__))).rglob("*.py")
+    for tree in [*said.trees().values(), *(ast.parse(path.read_text(encoding="utf-8")) for path in commands)]:
+        found |= {x.value for x in ast.walk(tree) if isinstance(x, ast.Constant) and isinstance(x.value, str)}
+    for path in Path(next(iter(mbsym_templates.__path__))).rglob("*.j2"):
+        for pattern in (r'\btr\(("(?:[^"\\\n]|\\.)*")', r'("(?:[^"\\\n]|\\.)*")'):
+            found |= {ast.literal_eval(x) for x in re.findall(pattern, path.read_text(encoding="utf-8"))}
+    return found
 
 
 def test_no_message_is_left_of_what_is_said_no_longer() -> None:
-    source = said().lower()
-    assert "this sentence stands nowhere" not in source
-    known = [english for _, english in messages(OTHERS[0]) if english.lower() not in source]
-    stale = {english: lost for english in known if (lost := {x for x in fragments(english) if x not in source})}
-    assert not stale
+    known = {english for _, english in messages(OTHERS[0]) if english}
+    assert not known - strings() - words_of_types()
+
+
+# --- every message, found in the source -------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def told() -> list[said.Module]:
+    """All modules, with every kind of refusal imported."""
+    for one in pkgutil.walk_packages(mbsym.__path__, "mbsym."):
+        if one.name.split(".")[1] in said.LAYERS:
+            importlib.import_module(one.name)
+    return list(said.modules())
 
 
 @pytest.mark.parametrize("name", OTHERS)
-def test_every_place_of_a_condition_is_said(name: str) -> None:
-    """Problem 12 says it beside each condition of an averaged motion: two of them stood in English there."""
-    known = messages(name)
-    assert not [place for place in Place if place is not Place.SUFFICIENT and ("", place.value) not in known]
+def test_every_message_of_results_is_translated(name: str, told: list[said.Module]) -> None:
+    """Reasons, refusals, hints, remarks, checks, integrals, conditions: as they stand in the source."""
+    known = {english for _, english in messages(name)}
+    asked = {one.text: one.place for module in told for one in module.texts if said.has_words(one.text)}
+    assert len(asked) > 500
+    assert not {text: place for text, place in asked.items() if text not in known}
+
+
+def test_no_message_is_put_together_of_pieces(told: list[said.Module]) -> None:
+    """An f-string in the place of a message is English in every language."""
+    assert not [place for module in told for place in module.open]
+
+
+def test_each_gap_of_a_message_has_its_value_and_each_value_its_gap(told: list[said.Module]) -> None:
+    wrong = [
+        one
+        for module in told
+        for one in module.texts
+        if one.gaps is not None and one.gaps != frozenset(GAP.findall(one.text))
+    ]
+    assert not wrong
+
+
+PLANTED = """
+def refuse(name, error):
+    told = f"the coordinate {name} is lost"
+    if error:
+        raise NoClosedForm(told)
+    raise NoClosedForm("nobody translates this", remedy=Message("take [[this]] or [[that]]", this=name))
+"""
+
+
+def test_what_is_wrong_with_a_message_is_found() -> None:
+    """Negative control: no translation, a gap without value, a text that is put together."""
+    module = said.Module("problems/planted.py", ast.parse(PLANTED), frozenset({"NoClosedForm"}))
+    assert [place.partition(": ")[0] for place in module.open] == ["problems/planted.py:5"]
+    lost = {one.text for one in module.texts} - {english for _, english in messages("ru")}
+    assert lost == {"nobody translates this", "take [[this]] or [[that]]"}
+    assert [one.gaps for one in module.texts if "[[" in one.text] == [frozenset({"this"})]
+
+
+# --- words by their types ---------------------------------------------------------------------------------------------
+
+
+def words_of_types() -> set[str]:
+    """Verdicts, outcomes, theorems, places and methods of conditions, kinds of systems, claims and constraints."""
+    found: set[str] = {*Word, *Place, *Method, *Outcome, *Theorem, *HOW_EQUAL.values(), *KIND_NAMES.values(), *SUMS}
+    found |= {value for key, value in vars(theorems).items() if key.isupper() and isinstance(value, str)}
+    found |= {str(one.value) for one in (Certainty.PROVED, Certainty.VERIFIED, Certainty.UNDECIDED)}
+    found |= {kind_of(system) for system in systems()}
+    found |= {f"{kind} of [[of]]" if one.of and kind != "coefficient" else kind for kind, one in CLAIMS.items()}
+    found |= {BUT_TURNED, BUT_ZERO, *REASONS.values()}
+    found |= {*_WORDS.values(), *_LESS_GRAVITY.values(), *_FROM_ORIGIN.values()}
+    found |= {"sine", "cosine", "root", "reciprocal", "function"}
+    found |= {one for one in because.values() if isinstance(one, str)}
+    found |= {text(Remark(code, data)) for code in Said for data in DATA if _takes(code, data)}
+    return {x for x in found - {"", Place.SUFFICIENT.value, Method.NONE.value} if said.has_words(x)}
+
+
+def systems() -> Iterator[LinearSystem]:
+    """With every combination of forces."""
+    context = fmpq_mpoly_ctx.get(["a"], Ordering.lex)
+    zero, one = context.constant(0), context.constant(1)
+    nothing, unit, skew = [[zero] * 2] * 2, [[one, zero], [zero, one]], [[zero, one], [-one, zero]]
+    for d, g, n in product((nothing, unit), (nothing, skew), (nothing, skew)):
+        yield LinearSystem(unit, d, g, unit, n)
+
+
+DATA = ((1, "", ""), (2, "", ""), ("x", ""), ("", ""), ("stable", True), ("stable", False))
+
+
+def _takes(code: Said, data: tuple[object, ...]) -> bool:
+    try:
+        return bool(text(Remark(code, data)))
+    except TypeError:
+        return False
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_words_of_results_are_translated(name: str) -> None:
+    known = {english for _, english in messages(name)}
+    asked = words_of_types()
+    assert len(asked) > 150
+    assert not asked - known
+
+
+# --- what a message is ------------------------------------------------------------------------------------------------
+
+
+def test_a_message_is_its_english_text_and_is_said_with_its_gaps() -> None:
+    """A message in a gap is said, too; a name stays, be it a word of ours: a parameter may be called root."""
+    inner = Message("momentum of [[name]]", name="root")
+    whole = Message(
+        "[[why]]; conserved all the same, by structure: [[known]]", why=Message("too many minors"), known=inner
+    )
+    assert whole == "too many minors; conserved all the same, by structure: momentum of root"
+    said_so = Language("ru").say(whole)
+    assert said_so == "слишком много миноров; тем не менее сохраняются по структуре уравнений: обобщённый импульс root"
+    assert Language("en").say(whole) == Language().say(whole) == whole
+    assert pickle.loads(pickle.dumps(whole)).gaps["known"].gaps == {"name": "root"}
+    assert Language("es").say(Word.STABLE) == Language("es").say(Message("[[word]]", word=Word.STABLE)) != "stable"
+    assert Message("a [[x]] [[x]]", x=Fraction(1, 2)) == "a 1/2 1/2"
+    with pytest.raises(ValueError, match="are not the gaps"):
+        Message("terms of order [[order]]", degree=3)
+    with pytest.raises(ValueError, match="are not the gaps"):
+        Message("terms of order [[order]]")
+
+
+def test_a_failure_keeps_its_message() -> None:
+    """Through a pickle, as its reason, and in what is made of it: str() is English."""
+    failure = NoClosedForm(Message("[[count]] terms are beyond the budget of [[most]]", count=9, most=5))
+    again = pickle.loads(pickle.dumps(failure))
+    assert type(again.reason) is Message
+    assert again.reason.gaps == {"count": "9", "most": "5"}
+    assert str(again) == "9 terms are beyond the budget of 5"
+    assert type(str(again)) is str
+    assert Language("es").say(NoResult.of(failure).reason) == Language("es").say(failure.reason) != str(failure)
+    assert NoValue("m").reason == str(NoValue("m")) == "no number for m"
+    assert message_of(ZeroDivisionError("division by zero")) == "division by zero"

@@ -24,10 +24,11 @@ from terminal import told
 import mbsym
 from mbsym.algebra.signs import Condition
 from mbsym.analysis import Analysis
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import Name, Number, Operation
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.latex import LatexNames
-from mbsym.problems.stability.requirements import Case, Requirement
+from mbsym.problems.stability.requirements import OF_FACTOR, PART, REVERSED, Case, Requirement
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.report.conditions import Labels, Reference, Shown, Statement, cases, statements
 from mbsym.report.content import Math, Readable
@@ -338,9 +339,10 @@ def test_what_was_shown_is_recognised_with_either_sign():
     ring = analysis_of("heavy-top.yaml").ring
     p = ring.context.gen(ring.index("parameter", "m")) - ring.context.gen(ring.index("parameter", "g"))
     shown = Shown()
-    shown.show(Statement("-(a)", Formula(ring, p), ">"))
+    reverse = Message(REVERSED, label="a")
+    shown.show(Statement(reverse, Formula(ring, p), ">"))
     assert shown.reference(Statement("a", Formula(ring, -p), ">")) == Reference("a", "a", ">")
-    assert shown.reference(Statement("-(a)", Formula(ring, p), ">=")) == Reference("a", "a", "<=")
+    assert shown.reference(Statement(reverse, Formula(ring, p), ">=")) == Reference("a", "a", "<=")
     assert shown.reference(Statement("b", Formula(ring, p), ">")) == Reference("b", "a", "<")
     assert shown.reference(Statement("b", Formula(ring, -p), "!=")) == Reference("b", "a", "!=")
     assert shown.reference(Statement("b", Formula(ring, 2 * p), "<")) == Reference("b", "a", ">")  # -p, shown, is a
@@ -408,7 +410,7 @@ def test_parts_of_a_condition_have_names_of_their_own():
     """g f^2 > 0 is g > 0 and f != 0; a reference by name must say which."""
     ring = analysis_of("heavy-top.yaml").ring
     m, g = (ring.context.gen(ring.index("parameter", name)) for name in ("m", "g"))
-    for label, opposite in (("a3", False), ("-(a3)", True)):
+    for label, opposite in (("a3", False), (Message(REVERSED, label="a3"), True)):
         whole = (m - g) * (m - 2 * g) ** 2
         condition = Condition("inequality", m - g, nonzero=(m - 2 * g,))
         required = Requirement(label, -whole if opposite else whole, condition)
@@ -419,7 +421,9 @@ def test_parts_of_a_condition_have_names_of_their_own():
         assert second.label == "a3, squared factor"
     alone = Requirement("a3", m - g, Condition("inequality", m - g))
     assert [item.label for item in statements(ring, [alone])] == ["a3"]
-    assert in_latex(label_of("a3 of factor 2, squared factor")) == r"a_{3}^{(2)} \text{, squared factor}"
+    label = Message(PART, label=Message(OF_FACTOR, label="a3", number=2), part="squared factor")
+    assert label == "a3 of factor 2, squared factor"
+    assert in_latex(label_of(label)) == r"a_{3}^{(2)} \text{, squared factor}"
 
 
 def test_a_number_stands_in_front_of_a_matrix():

@@ -306,6 +306,8 @@ def test_what_loses_energy_by_terms_of_higher_order_is_not_called_conservative()
     """x'' + c x'^3 + k x = 0 loses energy at the rate c x'^4."""
     oscillators = TWO.replace("LOAD", "potential: k*(x**2 + y**2)/2")
     assert all("(conservative)" in x for x in headings_of(oscillators))
+    given = "mbsym: 1\nname: given\nparameters: {g: real}\nlinear system: {coordinates: [x, y], G: [[0, g], [-g, 0]]}\n"
+    assert headings_of(given) == ["x, y (gyroscopic conservative)"]  # there are no other terms
     lossy = oscillators.replace("motion", "  - rayleigh: c*x_dot**4/4\nmotion")
     assert all("in first approximation conservative" in x for x in headings_of(lossy))
 
@@ -345,3 +347,11 @@ def test_with_a_zero_root_nothing_is_necessary_for_all_roots_to_the_left() -> No
     (claim,) = mbsym.loads(DRAGGED_PAIR).claims
     assert "exponential" not in claim.remark
     assert "for all roots but the zero ones to lie to the left" in claim.remark
+
+
+def test_zero_roots_are_not_said_to_be_negative() -> None:
+    """l^4 + B^2 l^2: in lambda^2 one root is zero; of x'' + k x = 0 none is."""
+    field = mbsym.loads(TWO.replace("LOAD", "generalized force: {x: B*y_dot, y: -B*x_dot}")).stability.subsystems[0]
+    assert "but the zero ones" in field.theory.wanted
+    free = mbsym.loads(TWO.replace("LOAD", "potential: k*(x**2 + y**2)/2")).stability.subsystems[0]
+    assert "zero" not in free.theory.wanted

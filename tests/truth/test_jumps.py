@@ -7,6 +7,7 @@ import pytest
 import mbsym
 from mbsym.algebra.failures import Failure
 from mbsym.analysis import Analysis
+from mbsym.numerics.conservation import Standing
 
 PLANE = (
     "mbsym: 1\nname: plane\nbodies:\n"
@@ -73,3 +74,21 @@ def test_a_push_that_comes_late_is_no_rest() -> None:
     run = mbsym.simulate(mbsym.loads(text), 10)
     assert run["y"][-1] == pytest.approx(37.5, abs=1e-8)
     assert run.conservation.standing.conserved is not True
+
+
+#: A ball of mass 1 that bounces on a spring of stiffness 1e10: contacts take pi/1e5, rows are 1.5e-3 apart.
+BALL = "  - uniform gravity: {vector: [0, -10, 0]}\n  - generalized force:\n      y: 1e10*(abs(y) - y)/2\n"
+
+
+@pytest.mark.parametrize("beside", ["", "  - generalized force:\n      x: -x - x**3\n"])
+@pytest.mark.parametrize("start", ["x: 0", "x: 1"])
+def test_an_energy_that_changes_for_an_instant_only_is_not_conserved(beside: str, start: str) -> None:
+    """T - U without what the spring of the wall holds: in the middle of a contact it is all of the energy of the fall.
+
+    Between rows, and there is none in a contact, it is the same as before; alone, beside a coordinate that rests, and
+    beside one that is integrated by itself.
+    """
+    found = mbsym.loads(PLANE + BALL + beside + f"initial: {{{start}, y: 1}}\n")
+    run = mbsym.simulate(found, 1, samples=701)
+    assert run["y"].min() > -0.02
+    assert run.conservation.standing is Standing.CHANGING

@@ -234,7 +234,7 @@ def test_a_scale_of_zero_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     run = mbsym.simulate(CASES / "symmetric_cart.yaml", 3, estimate=True)
     assert isinstance(run.error, ErrorEstimate)
     assert run.error.parted is None
-    monkeypatch.setattr("mbsym.numerics.trade.comparison.scaled", lambda own, usual: np.maximum(own, 1e-300))
+    monkeypatch.setattr("mbsym.numerics.trade.comparison.scaled", lambda own, usual, apart: np.maximum(own, 1e-300))
     planted = mbsym.simulate(CASES / "symmetric_cart.yaml", 3, estimate=True)
     assert isinstance(planted.error, ErrorEstimate)
     assert planted.error.parted is not None

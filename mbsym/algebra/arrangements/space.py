@@ -28,6 +28,7 @@ from mbsym.algebra.failures import Limit, TooLargeError
 from mbsym.algebra.plane.line import Line, decompose_line
 from mbsym.algebra.plane.numbers import Number, Rational
 from mbsym.algebra.plane.projection import Box, Budget, Polynomial, Progress, nothing
+from mbsym.expressions.message import Message
 
 _X, _Y, _Z = range(3)
 
@@ -114,7 +115,9 @@ def critical_levels(
     wanted = [p.compose(zero, zero, z, ctx=line) for p in _shared(factors, box, budget, progress)]
     found = decompose_line(wanted, low, high)
     if len(found.zeros) > budget.abscissas:
-        raise TooLargeError(f"{len(found.zeros)} values at which the picture may change", limit=Limit.WORK)
+        raise TooLargeError(
+            Message("[[count]] values at which the picture may change", count=len(found.zeros)), limit=Limit.WORK
+        )
     return found
 
 
@@ -212,4 +215,7 @@ def _affordable(polynomials: Sequence[Polynomial], generator: int, budget: Budge
                 if k != generator:
                     worst = max(worst, own[k] * other[generator] + other[k] * own[generator])
     if worst > budget.degree:
-        raise TooLargeError(f"a resultant of degree up to {worst}, more than {budget.degree}", limit=Limit.DEGREE)
+        raise TooLargeError(
+            Message("a resultant of degree up to [[worst]], more than [[most]]", worst=worst, most=budget.degree),
+            limit=Limit.DEGREE,
+        )

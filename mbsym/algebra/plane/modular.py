@@ -16,6 +16,7 @@ from typing import Any
 from flint import fmpq, fmpq_poly, fmpz, fmpz_mod_ctx, fmpz_mod_poly_ctx
 
 from mbsym.algebra.failures import Limit, TooLargeError
+from mbsym.expressions.message import Message
 
 Element = Any  # a flint.fmpq_poly in alpha
 Image = Any  # a flint.fmpz_mod_poly
@@ -51,8 +52,13 @@ def common_divisor(modulus: Element, a: Sequence[Element], b: Sequence[Element])
         if candidate is not None and all(divides(modulus, candidate, p) for p in (a, b)):
             return candidate
     raise TooLargeError(
-        f"a common divisor of polynomials of degrees {len(a) - 1} and {len(b) - 1} over a number field of degree "
-        f"{modulus.degree()}",
+        Message(
+            "a common divisor of polynomials of degrees [[count]] and [[other]] over a number field of "
+            "degree [[degree]]",
+            count=len(a) - 1,
+            other=len(b) - 1,
+            degree=modulus.degree(),
+        ),
         limit=Limit.DIGITS,
     )
 

@@ -18,6 +18,7 @@ from mbsym.algebra.plane.line import univariate
 from mbsym.algebra.plane.numbers import AlgebraicNumber
 from mbsym.algebra.plane.points import Point
 from mbsym.algebra.plane.projection import Polynomial, coefficients
+from mbsym.expressions.message import Message
 
 #: Number fields of a higher degree are left alone: arithmetic in them takes minutes.
 MOST_DEGREE = 48
@@ -38,12 +39,16 @@ class _Purse:
         bits = int(a.denom()).bit_length() + max((int(c).bit_length() for c in a.numer().coeffs()), default=0)
         self.spent += degree**3 * bits
         if self.spent > MOST_WORK:
-            raise TooLargeError(f"arithmetic at a point in a number field of degree {degree}", limit=Limit.WORK)
+            raise TooLargeError(
+                Message("arithmetic at a point in a number field of degree [[degree]]", degree=degree), limit=Limit.WORK
+            )
 
 
 def _affordable(degree: int) -> None:
     if degree > MOST_DEGREE:
-        raise TooLargeError(f"a point in a number field of degree {degree}", limit=Limit.DEGREE)
+        raise TooLargeError(
+            Message("a point in a number field of degree [[degree]]", degree=degree), limit=Limit.DEGREE
+        )
 
 
 def _degree(x: Any) -> int:

@@ -31,6 +31,7 @@ from mbsym.algebra.plane.numbers import (
     primitive,
     roots_between,
 )
+from mbsym.expressions.message import Message
 
 Polynomial = Any  # a flint.fmpq_mpoly in two generators
 
@@ -202,7 +203,9 @@ def abscissas(
     progress("projection", whole, whole)
     found = table.abscissas()
     if len(found) > budget.abscissas:
-        raise TooLargeError(f"{len(found)} abscissas at which the picture may change", limit=Limit.WORK)
+        raise TooLargeError(
+            Message("[[count]] abscissas at which the picture may change", count=len(found)), limit=Limit.WORK
+        )
     return found
 
 
@@ -215,7 +218,10 @@ def _affordable(curves: Sequence[Curve], budget: Budget) -> None:
         for b in curves[j + 1 :]:
             worst = max(worst, ax * b.degree + int(b.polynomial.degrees()[0]) * a.degree)
     if worst > budget.degree:
-        raise TooLargeError(f"a resultant of degree up to {worst}, more than {budget.degree}", limit=Limit.DEGREE)
+        raise TooLargeError(
+            Message("a resultant of degree up to [[worst]], more than [[most]]", worst=worst, most=budget.degree),
+            limit=Limit.DEGREE,
+        )
 
 
 def _in_x(p: Polynomial) -> Univariate:

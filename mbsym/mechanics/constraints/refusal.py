@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from mbsym.algebra.failures import Constrained
+from mbsym.expressions.message import Message
 from mbsym.model.constraints import listed
 from mbsym.model.system import System
 
@@ -15,7 +16,11 @@ def refuse_constraints(system: System, what: str) -> None:
 
 def refused(system: System, what: str) -> str:
     """The sentence that says so."""
-    return f"{what}: constraints are not taken into account here yet ({listed(system.constraints)})"
+    return Message(
+        "[[what]]: constraints are not taken into account here yet ([[constraints]])",
+        what=what,
+        constraints=listed(system.constraints),
+    )
 
 
 HINT = "without its constraints this would be another system"

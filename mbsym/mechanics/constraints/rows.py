@@ -26,6 +26,7 @@ from fractions import Fraction
 
 from mbsym.algebra.base import Algebra, Scalar
 from mbsym.algebra.vectors import Vector
+from mbsym.expressions.message import Message
 from mbsym.expressions.place import Span
 from mbsym.expressions.tree import ZERO, Expression, differentiate, names, negative, subtract
 from mbsym.mechanics.constraints.seen import Moving, Rates, View, along_coordinate, along_motion, common_frame
@@ -57,9 +58,12 @@ class RowName:
     span: Span | None = None
 
     @property
-    def label(self) -> str:
+    def label(self) -> Message:
         """``coincide 1, component 2``: the second row of the first constraint of the description."""
-        return f"{self.kind} {self.constraint + 1}" + (f", component {self.component}" if self.component else "")
+        kind, number = Message(self.kind), self.constraint + 1
+        if not self.component:
+            return Message("[[kind]] [[number]]", kind=kind, number=number)
+        return Message("[[kind]] [[number]], component [[k]]", kind=kind, number=number, k=self.component)
 
 
 @dataclass(frozen=True, slots=True)

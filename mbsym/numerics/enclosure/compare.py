@@ -16,7 +16,7 @@ from mbsym.numerics.enclosure.enclose import GUARD, Enclosure, enclosed
 from mbsym.numerics.enclosure.field import NotAnalytic, function_of
 from mbsym.numerics.events.events import Occurrences
 from mbsym.numerics.events.surfaces import slopes_code
-from mbsym.numerics.planning.sizes import scaled, sizes_of_scene
+from mbsym.numerics.planning.sizes import scaled_by_another, sizes_of_scene
 
 #: How much further than the last row the solution is enclosed where events are looked at.
 AFTER = 1 + 1e-6
@@ -104,7 +104,7 @@ def certified(
     A component is measured by its largest absolute value at the rows; where it rests but for rounding, by what the
     scene would move it (``planning.sizes``).  Raises NotAnalytic where the equations have no power series.
     """
-    scale = scaled(np.max(np.abs(states), axis=1).astype(float), sizes_of_scene(dynamics, times, states))
+    scale = scaled_by_another(dynamics, times, states, sizes_of_scene(dynamics, times, states))
     # An event at the end needs a little of what comes after it.
     end = float(times[-1]) * (1.0 if happened is None else AFTER)
     state = dynamics.scenario.state

@@ -21,12 +21,13 @@ from typing import Any
 import numpy as np
 
 from mbsym.numerics.dynamics import Dynamics, Frozen
+from mbsym.numerics.events.features import SLIDING
 from mbsym.numerics.methods.blocks import MOST, Block, Blocks
 from mbsym.numerics.methods.interface import COUNTS, STEP_LIMIT, Breakdown, Method, Piece, Run, Setting, Traits, Work
 from mbsym.numerics.methods.leaving import TOGETHER, Leaving
 from mbsym.numerics.methods.led import LedRun, lead
 from mbsym.numerics.methods.narrow import BESIDE, along, met
-from mbsym.numerics.methods.passed import MOST_KEPT, Narrow, Passed
+from mbsym.numerics.methods.passed import MOST_INSIDE, MOST_KEPT, Narrow, Passed
 from mbsym.numerics.methods.runge_kutta import CompiledRun
 from mbsym.numerics.methods.sides import Sides, endless, feature_kernel
 
@@ -94,6 +95,7 @@ class LandingRun:
         self._longest = _longest(method, setting)
         self._runs: dict[int | None, Run] = {}
         self.work, self.passed = Work(), Passed()
+        self._been: set[tuple[int, ...]] = set()
         self._leaving = Leaving(
             self._positive, self._switches.looked_for, setting.tolerance or OF_FIXED_STEP, self.passed
         )
@@ -275,6 +277,7 @@ class LandingRun:
     def _taken(self, piece: Piece) -> Piece:
         assert self._ahead is not None
         self._note_narrow(piece)
+        self._note_inside(piece)
         self._check_sides(piece)
         self._length = max(float(piece.end - piece.start), 0.5 * self._length)  # a piece may be the rest of a step
         self.time, self.state = piece.end, self._ahead.state
@@ -295,6 +298,7 @@ class LandingRun:
             self.time, self.state = piece.end, self._ahead.state if self._ahead is not None else self.state
             return piece
         self._note_narrow(piece)
+        self._note_inside(piece)
         assert self._ahead is not None
         self._check_landing(piece, self._ahead.state, turned)
         apart = place - self.time
@@ -305,6 +309,16 @@ class LandingRun:
         self._note_switch()
         self._switch(turned)
         return piece
+
+    def _note_inside(self, piece: Piece) -> None:
+        """The middle of the first step on these sides."""
+        sides = self._sides or ()
+        if sides in self._been or SLIDING in sides or len(self._been) >= MOST_INSIDE:
+            return
+        middle = piece.start + 0.5 * (piece.end - piece.start)
+        if piece.start < middle < piece.end:
+            self._been.add(sides)
+            self.passed.inside.append((float(middle), np.array(piece(np.array([middle])), dtype=float)[:, 0]))
 
     def _note_switch(self) -> None:
         kept = self.passed.switches

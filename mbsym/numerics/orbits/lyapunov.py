@@ -49,6 +49,9 @@ class Exponents:
 
     ``history`` (intervals, k) are the exponents up to ``times``.  ``divergence`` is the mean of tr J along the motion
     and ``sum_error`` how far the sum of all exponents is from it; nan where not all were asked for.
+
+    ``linear``: the equations are linear in the state (proved: their Jacobian does not know it), so that all motions
+    part alike and none is chaotic; ``resting``: the motion is a rest in every digit.
     """
 
     values: Any
@@ -59,6 +62,8 @@ class Exponents:
     sum_error: float
     time: float
     ended: Breakdown | None = None
+    linear: bool = False
+    resting: bool = False
 
     @property
     def falling(self) -> bool:
@@ -105,12 +110,13 @@ def exponents(
     ends = np.linspace(0.0, time, intervals + 1)
     state = np.array([float(x) for x in dynamics.scenario.state])
     tangents = _directions(flow.size, flow.columns)
-    growth, divergences, ended = [], [], None
+    growth, divergences, ended, resting, first = [], [], None, True, state
     try:
         for start, end in pairwise(ends):
             before = state
             state, tangents = flow.passage(state, float(start), float(end), tangents)
             tangents, triangle = np.linalg.qr(tangents)
+            resting = resting and bool(np.all(state == first))
             growth.append(np.log(np.abs(np.diag(triangle))))
             divergences.append((before, float(start), float(end)))
             watch(float(end))
@@ -127,7 +133,15 @@ def exponents(
     panels = max(1, flow.run.work.steps // len(rates))
     divergence = _mean_divergence(dynamics, divergences, panels, tolerance)
     error = abs(float(np.sum(values)) - divergence) if flow.columns == flow.size else float("nan")
-    return Exponents(values, _uncertainty(rates, times), times, history, divergence, error, float(times[-1]), ended)
+    doubt, linear = _uncertainty(rates, times), _linear(dynamics)
+    return Exponents(values, doubt, times, history, divergence, error, float(times[-1]), ended, linear, resting)
+
+
+def _linear(dynamics: Dynamics) -> bool:
+    """Whether no entry of the Jacobian is a function of the state."""
+    code, program = dynamics.jacobian, dynamics.jacobian.program
+    used = (program.instructions[number] for number in program.live(code.outputs))
+    return all(one.operation != "input" or str(one.payload) not in dynamics.inputs[1:] for one in used)
 
 
 def _directions(size: int, columns: int) -> Any:

@@ -34,7 +34,7 @@ from mbsym.numerics.planning.plan_bounds import GOAL, bounds_of, fits, shares_of
 from mbsym.numerics.planning.plan_items import Settled, items_of
 from mbsym.numerics.planning.prices import cost
 from mbsym.numerics.planning.reduced import Reduced, reduced
-from mbsym.numerics.planning.sizes import scaled, usual_sizes
+from mbsym.numerics.planning.sizes import scaled_by_another, usual_sizes
 from mbsym.numerics.rows import MOST, places, rows
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.separable import Part, Separate, separated
@@ -187,7 +187,7 @@ def outlined(scenario: Scenario, accuracy: Accuracy, times: Any) -> tuple[Scene,
         usual = usual_sizes(rich, grid, states, largest)
     except Failure:
         usual = np.zeros(len(states))
-    scale = np.append(scaled(np.max(np.abs(states), axis=1), usual), largest or 1.0)
+    scale = np.append(scaled_by_another(rich, grid, states, usual), largest or 1.0)
     return Scene(scenario, rich, model, grid, states, scale, targets, choice.method), choice, remark
 
 

@@ -162,7 +162,9 @@ class _Whole:
         found = met_by(self._inner)
         if found is None:
             return None
-        return Passed(found.switches, [replace(one, place=None) for one in found.narrow], found.unresolved)
+        narrow = [replace(one, place=None) for one in found.narrow]
+        inside = [(time, self._completed(state)) for time, state in found.inside]
+        return Passed(found.switches, narrow, found.unresolved, inside)
 
     def advance(self, until: float) -> Any:
         self._guarded(lambda: self._inner.advance(until))

@@ -5,6 +5,9 @@ quantity that rests but for rounding (the cart under two pendulums that swing ag
 own.  It is measured by what the scene would move it: the velocity that carries the largest kinetic energy T alone,
 
     v_i = sqrt(2 T / M_ii),      q_i = v_i tau,      tau the shortest ratio of a coordinate's range to its speed.
+
+A small size alone is no rest: the nutation of a fast top is a millionth of what its spin could do.  What two runs agree
+on is motion, what is rounding in them is another in each.
 """
 
 from __future__ import annotations
@@ -32,17 +35,38 @@ AFFORDABLE = 400_000_000
 #: The tolerance at which sizes, and no more, are looked for.
 COARSE = 1e-6
 
-#: Below this part of what the scene would move it by, a quantity rests but for rounding.
-RESTS = 1e-6
+#: Below this part of what the scene would move it by, a quantity rests but for rounding, unless two runs differ by no
+#: more than this part of it.
+RESTS, AGREED = 1e-6, 0.01
+
+#: The tolerance of the second one: nobody else's, lest it be the first one again.
+ANOTHER = 3.1e-9
 
 #: Systems with more coordinates than this are measured by the sizes of their quantities alone.
 MOST_SCALED = 40
 
 
-def scaled(own: Any, usual: Any) -> Any:
-    """What each quantity is measured by: its own size, or what the scene would move it by; 1 where there is neither."""
-    found = np.where(own >= RESTS * usual, own, usual)
+def scaled(own: Any, usual: Any, apart: Any = np.inf) -> Any:
+    """What each quantity is measured by: its own size, or what the scene would move it by; 1 where there is neither.
+
+    ``apart`` is by how much two runs differ: a quantity on which they agree moves, however little.
+    """
+    moves = (own >= RESTS * usual) | ((own > 0) & (apart <= AGREED * own))
+    found = np.where(moves, own, usual)
     return np.where(found > 0, found, 1.0)
+
+
+def scaled_by_another(dynamics: Dynamics, times: Any, states: Any, usual: Any) -> Any:
+    """``scaled`` of a run's states (2n, m) at times from 0, with another run where a quantity is small."""
+    states = np.asarray(states, dtype=float)
+    own = np.max(np.abs(states), axis=1)
+    if not np.any((own > 0) & (own < RESTS * usual)):
+        return scaled(own, usual)
+    places = np.unique(np.linspace(0, len(times) - 1, min(len(times), 4 * GRID)).astype(int))
+    other = integrated(dynamics, METHODS["dop853"], _affordable(dynamics, ANOTHER), times[places].tolist())
+    if len(other.times) < len(places):
+        return scaled(own, usual)
+    return scaled(own, usual, np.max(np.abs(other.states - states[:, places]), axis=1))
 
 
 def usual_sizes(dynamics: Dynamics, times: Any, states: Any, kinetic: float) -> Any:
@@ -85,8 +109,11 @@ def kinetic_between(dynamics: Dynamics, found: Trajectory, completed: Callable[[
 
 def _seen(dynamics: Dynamics, end: float, method: Method) -> tuple[Any, Any, float]:
     """Times, states and the largest kinetic energy of a coarse run."""
-    operations = max(1, dynamics.right_hand_side.operations)
-    setting = Setting(COARSE, None, max(1_000, AFFORDABLE // (140 * operations)))
-    run = integrated(dynamics, method, setting, np.linspace(0.0, end, GRID).tolist())
+    run = integrated(dynamics, method, _affordable(dynamics, COARSE), np.linspace(0.0, end, GRID).tolist())
     kinetic = compiled_kernel(dynamics, "relative_energy")(np.vstack([run.times, run.states]))[1]
     return run.times, run.states, float(np.max(np.abs(kinetic[np.isfinite(kinetic)]), initial=0.0))
+
+
+def _affordable(dynamics: Dynamics, tolerance: float) -> Setting:
+    operations = max(1, dynamics.right_hand_side.operations)
+    return Setting(tolerance, None, max(1_000, AFFORDABLE // (140 * operations)))

@@ -7,9 +7,9 @@ of the overlap and ``SHARES`` of it inside, so that neither an oscillation betwe
 and every row that was shown.  After ``MOST`` overlaps the rest of the interval is looked at in as many places that lie
 unevenly, and ``followed`` is false.
 
-A quantity smaller than ``floor`` rests but for rounding, and is measured by what the scene would move it by
-(``planning.sizes``).  From the moment ``parted`` on the two have little in common: a difference then says how far
-two solutions can be apart, not how wrong either of them is.
+A quantity smaller than ``floor`` on which the two do not agree rests but for rounding, and is measured by what the
+scene would move it by (``planning.sizes``).  From the moment ``parted`` on the two have little in common: a difference
+then says how far two solutions can be apart, not how wrong either of them is.
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ class Difference:
     """|x_i - y_i| of one coordinate or velocity: at the ``end``, at worst, ``when`` that is.
 
     ``size`` is max |y_i|; ``scale`` is what differences are relative to: the size, or what the scene would move the
-    quantity by where its size is below ``floor``.
+    quantity by where its size is below ``floor`` and the two solutions do not agree on it.
     """
 
     name: str
@@ -308,7 +308,7 @@ class _Seen:
         """What it comes to."""
         kept = self.kept()
         usually = np.asarray(usual(*kept), dtype=float)
-        scales = scaled(self.size, usually)
+        scales = scaled(self.size, usually, self.largest)
         quantities = tuple(
             Difference(name, *map(float, values))
             for name, *values in zip(

@@ -171,7 +171,7 @@ class _Search:
         """With ``differences`` (2n,) from a second solution, each relative to its scale then."""
         states = np.asarray(states, dtype=float)
         places = np.unique(np.linspace(0, len(times) - 1, 1000).astype(int))
-        scale = scaled(np.max(np.abs(states), axis=1), self.usual(times[places], states[:, places]))
+        scale = scaled(np.max(np.abs(states), axis=1), self.usual(times[places], states[:, places]), differences)
         error = float(np.max(differences / scale))
         if not error < AGREE:
             raise Breakdown(DISAGREE, f"{method} differ by {error:.1e}", self.end, states[:, -1])

@@ -2,9 +2,9 @@
 
 error    largest |x_i(t) - reference_i(t)| over all coordinates, velocities and the thousands of times at which the
          reference is known, each relative to its size in the whole motion (``mbsym.numerics.planning.sizes``)
-drift    largest error of the energy h at the same times: its change where h is conserved, else its difference from that
-         of the reference, whose loss is the system's own; relative to the largest kinetic energy of the reference, or
-         to the largest change of its h where that is larger
+drift    largest error of the energy h at the same times: its change where h is proved to be conserved, else its
+         difference from that of the reference, whose loss is the system's own; relative to the largest kinetic energy
+         of the reference, or to the largest change of its h where that is larger
 strayed  largest drift of positions and of velocities from constraints at the same times, where there are any
          (``mbsym.numerics.constrained``: in parts of the motion's size)
 cost     counted work of all that was done for a row, compiling, repeating and comparing included
@@ -31,7 +31,7 @@ from typing import Any
 import numpy as np
 
 from mbsym.algebra.failures import Defect, Failure
-from mbsym.numerics.conservation import energy_standing, visited
+from mbsym.numerics.conservation import Standing, energy_standing, visited
 from mbsym.numerics.constrained import drift
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
@@ -276,7 +276,7 @@ class _Judge:
             change = np.max(np.abs(h - h[0]))
             scale = float(max(np.max(np.abs(kinetic)), change) or abs(h[0]) or 1.0)
         kept, _ = energy_standing(self.dynamics, visited(times, states, h))
-        return (h[0] if kept.conserved else h), scale
+        return (h[0] if kept is Standing.PROVED else h), scale
 
     def _drift(self, times: Any, states: Any) -> float:
         with np.errstate(all="ignore"):

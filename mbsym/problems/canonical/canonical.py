@@ -37,6 +37,7 @@ from fractions import Fraction
 from mbsym.algebra.failures import Failure, NoClosedForm, SingularPoint
 from mbsym.algebra.matrices import solved
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Column, Formula, Matrix, column
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.generalized import generalized_forces
@@ -148,7 +149,7 @@ def routh(system: System, terms: int) -> Routh:
     if not ignored:
         cyclic = ", ".join(name for name in found.cyclic if name in system.coordinates)
         raise NothingIgnored(
-            f"cyclic are {cyclic}, but other forces act on them, or depend on them"
+            Message("cyclic are [[names]], but other forces act on them, or depend on them", names=cyclic)
             if cyclic
             else "no coordinate is cyclic"
         )
@@ -192,7 +193,13 @@ def _convective(scene: Scene, ring: Ring, x: Polynomial, left: Sequence[str]) ->
 def _solved(ring: Ring, matrix: Sequence[Sequence[Polynomial]], right: Sequence[Polynomial]) -> list[Polynomial]:
     """matrix^-1 right by Cramer's rule: the only denominator is the determinant."""
     if len(right) > MOST:
-        raise NoClosedForm(f"the inverse of a matrix of {len(right)} rows: at most {MOST} are inverted in closed form")
+        raise NoClosedForm(
+            Message(
+                "the inverse of a matrix of [[count]] rows: at most [[most]] are inverted in closed form",
+                count=len(right),
+                most=MOST,
+            )
+        )
     try:
         return [x for (x,) in solved(ring, matrix, [[x] for x in right])]
     except SingularPoint:

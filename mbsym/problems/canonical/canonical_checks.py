@@ -22,6 +22,7 @@ from flint import arb, arb_mat, fmpq_mat
 
 from mbsym.algebra.base import Scalar
 from mbsym.algebra.evaluate import Carrier
+from mbsym.expressions.message import Message, joined, worded
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.states import Oracles
@@ -58,9 +59,21 @@ def check_hamilton(truth: Oracles, found: Hamilton) -> Check:
                 rate = known(along[i]) - carry(found.rates[i].polynomial)
                 velocity = state.values[velocity_name(name)]
                 compared += [
-                    (found.momenta[i], known(found.momenta_in_velocities[i].polynomial), p[i]),
-                    (f"dH/d{found.momenta[i]}", carry(found.velocities[i].polynomial), velocity),
-                    (f"the rate of {found.momenta[i]}", rate, oracle.residuals[name]),
+                    (
+                        Message("[[momentum]]", momentum=found.momenta[i]),
+                        known(found.momenta_in_velocities[i].polynomial),
+                        p[i],
+                    ),
+                    (
+                        Message("dH/d[[momentum]]", momentum=found.momenta[i]),
+                        carry(found.velocities[i].polynomial),
+                        velocity,
+                    ),
+                    (
+                        Message("the rate of [[momentum]]", momentum=found.momenta[i]),
+                        rate,
+                        oracle.residuals[name],
+                    ),
                 ]
         return compared
 
@@ -86,9 +99,9 @@ def check_routh(truth: Oracles, found: Routh) -> Check:
         for name, momentum, rate in zip(found.ignored, beta, found.ignored_rates, strict=True):
             velocity = state.values[velocity_name(name)]
             function = function - momentum * velocity
-            compared.append((f"the velocity of {name}", carry(rate.polynomial), velocity))
+            compared.append((Message("the velocity of [[name]]", name=name), carry(rate.polynomial), velocity))
         compared.append(("R", carry(found.function.polynomial), function))
-        compared.append(("the parts of R", _by_parts(found, carry, state), function))
+        compared.append((Message("the parts of R"), _by_parts(found, carry, state), function))
         needed = _on_the_level(oracle, found)
         for i, name in enumerate(found.coordinates):
             if name in chosen.chosen:
@@ -96,7 +109,7 @@ def check_routh(truth: Oracles, found: Routh) -> Check:
                 for j, other in enumerate(found.coordinates):
                     entry = carry(found.mass_matrix[i, j].polynomial)
                     total = total + entry * state.values[acceleration_name(other)]
-                compared.append((f"equation {name}", total, needed[name]))
+                compared.append((Message("equation [[name]]", name=name), total, needed[name]))
         return compared
 
     routes = ("Routh, closed form", D_ALEMBERT)
@@ -110,7 +123,11 @@ def check_brackets(found: Brackets, canonical: Hamilton, scene: Scene) -> Check:
     outcomes = [how_equal(ring, [[rate]], [[ring.zero]]) for rate in rates]
     wrong = [name for name, outcome in zip(found.names, outcomes, strict=True) if outcome == FAILED]
     outcome = max(outcomes, key=tuple(HOW_EQUAL).index) if not wrong else FAILED
-    detail = f"not kept by the canonical equations: {', '.join(wrong)}" if wrong else HOW_EQUAL[outcome]
+    detail = (
+        Message("not kept by the canonical equations: [[wrong]]", wrong=joined(map(worded, wrong), ", "))
+        if wrong
+        else HOW_EQUAL[outcome]
+    )
     routes = ("rates of first integrals along the canonical equations", "zero, as problem 7 found them")
     return Check(BRACKETS, *routes, outcome, detail)
 

@@ -29,6 +29,7 @@ from typing import Any
 from mbsym.algebra.factors import rational_ratio
 from mbsym.algebra.failures import NOT_THERE, NoClosedForm
 from mbsym.algebra.signs import ContradictionError, Signs
+from mbsym.expressions.message import Message, joined
 from mbsym.expressions.tree import subtract, text
 from mbsym.model.claims import NECESSARY, SUFFICIENT, Claim
 from mbsym.problems.claims.counterexample import IN_FIRST, Counterexample, Tried
@@ -40,7 +41,8 @@ from mbsym.problems.stability.sentences import with_theorem
 from mbsym.problems.stability.verdict import Flaw, Verdict, weakest
 from mbsym.problems.stability.word import Word
 
-_BODIES = ", with the triangle inequalities of the inertias"
+_BODIES = Message(", with the triangle inequalities of the inertias")
+_BUT_EQUALITY = Message(", but for the case of equality")
 _STRICT = (">", "<")
 
 
@@ -55,7 +57,7 @@ def examined_condition(derived: Derived, claim: Claim, about: str) -> ClaimResul
 
 
 def _told(result: ClaimResult, outcome: str, *remarks: Remark, example: Counterexample | None = None) -> ClaimResult:
-    return replace(result, outcome=outcome, remark=words(remarks), remarks=remarks, counterexample=example)
+    return replace(result, outcome=outcome, remark=words(remarks), counterexample=example)
 
 
 # --- necessary conditions, and those without a role ---
@@ -103,7 +105,7 @@ def _necessary(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimResu
         equal = (said(Said.STABLE_WITH_EQUALITY),) if claim.relation in _STRICT and example.at_equality else ()
         return _told(result, FAILS, said(code), *equal, *for_exponential, example=example)
     if never:
-        told = with_theorem(verdict.word, verdict.theorem)
+        told = with_theorem(verdict.word, verdict.theorems)
         return _told(result, UNDECIDED, said(Said.NEVER_STABLE, told, verdict.word is Word.UNSTABLE_BUT_BORDERS))
     if claim.relation == "!=":
         return _apart(derived, regions, claim, result, tried, for_exponential)
@@ -242,10 +244,12 @@ def _as_printed(region: Region, claim: Claim) -> Inequality:
 
 def trivial(region: Region, wanted: Inequality, result: ClaimResult) -> ClaimResult | None:
     """What the declared signs, assumptions and the inertias of bodies decide by themselves."""
-    known = "the declared signs and assumptions"
     for signs, what in (
-        (region.signs, known),
-        (region.signs_of_bodies, f"{known} and the triangle inequalities of the inertias"),
+        (region.signs, Message("the declared signs and assumptions")),
+        (
+            region.signs_of_bodies,
+            Message("the declared signs and assumptions and the triangle inequalities of the inertias"),
+        ),
     ):
         if is_certain(signs, wanted):
             return _told(result, EXACT, said(Said.FOLLOWS_FROM_SIGNS, what))
@@ -267,7 +271,10 @@ def one_of_problem_6(region: Region, claim: Claim, result: ClaimResult) -> Claim
     needed = region.without(wanted).word is Word.UNSTABLE or region.on_border(wanted).word is Word.UNSTABLE
     outcome = EXACT if needed else BORDERS
     label, whose, note = what.data
-    return _told(result, outcome, said(Said.IS, label, whose, f"{note}, but for the case of equality"))
+    assert isinstance(note, str)
+    return _told(
+        result, outcome, said(Said.IS, label, whose, joined((note, _BUT_EQUALITY), "") if note else _BUT_EQUALITY)
+    )
 
 
 def _found_among(region: Region, wanted: Inequality, left_out: Sequence[str]) -> tuple[Remark | None, bool]:
@@ -299,6 +306,11 @@ def _same_condition(signs: Signs, first: Inequality, second: Inequality) -> bool
 def _sufficient(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimResult:
     together = _of_its_place(derived, claim)
     number = len(together)
+    always = derived.stability.verdict
+    if always.stable:  # nothing can refute it, and where other angles were judged nothing could be tried
+        each = (trivial(region, wanted_of(region, claim), result) for region in forms(derived, claim))
+        never = next((one for one in each if one is not None and one.outcome == FAILS), None)
+        return never or _told(result, EXACT, said(Said.WITH_IT, number, "", with_theorem(always.word, always.theorem)))
     tried = _refuting(derived, claim)
     if tried.found is not None:
         return _told(result, FAILS, said(Said.NOT_SUFFICIENT, number), example=tried.found)
@@ -315,23 +327,23 @@ def _sufficient(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimRes
             note = _BODIES if bodies else ""
             found = region.verdict(conditions, bodies)
             if found.stable:
-                return _told(result, EXACT, said(Said.WITH_IT, number, note, with_theorem(found.word, found.theorem)))
+                return _told(result, EXACT, said(Said.WITH_IT, number, note, with_theorem(found.word, found.theorems)))
             if found.word in (Word.GYROSCOPIC, Word.CRITICAL):
                 open_words = (said(Said.FIRST_WITH_IT, number),)
             inner = region.verdict(strict, bodies) if strict != conditions else found
             if inner.stable and strict != conditions:
-                told = with_theorem(inner.word, inner.theorem)
+                told = with_theorem(inner.word, inner.theorems)
                 borders = _on_borders(region, conditions)
                 if borders is not None:
                     whole = weakest([inner, *borders])
                     return _told(
-                        result, EXACT, said(Said.WITH_IT, number, note, with_theorem(whole.word, whole.theorem))
+                        result, EXACT, said(Said.WITH_IT, number, note, with_theorem(whole.word, whole.theorems))
                     )
-                inside = said(Said.WITH_IT, number, f"{note}, but for the case of equality,", told)
+                inside = said(Said.WITH_IT, number, joined((*filter(None, (note, _BUT_EQUALITY)), ","), ""), told)
                 return _told(result, UNDECIDED, inside, _with_equality(derived, claim))
     by_integrals = _by_integrals(derived, claim, together)
     if by_integrals is not None:
-        told = with_theorem(by_integrals.word, by_integrals.theorem)
+        told = with_theorem(by_integrals.word, by_integrals.theorems)
         return _told(result, EXACT, said(Said.WITH_IT, number, "", told))
     remarks = open_words or (said(Said.NOT_PROVED_SUFFICIENT, number), _tried(tried, Said.NONE_UNSTABLE))
     return _told(result, UNDECIDED, *remarks)
@@ -360,7 +372,7 @@ def _with_equality(derived: Derived, claim: Claim) -> Remark:
             equal = False
         verdict = derived.trials.looked_into(given) if equal else None
         if verdict is not None and not verdict.word.open:
-            return said(Said.EQUAL_AT_VALUES, with_theorem(verdict.word, verdict.theorem))
+            return said(Said.EQUAL_AT_VALUES, with_theorem(verdict.word, verdict.theorems))
     return said(Said.EQUALITY_OPEN)
 
 

@@ -20,6 +20,7 @@ from flint import arb, arb_mat, ctx
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import NOT_THERE, NoClosedForm, SingularPoint
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.constraints.programs import constrained_programs
 from mbsym.mechanics.constraints.ranks import is_certain
@@ -64,7 +65,9 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     if claim.right is not None:
         return examined_condition(derived, claim, about)
     if claim.kind in IN_MOMENTA or claim.kind.startswith(("state matrix", "linear matrix B")):
-        raise NoClosedForm(f"a claim about the {claim.kind}: not judged under constraints")
+        raise NoClosedForm(
+            Message("a claim about the [[kind]]: not judged under constraints", kind=Message(claim.kind))
+        )
     if claim.kind == "coefficient" and claim.of not in SUMS:
         raise NoClosedForm("a coefficient of an equation, which multipliers complete: not judged under constraints")
     symbols = Symbols.of(derived)
@@ -219,10 +222,17 @@ def accelerated_at(system: System, ring: Ring, tied: Constraints, state: State) 
     mass = [list(islice(parts, n)) for _ in range(n)]
     force, rows = list(islice(parts, n)), [list(islice(parts, n)) for _ in range(m)]
     needed = list(islice(parts, m))
-    for kind, errors in (("velocity", list(islice(parts, m))), ("position", list(islice(parts, m)))):
+    for kind, errors in ((Message("velocity"), list(islice(parts, m))), (Message("position"), list(islice(parts, m)))):
         for name, row, error in zip(names, rows, errors, strict=True):
             if abs(error) > KEPT * (1 + sum((abs(x) for x in row), arb(0))):
-                raise NoClosedForm(f"the state does not keep {name.label} ({kind}: off by {shown(abs(error), 3)})")
+                raise NoClosedForm(
+                    Message(
+                        "the state does not keep [[label]] ([[kind]]: off by [[error]])",
+                        label=name.label,
+                        kind=kind,
+                        error=shown(abs(error), 3),
+                    )
+                )
     whole = [[*mass[i], *(-rows[k][i] for k in range(m))] for i in range(n)]
     whole += [[*row, *([arb(0)] * m)] for row in rows]
     right = [*force, *(-x for x in needed)]

@@ -281,7 +281,7 @@ class Trials:
 
     def _shown(self, trial: Trial, gaps: Sequence[tuple[str, Any, str]], border: bool) -> Counterexample:
         verdict = self.looked_into(trial)
-        word = with_theorem(verdict.word, verdict.theorem)
+        word = with_theorem(verdict.word, verdict.theorems)
         at = tuple((name, str(trial.values[name])) for name in self.system.parameter_names)
         shows = tuple((text, str(gap)) for text, gap, _ in gaps)
         return Counterexample(at, (*shows, (THE_MOTION, word)), verdict.word, bool(gaps[0][1] == 0), border)

@@ -21,6 +21,7 @@ from typing import Any
 from mbsym.algebra.failures import NOT_THERE, Failure, NoClosedForm
 from mbsym.algebra.matrices import components, determinant
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.message import Message
 from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.speeds import SpeedForm
@@ -51,7 +52,7 @@ STATES, MOST_COUPLED, MOST_POWER = 6, 6, 4
 LONGEST = 160
 
 NOTHING = "it says 0 = 0"
-SOLVED = "compared with the equation solved for the acceleration of {}"
+SOLVED = "compared with the equation solved for the acceleration of [[name]]"
 SAME_ACCELERATIONS = "compared with the combination of the equations that has the same accelerations"
 NOT_LINEAR = "it vanishes on every motion; it is not linear in the accelerations, and others may satisfy it, too"
 
@@ -157,7 +158,7 @@ class Dynamics:
             if wanted.isdisjoint(block):
                 continue
             if len(block) > MOST_COUPLED:
-                raise NoClosedForm(f"{len(block)} equations are coupled")
+                raise NoClosedForm(Message("[[count]] equations are coupled", count=len(block)))
             cut = [[mass[i][j] for j in block] for i in block]
             whole = determinant(ring, cut)
             if ring.vanishes(whole):
@@ -176,18 +177,26 @@ class Combination:
 
     def words(self, dynamics: Dynamics, derived: Derived, own: str) -> str:
         """``it is 1 times the equation of x plus -cos(theta)/l times the equation of theta``."""
-        ring, told = dynamics.ring, []
+        ring = dynamics.ring
+        told: list[str] = []
         for name, top, bottom in self.coefficients:
             factor = str(Formula(ring, ring.reduce(ring.times(top, ring.reciprocal(bottom)))))
             if len(factor) > LONGEST:
-                told = [f"a combination of the equations of {', '.join(name for name, *_ in self.coefficients)}"]
+                names = ", ".join(name for name, *_ in self.coefficients)
+                told = [Message("a combination of the equations of [[names]]", names=names)]
                 break
-            told.append(f"{f'({factor})' if ' ' in factor else factor} times the equation of {name}")
-        without = "" if any(name == own for name, *_ in self.coefficients) else f"; that of {own} has no part in it"
+            factor = f"({factor})" if " " in factor else factor
+            told.append(Message("[[factor]] times the equation of [[name]]", factor=factor, name=name))
+        what = told[0]
+        for one in told[1:]:
+            what = Message("[[first]] plus [[second]]", first=what, second=one)
+        said = Message("it is [[what]]", what=what)
+        if not any(name == own for name, *_ in self.coefficients):
+            said = Message("it is [[what]]; that of [[own]] has no part in it", what=what, own=own)
         # What all the coefficients have in common and may vanish: there the claim says nothing.
         common = reduce(ring.common_factor, [top for _, top, _ in self.coefficients])
         some = exceptions(derived, common, ring.one)
-        return f"it is {' plus '.join(told)}{without}{f', and says something {some}' if some else ''}"
+        return Message("[[said]], and says something [[where]]", said=said, where=some) if some else said
 
     def equation(self, dynamics: Dynamics) -> Polynomial:
         """c^T L."""
@@ -307,7 +316,7 @@ def _closest(
         difference = ring.reduce(x - solved) if multiple is None else multiple.difference
         if not ring.vanishes(difference) and places(difference) < cost:
             factor = None if multiple is None else multiple.factor
-            told = replace(plain, derived=Formula(ring, solved), factor=factor, remark=SOLVED.format(claim.of))
+            told = replace(plain, derived=Formula(ring, solved), factor=factor, remark=Message(SOLVED, name=claim.of))
             best, cost = differing(derived, told, symbols, difference), places(difference)
     except NOT_THERE:
         pass

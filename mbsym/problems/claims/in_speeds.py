@@ -14,6 +14,7 @@ from typing import cast
 
 from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.ring import Polynomial
+from mbsym.expressions.message import Message
 from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula, Matrix, column
 from mbsym.mechanics.motion import relations
@@ -138,7 +139,7 @@ def _derived(derived: Derived, form: SpeedForm, claim: Claim) -> Polynomial:
         dynamics = Dynamics.in_speeds(form, equations)
         top, bottom = dynamics.solved(_speed(form, claim.of))
         return form.ring.reduce(form.ring.times(top, form.ring.reciprocal(bottom)))
-    raise NoClosedForm(f"a claim about the {claim.kind}: not judged in speeds")
+    raise NoClosedForm(Message("a claim about the [[kind]]: not judged in speeds", kind=Message(claim.kind)))
 
 
 def _speed(form: SpeedForm, name: str) -> int:
@@ -146,7 +147,7 @@ def _speed(form: SpeedForm, name: str) -> int:
     for r, u in enumerate(form.speeds):
         if name in (u.name, without_velocity(u.name)):
             return r
-    raise NoClosedForm(f"the velocity of {name} is no speed: other speeds have taken its place")
+    raise NoClosedForm(Message("the velocity of [[name]] is no speed: other speeds have taken its place", name=name))
 
 
 def _factor(form: SpeedForm, claimed: Polynomial, truth: Polynomial) -> Polynomial | None:
@@ -168,8 +169,8 @@ def _integral(derived: Derived, form: SpeedForm, claim: Claim, about: str, claim
     if not ring.dependencies(claimed, [u.name for u in form.speeds]):
         vectors = [name for body in form.oriented for vector in body.orientation for name in vector.components]
         if ring.dependencies(claimed, vectors) and Field(form, equations).keeps(claimed) is True:
-            what = "unit vectors" if form.by_vectors else "quaternion"
-            return replace(result, remark=f"of the {what} alone: it is known beforehand")
+            what = Message("unit vectors") if form.by_vectors else Message("quaternion")
+            return replace(result, remark=Message("of the [[what]] alone: it is known beforehand", what=what))
         return replace(result, outcome=FAILS, remark="it contains no velocity")
     images = relations(derived.parameters_scene)
     field = Field(form, equations)

@@ -8,6 +8,7 @@ from itertools import product as combinations_of
 
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import (
     names,
 )
@@ -50,8 +51,10 @@ def examined_integral(derived: Derived, claim: Claim, about: str, claimed: Polyn
         if is_conserved(scene, equations, claimed):
             constant = _constant_where(derived, claimed)
             if constant is not None:
-                remark = f"it is a constant{constant}, whatever the motion"
-                return replace(result, outcome=FAILS, remark=remark)
+                told = Message("it is a constant, whatever the motion")
+                if constant:
+                    told = Message("it is a constant [[where]], whatever the motion", where=constant)
+                return replace(result, outcome=FAILS, remark=told)
             if is_proved(scene, equations, claimed):
                 return replace(result, outcome=outcome)
             found, where = _conserved_where(derived, equations, claimed)
@@ -95,7 +98,7 @@ def _conserved_where(derived: Derived, equations: Equations, claimed: Polynomial
 
 
 def _constant_where(derived: Derived, claimed: Polynomial) -> str | None:
-    """ "", or " for v > 0", where no derivative by a velocity is different from zero; None if one is.
+    """ "", or "for v > 0", where no derivative by a velocity is different from zero; None if one is.
 
     sqrt(v**2)/v is 1 or -1, and sqrt(v**2) - v is 0 for v > 0.
     """
@@ -104,8 +107,8 @@ def _constant_where(derived: Derived, claimed: Polynomial) -> str | None:
     found = [decided(derived, slope) for slope in slopes]
     if any(outcome not in (EXACT, NUMERICAL) for outcome, _ in found):
         return None
-    where = next((where.partition(" (")[0] for _, where in found if where), "")
-    return f" {where}" if where else ""
+    where = next((where for _, where in found if where), "")
+    return Message("for [[positive]]", positive=where.gaps["positive"]) if isinstance(where, Message) else ""
 
 
 def _rate_of(derived: Derived, equations: Equations, claimed: Polynomial) -> Formula | None:

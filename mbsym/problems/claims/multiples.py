@@ -7,6 +7,7 @@ from functools import partial
 
 from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.message import Message, enumerated
 from mbsym.formulas.formula import Formula
 from mbsym.model.claims import Claim
 from mbsym.problems.claims.forms import by_place, is_moving, split_off
@@ -111,8 +112,10 @@ def exceptions(derived: Derived, top: Polynomial, bottom: Polynomial) -> str:
                 doubtful.append(str(Formula(ring, factor)))
     if not doubtful:
         return ""
-    names_of = list(dict.fromkeys(doubtful))
-    return f"where {' and '.join(names_of)} {'is' if len(names_of) == 1 else 'are'} not 0"
+    named = list(dict.fromkeys(doubtful))
+    if len(named) == 1:
+        return Message("where [[name]] is not 0", name=named[0])
+    return Message("where [[names]] are not 0", names=enumerated(named))
 
 
 def constant_factor(derived: Derived, claimed: Polynomial, truth: Polynomial) -> Formula | None:

@@ -19,6 +19,7 @@ from flint import arb, fmpq, fmpq_poly
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
 from mbsym.model.claims import Claim
 from mbsym.model.system import System, rational
@@ -46,7 +47,13 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
         truth, positive = found.coefficient, [found.square]
         nonzero = positive
     else:
-        raise NoClosedForm(f"no {claim.kind} in parameters: {forms.no_symbols or 'problem 11 has another case'}")
+        raise NoClosedForm(
+            Message(
+                "no [[kind]] in parameters: [[why]]",
+                kind=Message(claim.kind),
+                why=forms.no_symbols or "problem 11 has another case",
+            )
+        )
     claimed = in_parameters(derived, Symbols.of(derived).polynomial(derived.parameters_scene, claim))
     claimed, known = on_relations(derived, claim, claimed), on_relations(derived, claim, truth.polynomial)
     result = ClaimResult(claim, about, EXACT, truth)
@@ -73,11 +80,19 @@ def _contrary(derived: Derived, claim: Claim, quotient: _Quotient, positive: Seq
     before: tuple[str, fmpq] | None = None
     for found in _values(derived, quotient, [derived.ring.fraction(one.polynomial) for one in positive]):
         if claim.kind == COEFFICIENT and found is not None and found[1] < 0:
-            return f"at {found[0]} its sign is the opposite one"
+            return Message("at [[here]] its sign is the opposite one", here=found[0])
         if claim.kind == DETERMINANT and found is not None and before is not None and found[1] * before[1] < 0:
             # Nothing but a zero of the quotient, or of its denominator, is between them.
-            signs = ("positive", "negative") if found[1] < 0 else ("negative", "positive")
-            return f"claimed/derived is {signs[0]} at {before[0]}, {signs[1]} at {found[0]}"
+            signs = [Message("positive"), Message("negative")]
+            if found[1] >= 0:
+                signs.reverse()
+            return Message(
+                "claimed/derived is [[first]] at [[there]], [[second]] at [[here]]",
+                first=signs[0],
+                there=before[0],
+                second=signs[1],
+                here=found[0],
+            )
         before = found
     return ""
 

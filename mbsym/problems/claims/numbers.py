@@ -12,7 +12,7 @@ from mbsym.algebra.base import Lowering
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, NotRational
 from mbsym.algebra.point import Balls
-from mbsym.expressions.counting import counted
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import (
     Expression,
     Name,
@@ -60,7 +60,9 @@ def examined_number(derived: Derived, claim: Claim, about: str) -> ClaimResult:
             result = _at_precision(derived, claim, about, last=bits == FINER[-1])
         if result is not None:
             return result
-    return ClaimResult(claim, about, UNDECIDED, remark=f"too many digits cancel, even of {FINER[-1]} bits")
+    return ClaimResult(
+        claim, about, UNDECIDED, remark=Message("too many digits cancel, even of [[most]] bits", most=FINER[-1])
+    )
 
 
 def _at_precision(derived: Derived, claim: Claim, about: str, last: bool) -> ClaimResult | None:
@@ -68,10 +70,14 @@ def _at_precision(derived: Derived, claim: Claim, about: str, last: bool) -> Cla
     try:
         printed, value = _both(derived, claim)
     except KeyError as missing:
-        raise NotRational(f"no number is given for {missing.args[0]}") from None
-    for what, number in (("the value", value), ("the claimed value", printed)):
+        raise NotRational(Message("no number is given for [[name]]", name=missing.args[0])) from None
+    for what, number in ((Message("the value"), value), (Message("the claimed value"), printed)):
         if not number.is_finite():
-            return ClaimResult(claim, about, UNDECIDED, remark=f"{what} is not finite") if last else None
+            return (
+                ClaimResult(claim, about, UNDECIDED, remark=Message("[[what]] is not finite", what=what))
+                if last
+                else None
+            )
     digits, unit = _printed(claim.printed) if claim.printed else (0, fmpq(0))
     result = ClaimResult(claim, about, DIGITS, value=shown(value, max(DIGITS_SHOWN, digits + MORE_DIGITS)))
     error = abs(printed - value)
@@ -138,10 +144,14 @@ def _within(claim: Claim, result: ClaimResult, printed: Any, error: Any) -> Clai
     else:
         first = (abs(printed).mid().log() / arb(10).log()).floor().mid()
         tolerance = arb(10) ** (first - claim.digits + 1) / 2
-        words = counted(claim.digits, "digit")
+        words = Message("1 digit") if claim.digits == 1 else Message("[[count]] digits", count=claim.digits)
     if _is_below(error, tolerance):
         return replace(result, outcome=TOLERANCE, remark=words)
-    return replace(result, outcome=DIFFERS, remark=f"by more than {words}") if error > tolerance else None
+    return (
+        replace(result, outcome=DIFFERS, remark=Message("by more than [[words]]", words=words))
+        if error > tolerance
+        else None
+    )
 
 
 def _is_below(error: Any, tolerance: Any) -> bool:

@@ -19,6 +19,7 @@ from typing import Protocol
 from mbsym.algebra.failures import Failure, NoClosedForm, SingularPoint
 from mbsym.algebra.quotients import Quotient
 from mbsym.algebra.tower import Element, Tower
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import Expression, Name, Negative, Number, Operation
 from mbsym.formulas.formula import Formula
 from mbsym.model.claims import Claim
@@ -104,8 +105,11 @@ def _where(difference: Harmonics, phase: str, terms: int) -> str:
             f"{wave}({angle})" if k else "1" for wave, c in zip(("cos", "sin"), pair, strict=True) if not c.is_zero()
         ]
     if not any(difference.waves):
-        return f"by {terms} terms" if terms > MOST_SHOWN else ""
-    return f"in what stands before {', '.join(found)}" + (f": {terms} terms" if terms > MOST_SHOWN else "")
+        return Message("by [[terms]] terms", terms=terms) if terms > MOST_SHOWN else ""
+    names = ", ".join(found)
+    if terms > MOST_SHOWN:
+        return Message("in what stands before [[names]]: [[terms]] terms", names=names, terms=terms)
+    return Message("in what stands before [[names]]", names=names)
 
 
 def _formulas(derived: Derived, told: Told) -> WaveFormulas:
@@ -150,14 +154,16 @@ class _Polynomial:
             case Name(name) if name in self.waves:
                 return self.powers.get(name, 0), self.waves[name]
             case Name(name) if any(one.variable == name for one in found.drifts):
-                raise NoClosedForm(f"{name} may drift: its oscillation is not compared")
+                raise NoClosedForm(Message("[[name]] may drift: its oscillation is not compared", name=name))
             case Negative(operand):
                 power, inner = self.series(operand)
                 return power, [one.scaled(-found.tower.one) for one in inner]
             case Operation("+" | "-" as operator, left, right):
                 (power, one), (other, two) = self.series(left), self.series(right)
                 if power != other:
-                    raise NoClosedForm(f"terms with different powers of {found.small} in one sum: not compared")
+                    raise NoClosedForm(
+                        Message("terms with different powers of [[small]] in one sum: not compared", small=found.small)
+                    )
                 return power, [x + y if operator == "+" else x - y for x, y in zip(one, two, strict=True)]
             case Operation("*", left, right):
                 return self._product(self.series(left), self.series(right))
@@ -230,10 +236,12 @@ def _on_manifold(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     assert form is not None
     names, series = (found.fast, found.functions) if claim.of in found.fast else (found.slow, found.flow)
     if claim.of not in names:
-        raise NoClosedForm(f"{claim.of} is neither fast nor slow there")
+        raise NoClosedForm(Message("[[of]] is neither fast nor slow there", of=claim.of))
     one = series[names.index(claim.of)]
     if one.known is not None and claim.order >= one.known:
-        raise NoClosedForm(f"the coefficient of {found.field.small}^{claim.order} is not known")
+        raise NoClosedForm(
+            Message("the coefficient of [[small]]^[[order]] is not known", small=found.field.small, order=claim.order)
+        )
     coefficient = one.coefficients.get(claim.order)
     ring = told.transfer.ring
     truth = ring.zero if coefficient is None else told.formula(coefficient).polynomial

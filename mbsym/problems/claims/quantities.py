@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import (
     ZERO,
 )
@@ -89,7 +90,13 @@ def of_first_approximation(derived: Derived, claim: Claim) -> Polynomial:
 def _need(there: Sequence[str], names: Sequence[str]) -> None:
     for name in names:
         if name not in there:
-            raise NoClosedForm(f"{name} is not among the coordinates of the first approximation ({', '.join(there)})")
+            raise NoClosedForm(
+                Message(
+                    "[[name]] is not among the coordinates of the first approximation ([[names]])",
+                    name=name,
+                    names=", ".join(there),
+                )
+            )
 
 
 def _sum(derived: Derived, kind: str) -> Polynomial:

@@ -19,6 +19,7 @@ from mbsym.algebra.point import Rationals
 from mbsym.algebra.ring import ParameterRing, Polynomial
 from mbsym.algebra.semialgebraic import atom, where
 from mbsym.algebra.signs import MOST_TERMS, ContradictionError, Signs, coefficients_in
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import is_number
 from mbsym.model.claims import Claim
 from mbsym.problems.claims.forms import in_parameters, on_relations
@@ -158,7 +159,7 @@ class Region:
             listed = () if part.theory.verdict.stable else part.conditions
             for found, note in (
                 ((*part.conditions, *part.unreduced, *sufficient), ""),
-                (part.guaranteed, ": it holds, the kinetic energy is positive definite"),
+                (part.guaranteed, Message(": it holds, the kinetic energy is positive definite")),
             ):
                 for label, formula, relation in found:
                     text = f"{formula} {relation} 0"
@@ -171,7 +172,7 @@ class Region:
         parts = [part for part in self.parts if not of or part.coordinates == of]
         found = [(_needed(part.theory.requirements), part.coordinates) for part in parts]
         if not 0 < sum(len(labels) for labels, _ in found) <= _MOST_LABELS:
-            return "the conditions of problem 6"
+            return Message("the conditions of problem 6")
         return tuple(said(Said.LABELS, tuple(labels), ", ".join(names)) for labels, names in found if labels)
 
     # --- sets ---

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from enum import Enum, auto
+
+from mbsym.expressions.message import Message, enumerated, joined
 
 
 class Said(Enum):
@@ -129,19 +130,21 @@ def text(remark: Remark) -> str:
     return found if isinstance(found, str) else found(*remark.data)
 
 
-def sentence(remark: Remark) -> str:
-    """Its sentence in English."""
-    return re.sub(r"\[\[(\d+)\]\]", lambda match: _told(remark.data[int(match[1]) - 1]), text(remark))
+def sentence(remark: Remark) -> Message:
+    """Its sentence."""
+    found = text(remark)
+    return Message(found, **{str(k): _told(x) for k, x in enumerate(remark.data, start=1) if f"[[{k}]]" in found})
 
 
 def _told(value: object) -> str:
     if isinstance(value, Remark):
         return sentence(value)
     if isinstance(value, tuple):
-        return (" and " if any(isinstance(x, Remark) for x in value) else ", ").join(map(_told, value))
-    return str(value)
+        several = any(isinstance(x, Remark) for x in value)
+        return enumerated([_told(x) for x in value]) if several else joined(map(_told, value), ", ")
+    return value if isinstance(value, str) else str(value)
 
 
-def words(remarks: Iterable[Remark]) -> str:
+def words(remarks: Iterable[Remark]) -> Message:
     """Their sentences, one after another."""
-    return "; ".join(map(sentence, remarks))
+    return joined(map(sentence, remarks), "; ")

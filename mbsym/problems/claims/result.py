@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Protocol
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.ring import Ring
 from mbsym.algebra.signs import Signs
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import (
     ZERO,
     text,
@@ -22,7 +23,6 @@ from mbsym.problems.claims.counterexample import (
     Counterexample,
     Trials,
 )
-from mbsym.problems.claims.remarks import Remark
 from mbsym.problems.dissipation import Balance
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
@@ -126,7 +126,7 @@ class ClaimResult:
     claimed - factor*derived.  For a first integral I the difference is dI/dt on the equations of motion instead.
     ``where`` are the signs to which the outcome is restricted, ``counterexample`` numbers that refute the claim.  For
     numbers at a state ``value`` is the derived one, to more digits than the claim has, ``digits`` how many of the
-    ``printed_digits`` hold.  ``remark`` says what else there is to say, of conditions in the words of ``remarks``.
+    ``printed_digits`` hold.  ``remark`` says what else there is to say.
     """
 
     claim: Claim
@@ -140,7 +140,6 @@ class ClaimResult:
     digits: int | None = None
     printed_digits: int | None = None
     remark: str = ""
-    remarks: tuple[Remark, ...] = ()
     where: str = ""
     counterexample: Counterexample | None = None
 
@@ -164,29 +163,33 @@ class ClaimResult:
         return self.outcome in (DIFFERS, SCALED, FAILS)
 
 
-def title(claim: Claim, system: System) -> str:
+#: The title of a claim about an entry: ``mass matrix`` and its indices.
+ENTRY = "[[title]] [[[entry]]]"
+
+
+def title(claim: Claim, system: System) -> Message:
     """What a claim is about: ``mass matrix [theta, delta]``."""
     kind = CLAIMS[claim.kind]
-    words = claim.kind
+    of = claim.of if claim.of_expression is None else text(claim.of_expression)
+    said = Message(f"{claim.kind} of [[of]]", of=of) if of else Message(claim.kind)
     if claim.kind == "coefficient":
-        of = claim.of if claim.of in SUMS else f"the equation of {claim.of}"
-        words = f"coefficient of {text(claim.at or ZERO)} in {of}"
-    elif claim.of_expression is not None:
-        words = f"{claim.kind} of {text(claim.of_expression)}"
-    elif claim.of:
-        words += f" of {claim.of}"
+        whole = Message(claim.of) if claim.of in SUMS else Message("the equation of [[name]]", name=claim.of)
+        said = Message("coefficient of [[at]] in [[whole]]", at=text(claim.at or ZERO), whole=whole)
     if kind.order:
-        words += f", order {claim.order}"
+        said = Message("[[title]], order [[order]]", title=said, order=claim.order)
     if claim.entry:
         counted = zip(claim.entry, index_names(kind, system), strict=True)
-        words += " [" + ", ".join(str(k) if kind.axes else names[k - 1] for k, names in counted) + "]"
+        entry = ", ".join(str(k) if kind.axes else names[k - 1] for k, names in counted)
+        said = Message(ENTRY, title=said, entry=entry)
     if claim.right is not None:
-        words += f" {text(claim.equals)} {claim.relation} {text(claim.right)}"
+        that = f"{text(claim.equals)} {claim.relation} {text(claim.right)}"
+        said = Message("[[title]] [[that]]", title=said, that=that)
     if claim.at_initial:
-        words += " at the initial state"
-    elif claim.state:
-        words += " at " + ", ".join(f"{name} = {text(value)}" for name, value in claim.state)
-    return words
+        return Message("[[title]] at the initial state", title=said)
+    if claim.state:
+        at = ", ".join(f"{name} = {text(value)}" for name, value in claim.state)
+        return Message("[[title]] at [[at]]", title=said, at=at)
+    return said
 
 
 def undecided(system: System, claim: Claim, reason: str) -> ClaimResult:

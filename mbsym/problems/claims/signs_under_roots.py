@@ -12,6 +12,7 @@ from flint import arb, ctx, fmpq
 
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.states import SEED
 from mbsym.model.admissibility import number_of
@@ -74,8 +75,8 @@ def _name(ring: Ring, index: int) -> str:
 def restriction(unknown: Sequence[str], refuted: bool) -> str:
     positive = ", ".join(f"{name} > 0" for name in unknown)
     if refuted:
-        return f"for {positive} (it does not for {unknown[0]} < 0)"
-    return f"for {positive} (it need not with other signs)"
+        return Message("for [[positive]] (it does not for [[other]] < 0)", positive=positive, other=unknown[0])
+    return Message("for [[positive]] (it need not with other signs)", positive=positive)
 
 
 def signs_under_roots(derived: Derived, *values: Polynomial) -> tuple[dict[int, int], list[int]]:

@@ -8,6 +8,7 @@ from fractions import Fraction
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.tower import Element, Tower
 from mbsym.expressions.angles import linear_form
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation
 from mbsym.problems.small_parameter.harmonics import Harmonics
 
@@ -51,7 +52,9 @@ class WaveFormulas:
             case Call("sin" | "cos" as function, argument):
                 return self._wave(function, argument)
             case Call(function, _):
-                raise NoClosedForm(f"{function} in the coefficient of an expansion: not compared")
+                raise NoClosedForm(
+                    Message("[[function]] in the coefficient of an expansion: not compared", function=function)
+                )
         raise NoClosedForm("an expression that is not compared with expansions")
 
     def constant(self, expression: Expression) -> Element:
@@ -68,13 +71,13 @@ class WaveFormulas:
         if name not in self._values:
             if name not in self.defined:
                 what = "it is no constant of the solution" if name != self.phase else "it stands outside of sin and cos"
-                raise NoClosedForm(f"{name} is not in the solution: {what}")
+                raise NoClosedForm(Message("[[name]] is not in the solution: [[what]]", name=name, what=what))
             self._values[name] = self(self.defined[name])
         return self._values[name]
 
     def _product(self, one: Harmonics, other: Harmonics) -> Harmonics:
         if max((*one.waves, 0)) + max((*other.waves, 0)) > MOST_HARMONIC:
-            raise NoClosedForm(f"a harmonic beyond {MOST_HARMONIC}")
+            raise NoClosedForm(Message("a harmonic beyond [[most]]", most=MOST_HARMONIC))
         return one * other
 
     def _power(self, base: Harmonics, exponent: Expression) -> Harmonics:
@@ -102,7 +105,7 @@ class WaveFormulas:
         if form is None or times or form.constant or k.denominator != 1 or (2 * form.turns).denominator != 1:
             raise NoClosedForm("an angle that is no multiple of the phase and of pi/2: not compared with expansions")
         if abs(k) > MOST_HARMONIC:
-            raise NoClosedForm(f"a harmonic beyond {MOST_HARMONIC}")
+            raise NoClosedForm(Message("a harmonic beyond [[most]]", most=MOST_HARMONIC))
         quarters = int(2 * form.turns) - (function == "sin")  # sin x = cos(x - pi/2)
         c, s = ((1, 0), (0, -1), (-1, 0), (0, 1))[quarters % 4]  # cos(k T + quarters pi/2) = c cos(k T) + s sin(k T)
         n = int(k)

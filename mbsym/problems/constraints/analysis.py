@@ -15,6 +15,7 @@ from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import Constrained, Failure, NoClosedForm
 from mbsym.algebra.point import Rationals
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.message import Message, joined
 from mbsym.formulas.formula import Formula, Matrix, column
 from mbsym.mechanics.constraints.dependence import Dependent, dependent_sets
 from mbsym.mechanics.constraints.embedding import Embedding, Pivots, basis_vector, choose, embedded
@@ -66,15 +67,18 @@ class Fault:
     hint: str = ""
 
 
+def _told(fault: Fault) -> Message:
+    message = Message(fault.message) if not isinstance(fault.message, Message) else fault.message
+    if not fault.rows:
+        return message
+    return Message("[[message]] ([[rows]])", message=message, rows=joined((row.label for row in fault.rows), ", "))
+
+
 class Unsound(Constrained):
     """Constraints that cannot be meant, with every fault that was found."""
 
     def __init__(self, faults: Sequence[Fault]) -> None:
-        told = "; ".join(
-            fault.message + (f" ({', '.join(row.label for row in fault.rows)})" if fault.rows else "")
-            for fault in faults
-        )
-        super().__init__(told, remedy=faults[0].hint)
+        super().__init__(joined(map(_told, faults), "; "), remedy=faults[0].hint)
         self.faults = tuple(faults)
 
 
@@ -182,7 +186,8 @@ class _Analysis:
         except Constrained as reason:
             if not self.system.dependent:
                 raise
-            message = f"the constraints cannot be solved for the velocities of {', '.join(self.system.dependent)}"
+            names = ", ".join(self.system.dependent)
+            message = Message("the constraints cannot be solved for the velocities of [[names]]", names=names)
             raise Unsound([Fault("dependent-set", message, hint=self._dependent_hint(independent))]) from reason
 
     def _dependent_hint(self, independent: list[int]) -> str:
@@ -191,7 +196,8 @@ class _Analysis:
             [_Points(self.ring, self.programs, list(self.manifold.states(1))).jacobians()[0][i] for i in independent],
             range(self.n - 1, -1, -1),
         )
-        return f"for example dependent: [{', '.join(self.system.coordinates[k] for k in sorted(block.columns))}]"
+        names = ", ".join(self.system.coordinates[k] for k in sorted(block.columns))
+        return Message("for example dependent: [[[names]]]", names=names)
 
     def result(self) -> Constraints:
         points, independent, pivots = self.pivots()
@@ -285,8 +291,14 @@ class _Analysis:
         """All coordinates, those preferred as dependent ones last, and those that the description wants dependent."""
         names, wanted = self.system.coordinates, self.system.dependent
         if len(wanted) > rank:
-            how = "depends" if rank == 1 else "depend"
-            message = f"{rank} of {len(names)} velocities {how} on the others, and 'dependent' names {len(wanted)}"
+            gaps = {"all": len(names), "count": len(wanted)}
+            message = Message("1 of [[all]] velocities depends on the others, and 'dependent' names [[count]]", **gaps)
+            if rank != 1:
+                message = Message(
+                    "[[rank]] of [[all]] velocities depend on the others, and 'dependent' names [[count]]",
+                    rank=rank,
+                    **gaps,
+                )
             raise Unsound([Fault("dependent-set", message, hint="leave 'dependent' out to have them found")])
         plain = [k for k, name in enumerate(names) if name not in self.ring.angles]
         columns = [k for k in range(len(names)) if k not in plain] + plain
@@ -395,7 +407,10 @@ def _idle(system: System, rows: Sequence[Row], ring: Ring) -> list[Fault]:
             faults.append(Fault("rigid-constraint", message, (name,), "tie bodies that move against each other"))
         elif fixed:
             listed = ", ".join(str(row.component) for row in fixed)
-            message = f"no coordinate changes component {listed} of this constraint, and it is not zero"
+            message = Message(
+                "no coordinate changes component [[components]] of this constraint, and it is not zero",
+                components=listed,
+            )
             faults.append(Fault("rigid-constraint", message, (name,)))
     return faults
 

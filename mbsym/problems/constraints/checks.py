@@ -20,6 +20,7 @@ from mbsym.algebra.base import Algebra
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.matrices import dot, null_vectors
 from mbsym.algebra.ring import Ring
+from mbsym.expressions.message import Message
 from mbsym.mechanics.constraints.oracle import OracleRow, oracle_rows
 from mbsym.mechanics.constraints.programs import ConstrainedPrograms
 from mbsym.mechanics.constraints.ranks import eliminated
@@ -54,30 +55,44 @@ def check_rows(system: System, ring: Ring, found: Constraints, programs: Constra
             row: OracleRow = truth[name.constraint][max(name.component - 1, 0)]
             position = found.position[i]
             if row.position is not None and position is not None:
-                compared.append((f"{name.label}", carry(position.polynomial), row.position))
-            compared.append((f"rate of {name.label}", carry(found.velocity[i].polynomial), row.velocity))
+                compared.append((name.label, carry(position.polynomial), row.position))
+            compared.append(
+                (Message("rate of [[label]]", label=name.label), carry(found.velocity[i].polynomial), row.velocity)
+            )
             speed = [state.values[acceleration_name(x)] for x in found.coordinates]
             bent = sum(
                 (carry(found.jacobian[i, k].polynomial) * speed[k] for k in range(n)),
                 carry(found.acceleration[i].polynomial),
             )
-            compared.append((f"second rate of {name.label}", bent, row.acceleration))
+            compared.append((Message("second rate of [[label]]", label=name.label), bent, row.acceleration))
             for k, other in enumerate(found.coordinates):
-                compared.append((f"{name.label} by {other}", carry(found.jacobian[i, k].polynomial), row.partials[k]))
+                compared.append(
+                    (
+                        Message("[[label]] by [[other]]", label=name.label, other=other),
+                        carry(found.jacobian[i, k].polynomial),
+                        row.partials[k],
+                    )
+                )
             for place, free in enumerate(found.free if found.solved is not None else ()):
                 assert found.solved is not None
                 basis = found.solved.transformation
                 work = sum((row.partials[k] * carry(basis[k, place].polynomial) for k in range(n)), zero)
-                compared.append((f"{name.label} along {free}", work, zero))
+                compared.append((Message("[[label]] along [[free]]", label=name.label, free=free), work, zero))
         nodes = [x for row in programs.jacobian for x in row] + [*programs.velocity, *programs.acceleration]
         values = programs.tree.program.evaluate(nodes, state.values, state.numbers)
         m = len(found.names)
         for i in range(m):
             for k in range(n):
                 closed = carry(found.jacobian[i, k].polynomial)
-                compared.append((f"program of {found.names[i].label}", values[i * n + k], closed))
+                compared.append(
+                    (Message("program of [[label]]", label=found.names[i].label), values[i * n + k], closed)
+                )
             compared.append(
-                (f"program of {found.names[i].label}", values[m * n + m + i], carry(found.acceleration[i].polynomial))
+                (
+                    Message("program of [[label]]", label=found.names[i].label),
+                    values[m * n + m + i],
+                    carry(found.acceleration[i].polynomial),
+                )
             )
         return compared
 
@@ -105,12 +120,12 @@ def check_embedded(
         rows = [truth[name.constraint][max(name.component - 1, 0)] for name in found.names]
         zero = state.numbers.zero
         compared: list[Pair] = [
-            (f"second rate of {name.label}", row.acceleration, zero)
+            (Message("second rate of [[label]]", label=name.label), row.acceleration, zero)
             for name, row in zip(found.names, rows, strict=True)
         ]
         for place, y in enumerate(null_space([row.partials for row in rows], len(names), state.numbers)):
             work = dot(y, residual)
-            compared.append((f"work along displacement {place + 1}", work, zero))
+            compared.append((Message("work along displacement [[number]]", number=place + 1), work, zero))
         return compared
 
     routes = ("embedded equations, closed form", "d'Alembert's principle in inertial axes")
@@ -211,5 +226,13 @@ def compared_on_manifold(
             if done == STATES:
                 break
     if done < STATES:
-        return Check(name, *routes, UNDECIDED, f"only {done} of {STATES} states on the constraints were found", done)
-    return Check(name, *routes, EXACT if exact else NUMERICAL, f"{done} states on the constraints", done)
+        return Check(
+            name,
+            *routes,
+            UNDECIDED,
+            Message("only [[done]] of [[wanted]] states on the constraints were found", done=done, wanted=STATES),
+            done,
+        )
+    return Check(
+        name, *routes, EXACT if exact else NUMERICAL, Message("[[done]] states on the constraints", done=done), done
+    )

@@ -19,6 +19,7 @@ from collections.abc import Mapping, Sequence
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.matrices import ScalarMatrix, solved
 from mbsym.algebra.ring import Polynomial
+from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Matrix, column
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import unperturbed_with, unsteady
@@ -51,15 +52,20 @@ def first_order(form: SpeedForm, equations: SpeedEquations, reduced: Reduced, at
     forcing = [x.polynomial for x in embedded.forcing]
     rates = {x.name: ring.reduce(ring.substitute(form.rates[x.name], images)) for x in form.positions}
     plain, motion = _motion(form, reduced, at)
-    for own in (True, False):
-        positions = _felt(form, forcing, rates, own)
+    for by_themselves in (True, False):
+        positions = _felt(form, forcing, rates, by_themselves)
         variables = [*positions, *speeds]
         values = {x.index: ring.substitute(_inner(form, x), motion) for x in variables}
         varying = {name for value in values.values() for name in unsteady(plain, value)}
         if not varying:
             break
     if varying:
-        raise NoClosedForm(f"the motion is not steady in speeds and positions: they vary with {', '.join(varying)}")
+        raise NoClosedForm(
+            Message(
+                "the motion is not steady in speeds and positions: they vary with [[names]]",
+                names=", ".join(varying),
+            )
+        )
     on = dict(motion) | values
     formulas = [*(rates[x.name] for x in positions), *forcing]
     slopes = [[ring.substitute(ring.derivative(y, x.name), on) for x in variables] for y in formulas]
@@ -68,8 +74,8 @@ def first_order(form: SpeedForm, equations: SpeedEquations, reduced: Reduced, at
     lower = solved(ring, mass, slopes[m:])
     if any(unsteady(plain, x) for row in (*slopes[:m], *lower) for x in row):
         raise NoClosedForm("the coefficients of the first approximation vary with time")
-    own = {x.name for x in positions}
-    relations = sum(all({a, b} <= own for a, b in pairs) for pairs in equations.relations)
+    felt = {x.name for x in positions}
+    relations = sum(all({a, b} <= felt for a, b in pairs) for pairs in equations.relations)
     return FirstOrder(
         names=tuple(x.name for x in variables),
         values=column(ring, list(values.values())),
@@ -115,8 +121,8 @@ def check(form: SpeedForm, found: FirstOrder, reduced: Reduced, at: Equilibrium)
     below = solved(ring, a, [[*(-row[place[i]] for i in range(n)), *(-x for x in b[k])] for k, row in enumerate(c)])
     change = ScalarMatrix(ring, rows)
     left, right = ScalarMatrix(ring, found.A.polynomials) @ change, change @ ScalarMatrix(ring, [*nu, *below])
-    differences = {
-        f"the row of {name}, column {j}": ring.reduce(x - y - along(z))
+    differences: dict[str, Polynomial] = {
+        Message("the row of [[name]], column [[j]]", name=name, j=j): ring.reduce(x - y - along(z))
         for name, one, other, moved in zip(found.names, left, right, rows, strict=True)
         for j, (x, y, z) in enumerate(zip(one, other, moved, strict=True), start=1)
     }
@@ -125,12 +131,12 @@ def check(form: SpeedForm, found: FirstOrder, reduced: Reduced, at: Equilibrium)
 
 
 def _felt(
-    form: SpeedForm, formulas: Sequence[Polynomial], rates: Mapping[str, Polynomial], own: bool
+    form: SpeedForm, formulas: Sequence[Polynomial], rates: Mapping[str, Polynomial], by_themselves: bool
 ) -> list[Variable]:
     """The positions on which formulas depend, and on which the rates of these do.
 
-    With ``own`` the coordinates whose rates depend on themselves, too, directly or through others (the angle of a light
-    trailer): they have roots of their own although no equation of the speeds needs them.
+    With ``by_themselves`` the coordinates whose rates depend on themselves, too, directly or through others (the angle
+    of a light trailer): they have roots of their own although no equation of the speeds needs them.
     """
     ring, names = form.ring, list(rates)
     needs = {name: set(ring.dependencies(rates[name], names)) for name in names}
@@ -144,7 +150,7 @@ def _felt(
         return found
 
     start = {name for x in formulas for name in ring.dependencies(x, names)}
-    if own:
+    if by_themselves:
         start |= {name for name in form.coordinates if name in needs and name in reached(needs[name])}
     found = reached(start)
     return [x for x in form.positions if x.name in found]

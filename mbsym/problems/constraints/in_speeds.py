@@ -22,6 +22,7 @@ from flint import ctx
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Constrained, NoClosedForm
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula, Matrix, column
 from mbsym.mechanics.constraints.embedding import Embedding, Pivots, basis_vector, choose, embedded, projected
 from mbsym.mechanics.constraints.programs import ConstrainedPrograms
@@ -103,8 +104,12 @@ def _pivots(form: SpeedForm, rows: Sequence[SpeedRow], tied: Constraints, progra
     """Which speeds depend on the others; kept velocities of plain coordinates rather than declared speeds."""
     required, rank = wanted_speeds(form), tied.velocity_rank
     if len(required) > rank:
-        how = "depends" if rank == 1 else "depend"
-        message = f"{rank} of {len(form.speeds)} speeds {how} on the others, and 'dependent' names {len(required)}"
+        gaps = {"all": len(form.speeds), "count": len(required)}
+        message = Message("1 of [[all]] speeds depends on the others, and 'dependent' names [[count]]", **gaps)
+        if rank != 1:
+            message = Message(
+                "[[rank]] of [[all]] speeds depend on the others, and 'dependent' names [[count]]", rank=rank, **gaps
+            )
         raise Unsound([Fault("dependent-set", message, hint="leave 'dependent' out to have them found")])
     declared = {speed.name for speed in form.system.speeds}
     names = [u.name for u in form.speeds]
@@ -120,9 +125,10 @@ def _pivots(form: SpeedForm, rows: Sequence[SpeedRow], tied: Constraints, progra
             if not required or not jacobians:
                 raise
             listed = ", ".join(names[k] for k in required)
-            message = f"the constraints cannot be solved for the speeds {listed}"
+            message = Message("the constraints cannot be solved for the speeds [[names]]", names=listed)
             block = eliminated([jacobians[0][i] for i in tied.independent], columns[::-1])
-            hint = f"for example dependent: [{', '.join(names[k].removesuffix('_dot') for k in sorted(block.columns))}]"
+            known = ", ".join(names[k].removesuffix("_dot") for k in sorted(block.columns))
+            hint = Message("for example dependent: [[[names]]]", names=known)
             raise Unsound([Fault("dependent-set", message, hint=hint)]) from reason
 
 

@@ -28,6 +28,7 @@ from flint import ctx, fmpq_mat
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.constraints.embedding import basis_vector
 from mbsym.mechanics.constraints.programs import ConstrainedPrograms
@@ -94,7 +95,7 @@ class _Known:
             if self._allowed(xi) and self._is(self.momentum[i], xi) and varies(self.scene, self.momentum[i]):
                 done.append(name)
                 yield Integral(
-                    f"momentum of {name}",
+                    Message("momentum of [[name]]", name=name),
                     "cyclic momentum",
                     name,
                     Formula(self.ring, self.momentum[i]),
@@ -108,7 +109,7 @@ class _Known:
                 continue
             along = self.ring.dot(self.momentum, xi)
             if self._allowed(xi) and self._is(along, xi) and varies(self.scene, along):
-                title = f"momentum along the displacement of {name} that the constraints allow"
+                title = Message("momentum along the displacement of [[name]] that the constraints allow", name=name)
                 yield Integral(title, "cyclic momentum", name, Formula(self.ring, along), Certainty.PROVED)
 
     def _moves(self, x: Polynomial) -> bool:
@@ -134,7 +135,11 @@ class _Whole(AlongMotion):
                     others = [self.restricted(x.formula.polynomial) for x in (*known, *found) if x.kind != ENERGY]
                     if not _is_new(self.ring, self.restricted(formula), others) or not self._kept(formula, states):
                         continue
-                    name = f"{kind} about axis {axis}" if kind == "angular momentum" else f"{kind} along axis {axis}"
+                    name = (
+                        Message("angular momentum about axis [[axis]]", axis=axis)
+                        if kind == "angular momentum"
+                        else Message("linear momentum along axis [[axis]]", axis=axis)
+                    )
                     proved = self._is_proved(formula)
                     if not proved and self.ring.kinked:
                         continue  # a force that comes late vanishes at every state before

@@ -12,6 +12,7 @@ from typing import Any
 
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.matrices import dot
+from mbsym.expressions.message import Message
 from mbsym.mechanics.constraints.oracle import oracle_rows
 from mbsym.mechanics.constraints.programs import ConstrainedPrograms
 from mbsym.mechanics.constraints.states import OnManifold
@@ -41,19 +42,23 @@ def check_rows(form: SpeedForm, found: Constraints, programs: ConstrainedProgram
             row, position = truth[name.constraint][max(name.component - 1, 0)], found.position[i]
             if row.position is not None and position is not None:
                 compared.append((name.label, carry(position.polynomial), row.position))
-            compared.append((f"rate of {name.label}", carry(found.velocity[i].polynomial), row.velocity))
+            compared.append(
+                (Message("rate of [[label]]", label=name.label), carry(found.velocity[i].polynomial), row.velocity)
+            )
             own = [carry(x) for x in found.jacobian.polynomials[i]]
             bent = sum((x * state.values[rate] for x, rate in zip(own, rates, strict=True)), zero)
             second = bent + carry(found.acceleration[i].polynomial)
-            compared.append((f"second rate of {name.label}", second, row.acceleration))
+            compared.append((Message("second rate of [[label]]", label=name.label), second, row.acceleration))
             for k, other in enumerate(system.coordinates):
                 slope = sum((x * column[k] for x, column in zip(own, columns, strict=True)), zero)
-                compared.append((f"{name.label} by {other}", slope, row.partials[k]))
+                compared.append(
+                    (Message("[[label]] by [[other]]", label=name.label, other=other), slope, row.partials[k])
+                )
             for place, free in enumerate(found.free if found.solved is not None else ()):
                 assert found.solved is not None
                 basis = [carry(x[place]) for x in found.solved.transformation.polynomials]
                 work = dot(own, basis)
-                compared.append((f"{name.label} along {free}", work, zero))
+                compared.append((Message("[[label]] along [[free]]", label=name.label, free=free), work, zero))
         return compared
 
     routes = ("speeds of the bodies", "places in inertial axes")
@@ -80,7 +85,7 @@ def check_embedded(
         compared: list[Pair] = []
         for name, row, force in zip(found.free, embedded.mass_matrix.polynomials, embedded.forcing, strict=True):
             left = sum((carry(x) * rate for x, rate in zip(row, own, strict=True)), zero)
-            compared.append((f"equation of {name}", left, carry(force.polynomial)))
+            compared.append((Message("equation of [[name]]", name=name), left, carry(force.polynomial)))
         assert found.solved is not None
         for u, row, shift in zip(
             form.speeds, found.solved.transformation.polynomials, found.solved.acceleration_shift, strict=True
@@ -92,7 +97,7 @@ def check_embedded(
         residual = [oracle.residuals[name] for name in system.coordinates]
         for place, y in enumerate(null_space(rows, len(system.coordinates), state.numbers)):
             work = dot(y, residual)
-            compared.append((f"work along displacement {place + 1}", work, zero))
+            compared.append((Message("work along displacement [[number]]", number=place + 1), work, zero))
         return compared
 
     routes = ("embedded equations in speeds", "d'Alembert's principle in inertial axes, with multipliers")

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from mbsym.algebra.evaluate import Carrier
+from mbsym.expressions.message import Message
 from mbsym.mechanics.oracle import Oracle
 from mbsym.mechanics.speed_programs import speed_program
 from mbsym.mechanics.speed_states import slopes
@@ -33,7 +34,7 @@ def check_equations(truth: Oracles, found: SpeedEquations) -> Check:
         mass = [[carry(entry.polynomial) for entry in row] for row in found.mass_matrix]
         errors = _errors(oracle, found.speed_rates, mass, [carry(x.polynomial) for x in found.forcing])
         balance = [carry(a.polynomial) - carry(b.polynomial) for a, b in zip(found.needed, found.supplied, strict=True)]
-        names = [f"equation {u} as it stands" for u in found.speeds]
+        names = [Message("equation [[name]] as it stands", name=u) for u in found.speeds]
         rates = [carry(x.polynomial) for x in found.rates]
         compared: list[Pair] = list(zip(names, balance, errors, strict=True))
         return compared + _against(oracle, found.speeds, found.positions, errors, rates)
@@ -85,7 +86,7 @@ def _against(
     compared: list[Pair] = []
     for i, name in enumerate(system.coordinates):
         total = sum((e * column[i] for e, column in zip(errors, columns, strict=True)), zero)
-        compared.append((f"equation {name}", total, oracle.residuals[name]))
+        compared.append((Message("equation [[name]]", name=name), total, oracle.residuals[name]))
     for position, rate in zip(positions, rates, strict=True):
         compared.append((f"{position}'", rate, state.values[velocity_name(position)]))
     return compared

@@ -30,6 +30,7 @@ from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.matrices import determinant
 from mbsym.algebra.ring import Polynomial
+from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.speeds import SpeedForm
@@ -123,11 +124,23 @@ def candidates(form: SpeedForm, scene: Scene, energy: Energy, equations: SpeedEq
     yield _integral(form, ENERGY, ENERGY, "time", power - kinetic - force), homogeneous
     for name, slopes in form.slopes.items():
         momentum = sum((ring.times(p, slope) for p, slope in zip(momenta, slopes, strict=True)), ring.zero)
-        yield _integral(form, f"momentum of {name}", "cyclic momentum", name, momentum), slopes
+        yield _integral(form, Message("momentum of [[name]]", name=name), "cyclic momentum", name, momentum), slopes
     with suppress(Failure):
         for kind, axis, formula in whole_momenta(scene):
-            word = "about" if kind == "angular momentum" else "along"
-            yield _integral(form, f"{kind} {word} axis {axis}", kind, str(axis), formula), ()
+            if kind == "angular momentum":
+                title = Message("angular momentum about axis [[axis]]", axis=axis)
+            else:
+                title = Message("linear momentum along axis [[axis]]", axis=axis)
+            yield (
+                _integral(
+                    form,
+                    title,
+                    kind,
+                    str(axis),
+                    formula,
+                ),
+                (),
+            )
     for u, momentum in zip(form.speeds, momenta, strict=True):
         if u.name in form.system.variables:
             yield _integral(form, f"dT/d{u.name}", SPEED_MOMENTUM, u.name, momentum), ()
@@ -138,9 +151,13 @@ def candidates(form: SpeedForm, scene: Scene, energy: Energy, equations: SpeedEq
         ]
         product = sum((ring.times(a, b) for a, b in pairs), ring.zero)
         if name in equations.quaternions:
-            yield _integral(form, f"norm of {name}", NORM, name, product), ()
+            yield _integral(form, Message("norm of [[name]]", name=name), NORM, name, product), ()
             continue
-        title = f"length of {name}" if other == name else f"product of {name} and {other}"
+        title = (
+            Message("length of [[name]]", name=name)
+            if other == name
+            else Message("product of [[name]] and [[other]]", name=name, other=other)
+        )
         yield _integral(form, title, GEOMETRIC, name if other == name else f"{name} {other}", product), ()
 
 

@@ -11,6 +11,7 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs
+from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
 
 #: Families of more integrals than this are not looked at.
@@ -89,10 +90,20 @@ def arena(
     Raises NoClosedForm where there are too many variables or integrals.
     """
     if len(integrals) > MOST_INTEGRALS:
-        raise NoClosedForm(f"{len(integrals)} integrals: families of at most {MOST_INTEGRALS} are looked at")
+        raise NoClosedForm(
+            Message(
+                "[[count]] integrals: families of at most [[most]] are looked at",
+                count=len(integrals),
+                most=MOST_INTEGRALS,
+            )
+        )
     if len(field.variables) > MOST_VARIABLES:
         raise NoClosedForm(
-            f"{len(field.variables)} variables: families of integrals of at most {MOST_VARIABLES} are looked at"
+            Message(
+                "[[count]] variables: families of integrals of at most [[most]] are looked at",
+                count=len(field.variables),
+                most=MOST_VARIABLES,
+            )
         )
     variables = identifiers(field.variables, field.parameters)
     taken = {*field.parameters, *variables}

@@ -13,6 +13,7 @@ from flint import nmod_mat, nmod_poly
 from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.splitting import Branch, Solved
+from mbsym.expressions.message import Message
 from mbsym.problems.invariant_sets.arena import Arena
 
 #: A prime over which generic points are looked for, and how often.
@@ -45,7 +46,7 @@ class Rule:
         while (power := p.degrees()[self.generator]) >= self.degree:
             p = self.leading * p - self.top(p, power) * g ** (power - self.degree) * self.equation
             if len(p) > MOST_TERMS:
-                raise NoClosedForm(f"a polynomial of {len(p)} terms", limit=Limit.TERMS)
+                raise NoClosedForm(Message("a polynomial of [[count]] terms", count=len(p)), limit=Limit.TERMS)
         return p
 
 

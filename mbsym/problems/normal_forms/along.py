@@ -23,6 +23,7 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.matrices import determinant_by_traces, faddeev, hurwitz
 from mbsym.algebra.rationals import fraction
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
+from mbsym.expressions.message import Message
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.kinematics import Scene
 from mbsym.problems.equilibrium import Equilibrium
@@ -165,21 +166,28 @@ def _of_two_frequencies(
     if count != 2:
         besides = " without its cyclic coordinates" if found.cyclic else ""
         raise NotAlong(
-            "of systems whose energy is conserved exceptional values are listed where there are two frequencies; this "
-            f"one has {count}{besides}"
+            Message(
+                "of systems whose energy is conserved exceptional values are listed where there are two "
+                "frequencies; this one has [[count]][[besides]]",
+                count=count,
+                besides=besides,
+            )
         )
     try:
         _, tower, named = twist(found, values)
     except SingularMass:
         raise
     except ZeroDivisionError:
-        reason = f"for all values of {name} a frequency is zero, two are equal, or one is two or three times another"
+        reason = Message(
+            "for all values of [[name]] a frequency is zero, two are equal, or one is two or three times another",
+            name=name,
+        )
         raise NotAlong(reason) from None
     if name not in tower.parameters:
-        raise NotAlong(f"the expansion does not depend on {name}")
+        raise NotAlong(Message("the expansion does not depend on [[name]]", name=name))
     for key, x in named.items():
         if x.is_zero():
-            raise NotAlong(f"for all values of {name} this vanishes: {key}")
+            raise NotAlong(Message("for all values of [[name]] this vanishes: [[key]]", name=name, key=key))
     return tower, named
 
 
@@ -190,10 +198,10 @@ def _of_roots(found: Expansion, name: str, values: Mapping[str, Fraction]) -> tu
     coefficients = faddeev(matrix_of(field), tower.zero, tower.one)[1][::-1]
     m = len(coefficients) - 1
     if coefficients[m].is_zero():
-        raise NotAlong(f"for all values of {name} a root is zero")
+        raise NotAlong(Message("for all values of [[name]] a root is zero", name=name))
     last = determinant_by_traces(hurwitz(coefficients, tower.zero, m - 1), tower.zero, tower.one)
     if last.is_zero():
-        raise NotAlong(f"for all values of {name} there are roots whose sum is zero")
+        raise NotAlong(Message("for all values of [[name]] there are roots whose sum is zero", name=name))
     return tower, {"root": coefficients[m], "pair": last}
 
 
@@ -229,7 +237,13 @@ def _refuse_singular(
     for root, factor in _roots([x for x in polynomials if x.degree() > 0], interval):
         if factor not in known:
             at = root.str(8, radius=False)
-            raise NotAlong(f"the expansion is singular at {name} = {at}: choose an interval without this value")
+            raise NotAlong(
+                Message(
+                    "the expansion is singular at [[name]] = [[at]]: choose an interval without this value",
+                    name=name,
+                    at=at,
+                )
+            )
 
 
 def _roots(polynomials: Sequence[fmpq_poly], interval: tuple[Fraction, Fraction]) -> list[tuple[arb, fmpq_poly]]:

@@ -10,7 +10,7 @@ from typing import Any
 from flint import arb, fmpq, fmpq_poly
 
 from mbsym.algebra.evaluate import Carrier
-from mbsym.algebra.failures import Failure, NoClosedForm, NoValue
+from mbsym.algebra.failures import Failure, NoClosedForm, NoValue, message_of
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.matrices import dot, faddeev
 from mbsym.algebra.ring import Polynomial, Ring
@@ -186,10 +186,10 @@ def known(compute: Any) -> tuple[Any, str]:
         return None, "a divisor vanishes for all parameters"
     except NoValue as reason:
         if reason.args[0] != "pi":
-            return None, str(reason)
+            return None, message_of(reason)
         return None, "pi in the coefficients: only square roots are exact here"
     except (Failure, NoClosedForm) as reason:
-        return None, str(reason)
+        return None, message_of(reason)
 
 
 def primitive(tower: Tower, x: Element) -> Element:

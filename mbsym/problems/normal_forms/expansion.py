@@ -22,6 +22,7 @@ from mbsym.algebra.jet import Jet, Terms
 from mbsym.algebra.matrices import inverted
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.truncated import Space, Truncated
+from mbsym.expressions.message import Message
 from mbsym.mechanics.energy import kinetic_energy
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import force_function
@@ -80,7 +81,9 @@ def expansion(
                 continue
             varying = unsteady(scene, constant)
             if varying:
-                raise NotExpanded(f"terms of order {len(key)} vary with {', '.join(varying)}")
+                raise NotExpanded(
+                    Message("terms of order [[count]] vary with [[names]]", count=len(key), names=", ".join(varying))
+                )
             found[key] = constant
         return found
 

@@ -19,6 +19,7 @@ from flint import nmod, nmod_mat, nmod_poly
 
 from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.expressions.message import Message
 from mbsym.problems.polynomial_integrals.modular import SMALLER, ModularField, Terms, coupled
 
 #: Values of t that are put in, for one part of the matrix, times its rows and columns.
@@ -71,7 +72,7 @@ def dropped(line: Line, build: Build, extra: int = 0) -> nmod_poly:
     parts = [(part, _Part(somewhere[0], images, part, line.prime, source)) for part in coupled(images)]
     parts = [(part, one) for part, one in parts if one.rank]
     if sum((one.rank * entry + 1) * len(part) * one.height for part, one in parts) > MOST_WORK:
-        told = f"the minors of {count} monomials along a line take too long"
+        told = Message("the minors of [[count]] monomials along a line take too long", count=count)
         raise NoClosedForm(told, limit=Limit.DEGREE, remedy=SMALLER)
     most = max((one.rank * entry for _, one in parts), default=0)
     values: list[list[tuple[int, int]]] = [[] for _ in parts]

@@ -25,6 +25,7 @@ from flint import fmpq, fmpq_mpoly_ctx, nmod_mat
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField, in_lowest_terms
+from mbsym.expressions.message import Message
 from mbsym.problems.polynomial_integrals.drops import Line, dropped, rational, roots
 from mbsym.problems.polynomial_integrals.excess import Block, Excess, larger
 from mbsym.problems.polynomial_integrals.lifting import primitive
@@ -123,7 +124,11 @@ def cases(usual: PolynomialIntegrals, positive: Sequence[str], budget: float = i
         raise NoClosedForm("special parameters are looked for where equations are quasi-homogeneous; these are not")
     listed = list(families(field, positive))
     if len(listed) > MOST_FAMILIES:
-        told = f"{len(field.parameters)} parameters have more than {MOST_FAMILIES} families"
+        told = Message(
+            "[[count]] parameters have more than [[most]] families",
+            count=len(field.parameters),
+            most=MOST_FAMILIES,
+        )
         raise NoClosedForm(told, limit=Limit.WORK, remedy="put in numbers with --set, zeros above all")
     return _Search(usual, positive).found(listed, budget)
 

@@ -13,6 +13,7 @@ from typing import Any
 from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.algebra.matrices import Operators, PrimitiveRows
 from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.expressions.message import Message
 from mbsym.problems.polynomial_integrals.modular import SMALLER, Exponents
 
 #: Monomials of an integral that is lifted, and terms of one entry while that is done.
@@ -35,7 +36,11 @@ def lifted(
     None where there is none (or more than one that has ``leading``).  Raises NoClosedForm where it outgrows its bounds.
     """
     if len(support) > MOST_SUPPORT:
-        told = f"an integral has {len(support)} monomials, more than {MOST_SUPPORT}"
+        told = Message(
+            "an integral has [[count]] monomials, more than [[most]]",
+            count=len(support),
+            most=MOST_SUPPORT,
+        )
         raise NoClosedForm(told, limit=Limit.TERMS, remedy=SMALLER)
     order = [one for one in support if one != leading]
     columns = [*order, leading]

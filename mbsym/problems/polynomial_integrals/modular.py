@@ -18,6 +18,7 @@ from flint import nmod_mat
 
 from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField, Term
+from mbsym.expressions.message import Message
 
 Exponents = tuple[int, ...]
 #: A polynomial in the variables with coefficients modulo a prime.
@@ -196,7 +197,11 @@ def kernel(there: ModularField, columns: Sequence[Exponents], modulo: bool) -> l
         images.append(there.reduced(image) if modulo else image)
         terms += len(images[-1])
         if terms > MOST_TERMS:
-            told = f"the derivatives of {len(columns)} monomials have more than {MOST_TERMS} terms"
+            told = Message(
+                "the derivatives of [[count]] monomials have more than [[most]] terms",
+                count=len(columns),
+                most=MOST_TERMS,
+            )
             raise NoClosedForm(told, limit=Limit.TERMS, remedy=SMALLER)
     return [{columns[k]: c for k, c in vector.items()} for vector in kernel_of(images, there.prime)]
 
@@ -211,7 +216,11 @@ def kernel_of(images: Sequence[Terms], prime: int) -> list[dict[int, int]]:
     for part in coupled([images[k] for k in left]):
         part = [left[k] for k in part]
         if len(part) > MOST_COUPLED:
-            told = f"{len(part)} monomials are coupled with each other, more than {MOST_COUPLED}"
+            told = Message(
+                "[[count]] monomials are coupled with each other, more than [[most]]",
+                count=len(part),
+                most=MOST_COUPLED,
+            )
             raise NoClosedForm(told, limit=Limit.DEGREE, remedy=SMALLER)
         matrix = matrix_of([images[k] for k in part], prime)
         for vector in null_space(matrix):

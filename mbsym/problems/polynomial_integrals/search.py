@@ -10,6 +10,7 @@ from typing import Any
 
 from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.expressions.message import Message
 from mbsym.problems.polynomial_integrals.frames import beyond
 from mbsym.problems.polynomial_integrals.gradings import Grading, homogeneous_parts
 from mbsym.problems.polynomial_integrals.independence import Independence
@@ -141,7 +142,7 @@ class Search:
         apart = self.grading.homogeneous and not self.modulo
         listed = [(name, f, apart) for name, f in known]
         if self.grading.free:  # norms are integrals by themselves; their constant is no part of them
-            listed = [(f"length of {_stem(field, r)}", r, False) for r in field.relations] + listed
+            listed = [(Message("length of [[name]]", name=_stem(field, r)), r, False) for r in field.relations] + listed
         if self.grading.frames:
             listed = [(_constant_by_itself(field, r), r, False) for r in field.relations] + listed
         for name, f, in_parts in listed:
@@ -176,7 +177,11 @@ def products(
                 further.append((at, product))
         reached = further
         if len(reached) > MOST_PRODUCTS:
-            told = f"the integrals have more than {MOST_PRODUCTS} products of weight {weight}"
+            told = Message(
+                "the integrals have more than [[most]] products of weight [[weight]]",
+                most=MOST_PRODUCTS,
+                weight=weight,
+            )
             raise NoClosedForm(told, limit=Limit.DEGREE, remedy=SMALLER)
     return [terms for at, terms in reached if at == weight or not exactly]
 
@@ -186,7 +191,11 @@ def _constant_by_itself(field: PolynomialField, relation: Any) -> str:
     degrees = relation.degrees()
     names = [name.rstrip("0123456789") for name, k in zip(field.variables, field.places, strict=True) if degrees[k]]
     first, *rest = dict.fromkeys(names)
-    return f"product of {first} and {rest[0]}" if rest else f"length of {first}"
+    return (
+        Message("product of [[name]] and [[other]]", name=first, other=rest[0])
+        if rest
+        else Message("length of [[name]]", name=first)
+    )
 
 
 def _stem(field: PolynomialField, relation: Any) -> str:
@@ -246,5 +255,11 @@ def refuse_too_many(field: PolynomialField, grading: Grading, degree: int) -> No
     """Raises NoClosedForm where the degree needs more monomials than are looked at."""
     needed = sum(count(grading.weights, one) for one in range(degree + 1))
     if needed > MOST_MONOMIALS:
-        told = f"weighted degree {degree} has {needed} monomials in {len(field.variables)} variables"
-        raise NoClosedForm(f"{told}, more than {MOST_MONOMIALS}", limit=Limit.DEGREE, remedy=SMALLER)
+        told = Message(
+            "weighted degree [[degree]] has [[needed]] monomials in [[count]] variables, more than [[most]]",
+            degree=degree,
+            needed=needed,
+            count=len(field.variables),
+            most=MOST_MONOMIALS,
+        )
+        raise NoClosedForm(told, limit=Limit.DEGREE, remedy=SMALLER)

@@ -12,6 +12,7 @@ from mbsym.algebra.polynomial_systems import (
     Limits,
 )
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.message import Message
 from mbsym.mechanics.charts import Chart, moments
 
 
@@ -60,7 +61,10 @@ class Conditions:
             yield x
             return
         self.remarks.append(
-            f"the equations vary with {', '.join(present)}: a relative equilibrium has to satisfy them at all times"
+            Message(
+                "the equations vary with [[present]]: a relative equilibrium has to satisfy them at all times",
+                present=", ".join(present),
+            )
         )
         indices = [
             k
@@ -77,12 +81,20 @@ class Conditions:
             parts.setdefault(tuple(monomial[k] for k in indices), {})[tuple(rest_of)] = coefficient
         if len(present) > 1:
             self._incomplete(
-                f"the equations vary with {', '.join(present)}; only solutions for all values of each are listed"
+                Message(
+                    "the equations vary with [[present]]; only solutions for all values of each are listed",
+                    present=", ".join(present),
+                )
             )
         for terms in parts.values():
             part = ring.context.from_dict(terms)
             if ring.dependencies(part, moving):
-                raise NoClosedForm(f"the equations vary with {', '.join(present)} in a way that cannot be separated")
+                raise NoClosedForm(
+                    Message(
+                        "the equations vary with [[names]] in a way that cannot be separated",
+                        names=", ".join(present),
+                    )
+                )
             yield part
 
     def _obstacle(self, used: set[int]) -> str:
@@ -97,16 +109,28 @@ class Conditions:
             seen.add(k)
             g = ring.generators[k]
             if g.kind == "function" or (g.kind in ("sine", "cosine") and g.argument is not None):
-                what = "a number" if ring.constant_value(g.argument) is not None else "something that is no angle"
-                return f"{'sine and cosine' if g.kind != 'function' else g.name} of {what}"
+                what = (
+                    Message("a number")
+                    if ring.constant_value(g.argument) is not None
+                    else Message("something that is no angle")
+                )
+                return Message(
+                    "[[functions]] of [[what]]",
+                    functions=Message("sine and cosine") if g.kind != "function" else g.name,
+                    what=what,
+                )
             if g.argument is not None:
                 pending += occurring([g.argument])
             elif g.kind in ("sine", "cosine", "coordinate"):
                 kinds.setdefault(g.name, set()).add("plain" if g.kind == "coordinate" else "angle")
             else:
-                return f"{g.name} is transcendental"
+                return Message("[[name]] is transcendental", name=g.name)
         mixed = [name for name, both in kinds.items() if len(both) > 1]
-        return f"{', '.join(sorted(mixed))} occurs both as an angle and outside sine and cosine" if mixed else ""
+        return (
+            Message("[[names]] occurs both as an angle and outside sine and cosine", names=", ".join(sorted(mixed)))
+            if mixed
+            else ""
+        )
 
     def _incomplete(self, remark: str) -> None:
         self.complete = False

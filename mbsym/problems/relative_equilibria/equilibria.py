@@ -31,6 +31,7 @@ from dataclasses import replace
 from flint import fmpq_poly
 
 from mbsym.algebra.polynomial_systems import AlgebraicPoint, Family, Limits, solve
+from mbsym.expressions.message import Message, joined
 from mbsym.mechanics.charts import charts, with_cyclic_last_angles
 from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.mechanics.rest import Rest, Value, at_numbers, rest
@@ -72,7 +73,7 @@ def equilibria(
     Raises KeyError for a missing value, NoClosedForm where the equations outgrow their budget, SingularPoint,
     Constrained.
     """
-    refuse_constraints(system, "relative equilibria")
+    refuse_constraints(system, Message("relative equilibria"))
     first = rest(at_numbers(system, values))
     found = _listed(first, first.system, within, limits or Limits())
     if found.complete or not found.families:
@@ -83,7 +84,12 @@ def equilibria(
     counted = _listed(symmetric, first.system, within, limits or Limits())
     if not counted.complete:
         return found
-    turns = (f"counted up to turns of {body} about its axis {axis}, on which nothing depends" for body, axis in changed)
+    turns = (
+        Message(
+            "counted up to turns of [[body]] about its axis [[axis]], on which nothing depends", body=body, axis=axis
+        )
+        for body, axis in changed
+    )
     return replace(counted, remarks=(*counted.remarks, *turns))
 
 
@@ -184,7 +190,7 @@ class _ChartSearch(SearchInBoxes):
             self._add_free_point()
             return
         if self.reason:
-            self.remarks.append(f"not solved exactly: {self.reason}")
+            self.remarks.append(Message("not solved exactly: [[why]]", why=self.reason))
             self._search_numerically(bisect=True)
             return
         self._solve_exactly()
@@ -204,9 +210,13 @@ class _ChartSearch(SearchInBoxes):
         if result.unfinished:
             if self._solve_in_direction_cosines():
                 return
-            reasons = "; ".join(result.unfinished)
+            reasons = joined(result.unfinished, "; ")
             self._incomplete(
-                f"the exact solution is not finished ({reasons}); the rest was searched for from {STARTS} points"
+                Message(
+                    "the exact solution is not finished ([[reasons]]); the rest was searched for from [[count]] points",
+                    reasons=reasons,
+                    count=STARTS,
+                )
             )
             self._search_numerically(bisect=False)
 
@@ -221,7 +231,9 @@ class _ChartSearch(SearchInBoxes):
         for place in found.places:
             if not any(self._same(place, other) for other in known):
                 self._add(place, EXACT)
-        self.remarks.append(f"solved exactly in the direction cosines of {', '.join(found.joints)}")
+        self.remarks.append(
+            Message("solved exactly in the direction cosines of [[joints]]", joints=", ".join(found.joints))
+        )
         return True
 
     def _place(self, table: Unknowns, point: AlgebraicPoint) -> Place:

@@ -11,11 +11,12 @@ from typing import Any
 
 from flint import ctx, fmpq, fmpq_poly
 
-from mbsym.algebra.failures import Failure
+from mbsym.algebra.failures import Failure, message_of
 from mbsym.algebra.polynomial_systems import (
     Limits,
 )
 from mbsym.algebra.ring import Polynomial
+from mbsym.expressions.message import Message, joined
 from mbsym.mechanics.charts import Chart
 from mbsym.mechanics.charts import features as direction_features
 from mbsym.mechanics.reflections import Reflection, reflections
@@ -184,7 +185,7 @@ class Listing(Conditions):
         try:
             return linear_at_rest(self.found)
         except Failure as reason:
-            return str(reason)
+            return message_of(reason)
 
     def verdict(self, place: Place) -> Verdict:
         """The verdict of problem 6 at a place."""
@@ -200,7 +201,8 @@ class Listing(Conditions):
         words = {self._linear.verdict(place.elsewhere(varying, t)).word for t in ELSEWHERE}
         names = ", ".join(varying)
         if words != {found.word}:
-            told = " or ".join(sorted(words - {found.word}))
+            *others, last = sorted(words - {found.word})
+            told = Message("[[first]] or [[last]]", first=joined(others, ", "), last=last) if others else last
             return undecided(Because.DIFFERS_ALONG, names, found.word, told)
         return replace(found, reasons=(*found.reasons, Reason(Because.ALSO_ELSEWHERE, (names,))))
 

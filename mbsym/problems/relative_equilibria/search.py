@@ -10,6 +10,7 @@ from flint import arb, ctx
 
 from mbsym.algebra import krawczyk
 from mbsym.algebra.ring import Polynomial
+from mbsym.expressions.message import Message, joined
 from mbsym.problems.relative_equilibria.bounds import reach
 from mbsym.problems.relative_equilibria.candidates import Candidate, candidates, only_root
 from mbsym.problems.relative_equilibria.listing import Listing, short
@@ -65,18 +66,28 @@ class SearchInBoxes(Listing):
             if n == 1:
                 left = self._unexplained(independent[0], left, special)
             if left:
-                self._incomplete(f"{len(left)} boxes of the bisection are undecided: there may be more equilibria")
+                self._incomplete(
+                    Message(
+                        "[[count]] boxes of the bisection are undecided: there may be more equilibria", count=len(left)
+                    )
+                )
             starts += [[float(x.mid()) for x in box] for box in (*proved, *left[:200])]
         elif bisect:
-            self._incomplete(f"searched for from {STARTS} points: there may be more equilibria")
+            self._incomplete(Message("searched for from [[count]] points: there may be more equilibria", count=STARTS))
         if not proved and (not starts or not bisect):
             starts += from_many_points(ring, independent, slopes, names, bounds)
         if bisect and limited:
-            ranges = ", ".join(f"{name} within {short(self._range(name, held.get(name))[1])}" for name in limited)
+            reached = ((name, short(self._range(name, held.get(name))[1])) for name in limited)
+            ranges = joined((Message("[[name]] within [[range]]", name=name, range=far) for name, far in reached), ", ")
             if set(limited) <= held.keys():
-                self.remarks.append(f"looked for with {ranges} of zero; the equations prove that none lies farther out")
+                self.remarks.append(
+                    Message(
+                        "looked for with [[ranges]] of zero; the equations prove that none lies farther out",
+                        ranges=ranges,
+                    )
+                )
             else:
-                self._incomplete(f"looked for with {ranges} of zero only")
+                self._incomplete(Message("looked for with [[ranges]] of zero only", ranges=ranges))
         for number, start in enumerate(starts):
             if not bisect and (self._known(start, 1e-6) or self._is_excluded(start)):
                 continue

@@ -56,6 +56,7 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.matrices import adjugate, determinant
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.generalized import generalized_forces
@@ -108,7 +109,9 @@ class Order:
         """The terms of order eps^0.  Raises NoClosedForm where p grows as eps tends to 0, or hides what matters."""
         grown, kept = self.split(p, what)
         if grown != 0:
-            raise NoClosedForm(f"{what} grows with the rate of the phase: more has to be small than was told")
+            raise NoClosedForm(
+                Message("[[what]] grows with the rate of the phase: more has to be small than was told", what=what)
+            )
         return kept
 
     def split(self, p: Polynomial, what: str) -> tuple[Polynomial, Polynomial]:
@@ -119,8 +122,11 @@ class Order:
             power = sum(k * monomial[at] for at, k in self.amplitudes.items()) - monomial[self.rate]
             if power < -1:
                 raise NoClosedForm(
-                    f"{what} grows with the rate of the phase as its square: it would move the system by much within "
-                    "one turn of the phase, and the averages mean nothing"
+                    Message(
+                        "[[what]] grows with the rate of the phase as its square: it would move the system by much "
+                        "within one turn of the phase, and the averages mean nothing",
+                        what=what,
+                    )
                 )
             if power <= 0:
                 found[power + 1][monomial] = c
@@ -147,7 +153,13 @@ class Order:
         total: dict[tuple[int, ...], Any] = {}
         for monomial, c in p.to_dict().items():
             if monomial[itself]:
-                raise NoClosedForm(f"{what} holds {self.ring.generators[itself].name} outside of sines and cosines")
+                raise NoClosedForm(
+                    Message(
+                        "[[what]] holds [[name]] outside of sines and cosines",
+                        what=what,
+                        name=self.ring.generators[itself].name,
+                    )
+                )
             a, b = monomial[sine], monomial[cosine]
             if a % 2 or b % 2:
                 continue
@@ -186,7 +198,13 @@ class Order:
             within = occurring([argument])
             hidden = dict.fromkeys(self.ring.generators[j].name for j in within if j in watched)
             if hidden:
-                raise NoClosedForm(f"{what} holds {', '.join(hidden)} in a denominator, root or function")
+                raise NoClosedForm(
+                    Message(
+                        "[[what]] holds [[names]] in a denominator, root or function",
+                        what=what,
+                        names=", ".join(hidden),
+                    )
+                )
             inside += within
 
 
@@ -223,9 +241,9 @@ def averaged(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str, or
     ring, names = scene.ring, scene.system.coordinates
     order = _order(ring, phase, rate, orders)
     moving = without_constants(ring, names)
-    mass = [[order.leading(x, "the mass matrix") for x in row] for row in energy.A2.polynomials]
+    mass = [[order.leading(x, Message("the mass matrix")) for x in row] for row in energy.A2.polynomials]
     if any(order.holds_phase(x) for row in mass for x in row):
-        raise NoClosedForm(f"the mass matrix depends on {phase}")
+        raise NoClosedForm(Message("the mass matrix depends on [[phase]]", phase=phase))
     linear = [order.leading(x.polynomial, "T") for x in energy.A1]
     rest = order.leading(energy.A0.polynomial, "T")
     grown, force = order.split(energy.force_function.polynomial, "U")
@@ -234,9 +252,12 @@ def averaged(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str, or
     for what, parts in (("T", [*(x.polynomial for x in energy.A1), whole_rest]), ("U", [whole_force])):
         if any(order.holds_phase(order.unscaled(x)) for x in parts):
             told = ", ".join(orders)
-            raise NoClosedForm(f"{what} depends on {phase} also where {told} = 0", remedy=_REMEDY)
+            raise NoClosedForm(
+                Message("[[what]] depends on [[phase]] also where [[told]] = 0", what=what, phase=phase, told=told),
+                remedy=_REMEDY,
+            )
     if not ring.vanishes(moving(order.mean(grown, "U"))):
-        raise NoClosedForm(f"the mean of U over {phase} grows with the rate of the phase")
+        raise NoClosedForm(Message("the mean of U over [[phase]] grows with the rate of the phase", phase=phase))
     means = [order.mean(x, "T") for x in linear]
     added = [mean - order.unshaken(x) for mean, x in zip(means, linear, strict=True)]
     for i, a in enumerate(names):
@@ -261,7 +282,7 @@ def averaged(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str, or
     for a in names:
         for b, turn in zip(names, turned, strict=True):
             curl = ring.reduce(ring.derivative(driven[b], a) - ring.derivative(driven[a], b))
-            steady[a] -= order.mean(ring.reduce(ring.times(curl, turn)), f"the force on {a}")
+            steady[a] -= order.mean(ring.reduce(ring.times(curl, turn)), Message("the force on [[name]]", name=a))
     whole = ring.reduce(divided - order.mean(rest, "T") - _force_function(ring, steady))
     mean_force = ring.reduce(order.mean(force, "U"))
     vibrational_alone = whole + order.unshaken(rest) - mean_force + order.unshaken(force)
@@ -282,7 +303,7 @@ _REMEDY = "give the amplitude of what the phase does a parameter of its own, or 
 def _order(ring: Ring, phase: str, rate: str, orders: Mapping[str, int]) -> Order:
     """Raises NoClosedForm where no sine or cosine of the phase occurs: nothing oscillates with it."""
     if not all(ring.has(kind, phase) for kind in ("sine", "cosine", "prescribed")):
-        raise NoClosedForm(f"no sine or cosine of {phase} occurs: nothing oscillates with it")
+        raise NoClosedForm(Message("no sine or cosine of [[phase]] occurs: nothing oscillates with it", phase=phase))
     return Order(
         ring,
         {ring.index("parameter", name): power for name, power in orders.items()},
@@ -303,10 +324,12 @@ def _force_function(ring: Ring, forces: Mapping[str, Polynomial]) -> Polynomial:
         total += ring.times(ring.generator("coordinate", name), ring.context.from_dict(terms))
     for name, force in forces.items():
         if any(not ring.vanishes(ring.velocity_derivative(force, other)) for other in forces):
-            raise NoClosedForm(f"the force on {name} holds products of what is small and the rate of the phase")
+            raise NoClosedForm(
+                Message("the force on [[name]] holds products of what is small and the rate of the phase", name=name)
+            )
         if not ring.is_zero(ring.derivative(total, name) - force):
             raise NoClosedForm(
-                f"a mean force on {name} is left that is not seen to be of a potential",
+                Message("a mean force on [[name]] is left that is not seen to be of a potential", name=name),
                 remedy="write it as a potential",
             )
     return ring.reduce(total)
@@ -338,23 +361,31 @@ def _other_loads(
     phase = ring.generators[order.phase[2]].name
     pushes, steady, beside = {}, {}, []
     for name, found in generalized_forces(scene).items():
-        what = f"the force on {name}"
+        what = Message("the force on [[name]]", name=name)
         grown, force = order.split(found, what)
         try:
             slopes = {a: [ring.velocity_derivative(x, a) for x in (grown, force)] for a in system.coordinates}
             bends = [ring.velocity_derivative(x, b) for _, x in slopes.values() for b in system.coordinates]
         except NoClosedForm as jump:
-            raise NoClosedForm(f"{what} is not linear in the velocities") from jump
+            raise NoClosedForm(Message("[[what]] is not linear in the velocities", what=what)) from jump
         if any(not ring.vanishes(x) for x, _ in slopes.values()):
-            raise NoClosedForm(f"{what} holds velocities and grows with the rate of the phase")
+            raise NoClosedForm(Message("[[what]] holds velocities and grows with the rate of the phase", what=what))
         if any(order.holds_phase(x) for _, x in slopes.values()):
-            raise NoClosedForm(f"{what} depends on {phase} and on velocities: its mean is no potential")
+            raise NoClosedForm(
+                Message(
+                    "[[what]] depends on [[phase]] and on velocities: its mean is no potential", what=what, phase=phase
+                )
+            )
         if any(not ring.vanishes(x) for x in bends):
-            raise NoClosedForm(f"{what} is not linear in the velocities")
+            raise NoClosedForm(Message("[[what]] is not linear in the velocities", what=what))
         if order.holds_phase(order.unscaled(found)):
-            raise NoClosedForm(f"{what} depends on {phase} by itself", remedy=_REMEDY)
+            raise NoClosedForm(
+                Message("[[what]] depends on [[phase]] by itself", what=what, phase=phase), remedy=_REMEDY
+            )
         if not ring.is_zero(order.mean(grown, what)):
-            raise NoClosedForm(f"the mean of {what} over {phase} grows with the rate of the phase")
+            raise NoClosedForm(
+                Message("the mean of [[what]] over [[phase]] grows with the rate of the phase", what=what, phase=phase)
+            )
         pushes[name], steady[name] = grown, ring.reduce(order.mean(force, what) - order.unshaken(force))
         if not ring.vanishes(order.unshaken(force)):
             beside.append(name)
@@ -374,7 +405,7 @@ def orders_of(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str) -
     kinetic += [x for row in energy.A2.polynomials for x in row]
     moving = without_constants(ring, names)
     loads = {"U": moving(energy.force_function.polynomial)}
-    loads |= {f"the force on {name}": x for name, x in generalized_forces(scene).items()}
+    loads |= {Message("the force on [[name]]", name=name): x for name, x in generalized_forces(scene).items()}
     for what, p in (*(("T", x) for x in kinetic), *loads.items()):
         order.refuse_hidden(p, what)
     parameters = {x.name: ring.index("parameter", x.name) for x in scene.system.parameters if x.name != rate}
@@ -386,7 +417,9 @@ def orders_of(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str) -
         found = [name for name, k in killing.items() if not any(p.degrees()[k] > 0 for p in mass)]
         found = found or [name for name, k in killing.items() if _has_mass_without(ring, energy, k)]
         if len(found) != 1:
-            raise NoClosedForm(f"which parameters are small is not plain: name what {phase} shakes")
+            raise NoClosedForm(
+                Message("which parameters are small is not plain: name what [[phase]] shakes", phase=phase)
+            )
         orders[found[0]] = 1
     shaken = [parameters[name] for name in orders]
     means = {what: order.mean(p, what) for what, p in loads.items()}
@@ -394,7 +427,9 @@ def orders_of(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str) -
         (m, what) for what, p in loads.items() for m in (p - means[what]).to_dict() if not any(m[k] for k in shaken)
     ]
     if not (waves or left):
-        raise NoClosedForm(f"{phase} occurs in no equation of motion: nothing oscillates with it")
+        raise NoClosedForm(
+            Message("[[phase]] occurs in no equation of motion: nothing oscillates with it", phase=phase)
+        )
     if not left:
         return orders
     hidden = _hidden(ring, (*kinetic, *loads.values()))
@@ -408,7 +443,9 @@ def orders_of(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str) -
         powers = [_power(free[n], order.rate, [m for m, _ in left], n in pure, slow) for n in few]
         if None not in powers:
             return orders | {n: power for n, power in zip(few, powers, strict=True) if power is not None}
-    raise NoClosedForm(f"of which order what {phase} does in the loads is, is not plain", remedy=_REMEDY)
+    raise NoClosedForm(
+        Message("of which order what [[phase]] does in the loads is, is not plain", phase=phase), remedy=_REMEDY
+    )
 
 
 def _has_mass_without(ring: Ring, energy: Energy, at: int) -> bool:

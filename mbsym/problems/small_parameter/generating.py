@@ -16,6 +16,7 @@ from typing import Any
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.matrices import faddeev
 from mbsym.algebra.tower import Element, Tower
+from mbsym.expressions.message import Message
 
 #: Exponents of the variables -> coefficient.
 Terms = Mapping[tuple[int, ...], Element]
@@ -78,7 +79,12 @@ def generating(tower: Tower, names: Sequence[str], rows: Rows, start: Callable[[
             if len(rest) > 1 or any(e > 1 for _, e in rest):
                 told = "*".join(f"{names[j]}**{e}" if e > 1 else names[j] for j, e in rest)
                 raise NoClosedForm(
-                    f"the equations are not quasi-linear: without the small parameter that of {names[i]} holds {told}",
+                    Message(
+                        "the equations are not quasi-linear: without the small parameter that of [[name]] holds "
+                        "[[told]]",
+                        name=names[i],
+                        told=told,
+                    ),
                     remedy="declare which variables are small: 'small parameter: {eps: {powers: {x: 1}}}'",
                 )
             for j, e in enumerate(exponents):
@@ -144,7 +150,12 @@ class _Roots:
 def _roots_of(found: Generating, block: tuple[int, ...]) -> _Roots:
     tower = found.tower
     if len(block) > MOST_BLOCK:
-        raise NoClosedForm(f"more than {MOST_BLOCK} variables oscillate together without the small parameter")
+        raise NoClosedForm(
+            Message(
+                "more than [[most]] variables oscillate together without the small parameter",
+                most=MOST_BLOCK,
+            )
+        )
     whole = faddeev(found.block_matrix(block), tower.zero, tower.one)[1]  # low to high
     coefficients = without_zeros(whole)
     factors = [coefficients] if _even(coefficients) else _factors(tower, coefficients)

@@ -8,6 +8,7 @@ from typing import Any
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
+from mbsym.expressions.message import Message
 from mbsym.problems.small_parameter.generating import Terms
 
 _Graded = dict[int, dict[tuple[int, ...], Element]]
@@ -27,8 +28,13 @@ def graded_rows(
     zero = (0,) * len(field.variables)
     if set(below[0]) != {zero}:
         raise NoClosedForm(
-            f"the equations are not quasi-linear: without {small} the mass matrix depends on the state",
-            remedy=f"declare that the deviations are small: 'small parameter: {{{small}: {{powers: {{x: 1}}}}}}'",
+            Message(
+                "the equations are not quasi-linear: without [[small]] the mass matrix depends on the state",
+                small=small,
+            ),
+            remedy=Message(
+                "declare that the deviations are small: 'small parameter: {[[small]]: {powers: {x: 1}}}'", small=small
+            ),
         )
     back = tower.reciprocal(below.pop(0)[zero])
     rows: list[Mapping[int, Terms]] = []
@@ -38,7 +44,11 @@ def graded_rows(
         above = {k - shift: part for k, part in above.items()}
         if any(k < 0 for k in above):
             raise NoClosedForm(
-                f"{name}' grows without bound as {small} tends to 0: nothing oscillates at a rate of order 1",
+                Message(
+                    "[[name]]' grows without bound as [[small]] tends to 0: nothing oscillates at a rate of order 1",
+                    name=name,
+                    small=small,
+                ),
                 remedy="see 'mbsym expand' for slow manifolds, and the powers that are declared",
             )
         found: _Graded = {}

@@ -21,6 +21,7 @@ from typing import Any
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.matrices import echelon, faddeev
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
+from mbsym.expressions.message import Message
 from mbsym.problems.small_parameter.generating import Generating, Mode, without_zeros
 from mbsym.problems.small_parameter.harmonics import Harmonics
 from mbsym.problems.small_parameter.oscillation_result import Divisor, Drift
@@ -74,7 +75,12 @@ class Orders:
             if not (entry[0].is_zero() and entry[1].is_zero()):
                 break
         else:
-            raise NoClosedForm(f"{self.system.names[self.leading]} does not take part in this mode")
+            raise NoClosedForm(
+                Message(
+                    "[[name]] does not take part in this mode",
+                    name=self.system.names[self.leading],
+                )
+            )
         #: v with (i omega - A) v = 0 and v = 1 in the leading variable; l with l (i omega - A) = 0.
         self.right = [_over(tower, (real[r][column], imaginary[r][column]), entry) for r in range(size)]
         self.left = [(real[place][c], imaginary[place][c]) for c in range(size)]
@@ -251,7 +257,10 @@ class Orders:
         answer = solved(tower, [*upper, *lower], [*(-c for c, _ in loads), *(-s for _, s in loads)])
         if answer is None:
             raise Resonance(
-                f"resonance: two oscillations of {', '.join(self.system.names[i] for i in block)} have one frequency"
+                Message(
+                    "resonance: two oscillations of [[block]] have one frequency",
+                    block=", ".join(self.system.names[i] for i in block),
+                )
             )
         self._divided(block, 1, order, [*answer, shift])
         known = [(zero, zero)] * size
@@ -290,16 +299,23 @@ class Orders:
 
 def _driven(names: Sequence[str], k: int, order: int) -> str:
     """Why a forced oscillation, or a forced displacement (k = 0), does not exist."""
-    where = f"resonance: in the order {order} of the small parameter, {', '.join(names)} are driven"
+    where = Message(
+        "resonance: in the order [[order]] of the small parameter, [[names]] are driven",
+        order=order,
+        names=", ".join(names),
+    )
     if k == 0:
-        return (
-            f"{where} at a constant rate, and the root zero is one of theirs: these terms grow with time; solutions in "
-            "which other variables keep them from that are not looked for"
+        return Message(
+            "[[where]] at a constant rate, and the root zero is one of theirs: these terms grow with "
+            "time; solutions in which other variables keep them from that are not looked for",
+            where=where,
         )
-    told = f"{k} times the frequency" if k > 1 else "the frequency"
-    return (
-        f"{where} at {told}, which is a frequency of their own: secular terms are not removed; solutions in which "
-        "these oscillate by themselves from the beginning are not looked for"
+    told = Message("[[k]] times the frequency", k=k) if k > 1 else Message("the frequency")
+    return Message(
+        "[[where]] at [[told]], which is a frequency of their own: secular terms are not removed; "
+        "solutions in which these oscillate by themselves from the beginning are not looked for",
+        where=where,
+        told=told,
     )
 
 

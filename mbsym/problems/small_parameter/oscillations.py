@@ -15,6 +15,7 @@ from typing import Any
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
+from mbsym.expressions.message import Message, joined
 from mbsym.problems.small_parameter.generating import Generating, Mode, Rows, generating
 from mbsym.problems.small_parameter.lindstedt import Demand, NotPeriodic, Orders
 from mbsym.problems.small_parameter.oscillation_checks import residual_orders
@@ -39,6 +40,12 @@ def tower_over(parameters: Sequence[str], variables: Sequence[str], order: int, 
     return Tower((*parameters, AMPLITUDE, *(f"#{name}" for name in variables), *correction_names(order), *others))
 
 
+def _together(names: Sequence[str], frequencies: int) -> str:
+    """The variables that share frequencies, and how many these are where there are several."""
+    listed = ", ".join(names)
+    return listed if frequencies == 1 else Message("[[names]] ([[count]] of them)", names=listed, count=frequencies)
+
+
 class ModeIsOpen(NoClosedForm):
     """Several variables oscillate with frequencies of their own, and none was named."""
 
@@ -47,12 +54,16 @@ class ModeIsOpen(NoClosedForm):
     def __init__(self, blocks: Sequence[tuple[str, ...]]) -> None:
         self.blocks = tuple(blocks)
         counts = Counter(self.blocks)
-        told = "; ".join(", ".join(one) + (f" ({n} of them)" if n > 1 else "") for one, n in counts.items())
-        remedy = "name a variable whose oscillation leads: --of NAME, or 'leading: NAME' under the small parameter"
+        told = joined((_together(one, n) for one, n in counts.items()), "; ")
+        remedy = Message(
+            "name a variable whose oscillation leads: --of NAME, or 'leading: NAME' under the small parameter"
+        )
         if max(counts.values(), default=0) > 1:
-            which = "which of the frequencies that variables share: --frequency K"
-            remedy = f"say {which}" if len(counts) == 1 else f"{remedy}; and {which}"
-        super().__init__(f"without the small parameter several frequencies are there, of: {told}", remedy=remedy)
+            which = Message("say which of the frequencies that variables share: --frequency K")
+            remedy = which if len(counts) == 1 else joined((remedy, which), "; ")
+        super().__init__(
+            Message("without the small parameter several frequencies are there, of: [[told]]", told=told), remedy=remedy
+        )
 
 
 @dataclass(frozen=True)
@@ -139,7 +150,7 @@ def oscillation(there: Equations, order: int, leading: str = "", which: int = 1)
 def _mode(there: Equations, system: Generating, leading: str, which: int) -> Mode:
     if leading:
         if leading not in there.names:
-            raise NoClosedForm(f"the equations do not depend on {leading}")
+            raise NoClosedForm(Message("the equations do not depend on [[name]]", name=leading))
         own = [one for one in system.modes if there.names.index(leading) in one.block]
     else:
         own = list(system.modes)
@@ -148,23 +159,37 @@ def _mode(there: Equations, system: Generating, leading: str, which: int) -> Mod
         if open_blocks:
             names = ", ".join(there.names[i] for block in open_blocks for i in block)
             raise NoClosedForm(
-                f"without {there.small} the frequencies of {names} were not found as square roots",
+                Message(
+                    "without [[small]] the frequencies of [[names]] were not found as square roots",
+                    small=there.small,
+                    names=names,
+                ),
                 remedy="with numbers for parameters, where they factor: --set NAME=VALUE",
             )
         damped = [there.names[i] for block in system.damped for i in block]
         if damped:
             raise NotPeriodic(
-                f"no periodic solution near those of the linear system: without {there.small} no pair of imaginary "
-                f"roots was found for {', '.join(damped)}"
+                Message(
+                    "no periodic solution near those of the linear system: without [[small]] no pair of "
+                    "imaginary roots was found for [[damped]]",
+                    small=there.small,
+                    damped=", ".join(damped),
+                )
             )
-        what = f"{leading} does not oscillate" if leading else "nothing oscillates"
-        raise NoClosedForm(f"{what} where the small parameter is zero")
+        if leading:
+            raise NoClosedForm(Message("[[name]] does not oscillate where the small parameter is zero", name=leading))
+        raise NoClosedForm("nothing oscillates where the small parameter is zero")
     if len({one.block for one in own}) > 1 or (len(own) > 1 and not leading):
         raise ModeIsOpen([tuple(there.names[i] for i in one.block) for one in own])
     if which > len(own):
-        block = ", ".join(there.names[i] for i in own[0].block)
-        count = "one frequency" if len(own) == 1 else f"{len(own)} frequencies"
-        raise NoClosedForm(f"without the small parameter {block} have {count}: there is none with the number {which}")
+        one = "without the small parameter [[names]] have one frequency: there is none with the number [[which]]"
+        more = (
+            "without the small parameter [[names]] have [[count]] frequencies: there is none with the number [[which]]"
+        )
+        names = ", ".join(there.names[i] for i in own[0].block)
+        if len(own) == 1:
+            raise NoClosedForm(Message(one, names=names, which=which))
+        raise NoClosedForm(Message(more, names=names, count=len(own), which=which))
     return own[which - 1]
 
 
@@ -199,9 +224,19 @@ def _determined(there: Equations, leading: str, demand: Demand) -> tuple[Element
             imaginary = imaginary or len(real) < len(found or ())
             squares += [x for x in real if not any((x - y).is_zero() for y in squares)]
     if not squares and imaginary and not unsolved and of_parameters.is_constant():
-        which = "with the constants that were given " if any(name != AMPLITUDE for name in there.values) else ""
+        if any(name != AMPLITUDE for name in there.values):
+            raise NotPeriodic(
+                Message(
+                    "with the constants that were given secular terms are removed only where the amplitude of "
+                    "[[name]] is imaginary: its square is < 0",
+                    name=leading,
+                )
+            )
         raise NotPeriodic(
-            f"{which}secular terms are removed only where the amplitude of {leading} is imaginary: its square is < 0"
+            Message(
+                "secular terms are removed only where the amplitude of [[name]] is imaginary: its square is < 0",
+                name=leading,
+            )
         )
     if not squares:
         raise _not_solved(there, demand) if unsolved else _secular(there, demand.order, of_parameters)
@@ -256,8 +291,13 @@ def _not_solved(there: Equations, demand: Demand) -> NoClosedForm:
     top = _but_powers(tower, demand)
     condition = there.told(tower.made(top / top.leading_coefficient(), tower.context.constant(1)))
     return NoClosedForm(
-        f"in the order {demand.order} of {there.small} secular terms remain unless {condition} = 0: amplitudes that "
-        "square roots do not express are not followed"
+        Message(
+            "in the order [[order]] of [[small]] secular terms remain unless [[condition]] = 0: "
+            "amplitudes that square roots do not express are not followed",
+            order=demand.order,
+            small=there.small,
+            condition=condition,
+        )
     )
 
 
@@ -266,8 +306,13 @@ def _other_amplitude(there: Equations, demand: Demand) -> NotPeriodic:
     top = _but_powers(tower, demand)
     condition = there.told(tower.made(top / top.leading_coefficient(), tower.context.constant(1)))
     return NotPeriodic(
-        f"with this amplitude secular terms remain in the order {demand.order} of {there.small}: the amplitude has to "
-        f"fulfil {condition} = 0"
+        Message(
+            "with this amplitude secular terms remain in the order [[order]] of [[small]]: the amplitude "
+            "has to fulfil [[condition]] = 0",
+            order=demand.order,
+            small=there.small,
+            condition=condition,
+        )
     )
 
 
@@ -277,16 +322,23 @@ def _secular(there: Equations, order: int, condition: Any) -> NoClosedForm:
     With constants of the solution in it that is an equation for these, which is not solved.
     """
     tower = there.tower
-    given = " with the constants that were given" if any(name != AMPLITUDE for name in there.values) else ""
-    none = f"no periodic solution near those of the linear system{given}: "
-    where = f"in the order {order} of {there.small} secular terms remain"
+    none = Message("no periodic solution near those of the linear system")
+    if any(name != AMPLITUDE for name in there.values):
+        none = Message("no periodic solution near those of the linear system with the constants that were given")
+    where = Message("in the order [[order]] of [[small]] secular terms remain", order=order, small=there.small)
     if condition.is_constant():
-        return NotPeriodic(f"{none}{where} for every real amplitude")
+        return NotPeriodic(Message("[[none]]: [[where]] for every real amplitude", none=none, where=where))
     told = there.told(tower.made(condition / condition.leading_coefficient(), tower.context.constant(1)))
     degrees = zip(tower.parameters, condition.degrees()[MOST_ROOTS:], strict=True)
     if any(degree > 0 and name.startswith("#") for name, degree in degrees):
-        return NoClosedForm(f"{where} unless {told} = 0: values of variables that this determines are not found here")
-    return NotPeriodic(f"{none}{where} unless {told} = 0")
+        return NoClosedForm(
+            Message(
+                "[[where]] unless [[told]] = 0: values of variables that this determines are not found here",
+                where=where,
+                told=told,
+            )
+        )
+    return NotPeriodic(Message("[[none]]: [[where]] unless [[told]] = 0", none=none, where=where, told=told))
 
 
 def _but_powers(tower: Tower, demand: Demand) -> Any:
@@ -301,7 +353,7 @@ def _with_corrections(there: Equations, orders: Orders, order: int, first: int) 
     """All orders; each correction of the amplitude from the condition in which it stands first."""
     tower, names = there.tower, orders.corrections
     if first > LATEST:
-        raise NoClosedForm(f"a condition on the amplitude appears in the order {first} only")
+        raise NoClosedForm(Message("a condition on the amplitude appears in the order [[first]] only", first=first))
     while orders.complete <= order + first:
         try:
             orders.go_on()

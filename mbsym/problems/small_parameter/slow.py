@@ -23,6 +23,7 @@ from typing import Any
 
 from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.algebra.quotients import LOWER, Polynomial, Quotient, Series
+from mbsym.expressions.message import Message
 from mbsym.problems.small_parameter.root import root
 from mbsym.problems.small_parameter.scaled import Graded, ScaledField
 
@@ -41,7 +42,9 @@ def fast_variables(there: ScaledField, slow: Sequence[str] = ()) -> tuple[str, .
     swift = [i for i, k in enumerate(there.scales) if k > 0]
     if not swift:
         raise NoClosedForm(
-            f"no variable is fast: no derivative grows without bound as {there.small} tends to 0",
+            Message(
+                "no variable is fast: no derivative grows without bound as [[small]] tends to 0", small=there.small
+            ),
             remedy="see 'powers' of the small parameter: {p2: -1} says that p2 is large",
         )
     others = [i for i, name in enumerate(names) if i not in swift and name not in slow]
@@ -56,8 +59,8 @@ def fast_variables(there: ScaledField, slow: Sequence[str] = ()) -> tuple[str, .
             if root(there, places, constant) is not None:
                 found.append(places)
         if len(found) > 1:
-            told = " or ".join(", ".join(names[i] for i in one) for one in found[:3])
-            raise NoClosedForm(f"which variables are fast is not clear: {told}", remedy=DECLARE)
+            told = "; ".join(", ".join(names[i] for i in one) for one in found[:3])
+            raise NoClosedForm(Message("which variables are fast is not clear: [[told]]", told=told), remedy=DECLARE)
         if found:
             return tuple(names[i] for i in found[0])
     raise NoClosedForm(
@@ -130,8 +133,12 @@ def manifold(there: ScaledField, fast: Sequence[str], order: int) -> list[Series
     start = root(there, indices)
     if start is None:
         raise NoClosedForm(
-            f"at the lowest order in {there.small} the equations of {', '.join(fast)} do not determine them: they are "
-            "singular, or not solved by equations that are linear in one of them"
+            Message(
+                "at the lowest order in [[small]] the equations of [[fast]] do not determine them: they are "
+                "singular, or not solved by equations that are linear in one of them",
+                small=there.small,
+                fast=", ".join(fast),
+            )
         )
     on = OnManifold(there, fast)
     slow = [i for i in range(len(variables)) if i not in indices]
@@ -147,7 +154,13 @@ def manifold(there: ScaledField, fast: Sequence[str], order: int) -> list[Series
             changed.append(function.up_to(order + 1).exactly())
         functions = changed
     raise NoClosedForm(
-        f"the coefficients up to order {order} do not settle within {MOST_STEPS} steps", limit=Limit.WORK, remedy=LOWER
+        Message(
+            "the coefficients up to order [[order]] do not settle within [[most]] steps",
+            order=order,
+            most=MOST_STEPS,
+        ),
+        limit=Limit.WORK,
+        remedy=LOWER,
     )
 
 
@@ -202,7 +215,9 @@ def flow(there: ScaledField, fast: Sequence[str], functions: Sequence[Series], o
     near = [one.up_to(order + 1) for one in functions]
     below = on(there.denominator, near, None)
     if 0 not in below.coefficients:
-        raise NoClosedForm(f"the matrix of inertia is singular at {there.small} = 0 on the whole manifold")
+        raise NoClosedForm(
+            Message("the matrix of inertia is singular at [[small]] = 0 on the whole manifold", small=there.small)
+        )
     found = {}
     for name, row in zip(there.field.variables, there.rows, strict=True):
         if name not in fast:

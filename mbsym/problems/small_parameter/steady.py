@@ -15,6 +15,7 @@ from mbsym.algebra import matrices
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.matrices import determinant_by_traces, faddeev
 from mbsym.algebra.quotients import Quotient, Series
+from mbsym.expressions.message import Message
 from mbsym.problems.small_parameter.result import Hurwitz, SteadyStates
 from mbsym.problems.small_parameter.scaled import ScaledField
 from mbsym.problems.small_parameter.slow import derivative
@@ -35,7 +36,12 @@ def steady_states(
     first = len(field.parameters)
     names = field.variables
     if len(names) > MOST_VARIABLES:
-        raise NoClosedForm(f"more than {MOST_VARIABLES} variables: no characteristic polynomial is expanded")
+        raise NoClosedForm(
+            Message(
+                "more than [[most]] variables: no characteristic polynomial is expanded",
+                most=MOST_VARIABLES,
+            )
+        )
     context = field.context
 
     def at(c: Quotient) -> Quotient:
@@ -47,11 +53,15 @@ def steady_states(
 
     for name, one in flow.items():
         if on(one).coefficients:
-            raise NoClosedForm(f"the motion is no steady state on the manifold: {name} does not stay constant")
+            raise NoClosedForm(
+                Message("the motion is no steady state on the manifold: [[name]] does not stay constant", name=name)
+            )
     for name, one in functions.items():
         given = Series.constant(values[name])
         if (on(one) - given).coefficients:
-            raise NoClosedForm(f"the motion does not lie on the manifold: {name} is another one there")
+            raise NoClosedForm(
+                Message("the motion does not lie on the manifold: [[name]] is another one there", name=name)
+            )
     slow = list(flow)
     small = [[on(derivative(flow[i], first + names.index(j))) for j in slow] for i in slow]
     rows = [Series(context, {k: Quotient.of(p) for k, p in row.items()}) for row in there.rows]

@@ -10,6 +10,7 @@ from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE
 from mbsym.algebra.point import Rationals
+from mbsym.expressions.message import Message
 from mbsym.mechanics.kinematics import Scene
 from mbsym.problems.checks import EXACT, FAILED, Check
 from mbsym.problems.claims.counterexample import completed, parameter_samples
@@ -43,10 +44,19 @@ def check_stabilisation(scene: Scene[Any], linear: Linearisation, found: Stabili
             break
     first, second = "minors and resultants in symbols", "Kalman's rank and eigenvalues counted at numbers"
     if wrong:
-        return Check("stabilisation", first, second, FAILED, f"differs in {', '.join(sorted(wrong))}")
+        return Check(
+            "stabilisation", first, second, FAILED, Message("differs in [[wrong]]", wrong=", ".join(sorted(wrong)))
+        )
     if not compared:  # roots of numbers in the matrices: there is nothing to compare exactly
         return None
-    return Check("stabilisation", first, second, EXACT, f"equal at {compared} random rational points", compared)
+    return Check(
+        "stabilisation",
+        first,
+        second,
+        EXACT,
+        Message("equal at [[compared]] random rational points", compared=compared),
+        compared,
+    )
 
 
 def _points(scene: Scene[Any]) -> Iterator[dict[str, Fraction]]:

@@ -17,6 +17,7 @@ from flint import arb, fmpq, fmpq_mat, fmpq_mpoly_ctx, fmpq_poly
 
 from mbsym.algebra.rationals import fraction, rounded
 from mbsym.algebra.roots import count_roots
+from mbsym.expressions.message import Message
 from mbsym.problems.stabilisation.result import Feedback
 from mbsym.problems.stability.bundle import definite_combination_of
 from mbsym.problems.stability.exact import is_positive, verdict_at
@@ -140,7 +141,7 @@ def feedback(there: AtValues) -> Feedback | str:
         riccati = solve_continuous_are(first, second, np.eye(n), np.eye(m))
         wanted = second.T @ riccati
     except (LinAlgError, ValueError) as error:
-        return f"the Riccati equation was not solved: {error}"
+        return Message("the Riccati equation was not solved: [[why]]", why=error)
     if not np.isfinite(wanted).all():
         return "the Riccati equation was not solved in floating point"
     for digits in DIGITS:

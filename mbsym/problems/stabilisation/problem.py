@@ -13,10 +13,11 @@ from flint import fmpq, fmpq_mat
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.characteristic import determinant
 from mbsym.algebra.evaluate import Carrier
-from mbsym.algebra.failures import NOT_THERE, Failure, TooLargeError
+from mbsym.algebra.failures import NOT_THERE, Failure, TooLargeError, message_of
 from mbsym.algebra.matrices import added, dot
 from mbsym.algebra.point import Rationals
 from mbsym.algebra.signs import Signs
+from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula, Matrix
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.states import SEED
@@ -171,7 +172,7 @@ def _dissipation(whole: Cleared | None, names: tuple[str, ...], there: AtValues 
     try:
         rank = without_drift(rank_of(whole, mass, opposite, stiff, damping, rest=False), whole, gyro, stiff, damping)
     except TooLargeError as error:
-        rank = _at_random(whole, mass, opposite, stiff, damping, str(error))
+        rank = _at_random(whole, mass, opposite, stiff, damping, message_of(error))
     motions = tuple(
         motion
         for factor in rank.factors
@@ -257,7 +258,12 @@ def _controlled(
     control = tuple(_control(whole, linear, at, there) for at in blocks)
     least = () if whole is None else _least(whole, linear)
     if len(every) > MOST_COORDINATES:
-        return control, least, None, f"there are more than {MOST_COORDINATES} coordinates"
+        return (
+            control,
+            least,
+            None,
+            Message("there are more than [[most]] coordinates", most=MOST_COORDINATES),
+        )
     if there is None:
         return control, least, None, "the description gives no rational values of all parameters"
     found = numbers.feedback(there)
@@ -288,7 +294,7 @@ def _ranked(whole: Cleared, at: Sequence[int], columns: Sequence[int]) -> Rank:
     try:
         return rank_of(whole, mass, rates, places, inputs)
     except TooLargeError as error:
-        return _at_random(whole, mass, rates, places, inputs, str(error))
+        return _at_random(whole, mass, rates, places, inputs, message_of(error))
 
 
 def _at_random(whole: Cleared, mass: Rows, rates: Rows, places: Rows, inputs: Rows, why: str) -> Rank:

@@ -23,6 +23,7 @@ from mbsym.algebra.plane.numbers import AlgebraicNumber, number, primitive, root
 from mbsym.algebra.plane.points import Point
 from mbsym.algebra.ring import Ring
 from mbsym.expressions.angles import linear_form
+from mbsym.expressions.message import Message
 from mbsym.model.system import System
 
 #: Of cos(pi/D), D is at most this.
@@ -57,7 +58,13 @@ class Constant:
         if len(axes) == 2:
             worst = 2 * axes[0] * axes[1] * int(self.number.polynomial.degree()) ** 2
             if worst > MOST_IN_A_PLANE:
-                raise TooLargeError(f"a resultant of degree up to {worst}, more than {MOST_IN_A_PLANE}")
+                raise TooLargeError(
+                    Message(
+                        "a resultant of degree up to [[worst]], more than [[most]]",
+                        worst=worst,
+                        most=MOST_IN_A_PLANE,
+                    )
+                )
         return self._modulus(context).resultant(p, context.names()[-1])
 
     def sign(self, p: Polynomial) -> int:

@@ -20,6 +20,7 @@ from mbsym.algebra.matrices import added
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.ring import ParameterRing, Polynomial, Ring
 from mbsym.algebra.signs import MOST_TERMS, Signs
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import names
 from mbsym.formulas.formula import Formula, Matrix
 from mbsym.formulas.notebook import Shown
@@ -42,6 +43,7 @@ from mbsym.problems.stability.exact import verdict_at, verdict_over
 from mbsym.problems.stability.linear_form import LinearSystem, NonholonomicForm, null_rows
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.requirements import Requirement
+from mbsym.problems.stability.sentences import named
 from mbsym.problems.stability.spectrum import Spectrum, from_characteristic, from_matrices
 from mbsym.problems.stability.symbolic import Theory, analyse
 from mbsym.problems.stability.verdict import Verdict, combine, displaced, exactly, off_the_leaf, undecided
@@ -99,7 +101,16 @@ class SubsystemStability(Shown):
         """
         certain = [case for case in self.theory.cases if case.verdict.theorem and not case.any_of and not case.never]
         return tuple(
-            (f"{label} (sufficient: {case.verdict.word}, {case.verdict.theorem})", formula, relation)
+            (
+                Message(
+                    "[[label]] (sufficient: [[word]], [[theorem]])",
+                    label=label,
+                    word=case.verdict.word,
+                    theorem=named(case.verdict.theorems),
+                ),
+                formula,
+                relation,
+            )
             for case in certain[:1]
             if case.all_of is not self.theory.requirements
             for label, formula, relation in self._open(case.all_of)
@@ -705,7 +716,10 @@ def _solved_at(scene: Scene, linear: Linearisation, values: Mapping[str, Any] | 
     for assumed in linear.constrained.assumed:
         if scene.ring.evaluate(assumed.polynomial, numbers).contains(0):
             return undecided(
-                Because.NO_EQUATIONS, f"Other quantities are dependent there: {assumed} is not known to differ from 0."
+                Because.NO_EQUATIONS,
+                Message(
+                    "Other quantities are dependent there: [[assumed]] is not known to differ from 0.", assumed=assumed
+                ),
             )
     return None
 

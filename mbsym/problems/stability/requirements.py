@@ -16,10 +16,11 @@ from enum import StrEnum
 
 from mbsym.algebra.characteristic import Coefficients, Matrix, Polynomial, leading_minors
 from mbsym.algebra.signs import MOST_TERMS, Condition, Signs
+from mbsym.expressions.message import Message
 from mbsym.problems.stability.verdict import Verdict
 
-#: Of the label of a minor that was reduced by the minors before it being positive.
-REDUCED = ", reduced by those before"
+#: How labels are made of other labels: of a condition reversed, of one of several factors, of a part of a condition.
+REVERSED, OF_FACTOR, PART = "-([[label]])", "[[label]] of factor [[number]]", "[[label]], [[part]]"
 
 
 class Method(StrEnum):
@@ -30,6 +31,8 @@ class Method(StrEnum):
     NONE = "none"
 
 
+#: What the conditions on roots in lambda^2 say where zero roots are left out of them.
+EVEN_BUT_ZERO = "all roots in lambda^2 but the zero ones real, negative and simple: coefficients and discriminants"
 #: What Hurwitz's conditions say where zero roots, or those of a turned steady spin as well, are left out of them.
 BUT_ZERO = "all roots but the zero ones to the left of the imaginary axis: Lienard-Chipart"
 BUT_TURNED = "all roots but the zero ones and those of a turned spin to the left of the imaginary axis: Lienard-Chipart"
@@ -159,10 +162,10 @@ def definiteness(matrix: Matrix, signs: Signs, name: str) -> Definiteness:
     first = signs
     for i, minor in enumerate(leading_minors(matrix), start=1):
         condition = signs.condition(minor)
-        place, label = Place.SUFFICIENT, f"minor {i} of {name}"
+        place, label = Place.SUFFICIENT, Message("minor [[i]] of [[name]]", i=i, name=name)
         # What has the minor's sign only beside the others is not told under its name.
         if condition.kind == "inequality" and first.condition(minor) != condition:
-            label += REDUCED
+            label = Message(PART, label=label, part=Message("reduced by those before"))
         requirements.append(Requirement(label, minor, condition, place=place, strict=place))
         if condition.kind == "inequality" and len(condition.polynomial) <= MOST_TERMS:
             signs = signs.assuming([(condition.polynomial, ">"), *((p, "!=") for p in condition.nonzero)])
@@ -178,10 +181,15 @@ def definiteness(matrix: Matrix, signs: Signs, name: str) -> Definiteness:
 def against(requirements: Sequence[Requirement], known: Signs) -> tuple[Requirement, ...]:
     """p < 0 for every p > 0.  By continuity none of them occurs while all roots have Re <= 0 (or mu <= 0)."""
     return tuple(
-        Requirement(f"-({r.label.partition(REDUCED)[0]})", -r.polynomial, known.condition(-r.polynomial))
+        Requirement(Message(REVERSED, label=_whole(r.label)), -r.polynomial, known.condition(-r.polynomial))
         for r in requirements
         if r.relation == ">" and r.place is not Place.HARMLESS and not r.by_mass and not r.unwritten
     )
+
+
+def _whole(label: str) -> str:
+    """``minor 2 of K`` of the label of that minor as it was reduced."""
+    return label.gaps["label"] if isinstance(label, Message) and label.text == PART else label
 
 
 def differs(label: str, p: Polynomial, known: Signs) -> Requirement:

@@ -2,33 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 
-from mbsym.expressions.counting import counted
+from mbsym.expressions.message import Message, enumerated, joined
 from mbsym.problems.stability.reasons import Because, Reason
 
 HIGHER_ORDER = "Terms of higher order decide."
 
 
-def _to_the_right(number: int) -> str:
-    return f"{counted(number, 'root')} with positive real part."
+def _to_the_right(number: int) -> Message:
+    if number == 1:
+        return Message("1 root with positive real part.")
+    return Message("[[count]] roots with positive real part.", count=number)
 
 
-def _undamped(coordinates: object) -> str:
-    return f"Motions of {coordinates} stay undamped."
-
-
-def _integrals(*names: object) -> str:
-    *first, last = map(str, names or ("first integrals",))
-    of = f"{', '.join(first)} and {last}" if first else last
-    return (
-        f"A combination of integrals ({of}) is stationary, and its second variation is definite where they keep their "
-        "values: it makes a Lyapunov function of the nonlinear system."
+def _integrals(*names: str) -> Message:
+    if not names:
+        return Message(
+            "A combination of first integrals is stationary, and its second variation is definite where they keep "
+            "their values: it makes a Lyapunov function of the nonlinear system."
+        )
+    return Message(
+        "A combination of integrals ([[names]]) is stationary, and its second variation is definite where they keep "
+        "their values: it makes a Lyapunov function of the nonlinear system.",
+        names=enumerated(names),
     )
 
 
-#: A sentence, or what makes one of the data.
-_SENTENCES: dict[Because, str | Callable[..., str]] = {
+#: A sentence, with gaps ``[[1]]``, ... for the data, or what makes one of them.
+_SENTENCES: dict[Because, str | Callable[..., Message]] = {
     Because.RIGHT_ROOTS: _to_the_right,
     Because.RIGHT_ROOT: "A root with positive real part.",
     Because.REAL_ROOT: "K is not positive semidefinite: a real positive root lambda.",
@@ -59,7 +61,7 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
     Because.MINIMUM_AND_DISSIPATION: (
         "K > 0 and D >= 0: the energy does not grow, and the (changed) potential energy has a strict minimum."
     ),
-    Because.UNDAMPED_MOTION: _undamped,
+    Because.UNDAMPED_MOTION: "Motions of [[1]] stay undamped.",
     Because.INTEGRALS: _integrals,
     Because.LINEAR_BOUNDED: (
         "The equations of motion are exactly linear: no root has a positive real part, and those on the imaginary axis "
@@ -82,9 +84,9 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
         "it unstable (Kelvin-Chetaev)."
     ),
     Because.HIGHER_MINIMUM: (
-        "K is only semidefinite, but terms of order {} make a strict minimum of the (changed) potential energy.".format
+        "K is only semidefinite, but terms of order [[1]] make a strict minimum of the (changed) potential energy."
     ),
-    Because.NO_MINIMUM: "The (changed) potential energy has no minimum: terms of order {} decide.".format,
+    Because.NO_MINIMUM: "The (changed) potential energy has no minimum: terms of order [[1]] decide.",
     Because.TERMS_OF_HIGHER_ORDER: (
         "The first approximation leaves the nonlinear system open; terms of higher order decide (problem 11)."
     ),
@@ -132,13 +134,13 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
         "coordinates may end elsewhere."
     ),
     Because.DISPLACEMENTS: (
-        "No equation of motion changes when coordinates move together as {}: along such displacements there are cyclic "
-        "coordinates."
-    ).format,
+        "No equation of motion changes when coordinates move together as [[1]]: along such displacements there are "
+        "cyclic coordinates."
+    ),
     Because.OTHER_ANGLES: (
-        "Judged in other angles of body {}, about axes {} by {}, in which the same motion is steady: coordinates are "
-        "these angles here."
-    ).format,
+        "Judged in other angles of body [[1]], about axes [[2]] by [[3]], in which the same motion is steady: "
+        "coordinates are these angles here."
+    ),
     Because.PARTLY_CYCLIC: "A part of the coordinates is cyclic.",
     Because.CONSTANT_MOMENTA: ("The momenta of cyclic coordinates are constant, so their velocities stay near theirs."),
     Because.SEE_CASES: "It depends on the parameters; see the cases.",
@@ -160,38 +162,48 @@ _SENTENCES: dict[Because, str | Callable[..., str]] = {
     ),
     Because.CYCLIC_ZERO_ROOTS: "Cyclic coordinates give zero roots, and no theorem decides about the rest.",
     Because.NOT_CLOSED: (
-        "The coordinates {} drop out of the first approximation, but are not shown to drop out of the nonlinear "
+        "The coordinates [[1]] drop out of the first approximation, but are not shown to drop out of the nonlinear "
         "equations: terms of higher order decide."
-    ).format,
+    ),
     Because.MORE_ZERO_ROOTS: (
-        "Zero roots, besides those of coordinates that drop out: {}; dimensions of the family of steady motions that "
-        "the description gives: {}. Terms of higher order decide."
-    ).format,
+        "Zero roots, besides those of coordinates that drop out: [[1]]; dimensions of the family of steady motions "
+        "that the description gives: [[2]]. Terms of higher order decide."
+    ),
     Because.NOT_ENCLOSED: "The roots could not be enclosed.",
-    Because.NO_CLOSED_FORM: "No closed form within the budget: {}.".format,
-    Because.ALSO_ELSEWHERE: "This is so at {} = 0, and elsewhere in samples.".format,
-    Because.DIFFERS_ALONG: "It depends on {}: {} at 0, {} elsewhere.".format,
-    Because.NO_EQUATIONS: "{}".format,
+    Because.NO_CLOSED_FORM: "No closed form within the budget: [[1]].",
+    Because.ALSO_ELSEWHERE: "This is so at [[1]] = 0, and elsewhere in samples.",
+    Because.DIFFERS_ALONG: "It depends on [[1]]: [[2]] at 0, [[3]] elsewhere.",
+    Because.NO_EQUATIONS: "[[1]]",
     Because.MASS_SINGULAR: "The mass matrix is singular.",
     Because.ORDER_LOWER: "The mass matrix is singular, so the order of the equations is lower.",
-    Because.VARIES: "The first approximation varies with {}; nothing is claimed.".format,
-    Because.NOT_THE_VALUE: "The motion does not exist there: {} has another value.".format,
-    Because.MOTION_NOT_THERE: "The motion does not exist there: {} = {}, not 0.".format,
-    Because.MOTION_OPEN: "Whether the motion exists there is open: {} is about 0.".format,
-    Because.POLE: "The description divides by {} there, which is 0: there is no motion to be judged.".format,
+    Because.VARIES: "The first approximation varies with [[1]]; nothing is claimed.",
+    Because.NOT_THE_VALUE: "The motion does not exist there: [[1]] has another value.",
+    Because.MOTION_NOT_THERE: "The motion does not exist there: [[1]] = [[2]], not 0.",
+    Because.MOTION_OPEN: "Whether the motion exists there is open: [[1]] is about 0.",
+    Because.POLE: "The description divides by [[1]] there, which is 0: there is no motion to be judged.",
 }
 
 
-def sentence(reason: Reason) -> str:
+def sentence(reason: Reason) -> Message:
     found = _SENTENCES[reason.code]
-    return found if isinstance(found, str) else found(*reason.data)
+    if not isinstance(found, str):
+        return found(*reason.data)
+    return Message(found, **{str(k): datum for k, datum in enumerate(reason.data, start=1) if f"[[{k}]]" in found})
 
 
-def explanation(reasons: Iterable[Reason]) -> str:
+def explanation(reasons: Iterable[Reason]) -> Message:
     """The reasons, one sentence after another."""
-    return " ".join(map(sentence, reasons))
+    return joined(map(sentence, reasons))
 
 
-def with_theorem(word: str, theorem: str) -> str:
+def with_theorem(word: str, theorems: Sequence[str]) -> Message:
     """``stable (Routh)``."""
-    return word + (f" ({theorem})" if theorem else "")
+    said = Message(word)
+    if not theorems:
+        return said
+    return Message("[[word]] ([[theorems]])", word=said, theorems=named(theorems))
+
+
+def named(theorems: Sequence[str]) -> Message:
+    """The names of theorems."""
+    return joined(map(Message, theorems), ", ")

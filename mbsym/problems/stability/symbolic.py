@@ -46,10 +46,11 @@ from mbsym.algebra.characteristic import (
     subdiscriminants,
 )
 from mbsym.algebra.factors import irreducible_factors
-from mbsym.algebra.failures import Failure, NoClosedForm, TooLargeError
+from mbsym.algebra.failures import Failure, NoClosedForm, TooLargeError, message_of
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.matrices import added
 from mbsym.algebra.signs import MOST_TERMS, Condition, ContradictionError, Signs, conditions
+from mbsym.expressions.message import Message, joined
 from mbsym.problems.stability import nonholonomic
 from mbsym.problems.stability.covering import alone, cells_of
 from mbsym.problems.stability.exact import PointVerdict, verdict_at
@@ -68,6 +69,8 @@ from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.requirements import (
     BUT_TURNED,
     BUT_ZERO,
+    EVEN_BUT_ZERO,
+    OF_FACTOR,
     Case,
     Definite,
     Definiteness,
@@ -141,6 +144,8 @@ class Theory:
     @property
     def wanted(self) -> str:
         """What the conditions say together."""
+        if self.method is Method.EVEN and self.zero_power:
+            return EVEN_BUT_ZERO
         if self.method is not Method.HURWITZ or not (self.zero_power or self.turned):
             return self.method.value
         return BUT_TURNED if self.turned else BUT_ZERO
@@ -176,7 +181,7 @@ def analyse(
     try:
         found = _analyse(system, signs, borders)
     except TooLargeError as error:
-        found = _left_out(system, signs, str(error))
+        found = _left_out(system, signs, message_of(error))
     if system.exact:
         null = null_rows(added(system.K, system.N), signs.normalised) if found.zero_power else ()
         calm = len(null) == found.zero_power  # the zero roots have no Jordan blocks, where there are no others
@@ -241,7 +246,12 @@ def _left_out(system: LinearSystem, signs: Signs, reason: str) -> Theory:
         dissipation=None if is_zero(system.D) else nothing,
         cases=(),
         verdict=undecided(Because.NO_CLOSED_FORM, reason),
-        remarks=(f"The characteristic polynomial is not written out: {reason}; at a point the verdict is exact.",),
+        remarks=(
+            Message(
+                "The characteristic polynomial is not written out: [[why]]; at a point the verdict is exact.",
+                why=reason,
+            ),
+        ),
     )
 
 
@@ -282,8 +292,8 @@ def _analyse(system: LinearSystem, signs: Signs, borders: bool) -> Theory:
     if mass.word is not Definite.POSITIVE:
         remarks.append("M is taken to be positive definite, as the matrix of a kinetic energy is.")
     if zero_power:
-        several = f"lambda^{zero_power} splits off: {zero_power} zero roots."
-        remarks.append(several if zero_power > 1 else "lambda splits off: one zero root.")
+        several = Message("lambda^[[count]] splits off: [[count]] zero roots.", count=zero_power)
+        remarks.append(several if zero_power > 1 else Message("lambda splits off: one zero root."))
     found = replace(
         start,
         removed=removed,
@@ -411,9 +421,11 @@ def _requirements(
     requirements: list[Requirement] = []
     remarks: list[str] = []
     for index, factor in enumerate(factors, start=1):
-        suffix = f" of factor {index}" if len(factors) > 1 else ""
+        several = len(factors) > 1
         if index - 1 == turned:
-            remarks.append(f"Factor {index} belongs to the steady spins about other directions of space.")
+            remarks.append(
+                Message("Factor [[number]] belongs to the steady spins about other directions of space.", number=index)
+            )
             continue
         p = factor.coefficients
         lead, word = p[-1], known.sign(p[-1])
@@ -428,13 +440,31 @@ def _requirements(
         try:
             wanted = _even_wanted(p) if even else lienard_chipart(p)[1:]
         except TooLargeError as error:
-            remarks.append(f"The conditions{suffix} are not written out ({error}); at a point they are exact.")
+            remarks.append(
+                Message(
+                    "The conditions of factor [[number]] are not written out ([[why]]); at a point they are exact.",
+                    number=index,
+                    why=error.reason,
+                )
+                if several
+                else Message(
+                    "The conditions are not written out ([[why]]); at a point they are exact.", why=error.reason
+                )
+            )
             requirements.append(unwritten(p[0]))
             continue
-        reduced = [_required(known, label, suffix, value, p, _places(system, label, even)) for label, value in wanted]
-        left_out = ", ".join(one.label for one in reduced if one.unwritten)
+        reduced = [
+            _required(known, label, index if several else 0, value, p, _places(system, label, even))
+            for label, value in wanted
+        ]
+        left_out = joined((one.label for one in reduced if one.unwritten), ", ")
         if left_out:
-            remarks.append(f"Not written out, but in the coefficients, because of their length: {left_out}.")
+            remarks.append(
+                Message(
+                    "Not written out, but in the coefficients, because of their length: [[labels]].",
+                    labels=left_out,
+                )
+            )
         requirements += reduced if even else _without_implied(_spared(reduced, len(p) - 1))
     if even and not is_potential(system):
         requirements += _simple(system, factors, known, remarks)
@@ -471,15 +501,19 @@ def _places(system: LinearSystem, label: str, even: bool) -> tuple[Place, Place]
 
 
 def _required(
-    known: Signs, label: str, suffix: str, value: Polynomial, p: Coefficients, places: tuple[Place, Place]
+    known: Signs, label: str, factor: int, value: Polynomial, p: Coefficients, places: tuple[Place, Place]
 ) -> Requirement:
-    """One condition on the coefficients p; one that outgrows the budget stays what it is made of."""
+    """One condition on the coefficients p of a factor, 0 if it is the only one.
+
+    One that outgrows the budget stays what it is made of.
+    """
     place, strict = places
     made = p if " " in label or label == "discriminant" else ()
+    label = Message(OF_FACTOR, label=label, number=factor) if factor else label
     try:
-        return Requirement(label + suffix, value, known.condition(value), place=place, strict=strict, coefficients=made)
+        return Requirement(label, value, known.condition(value), place=place, strict=strict, coefficients=made)
     except NoClosedForm:
-        return replace(unwritten(p[0]), label=label + suffix, place=place, strict=strict, coefficients=made)
+        return replace(unwritten(p[0]), label=label, place=place, strict=strict, coefficients=made)
 
 
 def _spared(wanted: list[Requirement], degree: int) -> list[Requirement]:
@@ -522,7 +556,10 @@ def _even_wanted(p: Coefficients) -> list[tuple[str, Polynomial]]:
         table = subdiscriminants(p)
         # Up to degree 3 the discriminant alone makes the roots real.
         first = 2 if n >= 4 else n
-        wanted += [(f"subdiscriminant {k}" if k < n else "discriminant", table[k - 1]) for k in range(first, n + 1)]
+        wanted += [
+            (Message("subdiscriminant [[k]]", k=k) if k < n else Message("discriminant"), table[k - 1])
+            for k in range(first, n + 1)
+        ]
     return wanted
 
 
@@ -533,18 +570,41 @@ def _simple(system: LinearSystem, factors: tuple[Factor, ...], known: Signs, rem
         try:
             for j in range(i + 1, len(factors)):
                 value = resultant(left.coefficients, factors[j].coefficients)
-                requirements.append(differs(f"resultant of factors {i + 1} and {j + 1}", value, known))
+                requirements.append(
+                    differs(
+                        Message("resultant of factors [[number]] and [[other]]", number=i + 1, other=j + 1),
+                        value,
+                        known,
+                    )
+                )
             if left.multiplicity > 1:
                 simple = _is_semisimple(system, left)
                 if not simple:
                     never = left.coefficients[0] * 0
-                    blocks = differs(f"multiplicity of factor {i + 1}", never, known)
+                    blocks = differs(Message("multiplicity of factor [[number]]", number=i + 1), never, known)
                     requirements.append(replace(blocks, place=Place.FIRST, strict=Place.FIRST))
-                how = "simple elementary divisors" if simple else "Jordan blocks: its roots are never semisimple"
-                remarks.append(f"Factor {i + 1} occurs {left.multiplicity} times, with {how}.")
+                how = (
+                    Message("simple elementary divisors")
+                    if simple
+                    else Message("Jordan blocks: its roots are never semisimple")
+                )
+                remarks.append(
+                    Message(
+                        "Factor [[number]] occurs [[multiplicity]] times, with [[how]].",
+                        number=i + 1,
+                        multiplicity=left.multiplicity,
+                        how=how,
+                    )
+                )
         except TooLargeError as error:
             requirements.append(unwritten(left.coefficients[0]))
-            remarks.append(f"Whether roots of factor {i + 1} coincide with others is left open: {error}.")
+            remarks.append(
+                Message(
+                    "Whether roots of factor [[number]] coincide with others is left open: [[why]].",
+                    number=i + 1,
+                    why=error.reason,
+                )
+            )
     return requirements
 
 
@@ -653,7 +713,9 @@ def _of_full_rank(matrix: Matrix, letter: str, null: int, known: Signs) -> tuple
         for columns in combinations(range(n), size):
             minor = known.normalised(determinant([[matrix[i][j] for j in columns] for i in rows]))
             if minor != 0:
-                return (differs(f"minor of order {size} of {letter}", minor, known),)
+                return (
+                    differs(Message("minor of order [[size]] of [[letter]]", size=size, letter=letter), minor, known),
+                )
     raise ValueError("the rank is smaller")
 
 

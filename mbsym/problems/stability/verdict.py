@@ -26,6 +26,7 @@ from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from enum import Enum, auto
 
+from mbsym.expressions.message import joined
 from mbsym.problems.displacements import Basis
 from mbsym.problems.stability import sentences
 from mbsym.problems.stability.reasons import Because, Reason
@@ -324,7 +325,7 @@ def displaced(verdict: Verdict, basis: Basis | None) -> Verdict:
     told = () if basis is None else basis.together
     if not told or Flaw.CYCLIC not in verdict.flawed:
         return verdict
-    reason = Reason(Because.DISPLACEMENTS, (", ".join(told),))
+    reason = Reason(Because.DISPLACEMENTS, (joined(told, ", "),))
     return replace(verdict, reasons=tuple(sorted((*verdict.reasons, reason), key=lambda reason: reason.rank)))
 
 

@@ -15,6 +15,7 @@ from mbsym.algebra.failures import NOT_THERE, Failure, Limit, NoClosedForm
 from mbsym.algebra.kernel import coefficients, independent, kernel
 from mbsym.algebra.point import Rationals
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.oracle import State
 from mbsym.mechanics.states import rational_states
@@ -48,7 +49,11 @@ def symmetries(system: System, blocks: Blocks, known: Sequence[Integral] | None)
     """
     unknowns = _unknowns(blocks)
     if len(unknowns) > MOST_UNKNOWNS:
-        told = f"a field of degree one has {len(unknowns)} constants, more than {MOST_UNKNOWNS}"
+        told = Message(
+            "a field of degree one has [[count]] constants, more than [[most]]",
+            count=len(unknowns),
+            most=MOST_UNKNOWNS,
+        )
         raise NoClosedForm(told, limit=Limit.WORK)
     bound = _bound(system, blocks, unknowns)
     able, most = (list(range(len(unknowns))), -1) if bound is None else bound

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from msgspec import Struct, to_builtins
 
@@ -27,9 +27,14 @@ def headed(found: Mapping[str, T]) -> dict[str, T]:
     return {key: found[key] for key in first if key in found} | dict(found)
 
 
+def plain(value: object) -> Any:
+    """A document, or a part of one, as dictionaries, lists, numbers and texts of Python's own."""
+    return to_builtins(value, enc_hook=_plain)
+
+
 def written(document: Struct, indent: int = 1, sort_keys: bool = False) -> str:
     """The text of a file: keys in a fixed order, the same text for the same document."""
-    content = headed(to_builtins(document, enc_hook=_plain))
+    content = headed(plain(document))
     return json.dumps(content, indent=indent, sort_keys=sort_keys, ensure_ascii=False) + "\n"
 
 

@@ -13,7 +13,7 @@ def asked_motion(system: System, time: float | None) -> tuple[Motion | None, str
     """(the motion from 0 to ``time``, "") or (None, why there is none); (None, "") where it was not asked for."""
     if time is None:
         return None, ""
-    from mbsym.algebra.failures import Failure
+    from mbsym.algebra.failures import Failure, message_of
     from mbsym.numerics.scenario import Incomplete, scenario
     from mbsym.report.figures.animation import animation
     from mbsym.report.figures.animation_page import run_motion
@@ -23,6 +23,6 @@ def asked_motion(system: System, time: float | None) -> tuple[Motion | None, str
     try:
         run = simulate(scenario(system), Request(time, variables=COORDINATES))
     except (Incomplete, Failure) as reason:
-        return None, str(reason)
+        return None, message_of(reason)
     found = animation(run)
     return (None, "no body has a place that could be drawn") if found is None else (run_motion(found, run), "")

@@ -13,6 +13,7 @@ RELATIONS = {"!=": r"\neq", ">=": r"\geq", "<=": r"\leq", "+-": r"\pm", ":": r"\
 _SPECIAL = {
     "\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#", "%": r"\%", "_": r"\_",
     "^": r"\^{}", "~": r"\~{}", "<": r"\textless{}", ">": r"\textgreater{}", "|": r"\textbar{}", '"': "''",
+    "\u2014": r"\textemdash{}",
 }  # fmt: skip
 
 

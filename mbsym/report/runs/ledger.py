@@ -8,11 +8,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from io import StringIO
 
-from msgspec import to_builtins
-
 from mbsym.algebra.certainty import Certainty
 from mbsym.numerics.ledger.entry import NOT_NEEDED, SECONDS, Ledger, Measure, Saving
 from mbsym.report.documents.results import ledger as doc
+from mbsym.report.documents.writer import plain
 
 COLUMNS = ("kind", "what", "why", "how", "quantity", "unit", "without", "with", "saved", "at_least", "standing")
 
@@ -108,5 +107,5 @@ def _saving(item: Saving) -> doc.Saving:
 
 def with_ledger(results: str, found: Ledger) -> str:
     """The text of ``results.json`` with the ledger in it."""
-    content = json.loads(results) | {"ledger": to_builtins(ledger_data(found))}
+    content = json.loads(results) | {"ledger": plain(ledger_data(found))}
     return json.dumps(content, indent=2, sort_keys=True, ensure_ascii=False) + "\n"

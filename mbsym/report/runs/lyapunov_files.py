@@ -86,12 +86,24 @@ def sentences(found: Exponents) -> Iterator[tuple[str, str]]:
 
 def _judged(found: Exponents) -> str:
     match found.parting:
+        case Parting.POSITIVE if found.linear:
+            return (
+                "neighbouring motions part exponentially over this time; the equations are linear: all of their "
+                "motions part alike, and none is chaotic"
+            )
+        case Parting.POSITIVE if found.resting:
+            return "the motion is a rest, and neighbouring motions leave it exponentially over this time"
         case Parting.POSITIVE:
             return (
                 "neighbouring motions part exponentially over this time, as chaotic ones do; this is no proof of chaos"
             )
         case Parting.NEGATIVE:
             return "neighbouring motions come together over this time"
+    if found.linear:
+        return (
+            "the largest exponent is not told from zero, which takes three times its uncertainty and three times "
+            f"log(T)/T = {found.regular:.2g}; the equations are linear: none of their motions is chaotic"
+        )
     falling = ", and it is still falling, as that of regular motion does" if found.falling else ""
     return (
         "the largest exponent is not told from zero, which takes three times its uncertainty and three times log(T)/T "

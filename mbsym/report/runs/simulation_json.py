@@ -12,14 +12,14 @@ from math import isfinite
 from typing import Any
 
 import numpy as np
-from msgspec import UNSET, Struct, to_builtins
+from msgspec import UNSET, Struct
 
 from mbsym.model.quantities import energy_unit, units_by_name
 from mbsym.numerics.methods.interface import COUNTS
 from mbsym.numerics.planning.reduced import Reduced
 from mbsym.numerics.simulate import Trajectory
 from mbsym.report.documents import simulation as doc
-from mbsym.report.documents.writer import written
+from mbsym.report.documents.writer import plain, written
 from mbsym.report.runs.between_steps import between_steps_json
 from mbsym.report.runs.certificate import certificate_json
 from mbsym.report.runs.constrained_run_words import constraints_json
@@ -143,7 +143,7 @@ def versions() -> dict[str, str]:
 def finite(value: Any) -> Any:
     """The same as nested lists and dictionaries without infinities, which JSON does not know: they become text."""
     if isinstance(value, Struct):
-        return finite(to_builtins(value))
+        return finite(plain(value))
     if isinstance(value, dict):
         return {name: finite(item) for name, item in value.items()}
     if isinstance(value, (list, tuple)):

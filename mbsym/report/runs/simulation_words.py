@@ -92,8 +92,8 @@ def error_lines(found: ErrorEstimate | NoEstimate) -> Iterator[str]:
             yield f"{names} {rest}, in this run and in the better one"
         else:
             yield (
-                f"{names} {rest}: the {error:.1e} that the run makes of it is measured by what the motion could do "
-                f"(sizes below {floor:.1e} count as rest)"
+                f"{names} {rest} but for rounding, as far as can be told: the {error:.1e} that the run makes of it is "
+                f"measured by what the motion could do (sizes below {floor:.1e} on which two runs do not agree)"
             )
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from msgspec import UNSET, UnsetType
 from msgspec.structs import asdict
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import names
 from mbsym.formulas.names import free_name
 from mbsym.mechanics.variables import expressions
@@ -20,7 +21,7 @@ from mbsym.problems.stability import Stability
 from mbsym.problems.stability.linear_form import CONSERVATIVE
 from mbsym.problems.stability.problem import SubsystemStability
 from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.requirements import Place
+from mbsym.problems.stability.requirements import OF_FACTOR, PART, REVERSED, Place
 from mbsym.problems.stability.sentences import sentence
 from mbsym.problems.stability.spectrum import RootNumbers, numbers
 from mbsym.problems.stability.verdict import Verdict
@@ -253,9 +254,9 @@ def _told(part: SubsystemStability, number: int, several: bool, results: Results
 
 
 def _conserved(results: Results) -> bool:
-    """Whether the energy of the nonlinear system is constant near the motion, in all orders."""
+    """Whether the energy of the system is constant near the motion, in all orders, if there are further ones."""
     found = results.analysis.optional("balance")
-    return found is not None and found.law is EnergyLaw.CONSERVED
+    return found is not None and (found.exactly_linear or found.law is EnergyLaw.CONSERVED)
 
 
 def _verdict_told(found: Verdict, variable: str) -> tuple[Inline, ...]:
@@ -320,18 +321,20 @@ def _condition_told(item: Statement, seen: Shown) -> Iterator[Block]:
         yield Display(Relation(label, ":", shown, item.relation, 0), notes=note or remark)
 
 
-def label_of(words: str) -> Math:
+def label_of(label: str) -> Math:
     """v6 as a coefficient's symbol, other labels as words."""
-    opposite = re.fullmatch(r"-\((.*)\)", words)
-    if opposite is not None:
-        return Relation("-", label_of(opposite[1]))
-    bare, comma, rest = words.partition(", ")
-    part: tuple[Inline, ...] = (", ", Words(rest)) if comma else ()
-    match = re.fullmatch(r"([av])(\d+)( of factor (\d+))?", bare)
+    gaps = label.gaps if isinstance(label, Message) else {}
+    made = label.text if isinstance(label, Message) else ""
+    if made == REVERSED:
+        return Relation("-", label_of(gaps["label"]))
+    if made == PART:
+        whole, part = label_of(gaps["label"]), (", ", Words(gaps["part"]))
+        return Text(*whole.parts, *part) if isinstance(whole, Text) else Relation(whole, Text(*part))
+    of_factor = made == OF_FACTOR
+    match = re.fullmatch(r"([av])(\d+)", gaps["label"] if of_factor else label)
     if match is None:
-        return Text(Words(bare), *part)
-    symbol = Symbol(match[1], match[2], f"({match[4]})" if match[4] else "")
-    return Relation(symbol, Text(*part)) if part else symbol
+        return Text(Words(label))
+    return Symbol(match[1], match[2], f"({gaps['number']})" if of_factor else "")
 
 
 def _root(root: RootNumbers) -> tuple[Inline, ...]:
@@ -345,6 +348,3 @@ def _root(root: RootNumbers) -> tuple[Inline, ...]:
 def _number(value: float) -> Number:
     """Six digits."""
     return Number(f"{value:.6g}")
-
-
-# --- the terminal -----------------------------------------------------------------------------------------------------

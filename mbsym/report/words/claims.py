@@ -6,13 +6,12 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import groupby
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import text
 from mbsym.formulas.formula import Formula
 from mbsym.problems.claims import DIFFERS, FACTOR, SCALED, UNDECIDED, ClaimResult, Part
 from mbsym.problems.claims.counterexample import THE_MOTION, Counterexample
-from mbsym.problems.claims.remarks import Remark
-from mbsym.problems.claims.remarks import text as text_of
-from mbsym.problems.stability.word import Word
+from mbsym.problems.claims.result import ENTRY
 from mbsym.report.content import Inline, Phrase, Said, Words, joined, say
 from mbsym.report.plain_writer import Writer
 
@@ -71,28 +70,7 @@ def _outcome(result: ClaimResult) -> Iterator[Inline]:
 
 def remarks(result: ClaimResult) -> Inline:
     """What else there is to say, sentence by sentence."""
-    return joined(map(_remark, result.remarks), "; ") if result.remarks else Words(result.remark)
-
-
-def _remark(remark: Remark) -> Said:
-    return say(text_of(remark), **{str(k): _datum(x) for k, x in enumerate(remark.data, start=1)})
-
-
-def _datum(value: object) -> Inline:
-    if isinstance(value, Remark):
-        return _remark(value)
-    if isinstance(value, tuple):
-        several = any(isinstance(x, Remark) for x in value)
-        return joined(map(_datum, value), *((" ", Said("and"), " ") if several else (", ",)))
-    return _verdict(str(value))
-
-
-def _verdict(words: str) -> Inline:
-    """``stable (Routh)``, or other words."""
-    word, bracket, theorems = words.removesuffix(")").partition(" (")
-    if not bracket or word not in [*Word]:
-        return Words(words)
-    return Phrase((Words(word), " (", joined(map(Words, theorems.split(", ")), ", "), ")"))
+    return Words(result.remark)
 
 
 def together(lines: Iterable[ClaimLine]) -> Iterator[list[ClaimLine]]:
@@ -109,8 +87,11 @@ def titles(lines: Iterable[ClaimLine]) -> Inline:
     """What several claims are about: ``mass matrix [theta, theta], [theta, delta]; angular velocity of A [1]``."""
     stems: dict[str, list[str]] = {}
     for line in lines:
-        stem, bracket, index = line.title.partition(" [")
-        stems.setdefault(stem, []).extend([bracket.strip() + index] if bracket else [])
+        title = line.title
+        if isinstance(title, Message) and title.text == ENTRY:
+            stems.setdefault(title.gaps["title"], []).append(f"[{title.gaps['entry']}]")
+        else:
+            stems.setdefault(title, [])
     told = (Phrase((Words(stem), *((" ", ", ".join(indices)) if indices else ()))) for stem, indices in stems.items())
     return joined(told, "; ")
 
@@ -131,7 +112,7 @@ def counterexample(found: Counterexample, text: str = "For example at [[at]]: [[
     """``For example at A = 1, C = 3: C - (7*A) = -4, the motion is stable (Routh).``"""
     at = ", ".join(f"{name} = {value}" for name, value in found.at)
     shows = [
-        say("the motion is [[verdict]]", verdict=_verdict(value)) if what == THE_MOTION else f"{what} = {value}"
+        say("the motion is [[verdict]]", verdict=Words(value)) if what == THE_MOTION else f"{what} = {value}"
         for what, value in found.shows
     ]
     return say(text, at=at, shows=shows)

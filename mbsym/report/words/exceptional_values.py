@@ -62,7 +62,7 @@ def _number(special: Special) -> str:
 def _told(special: Special) -> str:
     if special.verdict is None:
         return _said(special.judged)
-    return with_theorem(special.verdict.word, special.verdict.theorem)
+    return with_theorem(special.verdict.word, special.verdict.theorems)
 
 
 def _said(judged: Judged) -> str:

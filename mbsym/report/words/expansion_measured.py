@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
-from mbsym.algebra.failures import Failure
+from mbsym.algebra.failures import Failure, message_of
 
 if TYPE_CHECKING:
     from mbsym.analysis.expanding import Expansion
@@ -79,7 +79,7 @@ def measured_or_why(
     except ZeroDivisionError:
         return DIVIDED
     except (NotMeasured, Failure, ValueError, OverflowError) as reason:
-        return str(reason)
+        return message_of(reason)
 
 
 def oscillation_measured(found: SmallParameters, system: System) -> MeasuredOrders | str:
@@ -104,7 +104,7 @@ def orders_or_why(
     except ZeroDivisionError:
         return DIVIDED
     except (Failure, ValueError, OverflowError) as reason:
-        return str(reason)
+        return message_of(reason)
 
 
 def averages(found: SmallParameters, system: System) -> tuple[JudgedAverage, ...]:
@@ -136,4 +136,4 @@ def average_or_why(
     except ZeroDivisionError:
         return DIVIDED
     except (Failure, ValueError, OverflowError) as reason:
-        return str(reason)
+        return message_of(reason)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from mbsym.algebra.certainty import Certainty
+from mbsym.expressions.message import Message
 from mbsym.problems.polynomial_integrals import FUNCTION, Case, Generator, OnLevel, PolynomialIntegrals
 from mbsym.report.content import Gaps, Inline, Phrase, Said, Words, joined, named, say
 from mbsym.report.plain_writer import Writer
@@ -37,17 +38,22 @@ def weighted(variables: Sequence[Inline], given: Sequence[int]) -> Phrase:
 
 def title(one: Generator) -> str:
     """What an integral is called."""
-    return one.name or "further integral"
+    return one.name or Message("further integral")
 
 
 def case_title(weight: int) -> str:
     """Of an integral that holds in a special case."""
-    return f"further integral of weight {weight}"
+    return Message("further integral of weight [[weight]]", weight=weight)
 
 
 def level_title(weight: int, level: OnLevel) -> str:
     """Of one that holds where another one vanishes."""
-    return f"where the integral of weight {level.level.weight} ({title(level.level)}) is zero, one of weight {weight}"
+    return Message(
+        "where the integral of weight [[other]] ([[name]]) is zero, one of weight [[weight]]",
+        other=level.level.weight,
+        name=title(level.level),
+        weight=weight,
+    )
 
 
 def conditions_text(case: Case, write: Callable[[Any], str]) -> str:

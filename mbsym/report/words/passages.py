@@ -5,9 +5,10 @@ Every target for people prints the same passages.  Bodies are numbered as the re
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
+from mbsym.expressions.message import Message, enumerated
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.told import Definition, Told
 from mbsym.mechanics.falling import falling_frames
@@ -60,30 +61,47 @@ def _by_component(told: Told[Meaning], group: Sequence[Definition[Meaning]]) -> 
     return tuple(sorted(group, key=lambda item: () if item.meaning is None else item.meaning.place))
 
 
-#: ``{b}`` is the body, ``{p}`` its predecessor, ``{it}`` the body with what it carries, ``{o}`` the expansion point.
+#: ``[[b]]`` is the body, ``[[p]]`` its predecessor, ``[[it]]`` the body with what it carries, ``[[o]]`` the expansion
+#: point, ``[[l]]`` the number of a load, ``[[common]]`` the body that carries both of its ends.
 _WORDS = {
-    Quantity.DIRECTION_COSINE: "Direction cosines of {b} relative to {p}, by row and column",
-    Quantity.RELATIVE_ANGULAR_VELOCITY: "Angular velocity of {b} relative to {p}",
-    Quantity.ANGULAR_VELOCITY: "Angular velocity of {b}",
-    Quantity.CARRIED_VELOCITY: "Velocity of the connection point of {b}, in the axes of {p}",
-    Quantity.VELOCITY_ORIGIN: "Velocity of the connection point of {b}",
-    Quantity.VELOCITY_CENTRE: "Velocity of the mass centre of {b}",
-    Quantity.ANGULAR_ACCELERATION: "Angular acceleration of {b}",
-    Quantity.CARRIED_ACCELERATION: "Acceleration of the connection point of {b}{gravity}, in the axes of {p}",
-    Quantity.ACCELERATION: "Acceleration of the connection point of {b}{gravity}",
-    Quantity.OUTWARD: "Unit vector from the attracting centre to {o}, in the axes of {b}",
-    Quantity.RADIUS: "Radius vector from the attracting centre to the mass centre of {b}",
-    Quantity.PLACE: "Radius vector from {o} to the mass centre of {b}",
-    Quantity.ALONG: "Projection of that radius vector on that unit vector, for {b}",
-    Quantity.SPAN: "Vector between the ends of load {l} (the first index), in the axes of {common}",
-    Quantity.MASS: "Mass of {it}",
-    Quantity.FIRST_MOMENT: "Mass times radius vector of the mass centre, of {it}",
-    Quantity.INERTIA: "Inertia tensor of {it} about the connection point",
-    Quantity.UNIT_FORCE: "Force at the connection point of {b} required by a unit acceleration of",
-    Quantity.UNIT_MOMENT: "Moment about the connection point of {b} required by a unit acceleration of",
-    Quantity.FORCE: "Force that {it} needs beyond the loads",
-    Quantity.MOMENT: "Moment about the connection point that {it} needs beyond the loads",
+    Quantity.DIRECTION_COSINE: "Direction cosines of [[b]] relative to [[p]], by row and column",
+    Quantity.RELATIVE_ANGULAR_VELOCITY: "Angular velocity of [[b]] relative to [[p]]",
+    Quantity.ANGULAR_VELOCITY: "Angular velocity of [[b]]",
+    Quantity.CARRIED_VELOCITY: "Velocity of the connection point of [[b]], in the axes of [[p]]",
+    Quantity.VELOCITY_ORIGIN: "Velocity of the connection point of [[b]]",
+    Quantity.VELOCITY_CENTRE: "Velocity of the mass centre of [[b]]",
+    Quantity.ANGULAR_ACCELERATION: "Angular acceleration of [[b]]",
+    Quantity.CARRIED_ACCELERATION: "Acceleration of the connection point of [[b]], in the axes of [[p]]",
+    Quantity.ACCELERATION: "Acceleration of the connection point of [[b]]",
+    Quantity.OUTWARD: "Unit vector from the attracting centre to the connection point of [[o]], in the axes of [[b]]",
+    Quantity.RADIUS: "Radius vector from the attracting centre to the mass centre of [[b]]",
+    Quantity.PLACE: "Radius vector from the connection point of [[o]] to the mass centre of [[b]]",
+    Quantity.ALONG: "Projection of that radius vector on that unit vector, for [[b]]",
+    Quantity.SPAN: "Vector between the ends of load [[l]] (the first index), in the axes of [[common]]",
+    Quantity.MASS: "Mass of [[it]]",
+    Quantity.FIRST_MOMENT: "Mass times radius vector of the mass centre, of [[it]]",
+    Quantity.INERTIA: "Inertia tensor of [[it]] about the connection point",
+    Quantity.UNIT_FORCE: "Force at the connection point of [[b]] required by a unit acceleration of",
+    Quantity.UNIT_MOMENT: "Moment about the connection point of [[b]] required by a unit acceleration of",
+    Quantity.FORCE: "Force that [[it]] needs beyond the loads",
+    Quantity.MOMENT: "Moment about the connection point that [[it]] needs beyond the loads",
 }  # fmt: skip
+#: The same where gravity, ``[[gravity]]``, is taken off an acceleration.
+_LESS_GRAVITY = {
+    Quantity.CARRIED_ACCELERATION: (
+        "Acceleration of the connection point of [[b]] less [[gravity]], in the axes of [[p]]"
+    ),
+    Quantity.ACCELERATION: "Acceleration of the connection point of [[b]] less [[gravity]]",
+}
+
+
+#: The same where the expansion point is the origin of the inertial frame.
+_FROM_ORIGIN = {
+    Quantity.OUTWARD: (
+        "Unit vector from the attracting centre to the origin of the inertial frame, in the axes of [[b]]"
+    ),
+    Quantity.PLACE: "Radius vector from the origin of the inertial frame to the mass centre of [[b]]",
+}
 
 
 class _Speaker:
@@ -99,51 +117,54 @@ class _Speaker:
         """The phrase, and the coordinate whose symbol ends it."""
         if meaning is None:
             return "Abbreviations, numbered as they come", ""
-        template = _WORDS[meaning.quantity]
         body = self.system.body(meaning.body) if meaning.body else None
-        values: dict[str, str] = {}
-        for key, make in (
-            ("b", lambda: self._body(meaning.body)),
-            ("it", lambda: self._body(meaning.body) + self._carried(meaning.body)),
-            ("p", lambda: self._body("" if body is None else body.attached_to)),
-            ("o", lambda: self._expansion_point(meaning.load)),
-            ("common", lambda: self._common(meaning.load)),
-        ):
-            if f"{{{key}}}" in template:
-                values[key] = make()
-        gravity = self._gravity(meaning.body) if "{gravity}" in template else ""
-        return template.format(**values, gravity=gravity, l=meaning.load), meaning.coordinate
+        gravity = self._gravity(meaning.body) if meaning.quantity in _LESS_GRAVITY else []
+        about = self._expanded_about(meaning.load) if meaning.quantity in _FROM_ORIGIN else ""
+        found = _LESS_GRAVITY if gravity else _FROM_ORIGIN if about == INERTIAL else _WORDS
+        template = found[meaning.quantity]
+        makers: dict[str, Callable[[], str]] = {
+            "b": lambda: self._body(meaning.body),
+            "it": lambda: self._carried(meaning.body),
+            "p": lambda: self._body("" if body is None else body.attached_to),
+            "o": lambda: self._body(about),
+            "l": lambda: str(meaning.load),
+            "common": lambda: self._common(meaning.load),
+            "gravity": lambda: enumerated([self._named(x) for x in gravity]),
+        }
+        values = {key: make() for key, make in makers.items() if f"[[{key}]]" in template}
+        return Message(template, **values), meaning.coordinate
 
-    def _body(self, name: str) -> str:
+    def _body(self, name: str) -> Message:
         if name == INERTIAL or not name:
-            return "the inertial frame"
-        said = f"body {self.numbers[name]}"
-        if name in self.named:
-            return said
-        self.named.add(name)
-        return f"{said} ({name})"
+            return Message("the inertial frame")
+        which = str(self.numbers[name])
+        if name not in self.named:
+            self.named.add(name)
+            which += f" ({name})"
+        return Message("body [[which]]", which=which)
 
-    def _carried(self, name: str) -> str:
-        return " with what it carries" if name in self.carriers else ""
+    def _carried(self, name: str) -> Message:
+        body = self._body(name)
+        return Message("[[body]] with what it carries", body=body) if name in self.carriers else body
 
     def _load(self, number: int) -> Load:
         return self.system.loads[number - 1]
 
-    def _expansion_point(self, number: int) -> str:
+    def _expanded_about(self, number: int) -> str:
         load = self._load(number)
-        about = load.about if isinstance(load, NewtonianGravity) else ""
-        if about == INERTIAL or not about:
-            return "the origin of the inertial frame"
-        return f"the connection point of {self._body(about)}"
+        return (load.about if isinstance(load, NewtonianGravity) else "") or INERTIAL
 
-    def _common(self, number: int) -> str:
+    def _common(self, number: int) -> Message:
         paths = [self.system.path(point.body) for point in self._load(number).points]
         shared = [a for a, b in zip(*paths, strict=False) if a == b]
         return self._body(shared[-1])
 
-    def _gravity(self, name: str) -> str:
-        """Which gravity is taken off an acceleration: the uniform one, and that at the origin of a falling frame."""
-        parts = ["gravity"] if self.system.uniform_fields else []
+    def _gravity(self, name: str) -> list[str]:
+        """Which gravity is taken off an acceleration: the uniform one (""), and that at the origins of these frames."""
         carriers = [frame for frame in falling_frames(self.system) if frame in self.system.path(name)]
-        parts += [f"the field at the connection point of {self._body(frame)}" for frame in carriers]
-        return f" less {' and '.join(parts)}" if parts else ""
+        return ([""] if self.system.uniform_fields else []) + carriers
+
+    def _named(self, frame: str) -> Message:
+        if not frame:
+            return Message("gravity")
+        return Message("the field at the connection point of [[body]]", body=self._body(frame))

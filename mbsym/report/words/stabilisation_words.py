@@ -23,6 +23,7 @@ def sentences(found: Stabilisation) -> Iterator[Said]:
     """Everything but the matrices of the feedback, in order."""
     for part in found.gyroscopic:
         yield from _gyroscopic(part)
+    yield from _together(found.gyroscopic)
     for energy in found.energy:
         yield from _energy(energy)
     for damped in found.dissipation:
@@ -65,6 +66,27 @@ def _gyroscopic(part: Gyroscopic) -> Iterator[Said]:
             {**names, "where": _where(region), "degree": str(region.degree)},
         )
         yield from _what_it_means(part, region.degree)
+
+
+def _together(parts: Sequence[Gyroscopic]) -> Iterator[Said]:
+    """What gyroscopic forces between the parts could do: each alone may be of an odd degree, both of an even one."""
+    degrees = [part.degree for part in parts if not part.free]
+    known = [degree for degree in degrees if degree is not None]
+    if len(known) < max(2, len(parts)) or not any(degree % 2 for degree in known):
+        return
+    gaps: Gaps = {"names": named([name for part in parts for name in part.coordinates]), "degree": str(sum(known))}
+    if sum(known) % 2:
+        yield Said(
+            "Of [[names]] together the degree is [[degree]], odd: no gyroscopic forces between them make the motion "
+            "stable, either.",
+            gaps,
+        )
+    elif not any(part.damped for part in parts):
+        yield Said(
+            "Of [[names]] together the degree is [[degree]], even: suitable gyroscopic forces between them would "
+            "stabilise their first approximation.",
+            gaps,
+        )
 
 
 def _where(region: Region) -> tuple[Relation, ...]:

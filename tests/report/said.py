@@ -1,0 +1,129 @@
+"""What results say, found in the source: messages, and the constant texts of refusals, remarks and checks."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import mbsym
+from mbsym.algebra.failures import Failure
+from mbsym.expressions.message import GAP
+
+ROOT = Path(mbsym.__file__).parent
+#: The layers whose refusals can stand in a report.
+LAYERS = ("algebra", "analysis", "formulas", "mechanics", "model", "problems")
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A text with its place, and what its gaps are given; None: a text without gaps, or given by ``**``."""
+
+    text: str
+    place: str
+    gaps: frozenset[str] | None = None
+
+
+class Module(ast.NodeVisitor):
+    """``texts`` are what is said; ``open``: places where a text is put together of pieces."""
+
+    def __init__(self, name: str, tree: ast.Module, refusals: frozenset[str]) -> None:
+        self.name = name
+        self.refusals = refusals
+        self.layered = self.name.split("/")[0] in LAYERS
+        self.texts: list[Asked] = []
+        self.open: list[str] = []
+        self.known: dict[str, list[ast.expr]] = {}
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Assign):
+                for target in node.targets:
+                    self._assigned(target, node.value)
+        self.visit(tree)
+
+    def _assigned(self, target: ast.expr, value: ast.expr) -> None:
+        if isinstance(target, ast.Name):
+            self.known.setdefault(target.id, []).append(value)
+        elif isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple):
+            for one, other in zip(target.elts, value.elts, strict=False):
+                self._assigned(one, other)
+
+    def visit_Call(self, node: ast.Call) -> None:
+        self.generic_visit(node)
+        name = ast.unparse(node.func).split(".")[-1]
+        if name == "Message":
+            self._message(node)
+        elif not self.layered:
+            return
+        elif name in self.refusals:
+            self._words(node.args[:1], node)
+            self._words([x.value for x in node.keywords if x.arg == "remedy"], node)
+        elif name == "NoResult":
+            self._words(node.args[:2], node)
+        elif name == "Check":
+            self._words([x for k, x in enumerate(node.args[:5]) if k != 3 and not isinstance(x, ast.Starred)], node)
+        self._words([x.value for x in node.keywords if x.arg in ("remark", "detail", "why_not", "missing")], node)
+
+    def _message(self, node: ast.Call) -> None:
+        first = node.args[0]
+        for text in self._literals(first):
+            starred = any(x.arg is None for x in node.keywords)
+            gaps = None if starred else frozenset(x.arg for x in node.keywords if x.arg)
+            self.texts.append(Asked(text, self._at(node), gaps))
+
+    def _words(self, values: list[ast.expr], node: ast.AST, depth: int = 0) -> None:
+        for value in values:
+            if isinstance(value, ast.JoinedStr) and depth < 4:
+                self.open.append(f"{self._at(node)}: {ast.unparse(value)}")
+            elif isinstance(value, ast.IfExp):
+                self._words([value.body, value.orelse], node, depth)
+            elif isinstance(value, ast.BoolOp):
+                self._words(value.values, node, depth)
+            elif isinstance(value, ast.Name) and depth < 3:
+                self._words(self.known.get(value.id, []), node, depth + 1)
+            elif isinstance(value, ast.Constant) and isinstance(value.value, str):
+                self.texts.append(Asked(value.value, self._at(node)))
+
+    def _literals(self, node: ast.expr) -> Iterator[str]:
+        if isinstance(node, ast.Constant) and isinstance(node.value, str):
+            yield node.value
+        elif isinstance(node, ast.IfExp):
+            yield from self._literals(node.body)
+            yield from self._literals(node.orelse)
+        elif isinstance(node, ast.Name):
+            for value in self.known.get(node.id, []):
+                if isinstance(value, ast.Constant):
+                    yield from self._literals(value)
+
+    def _at(self, node: ast.AST) -> str:
+        return f"{self.name}:{getattr(node, 'lineno', 0)}"
+
+
+@cache
+def trees() -> dict[str, ast.Module]:
+    """The modules of the package by their paths."""
+    paths = sorted(ROOT.rglob("*.py"))
+    return {str(path.relative_to(ROOT)): ast.parse(path.read_text(encoding="utf-8")) for path in paths}
+
+
+def refusals() -> frozenset[str]:
+    """The names of all kinds of ``Failure``."""
+    found, pending = set(), [Failure]
+    while pending:
+        kind = pending.pop()
+        found.add(kind.__name__)
+        pending += kind.__subclasses__()
+    return frozenset(found - {"Unsound", "Unavailable", "NoValue", "Demand"})
+
+
+def modules() -> Iterator[Module]:
+    """All of the package."""
+    names = refusals()
+    return (Module(name, tree, names) for name, tree in trees().items())
+
+
+def has_words(text: str) -> bool:
+    """Not of gaps, signs and symbols alone, which are the same in every language."""
+    return re.search(r"[A-Za-z]{2}", GAP.sub("", text)) is not None
