@@ -390,7 +390,7 @@ def turned(patch: pytest.MonkeyPatch) -> None:
 
 def turned_reference(patch: pytest.MonkeyPatch) -> None:
     """What refers to a label forgets that the sign has changed."""
-    patch.setattr(conditions, "_OPPOSITE", {})
+    patch.setattr(conditions, "OPPOSITE", {})
 
 
 LIES = [
