@@ -325,7 +325,7 @@ def _sufficient(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimRes
     if always.stable:  # nothing can refute it, and where other angles were judged nothing could be tried
         each = (trivial(region, wanted_of(region, claim), result) for region in forms(derived, claim))
         never = next((one for one in each if one is not None and one.outcome == FAILS), None)
-        return never or _told(result, EXACT, said(Said.WITH_IT, number, "", with_theorem(always.word, always.theorem)))
+        return never or _told(result, EXACT, said(Said.WITH_IT, number, "", with_theorem(always.word, always.theorems)))
     tried = _refuting(derived, claim)
     if tried.found is not None:
         return _told(result, FAILS, said(Said.NOT_SUFFICIENT, number), example=tried.found)

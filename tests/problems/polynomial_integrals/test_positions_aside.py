@@ -88,7 +88,7 @@ def test_a_free_particle_has_homogeneous_equations_and_relations_are_looked_for(
     done = CliRunner().invoke(main, ["integrals", str(path), "--relations"])
     assert done.exit_code == 0, done.output
     told = " ".join(done.output.split())
-    assert "the equations are quasi-homogeneous under them" in told
+    assert "Under these weights the equations are quasi-homogeneous." in told
     # x y' - y x' is of degree two, and kept as well.
     assert "there is none without x, y beyond those of problem 7" in told
     assert "There is none of weight up to 4 with K not zero" in told
