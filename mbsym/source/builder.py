@@ -42,15 +42,15 @@ from mbsym.source.symbols import read_symbols
 from mbsym.source.tables import read_tables
 
 
-def build(node: Node, complaints: Complaints, by_use: bool = False, folder: Path | None = None) -> System | None:
+def build(node: Node, complaints: Complaints, editor: bool = False, folder: Path | None = None) -> System | None:
     """The system that a placed tree describes, or None if anything in it is wrong.
 
-    ``folder`` is where the description is.  ``by_use``: where no parameters are declared at all, the names in the
-    bodies, loads and relations are parameters.
+    ``folder`` is where the description is.  ``editor``: it is in the plain text of the editor, which has labels for
+    keys; where no parameters are declared at all, the names in the bodies, loads and relations are parameters.
     """
-    reading = Reading(complaints, Scope(complaints), folder=folder)
+    reading = Reading(complaints, Scope(complaints), folder=folder, labelled=editor)
     fields = reading.fields(node, "a description", SYSTEM)
-    if by_use and fields.get("parameters") is None:
+    if editor and fields.get("parameters") is None:
         reading.scope.by_use = {}
     _check_version(fields, reading)
     fields.require("name")

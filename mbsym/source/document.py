@@ -88,7 +88,7 @@ def read_placed(
             editor = is_text(text, filename)
             node = read_text(text, complaints) if editor else read_yaml(text, complaints, extents)
             if node is not None and understand:
-                system = build(node, complaints, by_use=editor, folder=folder)
+                system = build(node, complaints, editor=editor, folder=folder)
     except TooManyComplaints:
         system, stopped = None, True
     return Found(system, Complaints([*complaints.sorted(), *complaints.rest(stopped)]), node, editor)

@@ -59,6 +59,9 @@ BODY = {
 
 EXPRESSION = "expression"
 
+#: What is said in words of any language.
+FREE = ("mechanical system", "description", "source", "name")
+
 
 def _inside(kinds: Mapping[str, Kind]) -> Iterator[tuple[str, Type]]:
     """The keys of all kinds with their types; of two ends with the labels of both."""

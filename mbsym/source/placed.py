@@ -17,16 +17,23 @@ MAX_DEPTH = 16
 
 @dataclass(frozen=True, slots=True)
 class Scalar:
-    """A piece of text.  ``literal`` says that its characters stand in the file one for one, from ``span`` on."""
+    """A piece of text.  ``literal`` says that its characters stand in the file one for one, from ``span`` on.
+
+    ``columns``: where they stand, and where the text ends, if not one for one ("psi" for a Greek letter).
+    """
 
     text: str
     span: Span
     literal: bool = True
+    columns: tuple[int, ...] = ()
 
     def place(self, start: int, end: int) -> Span:
         """Where the characters ``start`` to ``end`` of the text stand in the file."""
         if not self.literal:
             return self.span
+        if self.columns:
+            first = self.columns[start]
+            return Span(self.span.line, first, max(1, self.columns[max(start, end)] - first))
         return Span(self.span.line, self.span.column + start, max(1, end - start))
 
     def part(self, start: int, end: int) -> Scalar:
@@ -34,7 +41,8 @@ class Scalar:
         piece = self.text[start:end]
         start += len(piece) - len(piece.lstrip())
         stripped = piece.strip()
-        return Scalar(stripped, self.place(start, start + len(stripped)), self.literal)
+        end = start + len(stripped)
+        return Scalar(stripped, self.place(start, end), self.literal, self.columns[start : end + 1])
 
 
 @dataclass(frozen=True, slots=True)

@@ -95,6 +95,7 @@ class Reading:
     """The complaints and the declared names of one description; ``units`` are those that stand in records.
 
     ``folder`` is where the description is, if it is a file.  ``doubles``: numbers have to fit into such; not in claims.
+    ``labelled``: keys are known to the reader by the labels of the editor's text.
     """
 
     complaints: Complaints
@@ -102,6 +103,7 @@ class Reading:
     units: list[Declared] = field(default_factory=list)
     folder: Path | None = None
     doubles: bool = True
+    labelled: bool = False
 
     def error(self, code: str, message: str, span: Span | None = None, hint: str | None = None) -> None:
         self.complaints.error(code, message, span, hint)
@@ -297,7 +299,8 @@ class Fields:
         """The value of a key that must be there."""
         node = self.get(key)
         if node is None and self.sound:
-            self.reading.error("missing-key", f"{self.what} has no {ascii_safe(key)}", self.span, hint)
+            label = (self.known[key].label if self.reading.labelled and key in self.known else "") or key
+            self.reading.error("missing-key", f"{self.what} has no {ascii_safe(label)}", self.span, hint)
         return node
 
     def key_span(self, key: str) -> Span:

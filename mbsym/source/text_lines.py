@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
+from mbsym.expressions.parser import in_latin
 from mbsym.expressions.place import Span
-from mbsym.source.labels import SPELLINGS
+from mbsym.source.labels import FREE, SPELLINGS
 from mbsym.source.placed import Scalar
 
 #: What begins a numbered block.
@@ -19,7 +20,34 @@ def lines_of(text: str) -> Iterator[Scalar]:
         whole = Scalar(line, Span(number, 1, max(1, len(line))))
         content = whole.part(0, _comment_start(line))
         if content.text:
-            yield content
+            yield _in_latin(content)
+
+
+#: Greek letters, those of mathematical alphabets included, with the lowered digits behind them.
+_GREEK = re.compile("[\u0370-\u03ff\u1f00-\u1fff\U0001d6a8-\U0001d7cb][\u2080-\u2089]*")
+
+
+def _in_latin(line: Scalar) -> Scalar:
+    """Greek letters outside of quotes and meanings by their names, as names of descriptions are written: psi, omega0.
+
+    Each letter of a name stands where the Greek one does.
+    """
+    words = line.text.partition("meaning")[0]
+    label, _ = label_of(line)
+    if _GREEK.search(words) is None or (label is not None and word_of(label.text) in FREE):
+        return line
+    text, columns, end = "", list[int](), 0
+    for match in re.finditer(rf'"(?:[^"\\]|\\.)*"|{_GREEK.pattern}', words):
+        named = in_latin(match[0])
+        name = named if named.isalnum() and not match[0].startswith('"') else match[0]  # some letters have none
+        text += line.text[end : match.start()] + name
+        columns += range(end, match.start())
+        one_by_one = len(name) == len(match[0])
+        columns += range(match.start(), match.end()) if one_by_one else [match.start()] * len(name)
+        end = match.end()
+    columns += range(end, len(line.text) + 1)
+    places = tuple(line.span.column + k for k in columns)
+    return Scalar(text + line.text[end:], line.span, columns=places)
 
 
 def _comment_start(line: str) -> int:
@@ -43,6 +71,16 @@ def label_of(line: Scalar) -> tuple[Scalar | None, Scalar]:
     if match is None:
         return None, line
     return line.part(0, match.start()), line.part(match.end(), len(line.text))
+
+
+def spoken(line: Scalar, known: Iterable[str]) -> tuple[Scalar, str, Scalar] | None:
+    """A line that begins with a label, whether a colon follows or nothing does, as in a form: with the longest."""
+    ends = [match.end() for match in re.finditer(r"\S+", line.text)]
+    for end in reversed(ends):
+        word = word_of(line.text[:end].rstrip(":= \t"))
+        if word in known:
+            return line.part(0, end), word, line.part(end, len(line.text))
+    return None
 
 
 def label_in(part: Scalar) -> tuple[Scalar | None, Scalar]:

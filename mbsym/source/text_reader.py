@@ -14,12 +14,15 @@ from dataclasses import dataclass, field
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints, Span
 from mbsym.source.keys import CONSTRAINTS, LOADS, VERSION
-from mbsym.source.labels import ASSUMPTIONS, BODY, HEADER, SECTIONS
+from mbsym.source.labels import ASSUMPTIONS, BODY, FREE, HEADER, SECTIONS
 from mbsym.source.placed import Entry, Mapping, Node, Scalar, Sequence
 from mbsym.source.scope import closest
 from mbsym.source.text_kinds import claim, of_kind
-from mbsym.source.text_lines import HEADING, key_of, label_in, label_of, lines_of, word_of
+from mbsym.source.text_lines import HEADING, key_of, label_in, label_of, lines_of, spoken, word_of
 from mbsym.source.text_values import items, row, split
+
+#: A label has no more words.
+MOST_WORDS = 8
 
 
 def read_text(text: str, complaints: Complaints) -> Node | None:
@@ -106,9 +109,13 @@ class TextReader:
         word = word_of(label.text if label is not None else line.text)
         if label is not None and word in known:
             return label, word, value
+        if (found := spoken(line, known)) is not None:
+            return found
+        if label is None:
+            label, value = _leading_words(line, known)
         span = line.span if label is None else label.span
         shown = line.text if label is None else label.text
-        guess = closest(word, known)
+        guess = closest(word_of(shown), known)
         hint = f"did you mean '{guess}'?" if guess else f"the labels are: {', '.join(known)}"
         self.error("unknown-key", f"unknown label {ascii_safe(shown)} in {what}", span, hint)
         return None if guess is None or label is None else (label, guess, value)
@@ -122,7 +129,7 @@ class TextReader:
             if found is None or found[1] == "number of bodies":
                 continue
             label, word, value = found
-            free = word in ("mechanical system", "description", "source")
+            free = word in FREE
             read = (
                 items(value) if word in ("order", "dependent", "reactions") else self.unquoted(value) if free else value
             )
@@ -259,7 +266,7 @@ class TextReader:
         lines = block.lines
         position = 0
         while position < len(lines):
-            found = _bare_label(lines[position], BODY) or self.labelled(lines[position], BODY, block.heading.text)
+            found = self.labelled(lines[position], BODY, block.heading.text)
             position += 1
             if found is None:
                 continue
@@ -348,11 +355,17 @@ def _unnamed(number: int) -> str:
     return f"Body {number}"
 
 
-def _bare_label(line: Scalar, known: Iterable[str]) -> tuple[Scalar, str, Scalar] | None:
-    """A line that is a label and nothing else, as above a field of a form."""
-    word = word_of(line.text)
-    end = len(line.text)
-    return (line, word, line.part(end, end)) if word in known else None
+def _leading_words(line: Scalar, known: Iterable[str]) -> tuple[Scalar | None, Scalar]:
+    """A line without a colon, cut behind the words that resemble a label most; uncut where none do."""
+    from difflib import SequenceMatcher
+
+    best, cut = 0.85, 0
+    for match in list(re.finditer(r"\S+", line.text))[:MOST_WORDS]:
+        words = word_of(line.text[: match.end()])
+        alike = max(SequenceMatcher(None, words, one).ratio() for one in known)
+        if alike > best:
+            best, cut = alike, match.end()
+    return (line.part(0, cut), line.part(cut, len(line.text))) if cut else (None, line)
 
 
 def _goes_on(lines: list[Scalar], position: int) -> bool:
@@ -360,7 +373,7 @@ def _goes_on(lines: list[Scalar], position: int) -> bool:
     if position >= len(lines):
         return False
     line = lines[position]
-    return label_of(line)[0] is None and _bare_label(line, BODY) is None
+    return label_of(line)[0] is None and spoken(line, BODY) is None
 
 
 def _list_entry(key: str, blocks: list[_Block], read: Callable[[_Block], Mapping | None]) -> list[Entry]:
@@ -384,8 +397,7 @@ def _with_accepted(entries: list[Entry], accept: list[Entry]) -> list[Entry]:
 def _rows(lines: list[Scalar], position: int) -> list[Scalar]:
     rows = []
     for line in lines[position : position + 3]:
-        label, _ = label_of(line)
-        if label is not None:
+        if label_of(line)[0] is not None or spoken(line, BODY) is not None:
             break
         rows.append(line)
     return rows

@@ -5,18 +5,27 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from mbsym.expressions.tree import FUNCTIONS
 from mbsym.source.placed import Node, Scalar, Sequence
 
 OPENING = {"(": ")", "{": "}", "[": "]"}
 
 
 def items(value: Scalar) -> Node:
-    """``(a, b, c)``, ``{a, b, c}`` or ``[a, b, c]``."""
+    """``(a, b, c)``, ``{a, b, c}`` or ``[a, b, c]``; three words without commas are three, too."""
     text = value.text
     if text[:1] not in OPENING or not encloses(text):
         return value
     inner = value.part(1, len(text) - 1)
-    return Sequence(tuple(split(inner, ",")) if inner.text else (), value.span)
+    parts = tuple(split(inner, ",")) if inner.text else ()
+    return Sequence(_three_words(inner) or parts if len(parts) == 1 else parts, value.span)
+
+
+def _three_words(line: Scalar) -> tuple[Scalar, ...]:
+    """``0 l/2 0``: each of them an expression by itself; none where they are not three."""
+    words = [line.part(match.start(), match.end()) for match in re.finditer(r"\S+", line.text)]
+    bare = any(x.text in ("+", "-", "*", "/", "**") or x.text in FUNCTIONS or x.text[-1] in "+-*/" for x in words)
+    return tuple(words) if len(words) == 3 and not bare else ()
 
 
 def row(line: Scalar) -> Node:
@@ -26,9 +35,7 @@ def row(line: Scalar) -> Node:
     parts = list(split(line, ","))
     if len(parts) == 1 and line.text.startswith("|") and line.text.endswith("|") and len(line.text) > 1:
         parts = list(split(line.part(1, len(line.text) - 1), "|"))
-    if len(parts) == 1 and len(line.text.split()) == 3:
-        parts = [line.part(match.start(), match.end()) for match in re.finditer(r"\S+", line.text)]
-    return Sequence(tuple(parts), line.span)
+    return Sequence(_three_words(line) or tuple(parts) if len(parts) == 1 else tuple(parts), line.span)
 
 
 def encloses(text: str) -> bool:

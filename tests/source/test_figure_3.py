@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from mbsym.expressions.tree import text
 from mbsym.source.document import load, read
 
 ROOT = Path(__file__).parents[2]
@@ -69,3 +70,58 @@ def test_yaml_declares_its_parameters() -> None:
     system, complaints = read(text, "p.yaml")
     assert system is None
     assert [one.code for one in complaints.items] == ["unknown-name"]
+
+
+BY_HAND = """
+Mechanical system: Pendulum in a carriage
+Number of bodies 1
+
+Prescribed motions
+  χ = ω₀
+
+Body description (1)
+  Previous body number\t0
+  Body mass M2
+  Radius vector of connection point\t(0 l/2 0)
+  Radius vector of mass center (0 -l 0)
+  Numbers of rotation axes\t{3 0 0}
+  Rotation angles {ψ - χ, 0, 0}
+  Tensor of inertia
+    Jx\t0\t0
+    0\tJy\t0
+    0\t0\tJz
+  Generalized coordinates {ψ}
+"""
+
+
+def test_it_is_read_as_people_fill_it_in() -> None:
+    """Greek letters, no colons, vectors with spaces: the same as in the letters of descriptions."""
+    found, complaints = read(BY_HAND, "form.txt")
+    assert [one.code for one in complaints.items] == ["declared-by-use"]
+    assert found is not None
+    latin = BY_HAND.replace("χ", "chi").replace("ω₀", "omega0").replace("ψ", "psi")
+    for words in ("0 l/2 0", "0 -l 0", "3 0 0"):
+        latin = latin.replace(words, ", ".join(words.split()))
+    plain, _ = read(latin, "form.txt")
+    assert plain is not None
+    assert str(replace(found.bodies[0], span=None)) == str(replace(plain.bodies[0], span=None))
+    assert found.coordinates == ("psi",)
+    assert found.parameter_names == plain.parameter_names
+    assert {"omega0", "M2", "l", "Jx"} <= {*found.parameter_names}
+    assert [text(x) for x in found.bodies[0].connection_point] == ["0", "l/2", "0"]
+    assert [text(x) for x in found.bodies[0].rotation.angles] == ["psi - chi"]
+
+
+def test_a_slip_is_one_complaint_at_its_place_and_speaks_of_labels() -> None:
+    """In the column of the file, whatever the letters before it are called."""
+    wrong = BY_HAND.replace("{ψ - χ, 0, 0}", "{ψ - χ, thetta(ψ), 0}").replace("Body mass M2\n", "\n")
+    found, complaints = read(wrong.replace("Numbers of rotation", "Number of rotation"), "form.txt")
+    assert found is None
+    errors = [(one.code, one.message) for one in complaints.items if one.severity == "error"]
+    assert ("missing-key", "body 'Body 1' has no 'body mass'") in errors
+    assert ("unknown-key", "unknown label 'Number of rotation axes' in Body description (1)") in errors
+    (slip,) = [one for one in complaints.items if "thetta" in one.message]
+    line = wrong.split("\n")[slip.span.line - 1] if slip.span else ""
+    assert slip.span is not None
+    assert line[slip.span.column - 1 :].startswith("thetta")
+    assert len(errors) == 3
