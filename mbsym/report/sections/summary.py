@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
@@ -158,16 +158,19 @@ def _part(part: SubsystemStability, key: str) -> Iterator[Inline]:
     word = part.theory.verdict.word
     if word is not Word.DEPENDS or key or not known:
         yield Phrase(verdict(part.theory.verdict, key))
-    if word.stable or word is Word.UNSTABLE:
+    if word.asymptotic or word is Word.UNSTABLE:
         return
     seen: list[Formula] = []
-    before: list[Relation] = []
-    for k, case in enumerate(known[:MOST_CASES]):
-        otherwise = (Said("otherwise"), " ") if k else ()
+    before: list[tuple[list[Relation], list[Relation]]] = []
+    for case in known[:MOST_CASES]:
         every, either = _conditions(case, seen)
+        if (every or either) and (every, either) in before:
+            continue  # the one before applies
         told = Phrase(where(case.word, case.theorems))
-        yield Phrase((*otherwise, _where(told, every, either, before) if every or either else _counted(told, case)))
-        before = every
+        last = before[-1][0] if before else []
+        told_where = _where(told, every, either, last) if every or either else _counted(told, case)
+        yield Phrase((*((Said("otherwise"), " ") if before else ()), told_where))
+        before.append((every, either))
     if len(known) > MOST_CASES:
         yield Link(say("further cases: [[count]]", count=str(len(known) - MOST_CASES)), "problem-6")
 
@@ -180,11 +183,18 @@ def _conditions(case: CaseStatement, seen: list[Formula]) -> tuple[list[Relation
     wanted = [*case.all_of, *case.any_of]
     if len(wanted) > MOST_CONDITIONS or not all(one.formula is not None and is_short(one.formula) for one in wanted):
         return [], []
-    either = [_relation(one, seen) for one in case.any_of]
-    every = [_relation(one, seen) for one in case.all_of]
+    either = _once(_relation(one, seen) for one in case.any_of)
+    every = _once(_relation(one, seen) for one in case.all_of)
     if len(either) == 1:  # p < 0 says that p is not 0
         every = [one for one in every if one.parts != (either[0].parts[0], "!=", 0)]
     return every, either
+
+
+def _once(relations: Iterable[Relation]) -> list[Relation]:
+    found: list[Relation] = []
+    for one in relations:
+        found += [] if one in found else [one]
+    return found
 
 
 def _counted(verdict: Phrase, case: CaseStatement) -> Inline:
