@@ -74,7 +74,9 @@ class InfixPrinter:
         if isinstance(factor.base, int):
             base = self.atom(factor.base)
         else:
-            base = self.wave(factor.base) if isinstance(factor.base, Wave) else f"({self.sum(factor.base)})"
+            base = self.wave(factor.base) if isinstance(factor.base, Wave) else self.sum(factor.base)
+            if isinstance(factor.base, Sum) and not base.isidentifier():
+                base = f"({base})"
         return base if factor.exponent == 1 else f"{base}{self.power}{factor.exponent}"
 
     def atom(self, index: int) -> str:

@@ -76,11 +76,60 @@ def test_each_group_of_coordinates_has_its_cases_in_order(tmp_path: Path) -> Non
     at = next(k for k, line in enumerate(lines) if line.startswith("Stability"))
     assert lines[at] == "Stability  the whole system: depends on the parameters"
     assert lines[at + 1] == "psi, phi: stable (Routh) if C - A > 0, C - B > 0"
-    assert lines[at + 2].startswith("otherwise gyroscopically stabilised only if ")
+    assert lines[at + 2].startswith("otherwise gyroscopically stabilised only, if ")
     assert lines[at + 3] == "otherwise unstable (Kelvin-Chetaev) if (A - C) (B - C) < 0"
+    assert lines[at + 4].startswith("otherwise unstable (Lyapunov's first method) if A (2 B - C) + ")
+    assert "(A - C) (B - C) < 0" not in lines[at + 4]  # where it holds the case before applies
     assert "theta: stable (Lagrange-Dirichlet) if A - B > 0" in lines
     assert "(of each group of coordinates while the others keep to the unperturbed motion)" in lines
     assert "otherwise unstable (Lyapunov's first method) if A - B < 0" in lines
+
+
+CASES = Path(__file__).parents[1] / "cases" / "statements"
+
+
+def test_no_case_of_stability_stands_beside_a_verdict_of_instability(tmp_path: Path) -> None:
+    """K = [[2 a, -1, b - a], [-1, b - 2, 1/2 - b - a], [b - a, 1/2 - b - a, b + 2]] is nowhere positive definite.
+
+    With d = 1/2 - b - a: minor 3 = 2 a (b^2 - 4 - d^2) - (b + 2) - 2 d (b - a) - (b - 2) (b - a)^2; it is negative
+    wherever minor 2 = 2 a (b - 2) - 1 > 0 and a > 0 (tried below): "asymptotically stable if" would be of nothing.
+    """
+    for a, b in [(x / 20, y / 20) for x in range(1, 200) for y in range(41, 400, 3)]:
+        d = 0.5 - b - a
+        minor = 2 * a * (b * b - 4 - d * d) - (b + 2) - 2 * d * (b - a) - (b - 2) * (b - a) ** 2
+        assert 2 * a * (b - 2) <= 1 or minor < 0
+    lines = told(tmp_path, (CASES / "complete-dissipation.yaml").read_text(encoding="utf-8"))
+    at = next(k for k, line in enumerate(lines) if line.startswith("Stability"))
+    assert lines[at] == "Stability  unstable but for border cases (Kelvin-Chetaev)"
+    assert lines[at + 1].startswith("Self-check")
+
+
+def test_what_is_undecided_in_every_case_is_so_once(tmp_path: Path) -> None:
+    """Of a sphere on a turntable zero roots remain in every case."""
+    lines = told(tmp_path, (SHIPPED / "turntable-sphere.yaml").read_text(encoding="utf-8"))
+    at = lines.index("x, y, alpha, beta: undecided")
+    assert lines[at + 1].startswith("gamma: ")
+
+
+def test_conditions_have_no_needless_minus_and_none_that_another_implies(tmp_path: Path) -> None:
+    """van der Pol at rest: x'' - mu x' + x = 0 about x = 0.  (N - W^2) (B - C) > 0 says that N is not W^2."""
+    lines = told(tmp_path, (CASES / "van_der_pol_at_rest.yaml").read_text(encoding="utf-8"))
+    assert "asymptotically stable (Lyapunov's first method) if mu < 0" in lines
+    assert "otherwise unstable (Lyapunov's first method) if mu > 0" in lines
+    lines = told(tmp_path, (SHIPPED / "clebsch.yaml").read_text(encoding="utf-8"))
+    assert "a, b: stable (Routh) if (N - W^2) (B - C) > 0, (A - C) (B - C) > 0" in lines
+
+
+def test_only_does_not_belong_to_if(tmp_path: Path) -> None:
+    """A pendulum in a lift: g + a > 0 is enough for a centre of the linear equations, which "only if" would not say."""
+    lines = told(tmp_path, (CASES / "lift.yaml").read_text(encoding="utf-8"))
+    assert "stable in first approximation only, if g + a > 0" in lines
+
+
+def test_a_name_in_a_denominator_has_no_brackets(tmp_path: Path) -> None:
+    lines = told(tmp_path, (SHIPPED / "dumbbell.yaml").read_text(encoding="utf-8"), "--problems", "1-3")
+    assert [line for line in lines if "/(R^3 (m1 + m2))" in line]
+    assert not [line for line in lines if "(R)" in line]
 
 
 def test_at_eighty_columns_text_hangs_beside_its_name_and_short_conditions_are_whole(tmp_path: Path) -> None:

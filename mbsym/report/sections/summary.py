@@ -8,6 +8,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 from mbsym.algebra.factors import rational_ratio
+from mbsym.formulas.formula import Formula
 from mbsym.model.quantities import rate_unit
 from mbsym.model.system import System
 from mbsym.problems.equilibrium import Equilibrium
@@ -42,7 +43,6 @@ from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line, titles
 from mbsym.report.words.verdicts import decided, grade, verdict, where
 
 if TYPE_CHECKING:
-    from mbsym.formulas.formula import Formula
     from mbsym.problems.constraints import Constraints
     from mbsym.report.results import Results
 
@@ -158,19 +158,27 @@ def _part(part: SubsystemStability, key: str) -> Iterator[Inline]:
     word = part.theory.verdict.word
     if word is not Word.DEPENDS or key or not known:
         yield Phrase(verdict(part.theory.verdict, key))
-    if word.asymptotic or word is Word.UNSTABLE:
+    if word.asymptotic or word is Word.UNSTABLE or all(one.word is word is Word.UNDECIDED for one in known):
         return
+    if word is Word.UNSTABLE_BUT_BORDERS and any(one.word is not Word.UNSTABLE for one in known):
+        return  # the conditions of the others hold nowhere inside
     seen: list[Formula] = []
     before: list[tuple[list[Relation], list[Relation]]] = []
+    sufficed: list[list[Relation]] = []
     for case in known[:MOST_CASES]:
         every, either = _conditions(case, seen)
         if (every or either) and (every, either) in before:
             continue  # the one before applies
-        told = Phrase(where(case.word, case.theorems))
+        if not every and (further := [one for one in either if all(one not in sole for sole in sufficed)]) != either:
+            if not further:
+                continue
+            either = further
         last = before[-1][0] if before else []
-        told_where = _where(told, every, either, last) if every or either else _counted(told, case)
+        told_where = _where(case, every, either, last) if every or either else _counted(case)
         yield Phrase((*((Said("otherwise"), " ") if before else ()), told_where))
         before.append((every, either))
+        if len(every) + len(either) == 1 or not every:  # where one of these holds, this case or one before applies
+            sufficed.append([*every, *either])
     if len(known) > MOST_CASES:
         yield Link(say("further cases: [[count]]", count=str(len(known) - MOST_CASES)), "problem-6")
 
@@ -185,9 +193,18 @@ def _conditions(case: CaseStatement, seen: list[Formula]) -> tuple[list[Relation
         return [], []
     either = _once(_relation(one, seen) for one in case.any_of)
     every = _once(_relation(one, seen) for one in case.all_of)
-    if len(either) == 1:  # p < 0 says that p is not 0
-        every = [one for one in every if one.parts != (either[0].parts[0], "!=", 0)]
-    return every, either
+    unequal = [one.parts[0] for one in either if one.parts[1] == "!="]
+    either = [one for one in either if one.parts[1] == "!=" or one.parts[0] not in unequal]  # p < 0 or p != 0
+    strict = [one for one in [*every, *(either if len(either) == 1 else [])] if one.parts[1] in ("<", ">")]
+    return [one for one in every if not any(_follows(one, other) for other in strict)], either
+
+
+def _follows(one: Relation, other: Relation) -> bool:
+    """Whether it says only that something is not 0 of which the other has a multiple on one side of 0."""
+    left, right = one.parts[0], other.parts[0]
+    if one.parts[1] != "!=" or not (isinstance(left, Formula) and isinstance(right, Formula)):
+        return False
+    return bool(divmod(right.polynomial, left.polynomial)[1].is_zero())
 
 
 def _once(relations: Iterable[Relation]) -> list[Relation]:
@@ -197,23 +214,29 @@ def _once(relations: Iterable[Relation]) -> list[Relation]:
     return found
 
 
-def _counted(verdict: Phrase, case: CaseStatement) -> Inline:
+def _counted(case: CaseStatement) -> Inline:
     """That a case has conditions."""
+    verdict = Phrase(where(case.word, case.theorems))
     if case.otherwise:
         return verdict
-    text = "[[verdict]] if conditions hold; their number: [[count]]"
+    text = "[[verdict]], if conditions hold; their number: [[count]]"
+    if case.theorems:
+        text = "[[verdict]] if conditions hold; their number: [[count]]"
     if not case.all_of and len(case.any_of) > 1:
         text = "[[verdict]] if at least one of several conditions holds; their number: [[count]]"
     return Link(say(text, verdict=verdict, count=str(len(case.all_of) + len(case.any_of))), "problem-6")
 
 
-def _where(verdict: Phrase, every: list[Relation], either: list[Relation], before: list[Relation]) -> Inline:
+def _where(case: CaseStatement, every: list[Relation], either: list[Relation], before: list[Relation]) -> Inline:
     """The verdict with its conditions; ``before``: those of the case in front of it."""
+    verdict = Phrase(where(case.word, case.theorems))
     if len(either) > 1 and not every and [one.parts for one in either] == [_reversed(one) for one in before]:
         return say("[[verdict]] if one of these is negative", verdict=verdict)
     between = (", ", Said("and"), " ") if every and either else ()
     conditions = Phrase((joined(every, ", "), *between, joined(either, " ", Said("or"), " ")))
-    return say("[[verdict]] if [[conditions]]", verdict=verdict, conditions=conditions)
+    # Without a theorem behind it "gyroscopically stabilised only if" would be read as "only if".
+    text = "[[verdict]] if [[conditions]]" if case.theorems else "[[verdict]], if [[conditions]]"
+    return say(text, verdict=verdict, conditions=conditions)
 
 
 def _reversed(one: Relation) -> tuple[Math | str, ...]:
@@ -221,14 +244,16 @@ def _reversed(one: Relation) -> tuple[Math | str, ...]:
 
 
 def _relation(item: Statement, seen: list[Formula]) -> Relation:
-    """p > 0; where -p or a multiple stood before, by that: p < 0."""
+    """p > 0; where -p or a multiple stood before, by that: p < 0; so, too, where all signs of p are minus."""
     assert item.formula is not None
+    formula, reversed_ = item.formula, OPPOSITE.get(item.relation, item.relation)
     for one in seen:
-        ratio = rational_ratio(item.formula.polynomial, one.polynomial)
+        ratio = rational_ratio(formula.polynomial, one.polynomial)
         if ratio is not None:
-            return Relation(one, item.relation if ratio > 0 else OPPOSITE.get(item.relation, item.relation), 0)
-    seen.append(item.formula)
-    return Relation(item.formula, item.relation, 0)
+            return Relation(one, item.relation if ratio > 0 else reversed_, 0)
+    minus = all(coefficient < 0 for coefficient in formula.polynomial.coeffs())
+    seen.append(-formula if minus else formula)
+    return Relation(seen[-1], reversed_ if minus else item.relation, 0)
 
 
 def _claims(results: Results) -> Iterator[Inline]:
