@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
 from conftest import SHIPPED
 
+from mbsym import load
+from mbsym.problems.stability.reasons import Because
+from mbsym.problems.stability.verdict import undecided
+from mbsym.problems.stability.word import Word
+from mbsym.report.sections.summary import _part
 from mbsym_cli.main import main
 
 PENDULUM = (SHIPPED / "simple-pendulum.yaml").read_text(encoding="utf-8")
@@ -111,6 +117,15 @@ def test_what_is_undecided_in_every_case_is_so_once(tmp_path: Path) -> None:
     assert lines[at + 1].startswith("gamma: ")
 
 
+def test_what_is_decided_case_by_case_is_not_called_undecided() -> None:
+    """Conditions too long to be compared leave the verdict on the whole open (bicycle), not the cases."""
+    (part,) = load(SHIPPED / "bead-on-hoop.yaml").stability.subsystems
+    open_ = undecided(Because.CONDITIONS_UNWRITTEN)
+    lines = list(_part(replace(part, theory=replace(part.theory, verdict=open_)), ""))
+    assert len(lines) == 2  # g - R Omega^2 > 0 and < 0
+    assert Word.UNDECIDED.value not in repr(lines)
+
+
 def test_conditions_have_no_needless_minus_and_none_that_another_implies(tmp_path: Path) -> None:
     """van der Pol at rest: x'' - mu x' + x = 0 about x = 0.  (N - W^2) (B - C) > 0 says that N is not W^2."""
     lines = told(tmp_path, (CASES / "van_der_pol_at_rest.yaml").read_text(encoding="utf-8"))
@@ -124,6 +139,16 @@ def test_only_does_not_belong_to_if(tmp_path: Path) -> None:
     """A pendulum in a lift: g + a > 0 is enough for a centre of the linear equations, which "only if" would not say."""
     lines = told(tmp_path, (CASES / "lift.yaml").read_text(encoding="utf-8"))
     assert "stable in first approximation only, if g + a > 0" in lines
+
+
+def test_a_condition_that_varies_has_to_hold_all_the_time(tmp_path: Path) -> None:
+    """The rod's weight turns the wheels by m g e cos(p)/10, and p = v t/r: there is no such motion but with v = 0."""
+    text = (CASES.parent / "constraints" / "coupling-rod.yaml").read_text(encoding="utf-8")
+    (line,) = [x for x in told(tmp_path, text, "--problems", "1-4") if x.startswith("Motion")]
+    assert line.endswith(" satisfies the equations of motion if and only if, at all times, cos(p) = 0")
+    text = (SHIPPED / "orbital-gyrostat.yaml").read_text(encoding="utf-8")
+    (line,) = [x for x in told(tmp_path, text, "--problems", "1-4") if x.startswith("Motion")]
+    assert line.endswith(" satisfies the equations of motion if and only if h1 = 0, h3 = 0")
 
 
 def test_a_name_in_a_denominator_has_no_brackets(tmp_path: Path) -> None:

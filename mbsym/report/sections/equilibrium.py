@@ -32,6 +32,13 @@ IN_COORDINATES = (
 )
 
 
+def exists_if(found: Equilibrium) -> Said:
+    """What is said before the conditions: of those that vary along the motion, that they have to hold all the time."""
+    if found.unsteady:
+        return Said("satisfies the equations of motion if and only if, at all times,")
+    return Said("satisfies the equations of motion if and only if")
+
+
 def content(results: Results) -> Iterator[Block]:
     """What reports say."""
     yield Heading("equilibrium", Said("Problem 4. The unperturbed motion"))
@@ -48,7 +55,7 @@ def content(results: Results) -> Iterator[Block]:
         yield paragraph(Said("does not satisfy the equations of motion: these can never vanish."))
         yield from map(Display, found.impossible)
     else:
-        yield paragraph(Said("satisfies the equations of motion if and only if"))
+        yield paragraph(exists_if(found))
         for k, condition in enumerate(found.conditions, start=1):
             yield Display(Relation(condition, "=", 0), f"equilibrium:{k}")
         if found.solved:

@@ -38,6 +38,7 @@ from mbsym.report.content import (
 )
 from mbsym.report.sections.canonical import TITLES
 from mbsym.report.sections.equations import is_short, short_equations
+from mbsym.report.sections.equilibrium import exists_if
 from mbsym.report.sections.system import unperturbed_motion
 from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line, titles
 from mbsym.report.words.verdicts import decided, grade, verdict, where
@@ -115,7 +116,7 @@ def _motion(found: Equilibrium, system: System) -> Iterator[Inline]:
         yield Phrase((*told, Graded(Said("does not satisfy the equations of motion"), "bad")))
     elif len(found.conditions) <= MOST_CONDITIONS and all(map(is_short, found.conditions)):
         wanted = joined((Relation(one, "=", 0) for one in found.conditions), ", ")
-        yield Phrase((*told, Said("satisfies the equations of motion if and only if"), " ", wanted))
+        yield Phrase((*told, exists_if(found), " ", wanted))
     else:
         text = "satisfies the equations of motion under conditions; their number: [[count]]"
         yield Phrase((*told, Link(say(text, count=str(len(found.conditions))), "problem-4")))
@@ -156,9 +157,11 @@ def _part(part: SubsystemStability, key: str) -> Iterator[Inline]:
     known = cases(part.ring, part.theory.cases, label_meanings(part.ring, part.theory.requirements))
     known = [one for one in known if one.all_of or one.any_of or one.otherwise]
     word = part.theory.verdict.word
-    if word is not Word.DEPENDS or key or not known:
+    if all(one.word is word is Word.UNDECIDED for one in known):
+        known = []
+    if word not in (Word.DEPENDS, Word.UNDECIDED) or key or not known:
         yield Phrase(verdict(part.theory.verdict, key))
-    if word.asymptotic or word is Word.UNSTABLE or all(one.word is word is Word.UNDECIDED for one in known):
+    if word.asymptotic or word is Word.UNSTABLE:
         return
     if word is Word.UNSTABLE_BUT_BORDERS and any(one.word is not Word.UNSTABLE for one in known):
         return  # the conditions of the others hold nowhere inside
