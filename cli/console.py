@@ -19,6 +19,7 @@ import click
 from mbsym.algebra.failures import LOG
 from mbsym.algebra.parts import missing
 from mbsym.expressions.counting import counted
+from mbsym.expressions.safe import UNBROKEN
 from mbsym.expressions.safe import safe as escaped
 
 if TYPE_CHECKING:
@@ -165,9 +166,6 @@ def _words(line: str, widest: int) -> Iterator[tuple[int, int]]:
         inner = f"[^{UNBROKEN}]+" if word.end() - word.start() > widest else ".+"
         yield from (part.span() for part in re.compile(inner).finditer(line, *word.span()))
 
-
-#: A space at which no line ends; it is printed as an ordinary one.
-UNBROKEN = "\u00a0"
 
 #: What rich takes for a terminal though the output is none.
 _FORCED = ("FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE")

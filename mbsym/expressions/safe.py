@@ -8,6 +8,9 @@ written as an escape.
 
 from __future__ import annotations
 
+#: A space at which no line ends, in what the terminal is told; it is printed as an ordinary one.
+UNBROKEN = "\x1f"
+
 
 def safe(text: str) -> str:
     """The text with every character that is not printable written as an escape, tabs and line ends as a blank."""

@@ -177,6 +177,13 @@ class Dynamics:
         rows = jacobian(fresh, rhs.outputs, states)
         return self._code([node for row in rows for node in row])
 
+    @property
+    def linear(self) -> bool:
+        """Whether the right-hand side is linear in the state: no entry of the Jacobian is a function of it."""
+        program = self.jacobian.program
+        used = (program.instructions[number] for number in program.live(self.jacobian.outputs))
+        return all(one.operation != "input" or str(one.payload) not in self.inputs[1:] for one in used)
+
     @cached_property
     def _lagrangian(self) -> tuple[Node, Node]:
         """(T, U) in the specialised program; relative to the frames that fall, where there are any."""

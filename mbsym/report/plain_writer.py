@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from functools import singledispatchmethod
 from typing import Any, NamedTuple
 
+from mbsym.expressions.safe import UNBROKEN
 from mbsym.expressions.tree import text
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.python import readable_name
@@ -20,8 +21,6 @@ from mbsym.report.language import Language
 _DOTS = ("", "'", "''")
 _SCRIPT = {"A": "\U0001d49c", "B": "\u212c", "C": "\U0001d49e", "D": "\U0001d49f"}
 _DIALECT = Dialect(call=lambda function, argument: f"{function}({argument})", local=lambda count: f"s{count}")
-#: A space at which no line ends: formulas are broken before their signs alone.
-UNBROKEN = "\u00a0"
 #: How what is good, bad or open looks on the terminal, and titles.
 STYLES = {"good": "green", "bad": "bold red", "open": "yellow"}
 TITLE = "bold cyan"

@@ -19,8 +19,8 @@ class Request:
 
     Problem 6 is about constant coefficients; this is for periodic ones (a pendulum whose pivot shakes, Mathieu's
     equation).  The period is read from the equations, the monodromy matrix is enclosed in balls with proved remainders,
-    and what its multipliers prove is said: unstable, asymptotically stable, stable in the first approximation only, or
-    undecided.
+    and what its multipliers prove is said: unstable, asymptotically stable, stable (of linear equations), stable in the
+    first approximation only, or undecided.
 
     Written is floquet.json.  Exit codes: 0 judged (undecided, too), 1 there is nothing to judge or it was not written,
     2 something is missing or wrong, 130 interrupted.

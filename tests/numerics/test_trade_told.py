@@ -11,10 +11,12 @@ from click.testing import CliRunner
 
 import mbsym
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.methods.interface import Breakdown
+from mbsym.numerics.methods.interface import Breakdown, Setting, Work
 from mbsym.numerics.methods.table import METHODS
+from mbsym.numerics.planning.prices import FOLLOWED, cost
 from mbsym.numerics.scenario import scenario
 from mbsym.numerics.trade import reference_search
+from mbsym.numerics.trade.comparison import compared
 from mbsym.numerics.trade.reference import reference
 from mbsym.numerics.trade.reference_search import BROKEN, whole_reference
 from mbsym.numerics.trade.tradeoff import FIRST, tradeoff
@@ -94,3 +96,48 @@ def test_a_way_to_a_reference_that_fails_as_nobody_foresaw_is_no_end_of_the_stud
     assert "internal error" in found.output
     assert "planted" in found.output
     assert "Traceback" not in found.output
+
+
+TWO_RATES = """
+mbsym: 1
+name: Two parts, one fast and damped
+parameters: {a: positive, b: positive}
+bodies:
+  - {name: p, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}
+loads:
+  - generalized force: {x: -a*x, y: -b*y - y_dot}
+values: {a: 1, b: 1000000}
+initial: {x: 1, y: 1}
+"""
+
+
+def test_a_search_is_asked_often_whether_it_may_go_on() -> None:
+    """3200 periods in 20 units of time, of which nobody asks about one step after the other.
+
+    Between two looks at the meter lie 1/2000 of the time at most where steps are many: an implicit method in the dark
+    for 1/32 of it spent minutes that nobody had allowed.
+    """
+    dynamics = dynamics_of(TWO_RATES)
+    reached: list[float] = []
+
+    class Enough(Exception):
+        pass
+
+    def watch(t: float) -> None:
+        reached.append(t)
+        if t > 10:
+            raise Enough
+
+    first, second = (METHODS["rk45"].start(dynamics, Setting(tolerance)) for tolerance in (1e-3, 1e-4))
+    with pytest.raises(Enough):
+        compared(first, second, 20.0, ("x", "y", "x_dot", "y_dot"), watch=watch)
+    beyond = [t for t in reached if t > 1]
+    assert max(np.diff(beyond)) < 20 / 1000
+
+
+def test_steps_that_nobody_looks_at_are_not_priced_as_if_somebody_did() -> None:
+    dynamics = dynamics_of(TWO_RATES)
+    few, many = (Work(evaluations=12 * n, steps=n) for n in (FOLLOWED, 100 * FOLLOWED))
+    price = [cost(dynamics, "dop853", "float64", work, looked_at=True) for work in (few, many)]
+    plain = [cost(dynamics, "dop853", "float64", work) for work in (few, many)]
+    assert price[1] - plain[1] == pytest.approx(price[0] - plain[0])

@@ -11,12 +11,13 @@ from click.testing import CliRunner
 from conftest import SHIPPED, derived
 
 import mbsym
+from mbsym.expressions.safe import UNBROKEN
 from mbsym.formulas.names import greek
 from mbsym.problems.normal_forms.result import Theorem
 from mbsym.report.content import Display, Graded, Notation, Relation, Rows, Strong, Symbol, exact, paragraph
 from mbsym.report.language import Language
 from mbsym.report.messages import messages
-from mbsym.report.plain_writer import STYLES, UNBROKEN, Writer
+from mbsym.report.plain_writer import STYLES, Writer
 from mbsym_cli.main import main
 
 #: Conservative and damped, prescribed, with constraints, speeds, unit vectors, inputs, matrices, claims, refusals.

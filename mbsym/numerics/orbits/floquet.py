@@ -13,7 +13,7 @@ What follows (Lyapunov 1892; Yakubovich & Starzhinskii, Linear Differential Equa
 a multiplier outside the unit circle: unstable, and so is the motion of the whole equations; all inside: asymptotically
 stable, likewise.  Where the equations follow from a Lagrangian, mu and 1/conj(mu) are multipliers together: a simple
 one whose ball meets the mirror image of no other is on the circle exactly; if all are, the first approximation is
-stable, and the whole equations are a critical case.  Anything else is undecided.
+stable, and the whole equations are a critical case, unless they are linear.  Anything else is undecided.
 
 Irrational numbers of the description are rounded to 256 bits before all this.
 """
@@ -61,6 +61,8 @@ class Word(Enum):
 
     UNSTABLE = "unstable"
     ASYMPTOTICALLY_STABLE = "asymptotically stable"
+    #: There are no terms of higher order.
+    STABLE = "stable"
     STABLE_FIRST_APPROXIMATION = "stable in the first approximation only"
     UNDECIDED = "undecided"
 
@@ -109,17 +111,17 @@ def judged(dynamics: Dynamics, order: int = ORDER, bits: int = BITS) -> Judged:
         lagrangian = not without_potential(dynamics.system) or (dynamics.size == 1 and _traceless(code))
         multipliers, simple = _multipliers(monodromy, lagrangian)
     names = (*dynamics.system.coordinates, *dynamics.system.velocities)
-    word = _word(multipliers, simple)
+    word = _word(multipliers, simple, dynamics.linear)
     return Judged(word, period, frequency, names, monodromy, multipliers, simple, lagrangian, rests, steps)
 
 
-def _word(multipliers: Sequence[Multiplier], simple: bool) -> Word:
+def _word(multipliers: Sequence[Multiplier], simple: bool, linear: bool) -> Word:
     if any(one.least > 1 for one in multipliers):
         return Word.UNSTABLE
     if all(one.greatest < 1 for one in multipliers):
         return Word.ASYMPTOTICALLY_STABLE
     if simple and all(one.on_circle for one in multipliers):
-        return Word.STABLE_FIRST_APPROXIMATION
+        return Word.STABLE if linear else Word.STABLE_FIRST_APPROXIMATION
     return Word.UNDECIDED
 
 

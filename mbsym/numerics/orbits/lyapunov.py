@@ -133,15 +133,8 @@ def exponents(
     panels = max(1, flow.run.work.steps // len(rates))
     divergence = _mean_divergence(dynamics, divergences, panels, tolerance)
     error = abs(float(np.sum(values)) - divergence) if flow.columns == flow.size else float("nan")
-    doubt, linear = _uncertainty(rates, times), _linear(dynamics)
+    doubt, linear = _uncertainty(rates, times), dynamics.linear
     return Exponents(values, doubt, times, history, divergence, error, float(times[-1]), ended, linear, resting)
-
-
-def _linear(dynamics: Dynamics) -> bool:
-    """Whether no entry of the Jacobian is a function of the state."""
-    code, program = dynamics.jacobian, dynamics.jacobian.program
-    used = (program.instructions[number] for number in program.live(code.outputs))
-    return all(one.operation != "input" or str(one.payload) not in dynamics.inputs[1:] for one in used)
 
 
 def _directions(size: int, columns: int) -> Any:

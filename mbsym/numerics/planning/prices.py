@@ -35,8 +35,9 @@ INTERPRETED = {"lsoda": 13e-6, "radau": 5e-5, "bdf": 7e-5, "scipy-rk45": 2e-5, "
 #: A Jacobian of an implicit method, with all that is done between two of them, in a run that began with another.
 JACOBIAN = 1e-2
 
-#: A step that is made from outside of machine code, and looked at; one where switches or narrow loads are looked for.
-LOOKED_AT, SEARCHED = 6e-5, 6e-4
+#: A step that is made from outside of machine code, and looked at, as so many at most are (``trade.comparison``); one
+#: where switches or narrow loads are looked for.
+LOOKED_AT, FOLLOWED, SEARCHED = 6e-5, 4_000, 6e-4
 
 #: A number of the state in one row; and a step with rows in it, where a method's rows are made outside of its machine
 #: code: many times the step itself.
@@ -54,18 +55,18 @@ class Working(Protocol):
 
 
 def cost(dynamics: Dynamics, method: str, scalar: str, work: Work, looked_at: bool = False) -> float:
-    """What ``work`` of the ``method`` costs; ``looked_at`` where every step was."""
+    """What ``work`` of the ``method`` costs; ``looked_at`` where steps were, from the first on."""
     steps = work.steps + work.rejected
-    step = LOOKED_AT if looked_at else 0.0
+    besides = LOOKED_AT * min(steps, FOLLOWED) if looked_at else 0.0
     if not dynamics.features.none:
-        step = max(step, SEARCHED)
+        besides = max(besides, SEARCHED * steps)
     if method in INTERPRETED:
-        return work.evaluations * (INTERPRETED[method] + _operations(dynamics) * OPERATION) + steps * step
+        return work.evaluations * (INTERPRETED[method] + _operations(dynamics) * OPERATION) + besides
     operations = _operations(dynamics) * (COEFFICIENT if method == "taylor" else 1.0)
     whole = work.evaluations * (CALL + operations * OPERATION) * DEARER[scalar]
     if method.startswith("midpoint"):  # its Jacobians are compiled: one is about as many right-hand sides as the state
-        return whole * (1 + len(dynamics.scenario.state) * work.jacobians / max(1, work.evaluations)) + steps * step
-    return whole + work.jacobians * JACOBIAN + steps * step
+        return whole * (1 + len(dynamics.scenario.state) * work.jacobians / max(1, work.evaluations)) + besides
+    return whole + work.jacobians * JACOBIAN + besides
 
 
 def cost_of_rows(method: str, work: Work, count: int, numbers: int) -> float:

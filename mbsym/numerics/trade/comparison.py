@@ -22,19 +22,20 @@ from typing import Any, Protocol
 import numpy as np
 
 from mbsym.numerics.methods.interface import Breakdown
+from mbsym.numerics.planning.prices import FOLLOWED
 from mbsym.numerics.planning.sizes import RESTS, scaled
 
 #: Places inside an overlap of two steps, as parts of it; its end is looked at, too.
 SHARES = np.array([0.17, 0.38, 0.61, 0.83])
 
 #: Overlaps that are followed one by one, and places in the rest of the interval.
-MOST = 4_000
+MOST = FOLLOWED
 
 #: So many of them are looked at together.
 AT_ONCE = 16
 
-#: Blocks in which the rest is looked at.
-BLOCKS = 32
+#: Blocks in which the rest is looked at, and parts of each after which whoever watches is told.
+BLOCKS, OFTEN = 32, 64
 
 #: Differences beyond this part of a quantity's scale: the two solutions have parted.
 PARTED = 0.1
@@ -230,7 +231,8 @@ def _places(first: Solution, second: Solution, end: float, rows: _Rows, most: in
         count = max(16, int(most * len(SHARES) * (until - after) / (end - now)))
         inside = uneven(after, until, count)
         times = np.union1d(np.append(inside[(inside > after) & (inside < until)], until), rows.among(after, until))
-        yield times, _at(first, one, times, second=False), _at(second, other, times, second=True), False
+        for some in np.array_split(times, min(OFTEN, len(times))):  # whoever watches may have seen enough
+            yield some, _at(first, one, some, second=False), _at(second, other, some, second=True), False
 
 
 _Place = tuple[Any, Any, Any, bool]

@@ -29,7 +29,7 @@ from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.kernels.llvm import available
 from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Method, Setting, Unusable
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.planning.prices import Meter, Working, precise_cost
+from mbsym.numerics.planning.prices import FOLLOWED, LOOKED_AT, Meter, Working, precise_cost
 from mbsym.numerics.planning.sizes import scaled, sizes_of_scene
 from mbsym.numerics.trade.comparison import SHARES, Ended, compared, uneven
 from mbsym.numerics.trade.reference import (
@@ -151,7 +151,8 @@ class _Search:
         spent, allowed = self.meter(), self.limit - self.before
         far_too_long = 4.0 if spent < allowed / 2 else 1.5
         some = max(allowed / 4, SOME)
-        if spent > allowed or (spent > some and spent * self.end > far_too_long * allowed * t):
+        later = spent - 2 * FOLLOWED * LOOKED_AT  # steps are looked at in the beginning only
+        if spent > allowed or (spent > some and later * self.end > far_too_long * allowed * t):
             raise Breakdown(STEP_LIMIT, TOO_DEAR, t, np.empty(0))
 
     def next(self, meter: Callable[[], float]) -> None:

@@ -16,6 +16,10 @@ DIGITS = 12
 _SAID = {
     Word.UNSTABLE: "unstable: a multiplier is outside the unit circle (Lyapunov)",
     Word.ASYMPTOTICALLY_STABLE: "asymptotically stable: all multipliers are inside the unit circle (Lyapunov)",
+    Word.STABLE: (
+        "stable: the equations are linear and follow from a Lagrangian, and the multipliers are simple and on the unit "
+        "circle"
+    ),
     Word.STABLE_FIRST_APPROXIMATION: (
         "the first approximation is stable: the equations follow from a Lagrangian, and the multipliers are simple and "
         "on the unit circle; of the motion itself that proves nothing (a critical case)"
