@@ -145,8 +145,11 @@ def _stability(found: Stability, results: Results) -> Iterator[Inline]:
         yield from _part(found.subsystems[0], "verdict")
         return
     yield Phrase((Said("the whole system"), ": ", *verdict(found.verdict, "verdict")))
-    for part in found.subsystems:
-        first, *further = _part(part, "")
+    word, told = found.verdict.word, [list(_part(part, "")) for part in found.subsystems]
+    alike = all(part.theory.verdict.word is word for part in found.subsystems)
+    if alike and (word.stable or word is Word.UNSTABLE) and all(len(lines) == 1 for lines in told):
+        return
+    for part, (first, *further) in zip(found.subsystems, told, strict=True):
         yield Phrase((named(part.coordinates), ": ", first))
         yield from further
     yield Phrase(("(", Said("of each group of coordinates while the others keep to the unperturbed motion"), ")"))
@@ -222,12 +225,15 @@ def _counted(case: CaseStatement) -> Inline:
     verdict = Phrase(where(case.word, case.theorems))
     if case.otherwise:
         return verdict
+    count = len(case.all_of) + len(case.any_of)
+    if count == 1:
+        return Link(say("[[verdict]], if one condition holds", verdict=verdict), "problem-6")
     text = "[[verdict]], if conditions hold; their number: [[count]]"
     if case.theorems:
         text = "[[verdict]] if conditions hold; their number: [[count]]"
-    if not case.all_of and len(case.any_of) > 1:
+    if not case.all_of:
         text = "[[verdict]] if at least one of several conditions holds; their number: [[count]]"
-    return Link(say(text, verdict=verdict, count=str(len(case.all_of) + len(case.any_of))), "problem-6")
+    return Link(say(text, verdict=verdict, count=str(count)), "problem-6")
 
 
 def _where(case: CaseStatement, every: list[Relation], either: list[Relation], before: list[Relation]) -> Inline:
