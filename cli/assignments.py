@@ -114,7 +114,9 @@ def with_settings(file: Path, system: System, settings: Sequence[str], options: 
         if name not in system.parameter_names:
             assigned.complain(name, "misplaced-name", f"'{name}' is no parameter: it has no value here", options)
             continue
-        values[name] = substitute(value, {k: v for k, v in known.items() if k != name})
+        values[name] = value
+        for _ in system.parameters:  # those in terms of others, which may be in terms of others
+            values[name] = substitute(values[name], {k: v for k, v in known.items() if k != name})
         if lacking := sorted(names(values[name])):
             assigned.complain(name, "missing-value", f"no value for {', '.join(lacking)}", options)
     if not options.complaints:

@@ -19,7 +19,7 @@ Spans point back into the description; they take no part in equality, so two spe
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -348,15 +348,17 @@ class System(GuessesNames):
 
 def with_values(system: System, overrides: Mapping[str, Expression]) -> System:
     """The description with these values of parameters; what its relations give follows from them."""
-    changed = {*overrides}
-    stale: set[str] = set()
-    for _ in system.relations:
-        for item in system.relations:
-            if item.name not in overrides and names(item.value) & changed:
-                stale.add(item.name)
-                changed.add(item.name)
+    stale = overruled(system, overrides)
     parameters = tuple(
         replace(item, value=overrides.get(item.name, None if item.name in stale else item.value))
         for item in system.parameters
     )
     return replace(system, parameters=parameters)
+
+
+def overruled(system: System, overrides: Iterable[str]) -> set[str]:
+    """Parameters that a relation gives and that are made of what is overridden: their own values no longer hold."""
+    given, found = {*overrides}, set[str]()
+    for _ in system.relations:
+        found |= {x.name for x in system.relations if x.name not in given and names(x.value) & (given | found)}
+    return found

@@ -23,7 +23,7 @@ from mbsym.model.assumptions import broken
 from mbsym.model.comparison import has_sign
 from mbsym.model.driven import driven
 from mbsym.model.inputs import Input
-from mbsym.model.system import InitialValue, System, velocity_name
+from mbsym.model.system import InitialValue, System, overruled, velocity_name
 
 #: Irrational values are rounded to so many bits.
 PRECISION = 256
@@ -260,13 +260,7 @@ def _parameters(system: System, overrides: Mapping[str, Expression], numbers: _N
     given = {p.name: overrides.get(p.name, p.value) for p in system.parameters}
     typed = {name for name, value in given.items() if value is not None}
     # A relation overrules the number in the file where what it is made of was overridden; else they must agree.
-    changed_names = set(overrides)
-    stale: set[str] = set()
-    for _ in system.relations:
-        for relation in system.relations:
-            if relation.name not in overrides and names(relation.value) & changed_names:
-                stale.add(relation.name)
-                changed_names.add(relation.name)
+    stale = overruled(system, overrides)
     for _ in range(len(given) + 1):
         before = len(numbers.settled)
         for name, value in given.items():

@@ -204,8 +204,11 @@ def test_it_speaks_the_language_of_the_report(tmp_path: Path, language: str, wor
 def test_set_replaces_a_value(tmp_path: Path) -> None:
     """At Omega = 1, g - R Omega^2 > 0: theta = 0 of the bead on the hoop is stable, and unstable at Omega = 100."""
     text = (SHIPPED / "bead-on-hoop.yaml").read_text(encoding="utf-8")
-    for value, word in (("1", "asymptotically stable"), ("2*50", "unstable")):
-        (line,) = [x for x in told(tmp_path, text, "-s", f"Omega={value}") if x.startswith("At given values")]
+    cases = [(["Omega=1"], "asymptotically stable"), (["Omega=2*50"], "unstable")]
+    cases.append((["Omega=2*b", "b=3*m", "m=1/10"], "asymptotically stable"))  # 0.6
+    for settings, word in cases:
+        options = [x for one in settings for x in ("-s", one)]
+        (line,) = [x for x in told(tmp_path, text, *options) if x.startswith("At given values")]
         assert line.startswith(f"At given values  {word} (Kelvin-Chetaev), decided exactly")
 
 
