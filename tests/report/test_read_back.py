@@ -419,8 +419,9 @@ def test_planted_lies_are_caught(
 
 
 @pytest.mark.parametrize("surface", ["latex", "html"])
-def test_the_variable_is_one_letter_in_formulas_and_words(surface: str) -> None:
-    """Where a parameter is called lambda, "all roots in lambda^2" speaks of another letter: that of the polynomial."""
+def test_no_words_speak_of_the_variable_by_another_letter(surface: str) -> None:
+    """Where a parameter is called lambda the polynomial is one in mu; words, the same everywhere, name none."""
     text = rendered(mbsym.loads(LONG.replace("v_2", "lam")), surface)
-    words = {"latex": r"all roots in $\mu^{2}$", "html": "all roots in <math><msup><mrow><mi>\u03bc</mi>"}
-    assert words[surface] in text
+    assert {"latex": r"(\mu)", "html": "<mi>\u03bc</mi>"}[surface] in text
+    assert "all squares of roots real, negative and simple" in text
+    assert "lambda^" not in text

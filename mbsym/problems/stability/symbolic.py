@@ -292,8 +292,8 @@ def _analyse(system: LinearSystem, signs: Signs, borders: bool) -> Theory:
     if mass.word is not Definite.POSITIVE:
         remarks.append("M is taken to be positive definite, as the matrix of a kinetic energy is.")
     if zero_power:
-        several = Message("lambda^[[count]] splits off: [[count]] zero roots.", count=zero_power)
-        remarks.append(several if zero_power > 1 else Message("lambda splits off: one zero root."))
+        several = Message("[[count]] zero roots split off.", count=zero_power)
+        remarks.append(several if zero_power > 1 else Message("One zero root splits off."))
     found = replace(
         start,
         removed=removed,
@@ -470,9 +470,11 @@ def _requirements(
         requirements += _simple(system, factors, known, remarks)
     elif even and sum(len(f.coefficients) - 1 for f in factors) > 1:
         remarks.append(
-            "In a conservative system without gyroscopic forces the roots in lambda^2 are real and semisimple: "
-            "K > 0 is necessary and sufficient for the stability of the first approximation, a vanishing discriminant "
-            "(equal frequencies) does no harm."
+            Message(
+                "In a conservative system without gyroscopic forces the squares of the roots are real and semisimple: "
+                "$K > 0$ is necessary and sufficient for the stability of the first approximation, a vanishing "
+                "discriminant (equal frequencies) does no harm."
+            )
         )
     return tuple(requirements), remarks
 

@@ -8,6 +8,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 from mbsym.algebra.factors import rational_ratio
+from mbsym.expressions.message import worded
 from mbsym.formulas.formula import Formula
 from mbsym.model.quantities import rate_unit
 from mbsym.model.system import System
@@ -31,7 +32,6 @@ from mbsym.report.content import (
     Relation,
     Said,
     Unit,
-    Words,
     joined,
     named,
     say,
@@ -77,7 +77,7 @@ def _facts(results: Results) -> Iterator[Fact]:
         yield Fact(Said("Stability"), tuple(_stability(found[6], results)))
     if 7 in found:
         none = (Said("none in closed form of the kinds that are looked for"),)
-        integrals = tuple(Phrase((Words(one.name), " (", Words(one.status), ")")) for one in found[7])
+        integrals = tuple(Phrase((worded(one.name), " (", worded(one.status), ")")) for one in found[7])
         yield Fact(Said("First integrals"), integrals or none)
     if results.analysis.claims:
         yield Fact(Said("Claims"), tuple(_claims(results)))
@@ -125,9 +125,9 @@ def _motion(found: Equilibrium, system: System) -> Iterator[Inline]:
 def _at_values(found: Stability, system: System) -> Inline:
     """The verdict at the given values; of an unstable motion how fast the fastest solution grows."""
     assert found.numerical is not None
-    said = (*verdict(found.numerical, "verdict-at-values"), Words(decided(found)))
+    said = (*verdict(found.numerical, "verdict-at-values"), worded(decided(found)))
     if found.numerical.word is Word.UNDECIDED and found.numerical.explanation:
-        said = (*said, ": ", Words(found.numerical.explanation))
+        said = (*said, ": ", worded(found.numerical.explanation))
     growth = max((root.real for part in found.spectra for root in numbers(part)), default=0.0)
     if found.numerical.word is Word.UNSTABLE and growth > 0:
         unit = rate_unit(system)
@@ -286,9 +286,9 @@ def _missing(results: Results) -> Iterator[Fact]:
     for reason, several in groupby(results.failures.items(), key=lambda one: one[1].reason):
         numbers_of = [number for number, _ in several]
         hint = results.failures[numbers_of[0]].hint
-        more = (" (", Words(hint), ")") if hint else ()
+        more = (" (", worded(hint), ")") if hint else ()
         text = "Problem [[number]]" if len(numbers_of) == 1 else "Problems [[number]]"
         title = Link(say(text, number=ranges(numbers_of)), f"problem-{numbers_of[0]}")
-        yield Fact(title, (Phrase((Said("no result"), ": ", Words(reason), *more)),))
+        yield Fact(title, (Phrase((Said("no result"), ": ", worded(reason), *more)),))
     for form, failure in results.forms.forms.failures:
-        yield Fact(Said(TITLES[form]), (Phrase((Said("no result"), ": ", Words(failure.reason))),))
+        yield Fact(Said(TITLES[form]), (Phrase((Said("no result"), ": ", worded(failure.reason))),))
