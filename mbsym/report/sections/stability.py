@@ -121,7 +121,7 @@ def _subsystem(part: SubsystemStability, variable: str) -> doc.StabilitySubsyste
         method=part.theory.method.name.lower(),
         **asdict(verdict_data(part.theory.verdict)),
         conditions=[_condition_of(item) for item in listed],
-        cases=[_case(case, shown) for case in cases(part.ring, part.theory.cases, told)],
+        cases=[_case(case, shown) for case in cases(part.ring, part.theory.cases, told, part.theory.uncovered)],
     )
 
 
@@ -244,7 +244,7 @@ def _told(part: SubsystemStability, number: int, several: bool, results: Results
         yield paragraph(Said("Conditions"), " (", worded(theory.wanted), "):")
         yield from _conditions(wanted, seen)
     first = True
-    for case in cases(part.ring, theory.cases, told):
+    for case in cases(part.ring, theory.cases, told, theory.uncovered):
         if case.all_of or case.any_of or case.otherwise:
             yield from _case_told(case, first, seen)
             first = False
