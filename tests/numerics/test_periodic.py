@@ -313,7 +313,7 @@ def test_a_period_that_is_none_of_the_equations_is_refused() -> None:
     driven = DRIVEN.replace("FORCE", "cos(phi)")
     period = 2 * np.pi / 1.2
     for wrong in (5.2, period / 2, 5.2359):
-        with pytest.raises(NotFound, match="do not repeat after .* they do after 5.2359877559829[89]"):
+        with pytest.raises(NotFound, match=r"do not repeat after .* they do after 5\.2359877559829[89]"):
             orbit(driven, wrong)
     for right in (period, 2 * period):
         x, rate = orbit(driven, right).state
