@@ -12,7 +12,6 @@ from collections.abc import Mapping, Sequence
 
 from mbsym.algebra.derivative import jacobian
 from mbsym.algebra.program import Node
-from mbsym.mechanics.constraints.rows import constraint_rows
 from mbsym.mechanics.kinematics import Scene
 from mbsym.picture.program import PoseProgram
 from mbsym.picture.values import Closure
@@ -29,6 +28,8 @@ RANK = 1e-9
 
 def rows(scene: Scene[Node]) -> tuple[list[Node], list[list[Node]], list[str]]:
     """f, its derivatives by the coordinates, and the names of the rows; rows that are zero at sight left out."""
+    from mbsym.mechanics.constraints.rows import constraint_rows  # most systems have none
+
     found: list[tuple[str, Node]] = [
         (row.name.label, row.position)
         for row in constraint_rows(scene)

@@ -13,7 +13,7 @@ from random import Random
 
 from mbsym.numerics.carriers import STILL
 from mbsym.numerics.scenario import Scenario
-from mbsym.picture.looking import AXES, azimuth_of, dot, unit
+from mbsym.picture.looking import AXES, azimuth_of, combined, cross, dot, unit
 from mbsym.picture.values import Coordinate, Measure, Numbers, Operands, View
 
 #: So many positions are looked at; the first is the start.
@@ -82,7 +82,7 @@ def first_look(
 ) -> View:
     """Into the plane of what is plane, else from aside and above.
 
-    Plane is what moves in one and turns about its normal only, at positions of all kinds (``values``).
+    Plane is what moves in one or along a line and turns about its normal only, at positions of all kinds (``values``).
     """
     own = None if up is None else at(values[0], up)
     own = None if own is None or not isfinite(hypot(*own)) or hypot(*own) == 0 else unit(own)
@@ -92,12 +92,14 @@ def first_look(
     size = max(spread)
     turning = [max((_range(at(one, row)[k] for one in values) for row in axes), default=0.0) for k in range(3)]
     flat = [k for k in (2, 1, 0) if spread[k] <= SAME * size and turning[k] <= SAME]
-    if not flat or sum(x > SAME * size for x in spread) < 2:
+    if not flat or not size:
         return View(AXES[2] if own is None else own, AZIMUTH, ELEVATION, False)
     normal = AXES[flat[0]]
     above = AXES[1 if flat[0] != 1 else 2]
     if own is not None and abs(dot(normal, own)) <= 0.5:
         above = own
+    if sum(cross(above, normal)) < 0:  # the axis that goes sideways is to go to the right
+        normal = combined((-1.0,), (normal,))
     return View(above, azimuth_of(above, normal), 0.0, True)
 
 
