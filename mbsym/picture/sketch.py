@@ -140,7 +140,7 @@ def sketch(system: System) -> Sketch | None:
         begun = start(system)
         if begun.open_loop:
             return None
-        paper = _Paper(picture_at(begun), begun.scenario.system, tuple(name for name, _ in begun.stand_ins))
+        paper = _Paper(picture_at(begun), system, tuple(name for name, _ in begun.stand_ins))
         return paper.sketch()
     except (Failure, Incomplete):
         return None
