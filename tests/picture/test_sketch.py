@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 import mbsym
-from mbsym.analysis import Analysis
 from mbsym.formulas.latex import latex_names
 from mbsym.formulas.mathml import mathml_names
 from mbsym.picture import lettering, picture
@@ -96,7 +95,7 @@ def test_what_would_not_be_seen_is_moved_and_told() -> None:
     assert 0.3 < small.at[0][1] < 1
     assert small.unknown == ()
     assert drawn(PENDULUM).unknown == ("l",)
-    (block,) = drawing(mbsym.loads(PENDULUM).system)
+    (block,) = drawing(mbsym.loads(PENDULUM))
     assert [x.text for x in block.caption] == [
         "Drawn at $[[values]]$.",
         "Not to scale: no value is given for $[[names]]$.",
@@ -212,9 +211,9 @@ initial: {q: 0.4}
 @pytest.mark.parametrize("path", ["gyroscopic-pair", "kirchhoff"])
 def test_nothing_is_drawn_of_what_has_no_extent(path: str) -> None:
     """Of matrices, and of a body at a point of whose inertia only the proportions are those of a body."""
-    system = mbsym.load(SYSTEMS[0].with_stem(path)).system
-    assert sketch(system) is None
-    assert list(drawing(system)) == []
+    analysis = mbsym.load(SYSTEMS[0].with_stem(path))
+    assert sketch(analysis.system) is None
+    assert drawing(analysis) == ()
 
 
 def test_outlines_by_hand() -> None:
@@ -302,8 +301,8 @@ def test_letters_upon_each_other_are_found(monkeypatch: pytest.MonkeyPatch) -> N
 
 def test_one_drawing_in_every_medium() -> None:
     """As many lines and letters in TikZ and SVG as there are; a terminal has none."""
-    analysis = Analysis(mbsym.loads(CART).system)
-    (block,) = drawing(analysis.system)
+    analysis = mbsym.loads(CART)
+    (block,) = drawing(analysis)
     found, language = block.drawn, Language("ru")
     tex = LatexWriter(latex_names(analysis.ring), language, Labels("x:"), Form.REPORT).block(block)
     html = str(HtmlWriter(mathml_names(analysis.ring), language).block(block))

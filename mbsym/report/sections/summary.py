@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
 
 from mbsym.algebra.factors import rational_ratio
 from mbsym.formulas.formula import Formula
@@ -48,6 +49,7 @@ from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line, titles
 from mbsym.report.words.verdicts import decided, grade, verdict, where
 
 if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
     from mbsym.problems.constraints import Constraints
     from mbsym.report.results import Results
 
@@ -57,16 +59,24 @@ MOST_CONDITIONS, MOST_CASES, MOST_COORDINATES = 4, 4, 8
 #: Nor is a position told by more coordinates.
 MOST_DRAWN = 6
 
+_DRAWN: WeakKeyDictionary[Analysis, tuple[Drawing, ...]] = WeakKeyDictionary()
+
 
 def content(results: Results) -> Iterator[Block]:
     """What reports say."""
     yield Heading("summary", Said("What was found"))
-    yield from drawing(results.system)
+    yield from drawing(results.analysis)
     yield finding(results)
 
 
-def drawing(system: System) -> Iterator[Drawing]:
-    """The system as it is drawn, if anything can be, and in which position."""
+def drawing(analysis: Analysis) -> tuple[Drawing, ...]:
+    """The system as it is drawn, if anything can be, and in which position; made once for all media."""
+    if analysis not in _DRAWN:
+        _DRAWN[analysis] = tuple(_drawing(analysis.system))
+    return _DRAWN[analysis]
+
+
+def _drawing(system: System) -> Iterator[Drawing]:
     from mbsym.picture.sketch import sketch  # what tells the finding alone has no use for it
 
     found = sketch(system)
