@@ -498,7 +498,8 @@ def test_armature_is_a_term_of_the_mass_matrix_and_weighs_nothing() -> None:
     """2 T = (1/2^2 + 0.3) q1'^2 + ... for a point of mass 1 at the distance 1/2; U does not hold 0.3."""
     body = (
         '<body name="a"><joint name="j" axis="0 1 0" armature="0.3"/><inertial mass="1" pos="0 0 -0.5"/>'
-        '<body name="b"><joint name="s" type="slide" axis="0 0 1" armature="0.7"/><inertial mass="2" pos="0 0 0"/></body></body>'
+        '<body name="b"><joint name="s" type="slide" axis="0 0 1" armature="0.7"/>'
+        '<inertial mass="2" pos="0 0 0"/></body></body>'
     )
     made = converted(mujoco("", body))
     energy = "0.125*q1_dot**2 + q2**2*q1_dot**2 + q2_dot**2"
@@ -536,7 +537,8 @@ def test_joints_that_mimic_others_follow_them() -> None:
             made.yaml,
             "{claim: kinetic energy, equals: 2.25*q1_dot**2}",
             "{claim: position, of: f2, component: 2, equals: 0.25 - q1/2}",
-            "{claim: equation of motion, of: q1, equals: 4.5*q1_ddot + 1.25*q1_dot + 3*9.81*0.5*2*sin(1 - 2*q1) - tau_j1}",
+            "{claim: equation of motion, of: q1,"
+            " equals: 4.5*q1_ddot + 1.25*q1_dot + 3*9.81*0.5*2*sin(1 - 2*q1) - tau_j1}",
         )
         == [EXACT] * 3
     )

@@ -92,7 +92,7 @@ def _sum(one: Texts, other: Texts) -> Texts:
 
 
 def turns_about(axis: Texts, name: str) -> Turns:
-    """The turn by ``name`` (or a formula) about an axis: e_3 = Ry(b) Rz(a) turned onto it, where it is no coordinate axis."""
+    """The turn by a name or formula about an axis: e_3 = Ry(b) Rz(a) turned onto it, where it is no coordinate axis."""
     x, y, z = map(float, axis)
     on = [k for k, value in enumerate((x, y, z), start=1) if value != 0]
     if len(on) == 1:
