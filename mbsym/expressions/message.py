@@ -79,7 +79,7 @@ _NOTATION = (
     (r" ?\\times ?", "\u00d7"),
     (r"\\geq\b", ">="),
     (r"\\(?:[,;!] ?|quad|penalty\d+)", " "),
-    (r"\\(?:mathrm|text) ?", ""),
+    (r"\\(?:mathrm|text) ?(?:\{(\w+)\})?", lambda m: m[1] or ""),
     (r"\\(ddot|dot|bar) ?(?:\{\\?(\w+)\}|\\?(\w+))", lambda m: (m[2] or m[3]) + _ACCENTS[m[1]]),
     (r"\\partial ?", "d"),
     (r"\\frac(\d)(\d)", r"\1/\2"),

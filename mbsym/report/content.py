@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
@@ -21,6 +21,9 @@ from mbsym.expressions.tree import Expression
 from mbsym.formulas.formula import Column, Formula, Matrix
 from mbsym.formulas.told import Told
 from mbsym.report.words.passages import Passage
+
+if TYPE_CHECKING:
+    from mbsym.picture.sketch import Sketch
 
 # --- mathematics ------------------------------------------------------------------------------------------------------
 
@@ -415,6 +418,14 @@ class Beside:
 
 
 @dataclass(frozen=True)
+class Drawing:
+    """The drawing of a system, and what is said below it; a terminal is without it."""
+
+    drawn: Sketch
+    caption: tuple[Said, ...]
+
+
+@dataclass(frozen=True)
 class Folded:
     """What a screen unfolds on request; paper is without it."""
 
@@ -457,6 +468,7 @@ Block = (
     | Facts
     | Cited
     | Beside
+    | Drawing
     | Folded
     | Intermediates
     | Steps

@@ -356,6 +356,11 @@ class Writer:
         return self.document(value.blocks)
 
     @block.register
+    def _(self, value: content.Drawing) -> Iterator[Line]:
+        """Nothing: there are only letters here."""
+        yield from ()
+
+    @block.register
     def _(self, value: content.Folded) -> Iterator[Line]:
         """Nothing: it is said in front of it, in fewer words."""
         yield from ()

@@ -21,6 +21,7 @@ from mbsym.report import content
 from mbsym.report.content import Inline, Math, say
 from mbsym.report.html import formulas
 from mbsym.report.html.description import expression, point_of_table, speed_form
+from mbsym.report.html.drawing import svg
 from mbsym.report.html.formulas import RELATIONS
 from mbsym.report.html.told import told_passages
 from mbsym.report.language import Language
@@ -379,6 +380,13 @@ class Writer:
     @block.register
     def _(self, value: content.Beside) -> Markup:
         return replace(self, names=self.names.beside(value.names)).document(value.blocks)
+
+    @block.register
+    def _(self, value: content.Drawing) -> Markup:
+        said = Markup(" ").join(map(self.said, value.caption))
+        drawn = svg(value.drawn, self.said(Said("Drawing of the system")), self.inline)
+        caption = Markup("\n<figcaption>{}</figcaption>").format(said) if said else ""
+        return Markup('<figure class="drawing">\n{}{}\n</figure>').format(drawn, caption)
 
     @block.register
     def _(self, value: content.Folded) -> Markup:

@@ -21,6 +21,7 @@ from mbsym.report.language import Language
 from mbsym.report.latex import formulas
 from mbsym.report.latex.description import breakable, call, expression, points, speed_form
 from mbsym.report.latex.displays import loosened
+from mbsym.report.latex.drawing import tikz
 from mbsym.report.latex.form import Form, heading, subheading
 from mbsym.report.latex.formulas import Measured, measured_matrix
 from mbsym.report.latex.labels import Labels
@@ -28,6 +29,9 @@ from mbsym.report.latex.told import CLOSING, OPENING, PARAGRAPH, packed, paragra
 from mbsym.report.latex.words import RELATIONS, escaped
 from mbsym.report.lengths import PAPER_PROGRAM, length, not_printed, program_not_printed
 from mbsym.report.unit_text import bracketed
+
+#: A centimetre of a drawing on paper.
+DRAWN = 0.85
 
 _DOTS = ("", "dot", "ddot")
 _LOOKS = {"bar": "bar", "script": "mathcal"}
@@ -356,6 +360,12 @@ class Writer:
     @block.register
     def _(self, value: content.Beside) -> str:
         return replace(self, names=self.names.beside(value.names)).document(value.blocks)
+
+    @block.register
+    def _(self, value: content.Drawing) -> str:
+        said = " ".join(map(self.said, value.caption))
+        caption = f"\\par\\smallskip\n{{\\small {said}\\par}}\n" if said else ""
+        return f"\\begin{{center}}\n{tikz(value.drawn, self.math, DRAWN)}\n{caption}\\end{{center}}\n"
 
     @block.register
     def _(self, value: content.Folded) -> str:

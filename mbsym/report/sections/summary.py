@@ -6,12 +6,13 @@ from collections import Counter
 from collections.abc import Iterator
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
 
 from mbsym.algebra.factors import rational_ratio
 from mbsym.expressions.message import worded
 from mbsym.formulas.formula import Formula
 from mbsym.model.quantities import rate_unit
-from mbsym.model.system import System
+from mbsym.model.system import INERTIAL, System
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.stability import Stability, SubsystemStability
 from mbsym.problems.stability.spectrum import numbers
@@ -20,14 +21,18 @@ from mbsym.report.brief import ranges, self_check, worst
 from mbsym.report.conditions import OPPOSITE, CaseStatement, Statement, cases, label_meanings
 from mbsym.report.content import (
     Block,
+    Drawing,
+    Emphasis,
     Fact,
     Facts,
     Graded,
     Heading,
     Inline,
     Link,
+    Listed,
     Math,
     Name,
+    Number,
     Phrase,
     Relation,
     Said,
@@ -44,17 +49,50 @@ from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line, titles
 from mbsym.report.words.verdicts import decided, grade, verdict, where
 
 if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
     from mbsym.problems.constraints import Constraints
     from mbsym.report.results import Results
 
 #: More conditions of a case, cases of a subsystem, coordinates of a motion are left to the problems.
 MOST_CONDITIONS, MOST_CASES, MOST_COORDINATES = 4, 4, 8
 
+#: Nor is a position told by more coordinates.
+MOST_DRAWN = 6
+
+_DRAWN: WeakKeyDictionary[Analysis, tuple[Drawing, ...]] = WeakKeyDictionary()
+
 
 def content(results: Results) -> Iterator[Block]:
     """What reports say."""
     yield Heading("summary", Said("What was found"))
+    yield from drawing(results.analysis)
     yield finding(results)
+
+
+def drawing(analysis: Analysis) -> tuple[Drawing, ...]:
+    """The system as it is drawn, if anything can be, and in which position; made once for all media."""
+    if analysis not in _DRAWN:
+        _DRAWN[analysis] = tuple(_drawing(analysis.system))
+    return _DRAWN[analysis]
+
+
+def _drawing(system: System) -> Iterator[Drawing]:
+    from mbsym.picture.sketch import sketch  # what tells the finding alone has no use for it
+
+    found = sketch(system)
+    if found is None:
+        return
+    said = []
+    if 0 < len(found.at) <= MOST_DRAWN:
+        shown = tuple(Relation(Name(name), "=", Number(f"{value:.3g}")) for name, value in found.at)
+        said.append(say("Drawn at $[[values]]$.", values=Listed(shown)))
+    if found.frame != INERTIAL:
+        said.append(say("Seen in the axes of [[frame]].", frame=Emphasis(found.frame)))
+    if found.ellipsoids:
+        said.append(Said("Ellipsoids: homogeneous, with the mass and the inertia of the body."))
+    if found.unknown:
+        said.append(say("Not to scale: no value is given for $[[names]]$.", names=named(found.unknown)))
+    yield Drawing(found, tuple(said))
 
 
 def finding(results: Results) -> Facts:

@@ -48,6 +48,9 @@ _OUTSIDE = {
     "extrapolate": "outside as its end pieces go on",
     "error": "undefined outside",
 }
+_HELD = (
+    "In formulas [[held]] is this table with its end values outside; terms with the sign function take them away there"
+)
 
 
 def content(results: Results) -> Iterator[Block]:
@@ -107,7 +110,7 @@ def _variables(system: System) -> Iterator[Block]:
             ", ", Said(between), ", ", Said(_OUTSIDE[table.outside]),
             *((", ", say("[[count]] points", count=points)) if len(table.points) > MOST_LISTED else ()),
             *((", ", Said("from the file"), " ", Verbatim(table.source.file)) if table.source else ()),
-            ": ", Points(table.points), ".",
+            ": ", Points(table.points), *((". ", say(_HELD, held=Verbatim(table.held))) if table.jumps else ()), ".",
         )  # fmt: skip
     if system.parameters:
         columns = (TableColumn(Said("name"), 0), TableColumn(Said("value"), 4.4), TableColumn(Said("sign"), 3.0))
