@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from flint import fmpq
 
+from mbsym.algebra import rationals
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Formula
@@ -49,5 +50,5 @@ def _vanishes(ring: Ring, p: Polynomial, values: Mapping[str, Any]) -> bool:
         value = values.get(g.name) if g.kind == "parameter" else None
         if not isinstance(value, Fraction):
             return False
-        at[k] = fmpq(value.numerator, value.denominator)
+        at[k] = rationals.exact(value)
     return bool(p(*at) == 0)
