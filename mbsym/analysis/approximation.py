@@ -14,7 +14,7 @@ from mbsym.algebra.point import Balls
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.expressions.angles import linear_form
-from mbsym.expressions.message import Message
+from mbsym.expressions.message import Message, joined
 from mbsym.expressions.tree import Call, Expression, Name, Number, Operation, children, names, walk
 from mbsym.formulas.formula import Column, column
 from mbsym.mechanics import newton_euler
@@ -116,7 +116,8 @@ def first_approximation(analysis: Analysis) -> Linearisation:
 
         return given.first_approximation(analysis)
     if analysis.equilibrium.impossible:
-        never = ", ".join(f"{item} = 0" for item in analysis.equilibrium.impossible)
+        conditions = (Message("$[[left]] = 0$", left=item) for item in analysis.equilibrium.impossible)
+        never = joined(conditions, ", ")
         reason = Message("the given motion does not exist: [[never]] is impossible", never=never)
         raise Unavailable("motion", NoResult(reason, "", "no such motion", "impossible-motion"))
     if analysis.equilibrium.unsteady:

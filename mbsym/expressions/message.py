@@ -37,7 +37,7 @@ class Message(str, Said):
         Said.__init__(self, text, {name: str(x) if isinstance(x, Number) else x for name, x in gaps.items()})
 
     def __getnewargs_ex__(self) -> tuple[tuple[str], dict[str, Any]]:
-        return (self.text,), dict(self.gaps)
+        return (self.text,), {name: x if isinstance(x, str) else str(x) for name, x in self.gaps.items()}
 
 
 def worded(text: str) -> Message:

@@ -703,9 +703,9 @@ def _motion_at(scene: Scene, equilibrium: Equilibrium, values: Mapping[str, Any]
         value = scene.ring.evaluate(condition.polynomial, numbers)
         if not value.contains(0):
             size = float(value.mid())
-            return undecided(Because.MOTION_NOT_THERE, str(condition), f"{size:.6g}")
+            return undecided(Because.MOTION_NOT_THERE, condition, f"{size:.6g}")
         if not value.is_zero():
-            return undecided(Because.MOTION_OPEN, str(condition))
+            return undecided(Because.MOTION_OPEN, condition)
     return None
 
 
