@@ -127,8 +127,8 @@ def test_formulas_in_reasons_are_set_as_formulas() -> None:
     assert "-c*v" not in TARGETS["html"].render(analysis, (4, 5))
     with pytest.raises(Failure) as caught:
         analysis.stabilisation  # noqa: B018
-    again = pickle.loads(pickle.dumps(caught.value))
-    assert again.reason == caught.value.reason
+    again = pickle.loads(pickle.dumps(caught.value.reason))
+    assert again == caught.value.reason
     reason = Reason(Because.POLE, (analysis.equilibrium.conditions[0],))
     assert pickle.loads(pickle.dumps(reason)).data == ("-c*v",)
     assert hash(reason) == hash(pickle.loads(pickle.dumps(reason)))
