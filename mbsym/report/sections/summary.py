@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
@@ -17,7 +16,7 @@ from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.stability import Stability, SubsystemStability
 from mbsym.problems.stability.spectrum import numbers
 from mbsym.problems.stability.word import Word
-from mbsym.report.brief import ranges, self_check, worst
+from mbsym.report.brief import claims_counted, ranges, self_check, worst
 from mbsym.report.conditions import OPPOSITE, CaseStatement, Statement, cases, label_meanings
 from mbsym.report.content import (
     Block,
@@ -42,6 +41,7 @@ from mbsym.report.content import (
     say,
 )
 from mbsym.report.sections.canonical import TITLES
+from mbsym.report.sections.energy import is_felt
 from mbsym.report.sections.equations import is_short, short_equations
 from mbsym.report.sections.equilibrium import exists_if
 from mbsym.report.sections.system import unperturbed_motion
@@ -139,8 +139,9 @@ def _size(system: System, found: dict[int, Any]) -> Fact:
     if tied is not None:
         freedom = len(tied.coordinates) - tied.velocity_rank
         said += ["; ", say("degrees of freedom: [[freedom]]", freedom=str(freedom))]
-    if 2 in found and found[2].cyclic and not system.constraints:
-        said += ["; ", Said("$L$ does not contain"), " ", named(found[2].cyclic)]
+    cyclic = [] if 2 not in found or system.constraints else [x for x in found[2].cyclic if not is_felt(x, found)]
+    if cyclic:
+        said += ["; ", Said("$L$ does not contain"), " ", named(cyclic)]
     said += ["; ", say("bodies and frames: [[count]]", count=str(len(system.bodies)))]
     return Fact(Said("Coordinates"), (Phrase(tuple(said)),))
 
@@ -278,12 +279,11 @@ def _relation(item: Statement, seen: list[Formula]) -> Relation:
 def _claims(results: Results) -> Iterator[Inline]:
     """How many hold; each that does not."""
     lines = list(map(claim_line, results.analysis.claims))
-    count = Counter(one.word for one in lines)
-    gravest = next(word for word in (REFUTED, OPEN, HELD) if count[word])
-    said = say("all [[count]] hold", count=str(len(lines))) if len(lines) > 1 else Said("it holds")
+    words = [one.word for one in lines]
+    gravest = next(word for word in (REFUTED, OPEN, HELD) if word in words)
+    said: Inline = say("all [[count]] hold", count=str(len(lines))) if len(lines) > 1 else Said("it holds")
     if gravest != HELD:
-        text = "[[held]] hold, [[refuted]] do not, [[open]] undecided"
-        said = say(text, held=str(count[HELD]), refuted=str(count[REFUTED]), open=str(count[OPEN]))
+        said = claims_counted(words)
     yield Link(Graded(said, grade(gravest)), "claims")
     for line in lines:
         if line.word != HELD:
