@@ -42,8 +42,8 @@ from mbsym.simulation.result import Chosen, Simulation
 from mbsym.simulation.watching import Watching
 
 if TYPE_CHECKING:
-    from mbsym.analysis import Analysis
     from mbsym.algebra.ring import Ring
+    from mbsym.analysis import Analysis
     from mbsym.model.system import System
     from mbsym.numerics.closing import Closed
     from mbsym.numerics.constrained import Drift
