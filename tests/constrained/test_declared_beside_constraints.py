@@ -283,3 +283,60 @@ def test_a_loop_of_bodies_told_by_quaternions_and_unit_vectors(tmp_path: Path, o
     assert w1 == pytest.approx(wanted[10:13], abs=1e-7)
     assert w2 == pytest.approx(wanted[23:26], abs=1e-7)
     kept(found)
+
+
+TORUS = """
+mbsym: 1
+name: A wheel that rolls, its tube of radius tube
+parameters: {rho: {value: 0.4, sign: positive}, tube: {value: TUBE, sign: real}, g: {value: 9.81, sign: positive}}
+bodies:
+  - {name: centre, attached to: 0, connection point: [x, y, z], coordinates: [x, y, z], mass: 0}
+  - {name: wheel, attached to: centre, rotation: {axes: [3, 1, 3], angles: [psi, theta, phi]}, mass: 1.5,
+     inertia about: joint, inertia: [0.06, 0.12, 0.06], speeds: {p: omega1, q: omega2, s: omega3},
+     orientation: {alpha: 1, beta: 2, gamma: 3}}
+loads: [{uniform gravity: {vector: [0, 0, -g]}}]
+constraints:
+  - rolling:
+      body: wheel
+      point: [-rho*gamma1/sqrt(gamma1**2 + gamma3**2) - tube*gamma1, -tube*gamma2,
+              -rho*gamma3/sqrt(gamma1**2 + gamma3**2) - tube*gamma3]
+      on: ground
+  - relation: z = tube + rho*sqrt(1 - gamma2**2)
+initial: {x: 0, y: 0, z: 0.5, alpha1: 1, alpha2: 0, alpha3: 0, beta1: 0, beta2: 1, beta3: 0, gamma1: 0, gamma2: 0,
+          gamma3: 1, p: 0.4, q: 3, s: 0.5}
+"""
+
+
+@pytest.mark.parametrize("tube", [0.0, 0.1])
+def test_a_rolling_wheel_told_by_unit_vectors(tmp_path: Path, tube: float) -> None:
+    """A disc, and a torus, upright at the pole of the angles; the contact is a function of the vertical in body axes.
+
+    Its arm in space, n the axis, k the vertical:  a = -rho d - tube k,  d = u/|u|,  u = k - (k.n) n,  n' = W x n.
+    The relation of the height follows from the vertical row of rolling: of its four rows three are independent.
+    """
+
+    def rows(bodies: list[Any], t: float) -> tuple[Any, Any]:
+        _, R, _, w = bodies[0]
+        k, n, W = np.array([0, 0, 1.0]), R[:, 1], R @ w
+        u, n_ = k - (k @ n) * n, np.cross(W, n)
+        u_ = -(k @ n_) * n - (k @ n) * n_
+        size = np.linalg.norm(u)
+        arm, arm_ = -0.4 * u / size - tube * k, -0.4 * (u_ / size - u * (u @ u_) / size**3)
+        return part(1, 0, np.eye(3), -cross(arm) @ R), np.cross(W, arm_)
+
+    found = run(tmp_path, TORUS.replace("TUBE", str(tube)), 4)
+    assert len(found.dynamics.constraints) == 4
+    assert found.dynamics.constraints.rank == 3
+    first, names = found.trajectory.states[:, 0], found.dynamics.inputs[1:]
+    at = [names.index(x) for x in ("x", "y", "z", "x_dot", "y_dot", "z_dot", *"pqs")]
+    x, y = first[at[:3]], first[at[3:]]
+    assert x[2] == pytest.approx(0.4 + tube, abs=1e-14)
+    wanted = reference([1.5], [np.array([0.06, 0.12, 0.06])], rows, np.r_[x, 1, 0, 0, 0, y], found.trajectory.times)
+    assert np.array([column(found, x) for x in "xyz"]) == pytest.approx(wanted[:3], abs=1e-8)
+    assert np.array([column(found, x) for x in "pqs"]) == pytest.approx(wanted[10:13], abs=1e-7)
+    attitude = np.array([[column(found, f"{x}{k}") for k in (1, 2, 3)] for x in ("alpha", "beta", "gamma")])
+    for own, e in zip(np.moveaxis(attitude, 2, 0), wanted[3:7].T, strict=True):
+        assert own == pytest.approx(cosines(e), abs=1e-8)
+    kept(found)
+    assert found.conservation.standing is Standing.PROVED
+    assert found.conservation.change < 1e-10

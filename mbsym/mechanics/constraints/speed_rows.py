@@ -25,7 +25,7 @@ from mbsym.mechanics.constraints.seen import common_frame
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.speed_programs import SpeedProgram
 from mbsym.mechanics.speeds import SpeedForm
-from mbsym.model.constraints import Coincide, Constraint, Distance, Parallel, Relation, Rolling, Velocity
+from mbsym.model.constraints import Coincide, Constraint, Distance, Parallel, Relation, Rolling, Velocity, as_written
 from mbsym.model.system import INERTIAL, Point
 
 
@@ -60,7 +60,7 @@ def _rows(
     """``rate`` is d/dt at u' = 0, ``slopes`` are the derivatives by the speeds."""
     reduce, found = scene.algebra.reduce, []
     for number in dict.fromkeys(name.constraint for name in names):
-        constraint = scene.system.constraints[number]
+        constraint = as_written(scene.system.constraints[number])
         holonomic = _positions(scene, constraint)
         velocities = _velocities(scene, constraint) if holonomic is None else [rate(f) for f in holonomic]
         for name in (one for one in names if one.constraint == number):
