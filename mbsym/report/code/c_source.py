@@ -166,7 +166,7 @@ def _rendered(template: str, analysis: Analysis, bodies: bool) -> str:
             "reactions": bool(known.reactions),
         },
         tied=tied,
-        speeds=_speeds(analysis, writer) if functions["accelerations"] or (forward and not tied) else None,
+        speeds=_speeds(analysis, writer) if functions["accelerations"] or forward else None,
         quaternions=any(isinstance(one, Quaternion) for body in system.bodies for one in body.orientation),
         functions=functions,
         upper=upper,
