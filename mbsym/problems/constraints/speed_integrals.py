@@ -81,10 +81,9 @@ def integrals(form: SpeedForm, scene: Scene, energy: Energy, equations: SpeedEqu
     tied, embedded = equations.constraints, equations.embedded
     if tied is None:
         return ()
-    field = None
-    if tied.solved is not None and embedded is not None:
-        if embedded.terms <= MOST_TERMS and len(embedded.free) <= MOST_SPEEDS:
-            field = TiedField(form, tied, tied.solved, embedded)
+    field, solved = None, tied.solved
+    if solved is not None and embedded is not None and embedded.terms <= MOST_TERMS:
+        field = TiedField(form, tied, solved, embedded) if len(embedded.free) <= MOST_SPEEDS else None
     tree = Field(form, equations)
     found: list[Integral] = []
     known: list[Polynomial] = []
