@@ -31,13 +31,14 @@ BELOW = {
     "numerics": "expressions algebra model mechanics formulas problems analysis",
     "simulation": "expressions algebra model mechanics formulas problems analysis numerics",
     "sweeps": "expressions algebra model mechanics formulas problems analysis maps numerics",
-    "report": "expressions algebra model source mechanics formulas problems analysis numerics simulation maps sweeps",
+    "picture": "expressions algebra model formulas mechanics problems analysis numerics",
+    "report": "expressions algebra model source mechanics formulas problems analysis numerics simulation maps sweeps"
+    " picture",
     "studies": "expressions algebra model source mechanics formulas problems analysis maps numerics simulation sweeps"
     " report",
     "editing": "expressions algebra model source formulas analysis report",
     "batch": "expressions algebra model source formulas problems analysis report sweeps __init__",
     "diff": "expressions algebra formulas report",
-    "picture": "expressions algebra model source formulas mechanics problems analysis numerics simulation maps report",
     "serving": "expressions algebra model source formulas problems analysis maps numerics simulation report editing"
     " picture __init__",
     "__init__": "studies",

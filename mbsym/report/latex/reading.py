@@ -32,7 +32,7 @@ _WORDS = """textbf textit texttt emph textbackslash textless textgreater textbar
 _PICTURES = "node draw includegraphics parskip"
 _DOCUMENT = """documentclass usepackage IfFileExists parindent medmuskip setcounter newcommand renewcommand
     makeatletter makeatother parbox title author date maketitle contentsifneeded tableofcontents bibitem refname
-    longformula
+    longformula LARGE
     if ifnum expandafter csname endcsname edef pages newwrite tf immediate openout jobname relax else fi
     detokenize thepage ps let thispagestyle pagestyle"""
 

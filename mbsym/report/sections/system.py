@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from mbsym.expressions.message import worded
 from mbsym.expressions.tree import ZERO, Expression
 from mbsym.model.speeds import UnitVector
 from mbsym.model.system import INERTIAL, Body, System
@@ -30,7 +31,6 @@ from mbsym.report.content import (
     Tensor,
     Unit,
     Verbatim,
-    Words,
     named,
     paragraph,
     say,
@@ -118,7 +118,7 @@ def _variables(system: System) -> Iterator[Block]:
         for own in system.parameters:
             value = Name(own.name) if own.value is None else Relation(Name(own.name), "=", own.value)
             shown = (value, *_unit(system, own.name))
-            rows.append(((Verbatim(own.name),), shown, (Words(own.sign),), (own.meaning,)))
+            rows.append(((Verbatim(own.name),), shown, (worded(own.sign),), (own.meaning,)))
         yield Table(Said("Parameters"), (*columns, TableColumn(Said("meaning"), 7.4)), tuple(rows))
 
 
