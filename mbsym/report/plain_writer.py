@@ -143,6 +143,10 @@ class Writer:
         return "".join(text for text, _ in self.pieces(value))
 
     @inline.register
+    def _(self, value: content.Numbered) -> str:
+        return ""
+
+    @inline.register
     def _(self, value: content.Words) -> str:
         said = self.language.say(value.text)
         return re.sub(r"\blambda\b", value.variable, said) if value.variable else said

@@ -17,7 +17,7 @@ from mbsym.formulas.names import greek
 from mbsym.formulas.notation import notation
 from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.report import content
-from mbsym.report.content import Inline, Math, Said, say
+from mbsym.report.content import CONDITION, Inline, Math, Said, say
 from mbsym.report.html import formulas
 from mbsym.report.html.description import expression, point_of_table, speed_form
 from mbsym.report.html.drawing import svg
@@ -117,6 +117,10 @@ class Writer:
     @inline.register
     def _(self, value: content.Link) -> Markup:
         return Markup('<a href="#{}">{}</a>').format(value.to, self.inline(value.text))
+
+    @inline.register
+    def _(self, value: content.Numbered) -> Markup:
+        return Markup('\u00a0<a class="there" href="#{}">\u2193</a>').format(_anchor(value.key))
 
     @inline.register
     def _(self, value: content.Phrase) -> Markup:
@@ -260,7 +264,10 @@ class Writer:
     @block.register
     def _(self, value: content.Display) -> Markup:
         notes = (Markup('\n<p class="note soft">({})</p>').format(self.inline(note)) for note in value.notes)
-        return Markup("").join((self._displayed(value.value), *notes))
+        shown = Markup("").join((self._displayed(value.value), *notes))
+        if not value.key.startswith(CONDITION):
+            return shown
+        return Markup('<div id="{}">{}</div>').format(_anchor(value.key), shown)
 
     def _displayed(self, shown: Math | tuple[Inline, ...]) -> Markup:
         match shown:
@@ -428,6 +435,10 @@ class Writer:
 
 #: Letters for private use, which stand for values in notation.
 _FIRST = 0xE000
+
+
+def _anchor(key: str) -> str:
+    return f"formula-{key.replace(':', '-')}"
 
 
 def _untexed(text: str) -> Markup:
