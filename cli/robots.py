@@ -26,6 +26,7 @@ class Choices:
     symbols: bool
     damping: bool
     exact_angles: bool
+    inputs: bool
 
 
 def robot_text(file: Path) -> str | None:
@@ -50,7 +51,15 @@ def described(file: Path, text: str, choices: Choices) -> str | None:
     from mbsym.source.robots import convert
 
     complaints = Complaints()
-    made = convert(text, complaints, choices.floating, choices.symbols, choices.damping, choices.exact_angles)
+    made = convert(
+        text,
+        complaints,
+        choices.floating,
+        choices.symbols,
+        choices.damping,
+        choices.exact_angles,
+        choices.inputs,
+    )
     if made is not None:
         _, doubts = read(made.yaml, f"{file.stem}.yaml")
         for doubt in doubts.sorted():  # of the description that was made: its lines are not the file's

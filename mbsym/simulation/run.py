@@ -16,7 +16,6 @@ from dataclasses import replace
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-from mbsym.analysis import Analysis, Unavailable
 from mbsym.model.states import InStates, in_states
 from mbsym.numerics import simulate as integration
 from mbsym.numerics.accuracy import ErrorEstimate, Lacking, NoEstimate, contradicted, estimated
@@ -44,6 +43,7 @@ from mbsym.simulation.watching import Watching
 
 if TYPE_CHECKING:
     from mbsym.algebra.ring import Ring
+    from mbsym.analysis import Analysis
     from mbsym.model.system import System
     from mbsym.numerics.closing import Closed
     from mbsym.numerics.constrained import Drift
@@ -56,6 +56,7 @@ LEAST, AT_MOST = 5.0, 4.0
 
 #: What ``simulate`` is doing, for whoever watches.
 COMPILING, INTEGRATING, ESTIMATING, CERTIFYING = "compiling", "integrating", "estimating", "certifying"
+PLANNING = "planning"
 
 #: Is told what is being done, for as long as it takes.
 Stage = Callable[[str], AbstractContextManager[object]]
@@ -86,7 +87,7 @@ def simulate(
     closed = _closed(scenario, request)
     scenario = scenario if closed is None else closed.scenario
     with stage(COMPILING):
-        analysis = Analysis(scenario.system, (7,)) if request.invariants else None
+        analysis = _analysis(scenario) if request.invariants else None
         integrals, missing = _integrals(analysis, scenario)
         ring = analysis.ring if analysis is not None and not missing else None
         if declared:
@@ -211,10 +212,17 @@ def _trajectory(
     return integration.simulate(dynamics, method, chosen.setting, chosen.times, request.arithmetic, watch, before)
 
 
+def _analysis(scenario: Scenario) -> Analysis:
+    from mbsym.analysis import Analysis  # few runs ask for it
+
+    return Analysis(scenario.system, (7,))
+
+
 def _integrals(analysis: Analysis | None, scenario: Scenario) -> tuple[tuple[Any, ...], str]:
     """The first integrals of problem 7 but for the energy, those found besides at these numbers; why there are none."""
     if analysis is None:
         return (), ""
+    from mbsym.analysis import Unavailable
     from mbsym.analysis.found import found_integrals
     from mbsym.problems.integrals import ENERGY
 

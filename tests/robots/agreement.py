@@ -123,29 +123,39 @@ def loaded(path: Path) -> ModuleType:
 def worst_difference(text: str, converted: Converted, module: ModuleType, states: int = 3, seed: int = 20) -> float:
     """The largest relative difference of M, of M a + h at random accelerations, of h, and of the gravity terms.
 
-    h = C q' + g; each of the four is measured against its own largest entry, over all states.
+    h = C q' + g; each of the four is measured against its own largest entry, over all states.  To Pinocchio joints that
+    mimic others are coordinates of their own: with v = G q' its matrix is reduced to G^T M G, its forces to G^T f.
     """
     model = peer(text, converted.floating)
+    followers = mimics(text)
     data = model.createData()
     source = random.Random(seed)
     base = ["root_joint"] if converted.floating else []
-    places = [k for name in [*base, *converted.joints] for k in _velocities(model, name)]
+    columns = [k for name in [*base, *converted.joints] for k in _velocities(model, name)]
+    spread = np.zeros((model.nv, len(columns)))
+    spread[columns, range(len(columns))] = 1
+    for name, (leader, multiplier, _) in followers.items():
+        if leader in converted.joints:
+            spread[_velocities(model, name)] = multiplier * spread[_velocities(model, leader)]
     worst = 0.0
     for _ in range(states):
         q = _random(source, converted.coordinates, math.pi)
         v, a = _random(source, len(q), 1.0), _random(source, len(q), 1.0)
-        there, speed, rate = pinocchio.neutral(model), np.zeros(model.nv), np.zeros(model.nv)
-        speed[places], rate[places] = v, a
+        there = pinocchio.neutral(model)
+        speed, rate = spread @ v, spread @ a
         _place(model, there, base, q[: 6 * len(base)])
         for name, value in zip(converted.joints, q[6 * len(base) :], strict=True):
             _place(model, there, [name], [value])
+        known = dict(zip(converted.joints, q[6 * len(base) :], strict=True))
+        for name, (leader, multiplier, offset) in followers.items():
+            _place(model, there, [name], [multiplier * known.get(leader, 0.0) + offset])
         mass = np.array(pinocchio.crba(model, data, there))
         mass = np.triu(mass) + np.triu(mass, 1).T
         theirs = (
-            mass[np.ix_(places, places)],
-            pinocchio.rnea(model, data, there, speed, rate)[places],
-            pinocchio.rnea(model, data, there, speed, np.zeros(model.nv))[places],
-            pinocchio.computeGeneralizedGravity(model, data, there)[places],
+            spread.T @ mass @ spread,
+            spread.T @ pinocchio.rnea(model, data, there, speed, rate),
+            spread.T @ pinocchio.rnea(model, data, there, speed, np.zeros(model.nv)),
+            spread.T @ pinocchio.computeGeneralizedGravity(model, data, there),
         )
         own = np.array(module.mass_matrix(q, module.DEFAULTS))
         bias, rest = (
@@ -155,6 +165,25 @@ def worst_difference(text: str, converted: Converted, module: ModuleType, states
         for first, second in zip((own, own @ a + bias, bias, rest), theirs, strict=True):
             worst = max(worst, float(np.abs(first - second).max() / (np.abs(second).max() or 1.0)))
     return worst
+
+
+def mimics(text: str) -> dict[str, tuple[str, float, float]]:
+    """Joint: leader, multiplier and offset, chains of them followed to their first joint."""
+    root = ElementTree.fromstring(text)
+    told = {
+        joint.attrib["name"]: (one.attrib["joint"], float(one.get("multiplier", 1)), float(one.get("offset", 0)))
+        for joint in root.iter("joint")
+        for one in joint.iter("mimic")
+        if joint.get("type") != "fixed"
+    }
+    found = {}
+    for name, (leader, multiplier, offset) in told.items():
+        while leader in told:
+            leader, factor, further = told[leader]
+            offset += multiplier * further
+            multiplier *= factor
+        found[name] = leader, multiplier, offset
+    return found
 
 
 def _random(source: random.Random, count: int, bound: float) -> Any:

@@ -175,12 +175,12 @@ def common_frequency(code: Code) -> Fraction:
     slopes: dict[int, Fraction] = {}
     frequencies: dict[int, frozenset[Fraction]] = {}
     for number in program.live(code.outputs):
-        operation, operands, _ = program.instructions[number]
+        operation, operands, payload = program.instructions[number]
         slope = [slopes[operand] for operand in operands]
         known = frozenset().union(*(frequencies[operand] for operand in operands)) if operands else frozenset()
         match operation:
             case "input" | "constant":
-                found = Fraction(int(operation == "input"))
+                found = Fraction(int(payload == "t"))
             case "add":
                 found = slope[0] + slope[1]
             case "subtract":

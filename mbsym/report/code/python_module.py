@@ -33,6 +33,7 @@ from mbsym.report.code.identifiers import prefix_of
 from mbsym.report.code.lookups import identifier, python_definition
 from mbsym.report.code.model_code import Solved, first_integrals, programs_of, solved, undetermined
 from mbsym.report.code.model_values import initial_values, ordered, parameters_of, starting
+from mbsym.report.code.named_dynamics import bodies, named_dynamics
 from mbsym.report.environment import rendered
 
 if TYPE_CHECKING:
@@ -47,7 +48,8 @@ RESERVED = {
     "Parameters", "INTEGRALS", "UNITS", "with_unit", "LINEAR",
     "polynomial_integrals", "invariant_sets", "normal_forms", "small_parameters", "missing", "name",
     "SPEEDS", "POSITIONS", "speed_state", "speed_rhs", "speed_restored",
-    "speed_simulate", "y", "right", "matrix",
+    "speed_simulate", "y", "right", "matrix", "FRAMES", "frame", "frame_pose", "frame_jacobian", "qdd", "tau",
+    "coriolis", "gravity", "inverse_dynamics", "forward_dynamics",
 }  # fmt: skip
 #: What a module of a constrained system calls something besides.
 TIED = frozenset({
@@ -99,6 +101,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         from mbsym.report.code.canonical_code import canonical_code
 
         forms = canonical_code(analysis, problems, writer)
+    named = named_dynamics(analysis) if code else None
     n = len(system.coordinates)
     upper = [(i, j) for i in range(n) for j in range(i, n)]
     known = solved(analysis)
@@ -148,6 +151,8 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
             for one in formula_functions(analysis, problems, writer)
         ],
         titles={number: PROBLEMS[number].title for number in problems},
+        named=named and bodies(named, writer, plain),
+        without=wrap(named.told_without, 110, break_long_words=False) if named else [],
         conserved=writer.function(conserved.program, conserved.nodes) if conserved.nodes else None,
         slopes=_slopes(writer, known),
         no_slopes=plain(known.no_slopes or known.no_forward),

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
 from mbsym.algebra.factors import rational_ratio
+from mbsym.expressions.message import worded
 from mbsym.formulas.formula import Formula
 from mbsym.model.quantities import rate_unit
 from mbsym.model.system import INERTIAL, System
@@ -37,7 +38,6 @@ from mbsym.report.content import (
     Relation,
     Said,
     Unit,
-    Words,
     joined,
     named,
     say,
@@ -120,7 +120,7 @@ def _facts(results: Results) -> Iterator[Fact]:
         yield Fact(Said("Stability"), tuple(_stability(found[6], results)))
     if 7 in found:
         none = (Said("none in closed form of the kinds that are looked for"),)
-        integrals = tuple(Phrase((Words(one.name), " (", Words(one.status), ")")) for one in found[7])
+        integrals = tuple(Phrase((worded(one.name), " (", worded(one.status), ")")) for one in found[7])
         yield Fact(Said("First integrals"), integrals or none)
     if results.analysis.claims:
         yield Fact(Said("Claims"), tuple(_claims(results)))
@@ -168,9 +168,9 @@ def _motion(found: Equilibrium, system: System) -> Iterator[Inline]:
 def _at_values(found: Stability, system: System) -> Inline:
     """The verdict at the given values; of an unstable motion how fast the fastest solution grows."""
     assert found.numerical is not None
-    said = (*verdict(found.numerical, "verdict-at-values"), Words(decided(found)))
+    said = (*verdict(found.numerical, "verdict-at-values"), worded(decided(found)))
     if found.numerical.word is Word.UNDECIDED and found.numerical.explanation:
-        said = (*said, ": ", Words(found.numerical.explanation))
+        said = (*said, ": ", worded(found.numerical.explanation))
     growth = max((root.real for part in found.spectra for root in numbers(part)), default=0.0)
     if found.numerical.word is Word.UNSTABLE and growth > 0:
         unit = rate_unit(system)
@@ -200,35 +200,26 @@ def _stability(found: Stability, results: Results) -> Iterator[Inline]:
 
 def _part(part: SubsystemStability, number: int, key: str) -> Iterator[Inline]:
     """The verdict on a subsystem, or which verdict follows where: the first case that applies is the one."""
-    known = cases(part.ring, part.theory.cases, label_meanings(part.ring, part.theory.requirements))
+    theory = part.theory
+    known = cases(part.ring, theory.cases, label_meanings(part.ring, theory.requirements), theory.uncovered)
     known = [one for one in known if one.all_of or one.any_of or one.otherwise]
-    word = part.theory.verdict.word
+    word = theory.verdict.word
     if all(one.word is word is Word.UNDECIDED for one in known):
         known = []
     if word not in (Word.DEPENDS, Word.UNDECIDED) or key or not known:
-        yield Phrase(verdict(part.theory.verdict, key))
+        yield Phrase(verdict(theory.verdict, key))
     if word.asymptotic or word is Word.UNSTABLE:
         return
     if word is Word.UNSTABLE_BUT_BORDERS and any(one.word is not Word.UNSTABLE for one in known):
         return  # the conditions of the others hold nowhere inside
     keys = list(condition_keys(part, number))
     seen: list[Formula] = []
-    before: list[tuple[list[Relation], list[Relation]]] = []
-    sufficed: list[list[Relation]] = []
-    for case in known[:MOST_CASES]:
+    last: list[Relation] = []
+    for k, case in enumerate(known[:MOST_CASES]):
         every, either = _conditions(case, seen)
-        if (every or either) and (every, either) in before:
-            continue  # the one before applies
-        if not every and (further := [one for one in either if all(one not in sole for sole in sufficed)]) != either:
-            if not further:
-                continue
-            either = further
-        last = before[-1][0] if before else []
         told_where = _where(case, every, either, last, keys) if every or either else _counted(case)
-        yield Phrase((*((Said("otherwise"), " ") if before else ()), told_where))
-        before.append((every, either))
-        if len(every) + len(either) == 1 or not every:  # where one of these holds, this case or one before applies
-            sufficed.append([*every, *either])
+        yield Phrase((*((Said("otherwise"), " ") if k else ()), told_where))
+        last = every
     if len(known) > MOST_CASES:
         yield Link(say("further cases: [[count]]", count=str(len(known) - MOST_CASES)), "problem-6")
 
@@ -241,27 +232,8 @@ def _conditions(case: CaseStatement, seen: list[Formula]) -> tuple[list[Relation
     wanted = [*case.all_of, *case.any_of]
     if len(wanted) > MOST_CONDITIONS or not all(one.formula is not None and is_short(one.formula) for one in wanted):
         return [], []
-    either = _once(_relation(one, seen) for one in case.any_of)
-    every = _once(_relation(one, seen) for one in case.all_of)
-    unequal = [one.parts[0] for one in either if one.parts[1] == "!="]
-    either = [one for one in either if one.parts[1] == "!=" or one.parts[0] not in unequal]  # p < 0 or p != 0
-    strict = [one for one in [*every, *(either if len(either) == 1 else [])] if one.parts[1] in ("<", ">")]
-    return [one for one in every if not any(_follows(one, other) for other in strict)], either
-
-
-def _follows(one: Relation, other: Relation) -> bool:
-    """Whether it says only that something is not 0 of which the other has a multiple on one side of 0."""
-    left, right = one.parts[0], other.parts[0]
-    if one.parts[1] != "!=" or not (isinstance(left, Formula) and isinstance(right, Formula)):
-        return False
-    return bool(divmod(right.polynomial, left.polynomial)[1].is_zero())
-
-
-def _once(relations: Iterable[Relation]) -> list[Relation]:
-    found: list[Relation] = []
-    for one in relations:
-        found += [] if one in found else [one]
-    return found
+    either = [_relation(one, seen) for one in case.any_of]
+    return [_relation(one, seen) for one in case.all_of], either
 
 
 def _counted(case: CaseStatement) -> Inline:
@@ -352,9 +324,9 @@ def _missing(results: Results) -> Iterator[Fact]:
     for reason, several in groupby(results.failures.items(), key=lambda one: one[1].reason):
         numbers_of = [number for number, _ in several]
         hint = results.failures[numbers_of[0]].hint
-        more = (" (", Words(hint), ")") if hint else ()
+        more = (" (", worded(hint), ")") if hint else ()
         text = "Problem [[number]]" if len(numbers_of) == 1 else "Problems [[number]]"
         title = Link(say(text, number=ranges(numbers_of)), f"problem-{numbers_of[0]}")
-        yield Fact(title, (Phrase((Said("no result"), ": ", Words(reason), *more)),))
+        yield Fact(title, (Phrase((Said("no result"), ": ", worded(reason), *more)),))
     for form, failure in results.forms.forms.failures:
-        yield Fact(Said(TITLES[form]), (Phrase((Said("no result"), ": ", Words(failure.reason))),))
+        yield Fact(Said(TITLES[form]), (Phrase((Said("no result"), ": ", worded(failure.reason))),))

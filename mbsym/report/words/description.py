@@ -45,7 +45,7 @@ from mbsym.report.content import (
 
 def frame(name: str) -> Inline:
     """A body by its name, or the inertial frame."""
-    return Said("the inertial frame") if name == INERTIAL else Emphasis(name)
+    return Said("the inertial reference frame") if name == INERTIAL else Emphasis(name)
 
 
 def vector(values: Vector) -> Listed:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from mbsym.algebra.certainty import Certainty
+from mbsym.expressions.message import worded
 from mbsym.formulas.formula import Formula
 from mbsym.problems.stabilisation import (
     Control,
@@ -16,7 +17,7 @@ from mbsym.problems.stabilisation import (
     Region,
     Stabilisation,
 )
-from mbsym.report.content import Gaps, Phrase, Polynomial, Relation, Said, Words, joined, named, say
+from mbsym.report.content import Gaps, Phrase, Polynomial, Relation, Said, joined, named, say
 
 
 def sentences(found: Stabilisation) -> Iterator[Said]:
@@ -34,7 +35,7 @@ def sentences(found: Stabilisation) -> Iterator[Said]:
         sets = joined(map(named, found.least), "; ")
         yield say("The smallest sets of inputs that suffice for almost all parameters (proved): [[sets]].", sets=sets)
     if found.control and found.feedback is None:
-        yield say("No feedback is given: [[why]].", why=Words(found.no_feedback))
+        yield say("No feedback is given: [[why]].", why=worded(found.no_feedback))
 
 
 def _all(formulas: Sequence[Formula], relation: str) -> tuple[Relation, ...]:
@@ -174,7 +175,7 @@ def _dissipation(part: Dissipation) -> Iterator[Said]:
     else:
         yield Said(
             "Whether $D$ is felt by every motion of [[names]] is undecided: [[why]].",
-            {**names, "why": Words(part.rank.why_not)},
+            {**names, "why": worded(part.rank.why_not)},
         )
     for motion in part.motions:
         if motion.shape is None:
@@ -208,7 +209,7 @@ def _locus(rank: Rank) -> Iterator[Said]:
     if not rank.full:
         return
     if locus is None:
-        yield say("At which parameters it is otherwise was not found: [[why]].", why=Words(rank.why_not))
+        yield say("At which parameters it is otherwise was not found: [[why]].", why=worded(rank.why_not))
         return
     if locus.factors:
         yield say("It is otherwise (proved) where [[where]].", where=_any(locus.factors))
@@ -249,7 +250,7 @@ def _control(part: Control) -> Iterator[Said]:
     else:
         yield Said(
             "Controllability of [[names]] by [[inputs]]: undecided ([[why]]).",
-            {**gaps, "why": Words(part.rank.why_not)},
+            {**gaps, "why": worded(part.rank.why_not)},
         )
     yield from _locus(part.rank)
     if part.at_values:

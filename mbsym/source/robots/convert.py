@@ -49,6 +49,7 @@ def convert(
     symbols: bool = False,
     damping: bool = True,
     exact_angles: bool = False,
+    inputs: bool = True,
 ) -> Converted | None:
     """The description of a robot, or None with complaints.  The options are those of :func:`describe`.
 
@@ -61,5 +62,5 @@ def convert(
     robot = (read_mjcf if root.tag == "mujoco" else read_urdf)(root, complaints, exact_angles)
     if robot is None or complaints.errors:
         return None
-    made = describe(robot, floating, symbols, damping)
+    made = describe(robot, floating, symbols, damping, inputs)
     return Converted(made.yaml, made.joints, robot.left_out, made.still, robot.snapped)

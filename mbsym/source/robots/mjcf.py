@@ -24,7 +24,6 @@ _KINDS = {"hinge": "turn", "slide": "slide", "ball": "ball", "free": "free"}
 _SECTIONS = {
     "equality": "constraint (<equality>)",
     "tendon": "tendon",
-    "actuator": "actuator",
     "sensor": "sensor",
     "contact": "contact pair",
     "deformable": "deformable body",
@@ -93,6 +92,24 @@ def _gravity(root: Element, reader: Reader) -> Texts:
     return NOWHERE if _together(option, "flag").get("gravity") == "disable" else gravity
 
 
+def _driven(root: Element, reader: Reader) -> set[str]:
+    """The joints that an actuator drives; what else actuators do is left out.
+
+    The input is the torque or force in the joint: that of an actuator times its gear.
+    """
+    found = set()
+    for section in root.all("actuator"):
+        for element in section.children:
+            joint = element.get("joint") or element.get("jointinparent")
+            if not joint:
+                reader.leave_out(f"actuator of no joint ({element.tag})")
+                continue
+            found.add(joint)
+            if element.tag != "motor":
+                reader.leave_out(f"law of an actuator ({element.tag})")
+    return found
+
+
 class _Bodies:
     """Reads bodies with the settings of the compiler and the defaults of classes."""
 
@@ -108,6 +125,7 @@ class _Bodies:
         self.groups = tuple(map(float, reader.numbers(section, "inertiagrouprange", 2, "0 5")))
         self.angles = Angles(compiler.get("angle", "degree") != "radian", compiler.get("eulerseq", "xyz"))
         self.autolimits = compiler.get("autolimits", "true") != "false"
+        self.driven = _driven(root, reader)
         self.from_geoms = compiler.get("inertiafromgeom", "auto")
         self.names: set[str] = set()
         self.sites: set[str] = set()
@@ -217,9 +235,12 @@ class _Bodies:
         if all(float(part) == 0 for part in axis):
             reader.error("bad-axis", "an axis of length zero", element)
             axis = ("0", "0", "1")
-        for attribute, told in (("armature", "inertia of a rotor (armature)"), ("frictionloss", "dry friction")):
-            if float(reader.number(element, attribute)):
-                reader.leave_out(told)
+        if float(reader.number(element, "frictionloss")):
+            reader.leave_out("dry friction")
+        armature = reader.number(element, "armature")
+        if kind == "free" and float(armature):
+            reader.leave_out("armature of a free joint")
+            armature = "0"
         if kind in ("ball", "free") and (
             float(reader.number(element, "damping")) or float(reader.number(element, "stiffness"))
         ):
@@ -252,6 +273,8 @@ class _Bodies:
             reader.number(element, "damping"),
             reader.number(element, "stiffness"),
             self.angle(rest) if turns else rest,
+            armature,
+            kind in ("turn", "slide") and element.get("name") in self.driven,
         )
 
     def angle(self, text: str) -> str:

@@ -32,7 +32,9 @@ class Joint:
     """A movement of a link.  ``kind`` is turn, slide, ball or free; ``axis`` and ``anchor`` are in axes of the link.
 
     ``limits`` are the least and greatest value; ``damping`` and ``stiffness`` act on the joint's coordinate, the
-    latter about ``rest``.
+    latter about ``rest``.  ``armature`` is the inertia of a rotor, which adds armature q'^2/2 to the kinetic energy.
+    A joint is ``driven`` where something can exert a torque or a force in it, of ``effort`` at most ("": not said).
+    One that is ``led`` has no coordinate: it stands at multiplier * q + offset, with q that of the joint of this name.
     """
 
     name: str
@@ -43,6 +45,10 @@ class Joint:
     damping: str = "0"
     stiffness: str = "0"
     rest: str = "0"
+    armature: str = "0"
+    driven: bool = False
+    effort: str = ""
+    led: tuple[str, str, str] | None = None
 
 
 @dataclass(frozen=True, slots=True)
