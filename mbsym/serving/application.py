@@ -27,6 +27,7 @@ from mbsym.serving.jobs import Jobs
 from mbsym.serving.requests import Wrong, flag, listed, mapping, text_of, whole
 from mbsym.serving.storage import Conflict, Storage, Unreadable
 from mbsym.source.examples import example_text, example_titles
+from mbsym.source.starter import JOINTS
 
 #: Seconds between two looks whether somebody else wrote the file.
 WATCHING = 0.5
@@ -180,6 +181,7 @@ class Editor:
             "formats": [{"name": name, "title": FORMATS[name].title} for name in FORMATS],
             "problems": _problems(),
             "examples": example_titles(),
+            "joints": [{"name": name, "title": title} for name, (_, _, title) in JOINTS.items() if name != "fixed"],
         }
 
     async def digest(self, request: Request) -> Response:
@@ -199,16 +201,23 @@ class Editor:
         await asyncio.to_thread(self.storage.keep, text_of(body))
         return {}
 
-    async def example(self, body: Mapping[str, Any], _: Request) -> Any:
-        name, path = body.get("name"), self.storage.path
-        if name is None:
+    async def begin(self, body: Mapping[str, Any], _: Request) -> Any:
+        """A first text: of one body on a ``joint``, of an ``example`` (None: nothing), or as ``pasted``."""
+        path = self.storage.path
+        if "joint" in body:
+            text = await asyncio.to_thread(looking.one_body, path.stem, text_of(body, "joint"))
+        elif "pasted" in body:
+            text = await asyncio.to_thread(looking.pasted, text_of(body, "pasted"))
+        elif body.get("example") is None:
             text = looking.empty(path.name, path.stem)
+            return {"text": text, "format": looking.spelling(text, path.name)}
         else:
+            name = str(body["example"])
             try:
-                text = await asyncio.to_thread(example_text, str(name))
+                text = await asyncio.to_thread(example_text, name)
             except KeyError as error:
-                raise Wrong(f"there is no example called {str(name)[:80]!r}") from error
-        return {"text": text, "format": looking.spelling(text, "new.yaml" if name else path.name)}
+                raise Wrong(f"there is no example called {name[:80]!r}") from error
+        return {"text": text, "format": looking.spelling(text, "new.yaml")}
 
     # --- the text -----------------------------------------------------------------------------------------------------
 
@@ -335,7 +344,7 @@ class Editor:
             "cancel": self.cancel,
             "save": self.save,
             "journal": self.journal,
-            "example": self.example,
+            "begin": self.begin,
             "export": self.export,
         }
         posts |= {kind: self._job(kind) for kind in ("derive", "simulate", "equilibria", "modes", "map")}

@@ -176,7 +176,7 @@ def _hover(task: Task, system: System) -> Iterator[Message]:
 
 def _simulate(task: Task, system: System) -> Iterator[Message]:
     from mbsym.picture import picture
-    from mbsym.picture.motion import motion, motion_json
+    from mbsym.report.viewer.motion import motion, motion_json
     from mbsym.simulation import Request
     from mbsym.simulation.request import read_values
 
@@ -195,7 +195,7 @@ def _simulate(task: Task, system: System) -> Iterator[Message]:
 
 
 def _equilibria(task: Task, system: System) -> Iterator[Message]:
-    from mbsym.picture.resting import at_rest, at_rest_json
+    from mbsym.report.viewer.resting import at_rest, at_rest_json
 
     yield {"kind": "progress", "words": "relative equilibria are looked for"}
     yield {"kind": "equilibria", "value": at_rest_json(at_rest(system, _numbers(task)))}
@@ -203,7 +203,7 @@ def _equilibria(task: Task, system: System) -> Iterator[Message]:
 
 def _modes(task: Task, system: System) -> Iterator[Message]:
     from mbsym.analysis import Analysis
-    from mbsym.picture.modes import modes, modes_json
+    from mbsym.report.viewer.modes import modes, modes_json
 
     yield {"kind": "modes", "value": modes_json(modes(Analysis(_with_values(system, _numbers(task)), (4, 5, 6))))}
 

@@ -30,6 +30,7 @@ from truth_at_states import Point, differences, random_point, truth
 
 import mbsym
 from mbsym.analysis import Analysis
+from mbsym.report.code import c_source
 from mbsym.report.code.identifiers import prefix_of
 from mbsym.report.code.parsing import unreadable
 from mbsym.report.exports import fmu
@@ -641,6 +642,24 @@ def test_sources_of_an_fmu_compile_without_a_warning(version: int, compiler: str
         options = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-fsyntax-only"]
         done = subprocess.run([compiler, *options, f"fmi{version}.c"], cwd=tmp_path, capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
+
+
+def test_what_the_header_says_of_results_that_are_no_numbers(tmp_path: Path) -> None:
+    # Kepler's problem at the centre: M = diag(m, m) is regular and every number finite, the force mu m/r^2 is not.
+    compiler = shutil.which("cc")
+    if compiler is None:
+        pytest.skip("no C compiler")
+    kepler = mbsym.load(Path(__file__).parents[1] / "cases" / "statements" / "kepler.yaml")
+    header, library = c_source.header(kepler, ()), tmp_path / "model.so"
+    (tmp_path / "model.c").write_text(c_source.render(kepler, ()))
+    (tmp_path / "model.h").write_text(header)
+    subprocess.run([compiler, "-shared", "-fPIC", "-o", library, tmp_path / "model.c", "-lm"], check=True)
+    functions, out = ctypes.CDLL(str(library)), (ctypes.c_double * 4)()
+    values = (ctypes.c_double * 2).in_dll(functions, "kepler_e_0_9_defaults")
+    for x, status in ((0.1, 0), (0.0, 1)):
+        state = (ctypes.c_double * 4)(x, 0, 0, 1)
+        assert functions.kepler_e_0_9_right_hand_side(ctypes.c_double(0), state, values, out) == status
+    assert "a force is infinite or has no value" in " ".join(header.split())
 
 
 def test_exports_are_made_only_where_they_are_named() -> None:

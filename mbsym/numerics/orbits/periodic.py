@@ -29,6 +29,7 @@ from mbsym.numerics.kernels.llvm import available
 from mbsym.numerics.methods.interface import Breakdown, Setting, Unusable
 from mbsym.numerics.methods.kept import compiled_kernel
 from mbsym.numerics.methods.table import METHODS
+from mbsym.numerics.orbits.floquet import NotPeriodic, common_frequency
 from mbsym.numerics.orbits.flow import Flow
 
 #: Newton's steps at most, and how small what is left over must be, as part of the state's size.
@@ -51,6 +52,9 @@ RANK = 1e-9
 
 #: A vector is an eigenvector for 1 if Phi moves it by less, as part of |Phi| and its own length.
 FIXED = 1e-7
+
+#: The equations are the same a period later if their right-hand sides differ by less, at so many times.
+REPEATED, SAMPLES = 1e-8, 25
 
 
 class NotFound(Exception):
@@ -142,6 +146,8 @@ def periodic_orbit(
     names = (*dynamics.system.coordinates, *dynamics.system.velocities)
     turns = np.array([2 * np.pi * guess.turns.get(name, 0) for name in names])
     rates, energy = compiled_kernel(dynamics, "right_hand_side"), _Energy(dynamics)
+    if known_time:
+        _require_repetition(dynamics, rates, guess)
     search = _Search(flow, turns, energy, energy(guess.state) if guess.keep_energy else None)
     here = search.at(np.array(guess.state, float), float(guess.period))
     if here is None:
@@ -162,6 +168,25 @@ def periodic_orbit(
         best, since = (here, 0) if here.size < 0.5 * best.size else (best, since + 1)
     left = min(best.size, here.size)
     raise NotFound(f"no convergence: what is left over after {count + 1} steps is {left:.1e} of the state's size")
+
+
+def _require_repetition(dynamics: Dynamics, rates: Any, guess: Guess) -> None:
+    """Raises NotFound where f(t + T, x) is not f(t, x): a motion that comes back after T goes on otherwise then."""
+    shift = np.cos(np.arange(1.0, 1 + len(guess.state)))
+    for state in (np.asarray(guess.state, float) + size * shift for size in (0.0, 0.1, -0.3)):
+        for t in np.linspace(0.0, guess.period, SAMPLES):
+            now, then = (rates(np.concatenate(([at], state))) for at in (t, t + guess.period))
+            if np.any(np.abs(then - now) > REPEATED * (1 + np.abs(now))):  # never where one of them is no number
+                raise NotFound(f"the equations do not repeat after {guess.period:.15g}{_repeats(dynamics)}")
+
+
+def _repeats(dynamics: Dynamics) -> str:
+    """After what they do, where that is seen."""
+    try:
+        period = 2 * np.pi / float(common_frequency(dynamics.right_hand_side))
+    except NotPeriodic:
+        return ", and no period of theirs is known"
+    return f": they do after {period:.15g} and its multiples, one of which the period has to be"
 
 
 def _vanishing(period: float, turns: Any) -> str:

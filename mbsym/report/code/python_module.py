@@ -92,7 +92,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
 
         tied, code, no_code = tied_code(analysis, writer)
     speeds = None
-    if system.speeds and not system.constraints:  # in speeds there is the open tree alone
+    if system.speeds and (tied or not system.constraints):
         from mbsym.report.code.speed_code import speed_code
 
         speeds = speed_code(analysis, writer)

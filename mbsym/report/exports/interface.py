@@ -124,7 +124,7 @@ class Export:
             "leads a state back, whose constraint_velocity"
             + (" and constraints tell" if self.has("constraints") else " tells")
             + " what is left. Where J M^-1 J^T is singular (links in line, dependent constraints) or M is, results are "
-            "not finite."
+            "not finite, or by rounding finite and worthless."
         )
         return wrap(words, 100, break_long_words=False)
 

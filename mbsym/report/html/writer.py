@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from enum import StrEnum
 from functools import singledispatchmethod
 from typing import Any
 
 from markupsafe import Markup, escape
 
+from mbsym.expressions.message import GAP, Message, Said, pieces
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.mathml import MathNames, bracketed, letter, mathml_names, mi, mn, mo, mtext, power, table
 from mbsym.formulas.mathml import row as bracketed_row
@@ -17,9 +18,10 @@ from mbsym.formulas.names import greek
 from mbsym.formulas.notation import notation
 from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.report import content
-from mbsym.report.content import Inline, Math, Said, say
+from mbsym.report.content import CONDITION, Inline, Math, say
 from mbsym.report.html import formulas
 from mbsym.report.html.description import expression, point_of_table, speed_form
+from mbsym.report.html.drawing import svg
 from mbsym.report.html.formulas import RELATIONS
 from mbsym.report.html.told import told_passages
 from mbsym.report.language import Language
@@ -55,17 +57,14 @@ class Writer:
 
     def said(self, sentence: Said) -> Markup:
         """A sentence in the language of the report, with its gaps filled."""
-        text = self.language.sentence(sentence.text)
         return Markup("").join(
             self._notation(piece, sentence) if inside else self._plain(piece, sentence)
-            for inside, piece in content.pieces(text)
+            for inside, piece in pieces(self.language.sentence(sentence.text))
         )
 
     def _plain(self, text: str, sentence: Said) -> Markup:
-        parts = re.split(r"\[\[(\w+)\]\]", text)
-        return Markup("").join(
-            self._gap(sentence.gaps[part]) if k % 2 else _untexed(part) for k, part in enumerate(parts)
-        )
+        parts = enumerate(GAP.split(text))
+        return Markup("").join(self._gap(sentence.gaps[part]) if k % 2 else escape(part) for k, part in parts)
 
     def _gap(self, value: Inline | Sequence[Inline]) -> Markup:
         if isinstance(value, Sequence) and not isinstance(value, str):
@@ -74,13 +73,13 @@ class Writer:
 
     def _notation(self, text: str, sentence: Said) -> Markup:
         """Notation with values in it: each stands in it as a letter first, which it then replaces."""
-        gaps = re.findall(r"\[\[(\w+)\]\]", text)
+        gaps = GAP.findall(text)
         for k, gap in enumerate(gaps):
             text = text.replace(f"[[{gap}]]", chr(_FIRST + k), 1)
         written = notation(text)
         for k, gap in enumerate(gaps):
             value = sentence.gaps[gap]
-            shown = mtext(value) if isinstance(value, str) else self.math(value)
+            shown = mtext(self.inline(value).unescape()) if isinstance(value, str) else self.math(value)
             written = written.replace(mi(chr(_FIRST + k)), shown)
         return formulas.math(written)
 
@@ -91,17 +90,12 @@ class Writer:
 
     @inline.register
     def _(self, value: str) -> Markup:
-        return escape(value)
+        return escape(self.language.say(value) if isinstance(value, StrEnum) else value)
 
-    @inline.register
+    @inline.register(Said)
+    @inline.register(Message)
     def _(self, value: Said) -> Markup:
         return self.said(value)
-
-    @inline.register
-    def _(self, value: content.Words) -> Markup:
-        said = self.language.say(value.text)
-        variable = letter(value.variable) if greek(value.variable) else value.variable
-        return formulas.prose(said, variable) if variable else escape(said)
 
     @inline.register
     def _(self, value: content.Strong) -> Markup:
@@ -116,6 +110,10 @@ class Writer:
     @inline.register
     def _(self, value: content.Link) -> Markup:
         return Markup('<a href="#{}">{}</a>').format(value.to, self.inline(value.text))
+
+    @inline.register
+    def _(self, value: content.Numbered) -> Markup:
+        return Markup('\u00a0<a class="there" href="#{}">\u2193</a>').format(_anchor(value.key))
 
     @inline.register
     def _(self, value: content.Phrase) -> Markup:
@@ -259,7 +257,10 @@ class Writer:
     @block.register
     def _(self, value: content.Display) -> Markup:
         notes = (Markup('\n<p class="note soft">({})</p>').format(self.inline(note)) for note in value.notes)
-        return Markup("").join((self._displayed(value.value), *notes))
+        shown = Markup("").join((self._displayed(value.value), *notes))
+        if not value.key.startswith(CONDITION):
+            return shown
+        return Markup('<div id="{}">{}</div>').format(_anchor(value.key), shown)
 
     def _displayed(self, shown: Math | tuple[Inline, ...]) -> Markup:
         match shown:
@@ -309,7 +310,7 @@ class Writer:
 
     def _beside(self, value: Inline) -> str:
         """A part of a displayed line: words stand in it as text."""
-        if isinstance(value, (str, Said, content.Words)):
+        if isinstance(value, (str, Said)):
             return mtext(self.inline(value).unescape())
         return self.math(value)
 
@@ -388,6 +389,13 @@ class Writer:
         return replace(self, names=self.names.beside(value.names)).document(value.blocks)
 
     @block.register
+    def _(self, value: content.Drawing) -> Markup:
+        said = Markup(" ").join(map(self.said, value.caption))
+        drawn = svg(value.drawn, self.said(Said("Drawing of the system")), self.inline)
+        caption = Markup("\n<figcaption>{}</figcaption>").format(said) if said else ""
+        return Markup('<figure class="drawing">\n{}{}\n</figure>').format(drawn, caption)
+
+    @block.register
     def _(self, value: content.Folded) -> Markup:
         return Markup("<details><summary>{}</summary>\n{}\n</details>").format(
             self.said(value.title), self.document(value.blocks)
@@ -395,7 +403,7 @@ class Writer:
 
     @block.register
     def _(self, value: content.Intermediates) -> Markup:
-        return told_passages(value.told, value.passages, lambda words: self.inline(content.Words(words)))
+        return told_passages(value.told, value.passages, self.inline)
 
     @block.register
     def _(self, value: content.Steps) -> Markup:
@@ -422,7 +430,5 @@ class Writer:
 _FIRST = 0xE000
 
 
-def _untexed(text: str) -> Markup:
-    """Text of a message without what only TeX reads."""
-    plain = text.replace("---", "\u2014").replace("--", "\u2013").replace("~", "\u00a0")
-    return escape(plain.replace("''", "\u201d").replace("``", "\u201c"))
+def _anchor(key: str) -> str:
+    return f"formula-{key.replace(':', '-')}"

@@ -5,27 +5,33 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from enum import StrEnum
 from fractions import Fraction
 from functools import singledispatchmethod
 from typing import Any
 
+from mbsym.expressions.message import GAP, Message, Said, pieces
 from mbsym.expressions.tree import Expression
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.latex import LatexNames, latex_matrix, latex_names, latex_symbol
 from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.report import content
-from mbsym.report.content import Inline, Said
+from mbsym.report.content import Inline
 from mbsym.report.language import Language
 from mbsym.report.latex import formulas
 from mbsym.report.latex.description import breakable, call, expression, points, speed_form
 from mbsym.report.latex.displays import loosened
+from mbsym.report.latex.drawing import tikz
 from mbsym.report.latex.form import Form, heading, subheading
 from mbsym.report.latex.formulas import Measured, measured_matrix
 from mbsym.report.latex.labels import Labels
 from mbsym.report.latex.told import CLOSING, OPENING, PARAGRAPH, packed, paragraphs
-from mbsym.report.latex.words import RELATIONS, escaped, prose
+from mbsym.report.latex.words import RELATIONS, escaped
 from mbsym.report.lengths import PAPER_PROGRAM, length, not_printed, program_not_printed
 from mbsym.report.unit_text import bracketed
+
+#: A centimetre of a drawing on paper.
+DRAWN = 0.85
 
 _DOTS = ("", "dot", "ddot")
 _LOOKS = {"bar": "bar", "script": "mathcal"}
@@ -57,11 +63,12 @@ class Writer:
 
     def said(self, sentence: Said) -> str:
         """A sentence in the language of the report, with its gaps filled."""
-        text = self.language.sentence(sentence.text)
-        return "$".join(self._filled(piece, sentence, bool(k % 2)) for k, piece in enumerate(text.split("$")))
+        parts = pieces(self.language.sentence(sentence.text))
+        return "".join(f"${self._filled(x, sentence, True)}$" if k else self._filled(x, sentence) for k, x in parts)
 
-    def _filled(self, text: str, sentence: Said, inside: bool) -> str:
-        return re.sub(r"\[\[(\w+)\]\]", lambda m: self._gap(sentence.gaps[m[1]], inside), text)
+    def _filled(self, text: str, sentence: Said, inside: bool = False) -> str:
+        parts = enumerate(GAP.split(text))
+        return "".join(self._gap(sentence.gaps[x], inside) if k % 2 else x if inside else _spaced(x) for k, x in parts)
 
     def _gap(self, value: Inline | Sequence[Inline], inside: bool) -> str:
         if isinstance(value, Sequence) and not isinstance(value, str):
@@ -75,16 +82,16 @@ class Writer:
 
     @inline.register
     def _(self, value: str) -> str:
-        return escaped(value) if value.strip() == value else re.sub(r"\S.*\S|\S", lambda m: escaped(m[0]), value)
+        return _spaced(self.language.say(value) if isinstance(value, StrEnum) else value)
 
-    @inline.register
+    @inline.register(Said)
+    @inline.register(Message)
     def _(self, value: Said) -> str:
         return self.said(value)
 
     @inline.register
-    def _(self, value: content.Words) -> str:
-        said = self.language.say(value.text)
-        return prose(said, latex_symbol(value.variable).stem) if value.variable else escaped(said)
+    def _(self, value: content.Numbered) -> str:
+        return f"~\\eqref{{{self.labels.of(value.key)}}}"
 
     @inline.register
     def _(self, value: content.Phrase) -> str:
@@ -229,6 +236,7 @@ class Writer:
 
     @block.register
     def _(self, value: content.Heading) -> str:
+        self.labels.begin(value.key)
         return heading(self.labels, self.form, value.key, self.said(value.title)) + "\n"
 
     @block.register
@@ -359,12 +367,18 @@ class Writer:
         return replace(self, names=self.names.beside(value.names)).document(value.blocks)
 
     @block.register
+    def _(self, value: content.Drawing) -> str:
+        said = " ".join(map(self.said, value.caption))
+        caption = f"\\par\\smallskip\n{{\\small {said}\\par}}\n" if said else ""
+        return f"\\begin{{center}}\n{tikz(value.drawn, self.math, DRAWN)}\n{caption}\\end{{center}}\n"
+
+    @block.register
     def _(self, value: content.Folded) -> str:
         return ""
 
     @block.register
     def _(self, value: content.Intermediates) -> str:
-        return paragraphs(value.told, value.passages, lambda words: self.inline(content.Words(words))) + "\n"
+        return paragraphs(value.told, value.passages, self.inline) + "\n"
 
     @block.register
     def _(self, value: content.Steps) -> str:
@@ -383,13 +397,18 @@ class Writer:
 
     def _beside(self, value: Inline) -> str:
         """A part of a displayed line: words stand in it as text."""
-        if isinstance(value, (str, Said, content.Words)):
+        if isinstance(value, (str, Said)):
             return f"\\text{{{self.inline(value)}}}"
         return self.math(value)
 
     def _display(self, written: str, key: str = "") -> str:
-        label = f"[{self.labels.equation(key)}]" if key else ""
-        return f"\\longformula{label}{{{written}}}"
+        label = self.labels.equation(key) if key else self.labels.next()
+        return f"\\longformula[{label}]{{{written}}}"
+
+
+def _spaced(words: str) -> str:
+    """Plain text with the spaces around it."""
+    return re.sub(r"\S(?:.*\S)?", lambda m: escaped(m[0]), words, flags=re.DOTALL)
 
 
 def _component(symbol: content.Symbol, k: int) -> content.Symbol:
