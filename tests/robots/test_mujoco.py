@@ -46,11 +46,11 @@ EVERYTHING = """<mujoco model="everything">
 #: Two pendulums that are tied at a point and by a relation of their joints.
 TIED = """<mujoco><compiler angle="radian"/><worldbody>
 <body name="a"><joint name="y" axis="0 1 0" ref="0.3"/>
- <inertial mass="1" pos="0 0 -1" diaginertia="0.1 0.1 0.1"/></body>
+ <inertial mass="1" pos="0 0 -1" diaginertia="0.1 0.1 0.1"/><site name="p" pos="0.1 0 -0.8"/></body>
 <body name="b" pos="0.5 0 0" euler="0 0.4 0"><joint name="x" axis="0 1 0"/>
  <inertial mass="2" pos="0 0 -0.7" diaginertia="0.1 0.1 0.1"/>
  <body name="d" pos="0 0 -1"><joint name="z" type="slide" axis="1 0 0"/><inertial mass="1" pos="0 0 0"
-  diaginertia="0.1 0.1 0.1"/></body></body>
+  diaginertia="0.1 0.1 0.1"/><site name="s" pos="0.05 0 0.1"/></body></body>
 </worldbody><equality>{}</equality></mujoco>"""
 
 
@@ -103,7 +103,12 @@ def test_masses_forces_and_frames_are_mujoco_s(text: str) -> None:
 
 @pytest.mark.parametrize(
     "tie",
-    ['<joint joint1="y" joint2="z" polycoef="0.1 2 0.3 -0.4"/>', '<connect body1="a" body2="d" anchor="0.1 0 -0.8"/>'],
+    [
+        '<joint joint1="y" joint2="z" polycoef="0.1 2 0.3 -0.4"/>',
+        '<connect body1="a" body2="d" anchor="0.1 0 -0.8"/>',
+        '<connect body1="d" anchor="0.1 0 -0.8"/>',
+        '<connect site1="p" site2="s"/>',
+    ],
 )
 def test_ties_are_mujoco_s(tie: str) -> None:
     """What MuJoCo pulls to zero is what the constraints are, up to signs and rows that are always zero."""

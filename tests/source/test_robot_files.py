@@ -544,6 +544,8 @@ def test_joints_that_mimic_others_follow_them() -> None:
         == [EXACT] * 3
     )
     assert not any("mimic" in one for one in made.left_out)
+    limited = GRIPPER.replace('<dynamics damping="5"/>', '<dynamics damping="5"/><limit lower="0" upper="1"/>')
+    assert "limits of a joint that mimics another" in converted(limited).left_out
 
 
 def test_a_joint_that_only_leads_has_a_coordinate_and_one_that_follows_nothing_that_moves_is_at_its_offset() -> None:
