@@ -206,8 +206,8 @@ def _eliminated(
                     left.pop(other, None)
                 else:
                     left[other] = value
-            for other, x in parts.items():
-                made[other] = _normal(ring, made.get(other, zero) - factor * x)
+            for part, x in parts.items():
+                made[part] = _normal(ring, made.get(part, zero) - factor * x)
         if not left:
             dependent[name] = {other: -x for other, x in made.items() if other != name and not x.is_zero}
             continue
