@@ -31,8 +31,10 @@ class Request:
     and the period where the equations know the time (T must then be a period of theirs).
 
     Told are the state, the period, how well the motion closes by the method that found it and by another one, and the
-    Floquet multipliers with those that are 1 for a reason.  With constraints states are led to them, and multipliers are
-    those of changes that they allow.  Numbers, no proofs.  Written are orbit.csv (one period) and orbit.json.  Exit codes: 0 found, 1 not found or not written, 2 something is missing or wrong, 130 interrupted.
+    Floquet multipliers with those that are 1 for a reason.  With constraints states are led to them, and multipliers
+    are those of changes that they allow.  Numbers, no proofs.  Written are orbit.csv (one period) and orbit.json.
+
+    Exit codes: 0 found, 1 not found or not written, 2 something is missing or wrong, 130 interrupted.
 
     \b
     Examples:
