@@ -433,6 +433,27 @@ class Constraints:
         nodes = substituted(self.code.program, self.code.outputs[h : h + r], program)
         return all(map(program.vanishes, nodes))
 
+    @cached_property
+    def _tangent_rows(self) -> Any:
+        h, r = self.holonomic, len(self.names)
+        program, velocities = self.code.program, self.code.outputs[h : h + r]
+        rows = jacobian(program, velocities, [program.input(name) for name in self.inputs[1:]])
+        return arrays.kernel(Code(program, self.inputs, tuple(x for row in rows for x in row)))
+
+    def tangent(self, t: float, state: Any) -> Any:
+        """An orthonormal basis (p + n, k) of the changes of a state that keep f = 0 and g = 0, to first order.
+
+        Of dependent rows as many count as are independent on this branch.
+        """
+        width, r = self.places + self.size, len(self.names)
+        values = self.at(t, state)
+        above = np.hstack([values.gradients, np.zeros((self.holonomic, self.size))])
+        below = self._tangent_rows(np.concatenate(([t], state))).reshape(r, width)
+        rank = self.rank + len([i for i in self.kept if i < self.holonomic])
+        rows = np.vstack([above, below])
+        rows = rows / _positive(np.linalg.norm(rows, axis=1))[:, None]
+        return np.linalg.svd(rows)[2][rank:].T
+
     def told(self) -> str:
         """``coincide 1, rolling 2``."""
         return listed(self._scenario.system.constraints)

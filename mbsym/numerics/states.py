@@ -77,6 +77,7 @@ class StateDynamics(Dynamics):
     """The codes of a scenario in states; all take (t, s, u)."""
 
     in_states = True
+    form: SpeedForm
 
     def __init__(self, scenario: Scenario, ring: Ring | None = None) -> None:
         self.described = described(scenario.system)

@@ -137,7 +137,7 @@ def build(node: Node, complaints: Complaints, editor: bool = False, folder: Path
 
 
 def _constraints(
-    fields: Fields, bodies: Sequence[Body], reading: Reading
+    fields: Fields, bodies: list[Body], reading: Reading
 ) -> tuple[tuple[Constraint, ...], tuple[str, ...]]:
     """The constraints and the dependent coordinates; few descriptions have any."""
     node, dependent = fields.get("constraints"), fields.get("dependent")

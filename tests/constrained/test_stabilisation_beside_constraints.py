@@ -53,7 +53,7 @@ def segway(length: float) -> tuple[Any, Any]:
     """A and B of (tilt, pl, pr) and their velocities, by hand."""
     mb, mw, r, d, g = 10, 1, 0.2, 0.3, 9.81
     forward, yaw = np.array([0, r / 2, r / 2]), np.array([0, -r / (2 * d), r / (2 * d)])
-    swing = forward + [length, 0, 0]
+    swing = forward + np.array([length, 0, 0])
     spin = 0.1 + mw * r**2 / 2 + 2 * mw * d**2
     mass = 2 * mw * np.outer(forward, forward) + mb * np.outer(swing, swing) + spin * np.outer(yaw, yaw)
     mass += np.diag([0.4, mw * r**2 / 2, mw * r**2 / 2])
@@ -89,7 +89,8 @@ def test_a_segway_is_balanced_by_its_wheels(length: str) -> None:
     assert told.feedback.states == ("tilt", "pl", "pr", "tilt_dot", "pl_dot", "pr_dot")
     stabilises(*segway(float(eval(length, {"sqrt": np.sqrt}))), told.feedback)
     check = found.check("stabilisation")
-    assert check is not None and check.outcome == EXACT
+    assert check is not None
+    assert check.outcome == EXACT
 
 
 def test_the_feedback_of_the_segway_catches_the_nonlinear_one(tmp_path: Path) -> None:

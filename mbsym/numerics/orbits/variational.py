@@ -78,6 +78,11 @@ class Variational(Dynamics):
         self.states = (*self.system.coordinates, *self.system.velocities)
         self.inputs = ("t", *self.states, *(f"{name}~{k}" for k in range(len(directions)) for name in self.states))
         self.size = len(self.system.coordinates) * (1 + len(self.directions))
+        # Its flow leaves constraints alone: states and columns are led back where a passage ends (``flow``).
+        self.__dict__["constraints"] = None
+        if base.constraints is not None:
+            pivots = base.pivots
+            self.__dict__["pivots"] = Code(pivots.program, self.inputs, pivots.outputs)
 
     @cached_property
     def _specialised(self) -> Specialised:

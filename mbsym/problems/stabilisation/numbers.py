@@ -56,7 +56,7 @@ class AtValues:
     @property
     def state(self) -> Numbers:
         """A, 2n x 2n, less by one for each coordinate that follows.  Raises ZeroDivisionError where z' is open."""
-        return state_matrix(self.kind, *(x.tolist() for x in (self.mass, self.rates, self.places)), self.following)
+        return state_matrix(self.kind, self.mass.tolist(), self.rates.tolist(), self.places.tolist(), self.following)
 
     @property
     def kind(self) -> Any:
@@ -140,8 +140,8 @@ def is_controllable(there: AtValues) -> bool | None:
     assert near.inputs is not None
     rows = kalman_rows(near.state, near.gain(near.inputs))
     chosen = fmpq_mat(len(rows), len(rows[0]), [x for row in rows for x in row]).rref()[0].tolist()
-    pivots = [next((j for j, x in enumerate(row) if x != 0), None) for row in chosen]
-    if None in pivots:
+    pivots = [next(j for j, x in enumerate(row) if x != 0) for row in chosen if any(x != 0 for x in row)]
+    if len(pivots) < len(rows):
         return None
     enclosed = kalman_rows(a, there.gain(there.inputs))
     block = arb_mat(len(rows), len(rows), [row[j] for row in enclosed for j in pivots])
