@@ -133,8 +133,8 @@ def _judged(analysis: Analysis) -> Stability:
     scene, linear = analysis.parameters_scene, analysis.judgeable
     found = stability.stability(scene, analysis.balance, linear, analysis.equilibrium, analysis.signs)
     values = None if found.numerical is None else stability.parameter_values(scene, analysis.equilibrium)
-    divisor = "" if values is None or analysis.system.linear is not None else pole(analysis, values)
-    if divisor:
+    divisor = None if values is None or analysis.system.linear is not None else pole(analysis, values)
+    if divisor is not None:
         return replace(found, numerical=undecided(Because.POLE, divisor), spectra=())
     if found.numerical is None or values is None or not found.numerical.word.open:
         return found

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from numbers import Number
 from typing import Any, Self
 
@@ -36,8 +37,10 @@ class Message(str, Said):
     def __init__(self, text: str, /, **gaps: object) -> None:
         Said.__init__(self, text, {name: str(x) if isinstance(x, Number) else x for name, x in gaps.items()})
 
-    def __getnewargs_ex__(self) -> tuple[tuple[str], dict[str, Any]]:
-        return (self.text,), dict(self.gaps)
+    def __reduce__(self) -> tuple[Callable[..., Self], tuple[()]]:
+        """With formulas as their text: they belong to the rings of one process."""
+        gaps = {name: x if isinstance(x, str) else str(x) for name, x in self.gaps.items()}
+        return partial(type(self), self.text, **gaps), ()
 
 
 def worded(text: str) -> Message:

@@ -16,8 +16,9 @@ from fractions import Fraction
 from typing import Any, TypeVar
 
 import numpy as np
-from flint import arb, ctx, fmpq
+from flint import arb, ctx
 
+from mbsym.algebra import rationals
 from mbsym.algebra.failures import Constrained, Failure
 from mbsym.mechanics.constraints.rows import RowName
 from mbsym.model.states import InStates
@@ -308,7 +309,7 @@ class _Exact:
         """f and g."""
         h, r = self._constraints.holonomic, len(self._constraints)
         with ctx.workprec(self._bits):
-            point = [arb(0), *(arb(fmpq(x.numerator, x.denominator)) for x in state)]
+            point = [arb(0), *(rationals.ball(x) for x in state)]
             return [x.mid() for x in self._rows(point)[: h + r]]
 
     def satisfied(self, state: Sequence[Fraction]) -> bool:
@@ -348,7 +349,7 @@ class _Exact:
             found = [_short(x) for x in found]
             if self._restoring is not None:  # Newton's step, in as many bits
                 with ctx.workprec(self._bits):
-                    balls = [arb(0), *(arb(fmpq(x.numerator, x.denominator)) for x in found)]
+                    balls = [arb(0), *(rationals.ball(x) for x in found)]
                     moves = [rounded(x.mid()) for x in self._restoring(balls)]
                 found[:p] = [_short(x + move) for x, move in zip(found, moves, strict=False)]
         if not self.satisfied(found):
@@ -361,4 +362,4 @@ class _Exact:
 def _short(value: Fraction) -> Fraction:
     """Rounded to ``PRECISION`` bits."""
     with ctx.workprec(PRECISION):
-        return rounded(arb(fmpq(value.numerator, value.denominator)))
+        return rounded(rationals.ball(value))

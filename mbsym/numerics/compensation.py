@@ -20,8 +20,9 @@ from math import cos, inf, isfinite, log10, sin, sqrt
 from typing import Any
 
 import numpy as np
-from flint import arb, ctx, fmpq
+from flint import ctx
 
+from mbsym.algebra import rationals
 from mbsym.algebra.compensated import compensated
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.point import Balls
@@ -215,7 +216,7 @@ def _values(code: Code, live: Sequence[int], state: Sequence[float]) -> dict[int
 
 def _ball(x: float) -> Any:
     exact = Fraction(x)
-    return arb(fmpq(exact.numerator, exact.denominator))
+    return rationals.ball(exact)
 
 
 def _sensitive(

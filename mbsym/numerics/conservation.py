@@ -19,8 +19,9 @@ from random import Random
 from typing import Any
 
 import numpy as np
-from flint import arb, ctx, fmpq
+from flint import arb, ctx
 
+from mbsym.algebra import rationals
 from mbsym.algebra.derivative import gradient
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.program import Node
@@ -162,7 +163,7 @@ def _power(dynamics: Dynamics, rate: EnergyRate, state: Sequence[float]) -> list
 
 def _ball(value: Fraction) -> arb:
     """A value; with its rounding, where it looks rounded."""
-    middle = arb(fmpq(value.numerator, value.denominator))
+    middle = rationals.ball(value)
     rounded = value.denominator.bit_length() >= PRECISION // 2
     return arb(middle.mid(), (abs(middle) * arb(2) ** (2 - PRECISION)).upper()) if rounded else middle
 

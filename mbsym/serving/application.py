@@ -6,7 +6,8 @@ Answers are JSON; one that refuses is {"error": code, "message": words} with a s
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Callable, Mapping
+import json
+from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
 from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass
 from functools import lru_cache
@@ -15,17 +16,17 @@ from pathlib import Path
 from typing import Any
 
 from starlette.applications import Starlette
-from starlette.requests import Request
+from starlette.requests import ClientDisconnect, Request
 from starlette.responses import JSONResponse, Response, StreamingResponse
 from starlette.routing import Route
 
+from mbsym.algebra.failures import LOG
 from mbsym.serving import looking
-from mbsym.serving.answers import Work, posted, refused, safely
 from mbsym.serving.events import Events, encoded
-from mbsym.serving.guard import Guard
+from mbsym.serving.guard import Guard, TooLarge, TooSlow
 from mbsym.serving.jobs import Jobs
 from mbsym.serving.requests import Wrong, flag, listed, mapping, text_of, whole
-from mbsym.serving.storage import Conflict, Storage, Unreadable
+from mbsym.serving.storage import Conflict, Storage, Unreadable, Unwritable
 from mbsym.source.examples import example_text, example_titles
 from mbsym.source.starter import JOINTS
 
@@ -397,3 +398,52 @@ def _whole_complaint(words: str) -> dict[str, Any]:
     """About the text as a whole."""
     place = {"from": 0, "to": 0, "line": 1, "column": 1}
     return {"severity": "error", "code": "no-picture", "message": words, "hint": None, **place}
+
+
+#: A route's part that takes an object and answers one.
+Work = Callable[[Mapping[str, Any], Request], Awaitable[Any]]
+
+Handler = Callable[[Request], Awaitable[Response]]
+
+
+def refused(status: int, code: str, words: str, headers: Mapping[str, str] | None = None) -> Response:
+    return JSONResponse({"error": code, "message": words}, status, headers)
+
+
+def posted(work: Work) -> Handler:
+    """A route that takes an object and answers one."""
+
+    async def handle(request: Request) -> Response:
+        try:
+            body = json.loads(await request.body())
+        except (ValueError, RecursionError):
+            return refused(400, "json", "JSON is wanted")
+        if not isinstance(body, dict):
+            return refused(400, "json", "an object is wanted")
+        found = await work(body, request)
+        return found if isinstance(found, Response) else JSONResponse(found)
+
+    return safely(handle)
+
+
+def safely(work: Handler) -> Handler:
+    """What is foreseen is answered with words."""
+
+    async def handle(request: Request) -> Response:
+        try:
+            return await work(request)
+        except ClientDisconnect:
+            return Response(status_code=400)
+        except TooLarge as error:
+            return refused(413, "too-large", str(error))
+        except TooSlow as error:
+            return refused(408, "too-slow", str(error), {"connection": "close"})
+        except Wrong as error:
+            return refused(400, "request", str(error))
+        except (Unwritable, Unreadable) as error:
+            return refused(422, "unwritable" if isinstance(error, Unwritable) else "unreadable", str(error))
+        except Exception as error:  # a defect costs one answer
+            LOG.exception("a request failed")
+            return refused(500, "internal-error", f"internal error: {type(error).__name__}: {error}")
+
+    return handle

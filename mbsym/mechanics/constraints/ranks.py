@@ -76,7 +76,3 @@ def is_certain(x: Any) -> bool:
 
 def _is_exact_zero(x: Any) -> bool:
     return bool(x.is_zero()) if isinstance(x, arb) else bool(x == 0)
-
-
-def may_be_zero(x: Any) -> bool:
-    return not is_certain(x)

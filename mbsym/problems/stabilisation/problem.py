@@ -8,6 +8,7 @@ from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations
+from math import comb
 from typing import Any
 
 from flint import arb, arb_mat, ctx, fmpq, fmpq_mat
@@ -19,6 +20,7 @@ from mbsym.algebra.failures import NOT_THERE, Failure, TooLargeError, message_of
 from mbsym.algebra.matrices import added, dot
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.rationals import ball
+from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import Signs
 from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula, Matrix
@@ -29,8 +31,7 @@ from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.linearisation import Linearisation
 from mbsym.problems.stabilisation import gyroscopic, numbers
 from mbsym.problems.stabilisation.clearing import Cleared, Rows, cleared
-from mbsym.problems.stabilisation.drift import without_drift
-from mbsym.problems.stabilisation.hautus import annihilator, rank_of
+from mbsym.problems.stabilisation.hautus import MOST_BLOCKS, _open_factors, annihilator, rank_of
 from mbsym.problems.stabilisation.numbers import AtValues
 from mbsym.problems.stabilisation.result import (
     Control,
@@ -382,3 +383,45 @@ def _least(whole: Cleared, linear: Linearisation) -> tuple[tuple[str, ...], ...]
         if any(rank.certainty is Certainty.UNDECIDED for rank in ranks.values()):
             return ()
     return ()
+
+
+def without_drift(rank: Rank, whole: Cleared, gyro: Rows, stiff: Rows, damping: Rows) -> Rank:
+    """``rank``, found off lambda = 0, with what uniform motions that are not felt change in it.
+
+    Where some are there for all parameters, lambda is a root; else all is said where the minors that exclude them do
+    not vanish.  Raises TooLargeError.
+    """
+    if not rank.full or rank.certainty is not Certainty.PROVED or whole.known.never_zero(determinant(stiff)):
+        return rank
+    damped = [j for j, row in enumerate(damping) if any(x != 0 for x in row)]
+    beside = [[*k, *(d[j] for j in damped)] for k, d in zip(stiff, damping, strict=True)]
+    both, unfelt = annihilator(beside, whole.known, len(stiff))
+    needed = [both]
+    if unfelt:
+        held, free = annihilator(stiff, whole.known, len(stiff))
+        found = _minor([[dot(u, [dot(row, v) for row in gyro]) for v in unfelt] for u in free], whole)
+        if found is None:
+            drift = (whole.formula(both * 0), whole.formula(both * 0 + 1))
+            turned = any(x != 0 for row in gyro for x in row)  # then w is needed, which a lower rank of K may deny
+            open_ = _open_factors(held, whole.known) if turned else []
+            return Rank(False, Certainty.PROVED, (drift,), Locus((), (), tuple(map(whole.formula, open_))))
+        needed.append(found)
+    if rank.locus is None:
+        return rank
+    locus = rank.locus
+    doubtful = {str(x): x for one in needed for x in map(whole.formula, _open_factors(one, whole.known))}
+    if all(x == 0 for row in gyro for x in row):  # then what Hautus' test loses at lambda = 0 is a drift
+        doubtful = {text: x for text, x in doubtful.items() if text not in map(str, locus.factors)}
+    factors = tuple(x for x in locus.factors if str(x) not in doubtful)
+    provided = {str(x): x for x in locus.provided} | doubtful
+    return Rank(True, rank.certainty, (), Locus(factors, locus.together, tuple(provided.values())), rank.why_not)
+
+
+def _minor(rows: Rows, whole: Cleared) -> Polynomial | None:
+    """A minor of full column rank, one that cannot vanish if there is one; None where all vanish identically."""
+    width = len(rows[0])
+    if comb(len(rows), width) > MOST_BLOCKS:
+        raise TooLargeError("too many minors")
+    minors = [determinant([rows[i] for i in at]) for at in combinations(range(len(rows)), width)]
+    left = [x for x in minors if x != 0]
+    return min(left, key=lambda x: (not whole.known.never_zero(x), len(x))) if left else None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import singledispatchmethod
@@ -12,23 +12,36 @@ from markupsafe import Markup, escape
 
 from mbsym.expressions.message import GAP, Message, Said, pieces
 from mbsym.formulas.formula import Formula
-from mbsym.formulas.mathml import MathNames, bracketed, letter, mathml_names, mi, mn, mo, mtext, power, table
+from mbsym.formulas.mathml import (
+    MathNames,
+    bracketed,
+    letter,
+    mathml_names,
+    mathml_pieces,
+    mi,
+    mn,
+    mo,
+    mtext,
+    power,
+    table,
+)
 from mbsym.formulas.mathml import row as bracketed_row
 from mbsym.formulas.names import greek
 from mbsym.formulas.notation import notation
 from mbsym.formulas.straight_line import Dialect, listing
+from mbsym.formulas.told import Told
 from mbsym.report import content
 from mbsym.report.content import CONDITION, Inline, Math, say
 from mbsym.report.html import formulas
 from mbsym.report.html.description import expression, point_of_table, speed_form
 from mbsym.report.html.drawing import svg
-from mbsym.report.html.formulas import RELATIONS
-from mbsym.report.html.told import told_passages
+from mbsym.report.html.formulas import RELATIONS, math
 from mbsym.report.language import Language
 from mbsym.report.latex.description import shown_points
 from mbsym.report.lengths import PAPER_PROGRAM, length, not_printed, program_not_printed
 from mbsym.report.plain_writer import Writer as PlainWriter
 from mbsym.report.unit_text import labelled
+from mbsym.report.words.passages import Passage
 
 _DOTS = ("", "\u02d9", "\u00a8")
 _PLAIN = PlainWriter()
@@ -432,3 +445,20 @@ _FIRST = 0xE000
 
 def _anchor(key: str) -> str:
     return f"formula-{key.replace(':', '-')}"
+
+
+def told_passages(told: Told[Any], found: Iterable[Passage], say: Callable[[str], Markup] = escape) -> Markup:
+    """A phrase, then the definitions that it introduces, for every passage."""
+    names = mathml_names(told.ring)
+    return Markup("").join(_passage(passage, names, say) for passage in found)
+
+
+def _passage(passage: Passage, names: MathNames, say: Callable[[str], Markup]) -> Markup:
+    coordinate = Markup(" ") + math(str(names[passage.coordinate])) if passage.coordinate else Markup("")
+    written = "; ".join(_equation(str(names[item.name]), item.formula) for item in passage.definitions)
+    return Markup(f'<p>{say(passage.words)}{coordinate}:</p>\n<div class="formula told">{written}.</div>\n')
+
+
+def _equation(left: str, formula: Formula) -> str:
+    first, *rest = mathml_pieces(formula.ring, formula.polynomial)
+    return " ".join(f"<math>{piece}</math>" for piece in [left + mo("=") + first, *rest])

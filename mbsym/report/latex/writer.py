@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from fractions import Fraction
@@ -13,8 +13,9 @@ from typing import Any
 from mbsym.expressions.message import GAP, Message, Said, pieces
 from mbsym.expressions.tree import Expression
 from mbsym.formulas.formula import Formula
-from mbsym.formulas.latex import LatexNames, latex_matrix, latex_names, latex_symbol
+from mbsym.formulas.latex import LatexNames, latex_matrix, latex_names, latex_symbol, latex_text
 from mbsym.formulas.straight_line import Dialect, listing
+from mbsym.formulas.told import Told
 from mbsym.report import content
 from mbsym.report.content import Inline
 from mbsym.report.language import Language
@@ -25,10 +26,10 @@ from mbsym.report.latex.drawing import tikz
 from mbsym.report.latex.form import Form, heading, subheading
 from mbsym.report.latex.formulas import Measured, measured_matrix
 from mbsym.report.latex.labels import Labels
-from mbsym.report.latex.told import CLOSING, OPENING, PARAGRAPH, packed, paragraphs
 from mbsym.report.latex.words import RELATIONS, escaped
 from mbsym.report.lengths import PAPER_PROGRAM, length, not_printed, program_not_printed
 from mbsym.report.unit_text import bracketed
+from mbsym.report.words.passages import Passage
 
 #: A centimetre of a drawing on paper.
 DRAWN = 0.85
@@ -419,3 +420,32 @@ def _index(text: str) -> str:
     """12, ij; O1 as O with index 1; commas with room behind."""
     nested = re.sub(r"([A-Z])(\d+)", r"\1_{\2}", text)
     return nested.replace(",", ",\\,")
+
+
+#: How paragraphs of formulas are set: TeX breaks lines only where the formulas say so, before plus and minus.
+OPENING = "{\\raggedright\\binoppenalty=10000 \\relpenalty=10000 \\linepenalty=200 \\lineskiplimit=1pt \\lineskip=4pt\n"
+PARAGRAPH, CLOSING = "\\hangindent=1.2em \\hangafter=1 \\noindent ", "\\par\n"
+
+
+def paragraphs(told: Told[Any], found: Iterable[Passage], escaped: Callable[[str], str]) -> str:
+    """Every passage as a paragraph, in one group."""
+    names = latex_names(told.ring)
+    return OPENING + "".join(PARAGRAPH + _sentence(x, names, escaped) + CLOSING for x in found) + "}"
+
+
+def _sentence(passage: Passage, names: LatexNames, escaped: Callable[[str], str]) -> str:
+    coordinate = f" ${names[passage.coordinate]}$" if passage.coordinate else ""
+    formulas = [equation(str(names[item.name]), item.formula) for item in passage.definitions]
+    return f"{escaped(passage.words)}{coordinate}: " + ";\\quad ".join(formulas) + "."
+
+
+def equation(symbol: str, formula: Formula) -> str:
+    """``$symbol = formula$``, which may be broken."""
+    return f"$\\displaystyle {symbol} = {latex_text(formula.ring, formula.polynomial, breaks=True)}$"
+
+
+def packed(entries: Iterable[tuple[str, Formula]], symbol: str, key: str) -> str:
+    """Entries of a matrix, by their indices, side by side in one paragraph with one number, which ``key`` labels."""
+    written = ";\\quad ".join(equation(f"{symbol}_{{{index}}}", entry) for index, entry in entries)
+    number = f"\\refstepcounter{{equation}}\\label{{{key}}}%\n"
+    return f"{OPENING}{PARAGRAPH}{number}{written}.\\quad\\hfill\\hbox{{(\\theequation)}}{CLOSING}}}"
