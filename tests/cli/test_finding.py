@@ -121,6 +121,12 @@ def test_what_singular_angles_do_not_say_of_the_motion_is_told_with_the_verdict(
     assert "Stability  provided that y = 0, x = 0:" in lines
 
 
+def test_short_integrals_are_told_with_their_formula(tmp_path: Path) -> None:
+    """Of a heavy top the rate of spin about its axis of symmetry is constant: C (phi' + alpha' sin beta)."""
+    lines = told(tmp_path, (SHIPPED / "heavy-top.yaml").read_text(encoding="utf-8"))
+    assert "momentum of phi (proved): C (alpha' sin(beta) + phi') = const" in lines
+
+
 FELT = """
 mbsym: 1
 name: Felt

@@ -22,7 +22,6 @@ from typing import Any
 
 import numpy as np
 
-from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.kernels.llvm import available
@@ -121,8 +120,9 @@ def autonomous(dynamics: Dynamics) -> bool:
 
 
 def conserves_energy(dynamics: Dynamics) -> bool:
-    """Whether dh/dt vanishes as a program at these numbers."""
-    return not dynamics.energy_power.outputs
+    """Whether dh/dt vanishes as a program at these numbers, and constraints, if any, do not move by themselves."""
+    unmoved = dynamics.constraints is None or dynamics.constraints.steady
+    return unmoved and not dynamics.energy_power.outputs
 
 
 def cyclic_coordinates(dynamics: Dynamics) -> tuple[str, ...]:
@@ -139,7 +139,6 @@ def periodic_orbit(
 
     Raises NotFound where Newton's method does not converge, or converges to rest (period and state say so).
     """
-    refuse_constraints(dynamics.system, "periodic motions")
     flow = Flow(dynamics, tolerance)
     known_time = not autonomous(dynamics)
     free_period = not (known_time or guess.keep_period)
@@ -215,6 +214,7 @@ class _Search:
 
     def at(self, state: Any, period: float) -> _Place | None:
         """None where the motion breaks down."""
+        state = self.flow.led(state)
         try:
             end, phi = self.flow.passage(state, 0.0, period)
         except Breakdown:
@@ -233,17 +233,26 @@ class _Search:
 
         Off the orbit the singular values that vanish on it are about what is left over: below that they mean nothing.
         """
-        size = self.flow.size
+        size, basis = self.flow.size, self.flow.tangent(here.state)
         matrix, right = here.phi - np.eye(size), -here.rest
         if self.wanted is not None:
             matrix = np.vstack([matrix, self.energy.gradient(here.state)])
         scale = 1 + np.abs(here.state)
+        if basis is not None:  # changes that constraints allow, in lengths of their own
+            matrix, scale = matrix @ basis, np.ones(basis.shape[1])
+            forward = None if forward is None else np.append(forward[:size] @ basis, 0.0)
         if forward is not None:
             column = np.zeros((len(matrix), 1))
             column[:size, 0] = ahead
             matrix = np.vstack([np.hstack([matrix, column]), forward])
             right, scale = np.append(right, 0.0), np.append(scale, here.period)
-        return lambda damping: _least_squares(matrix, right, scale, damping * here.size)
+
+        def found(damping: float) -> Any:
+            step = _least_squares(matrix, right, scale, damping * here.size)
+            width = size if basis is None else basis.shape[1]
+            return step if basis is None else np.concatenate([basis @ step[:width], step[width:]])
+
+        return found
 
     def towards(self, here: _Place, step: Callable[[float], Any]) -> _Place | None:
         """The next place: the first that halves what is left over, else the best; None where nothing is better."""
@@ -310,9 +319,12 @@ def _orbit(dynamics: Dynamics, flow: Flow, found: _Place, turns: Any, steps: int
         raise NotFound("Newton's method has found a state of rest: begin farther away from it, or keep the energy")
     _, phi = flow.passage(state, 0.0, period)
     _, other = Flow(dynamics, 1e-10).passage(state, 0.0, period)
+    basis = flow.tangent(state)
+    basis = np.eye(len(state)) if basis is None else basis
+    phi, other = (basis.T @ one @ basis for one in (phi, other))
     multipliers = _sorted(np.linalg.eigvals(phi))
     uncertainty = _distance(multipliers, _sorted(np.linalg.eigvals(other)))
-    reasons, count = _trivial(dynamics, state, phi, free)
+    reasons, count = _trivial(dynamics, state, phi, free, basis)
     verified, verifier = _verified(dynamics, state, period, turns)
     names = (*dynamics.system.coordinates, *dynamics.system.velocities)
     energy = _Energy(dynamics)(state)
@@ -326,7 +338,7 @@ def _orbit(dynamics: Dynamics, flow: Flow, found: _Place, turns: Any, steps: int
         verified,
         verifier,
         steps,
-        phi,
+        basis @ phi @ basis.T,
         multipliers,
         uncertainty,
         count,
@@ -352,8 +364,10 @@ def _distance(a: Any, b: Any) -> float:
     return float(worst)
 
 
-def _trivial(dynamics: Dynamics, state: Any, phi: Any, free: bool) -> tuple[tuple[Trivial, ...], int]:
+def _trivial(dynamics: Dynamics, state: Any, phi: Any, free: bool, basis: Any) -> tuple[tuple[Trivial, ...], int]:
     """The reasons for multipliers 1 that hold at this Phi, and for how many of them they stand.
+
+    Phi and its vectors are told in ``basis``, of the changes that constraints allow, or all.
 
     Right eigenvectors span V, left ones W; where W vanishes on V, 1 has at least the multiplicity dim V + dim W.
     """
@@ -378,8 +392,10 @@ def _trivial(dynamics: Dynamics, state: Any, phi: Any, free: bool) -> tuple[tupl
         candidates.append((f"the momentum of {name} is conserved", slopes[:, names.index(name)], False))
     size = float(np.linalg.norm(phi))
     for reason, vector, is_right in candidates:
+        across = float(np.linalg.norm(vector - basis @ (basis.T @ vector)))
+        vector = basis.T @ vector
         length = float(np.linalg.norm(vector))
-        if length < 1e-12:
+        if length < 1e-12 or (is_right and across > 1e-9 * length):  # or no change that is allowed
             continue
         image = phi @ vector if is_right else vector @ phi
         moved = float(np.linalg.norm(image - vector)) / (length * size)
