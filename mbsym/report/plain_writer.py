@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from mbsym.expressions.message import GAP, Message, Said, pieces, plain_notation
 from mbsym.expressions.safe import UNBROKEN
-from mbsym.expressions.tree import text
+from mbsym.expressions.tree import Expression, Negative, Operation, text
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.python import readable_name
 from mbsym.formulas.straight_line import Dialect, listing
@@ -80,7 +80,7 @@ class Writer:
             yield from self.pieces(value.text)
         elif isinstance(value, Said):
             parts = (
-                plain_notation(x, self._power) if inside else x
+                self._unbroken_notation(plain_notation(x, self._power)) if inside else x
                 for inside, x in pieces(self.language.sentence(value.text))
             )
             for k, text in enumerate(GAP.split("".join(parts))):
@@ -94,6 +94,10 @@ class Writer:
         else:
             yield self.inline(value), value
 
+    def _unbroken_notation(self, written: str) -> str:
+        """``K > 0`` stands in one line."""
+        return written.replace(" ", UNBROKEN) if self.readable and len(written) <= _SHORT else written
+
     @property
     def _power(self) -> str:
         return "^" if self.readable else "**"
@@ -103,7 +107,7 @@ class Writer:
         """What stands in a line."""
         if not self.readable:
             return text(value)
-        primed = re.sub(r"_(d{1,2})ot\b", lambda m: "'" * len(m[1]), text(value))
+        primed = re.sub(r"_(d{1,2})ot\b", lambda m: "'" * len(m[1]), text(_divided_last(value)))
         return primed.replace("**", "^").replace("*", UNBROKEN)
 
     @inline.register
@@ -390,6 +394,20 @@ class Writer:
             yield self._line(self._counted(say("[[count]] steps", count=str(len(steps))), self.file), indent=2)
             return
         yield from (self._line(f"{left} =", UNBROKEN, right, indent=2) for left, right in steps)
+
+
+def _divided_last(value: Expression) -> Expression:
+    """v t/r of (v/r) t: beside a space for a product v/r t would be read as v/(r t)."""
+    match value:
+        case Negative(operand):
+            return Negative(_divided_last(operand))
+        case Operation("*", Negative(Operation("/") as quotient), factor):
+            return Negative(_divided_last(Operation("*", quotient, factor)))
+        case Operation("*", Operation("/", above, below), factor):
+            return Operation("/", _divided_last(Operation("*", above, factor)), below)
+        case Operation(operator, left, right):
+            return Operation(operator, _divided_last(left), _divided_last(right))
+    return value
 
 
 def _style(value: object) -> str:
