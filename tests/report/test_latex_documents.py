@@ -18,6 +18,7 @@ from mbsym.analysis import Analysis
 from mbsym.report import conditions
 from mbsym.report.code.parsing import unreadable
 from mbsym.report.latex.appendix import joined
+from mbsym.report.latex.displays import written_out
 from mbsym.report.latex.labels import labels, slug
 from mbsym.report.rendering import rendered
 from mbsym.report.targets import TARGETS
@@ -259,3 +260,25 @@ def test_a_label_is_not_cut_inside_a_word() -> None:
     assert slug("Satellite with a gravitational stabilizer") == "satellite-with-a-gravitational"
     assert slug("Satellite with a gravitational stabilize") == "satellite-with-a-gravitational-stabilize"
     assert slug("a" * 50) == "a" * 40
+
+
+def test_formulas_of_an_appendix_are_those_that_a_person_writes() -> None:
+    """Short ones below each other's sign; a longer one broken between its terms; what has a long word as before."""
+    short = r"\longformula[p:a]{a = b\penalty0  + c}" + "\n" + r"\longformula[p:b]{\ddot x =\penalty0 0}"
+    assert written_out(short) == (
+        "\\begin{align}\na &= b + c \\label{p:a} \\\\\n\\ddot x &= 0 \\label{p:b}\n\\end{align}"
+    )
+    assert written_out(r"\longformula[p:a]{a < b}") == "\\begin{equation}\\label{p:a}\na < b\n\\end{equation}"
+    apart = written_out(f"{short[: short.index(chr(10))]}\n\nand\n\n{short[short.index(chr(10)) + 1 :]}")
+    assert apart.count(r"\begin{equation}") == 2
+    terms = [rf"k_{{{n}}} \sin \theta_{{{n}}} \cos \theta_{{{n}}}" for n in range(6)]
+    long = r"\longformula[p:l]{" + "\\penalty0  + ".join(terms) + " = 0}"
+    found = written_out(long)
+    assert found.startswith("\\begin{multline}\\label{p:l}\n")
+    lines = found.split("\n")[1:-1]
+    assert len(lines) > 1
+    assert all(line.startswith("+ ") for line in lines[1:])
+    assert " ".join(line.removesuffix(" \\\\") for line in lines) == " + ".join(terms) + " = 0"
+    # Inside of a fraction no line may end.
+    whole = r"\longformula[p:f]{x = \frac{" + "\\penalty0  + ".join(terms) + r"}{y}}"
+    assert "hangindent" in written_out(whole)

@@ -33,7 +33,7 @@ _PICTURES = "node draw includegraphics parskip"
 _DOCUMENT = """documentclass usepackage IfFileExists parindent medmuskip setcounter newcommand renewcommand
     makeatletter makeatother parbox title author date maketitle contentsifneeded tableofcontents bibitem refname
     longformula LARGE
-    if ifnum expandafter csname endcsname edef pages newwrite tf immediate openout jobname relax else fi
+    if ifnum expandafter csname endcsname edef pages pageof newwrite tf immediate openout jobname relax else fi
     detokenize thepage ps let thispagestyle pagestyle"""
 
 _COMMANDS = frozenset(f"{_GREEK} {_MATHEMATICS} {_WORDS} {_PICTURES}".split())
