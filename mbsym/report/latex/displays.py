@@ -17,6 +17,9 @@ from mbsym.report.latex.formulas import NARROW, width
 #: So many equations are one ``align``.
 MOST_ROWS = 6
 
+#: The widest line in a narrow column, in ems: signs and brackets are counted here, which ``width`` does not.
+LINE = NARROW + 2
+
 _OPENING = r"{\par\raggedright\binoppenalty=10000 \relpenalty=10000 \lineskiplimit=1pt \lineskip=2pt"
 _NUMBER = (
     r"\nobreak\hfill\penalty50\hskip1em\hbox{}\nobreak\hfill\hbox{(\theequation)}"
@@ -101,18 +104,18 @@ def _lines(formula: str) -> list[str] | None:
     parts.append(_plain(formula[place:]))
     found: list[str] = []
     for line in _broken(parts, penalties):
-        if found and _width(f"{found[-1]} {line}") <= NARROW:
+        if found and _width(f"{found[-1]} {line}") <= LINE:
             found[-1] += f" {line}"
         else:
             found.append(line)
-    whole = all(_width(line) <= NARROW and line.count("\\left") == line.count("\\right") for line in found)
+    whole = all(_width(line) <= LINE and line.count("\\left") == line.count("\\right") for line in found)
     return found if found and whole else None
 
 
 def _broken(parts: Sequence[str], penalties: Sequence[int]) -> list[str]:
     """What is too wide is broken at the least of its penalties, then piece by piece."""
     whole = " ".join(filter(None, parts))
-    if not penalties or _width(whole) <= NARROW:
+    if not penalties or _width(whole) <= LINE:
         return [whole] if whole else []
     least = min(penalties)
     places = [k + 1 for k, penalty in enumerate(penalties) if penalty == least]
@@ -128,8 +131,13 @@ def _plain(formula: str) -> str:
     return re.sub(r"(?<=[^\\]) {2,}", " ", bare).strip()
 
 
+_FRACTION = re.compile(r"\\frac\{((?:[^{}]|\{[^{}]*\})*)\}\{((?:[^{}]|\{[^{}]*\})*)\}")
+
+
 def _width(formula: str) -> float:
     """In ems, roughly: letters as for matrices, and signs and brackets besides."""
+    while (fraction := _FRACTION.search(formula)) is not None:  # as wide as the wider of its two parts
+        formula = formula[: fraction.start()] + max(fraction[1], fraction[2], key=width) + formula[fraction.end() :]
     signs = len(re.findall(r"[=<>]|\\(?:geq|leq|neq|colon|quad)\b", formula))
     return width(formula) + 1.3 * signs + 0.4 * len(re.findall(r"[(),\[\]]", formula))
 
