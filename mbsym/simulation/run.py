@@ -16,7 +16,7 @@ from dataclasses import replace
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-from mbsym.model.states import InStates, in_states
+from mbsym.model.states import InStates, described, in_states
 from mbsym.numerics import simulate as integration
 from mbsym.numerics.accuracy import ErrorEstimate, Lacking, NoEstimate, contradicted, estimated
 from mbsym.numerics.columns import columns
@@ -84,13 +84,15 @@ def simulate(
         refuse_in_states(scenario.system, request)
     elif scenario.system.speeds:  # what is integrated are coordinates and their derivatives
         scenario = replace(scenario, system=scenario.system.without_speeds)
+    in_declared = declared and bool(scenario.declared)  # what is given in these is fitted in these
+    scenario = scenario_in_states(scenario) if in_declared else scenario
     closed = _closed(scenario, request)
     scenario = scenario if closed is None else closed.scenario
     with stage(COMPILING):
         analysis = _analysis(scenario) if request.invariants else None
         integrals, missing = _integrals(analysis, scenario)
         ring = analysis.ring if analysis is not None and not missing else None
-        if declared:
+        if declared and not in_declared:
             scenario = scenario_in_states(scenario)
         dynamics = _dynamics(scenario, ring, request)
         if request.certify is not None:
@@ -135,12 +137,12 @@ def simulate(
 
 def runs_in_states(system: System, request: Request) -> bool:
     """Whether a run integrates the variables that a description declares."""
-    return bool(system.speeds) and not system.constraints and request.variables == DECLARED
+    return bool(system.speeds) and request.variables == DECLARED
 
 
 def integrated_system(system: System, variables: str = DECLARED) -> System:
     """The system with the variables of a run in the place of coordinates and velocities.  Raises Failure."""
-    if not system.speeds or system.constraints or variables != DECLARED:
+    if not system.speeds or variables != DECLARED:
         return system
     return in_states(system, *state_names(system))
 
@@ -215,7 +217,7 @@ def _trajectory(
 def _analysis(scenario: Scenario) -> Analysis:
     from mbsym.analysis import Analysis  # few runs ask for it
 
-    return Analysis(scenario.system, (7,))
+    return Analysis(described(scenario.system), (7,))
 
 
 def _integrals(analysis: Analysis | None, scenario: Scenario) -> tuple[tuple[Any, ...], str]:

@@ -174,7 +174,7 @@ def _rendered(template: str, analysis: Analysis, bodies: bool, whole: bool) -> s
             "gravity": bool(named and named.gravity),
         },
         tied=tied,
-        speeds=_speeds(analysis, writer) if functions["accelerations"] or (forward and not tied) else None,
+        speeds=_speeds(analysis, writer) if functions["accelerations"] or forward else None,
         quaternions=any(isinstance(one, Quaternion) for body in system.bodies for one in body.orientation),
         functions=functions,
         named=bodies_of(named, writer, comment) if named and bodies else None,

@@ -22,6 +22,18 @@ from mbsym.report.content import Gaps, Phrase, Polynomial, Relation, Said, joine
 
 def sentences(found: Stabilisation) -> Iterator[Said]:
     """Everything but the matrices of the feedback, in order."""
+    if found.nonholonomic:
+        yield Said(
+            "The theorems on gyroscopic forces, dissipation and energy do not apply to constraints in velocities: "
+            "constraint forces stand in $D$, $G$, $K$ and $N$, which may feed a motion or damp it although energy is "
+            "kept."
+        )
+    if found.left_out:
+        yield Said(
+            "These equations are about the independent velocities and what acts on them; what they show carries over "
+            "where the equations of motion do not depend on [[names]], and of these nothing is said.",
+            {"names": named(found.left_out)},
+        )
     for part in found.gyroscopic:
         yield from _gyroscopic(part)
     yield from _together(found.gyroscopic)
@@ -269,6 +281,16 @@ FEEDBACK = (
     "(proved: the roots of the closed loop, counted exactly, lie to the left). It was found as an LQR with unit "
     "weights and rounded."
 )
+#: The same where values are irrational.
+ENCLOSED = (
+    "At the given values the feedback $u = -k z$, $z = (q, \\dot q)$, makes the linear equations asymptotically stable "
+    "(proved: by the Lyapunov function below, the values being enclosed). It was found as an LQR with unit weights and "
+    "rounded."
+)
+#: Before either, where it is one of some coordinates only.
+OF_PART = "There is no feedback of all coordinates: [[why]]. This one is about the linear equations of [[names]] alone."
+#: Where some velocities follow from the others.
+STATES = "Here $z$ is ([[names]])."
 LYAPUNOV = (
     "A Lyapunov function of the closed loop is $z \\cdot P z$: $P$ is positive definite, and its rate negative "
     "definite (proved)."
