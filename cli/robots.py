@@ -46,6 +46,18 @@ def robot_text(file: Path) -> str | None:
     return data.decode("utf-8", "replace")
 
 
+def _beside(file: Path, name: str) -> str | None:
+    """The text of a file in the folder of another one, or in a folder in that; None where there is none."""
+    folder, other = file.parent.resolve(), (file.parent / name).resolve()
+    if not other.is_relative_to(folder):
+        return None
+    try:
+        with other.open("rb") as stream:
+            return stream.read(_MOST).decode("utf-8", "replace")
+    except (OSError, ValueError):
+        return None
+
+
 def described(file: Path, text: str, choices: Choices) -> str | None:
     """The description in YAML, after saying what it leaves out; None after printing every complaint."""
     from mbsym.source.robots import convert
@@ -59,6 +71,7 @@ def described(file: Path, text: str, choices: Choices) -> str | None:
         choices.damping,
         choices.exact_angles,
         choices.inputs,
+        lambda name: _beside(file, name),
     )
     if made is not None:
         _, doubts = read(made.yaml, f"{file.stem}.yaml")

@@ -7,11 +7,13 @@ import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from fractions import Fraction
 from typing import Any
 
 from mbsym.diff.formulas import Comparison, Known, compared
 from mbsym.diff.renaming import Renaming, candidates, renamed
 from mbsym.diff.walk import Difference, pairs
+from mbsym.expressions.table import HOLD, Table
 from mbsym.report.schemas import schema
 
 
@@ -156,7 +158,22 @@ def _known(a: Mapping[str, Any], b: Mapping[str, Any]) -> Known:
         for name, sign in (signs[0] | signs[1]).items()
         if signs[0].get(name, sign) == signs[1].get(name, sign)
     }
-    return Known(frozenset(coordinates), agreed)
+    tables = [_tables(one) for one in (a, b)]
+    alike = {name: x for name, x in (tables[0] | tables[1]).items() if tables[0].get(name, x) == tables[1].get(name, x)}
+    return Known(frozenset(coordinates), agreed, alike)
+
+
+def _tables(one: Mapping[str, Any]) -> dict[str, Table]:
+    """What formulas call: of a table that jumps, what keeps its end values outside."""
+    found: dict[str, Table] = {}
+    for item in one.get("tables") or ():
+        points = tuple((Fraction(x), Fraction(y)) for x, y in item["points"])
+        held = item.get("held")
+        name, outside = (held, HOLD) if held else (item["name"], item["outside"])
+        found[name] = Table(name, points, item["between"], outside)
+        if held:  # its slopes go by its own name
+            found[item["name"]] = Table(item["name"], points, item["between"], outside)
+    return found
 
 
 def _signs(one: Mapping[str, Any]) -> Iterator[tuple[str, str]]:

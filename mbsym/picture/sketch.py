@@ -60,7 +60,7 @@ SHORT = 9
 PIECES = 24
 
 #: And of an arc on the paper.
-ARC = 9
+ARC = 7
 
 Place = tuple[float, float]
 
@@ -447,8 +447,7 @@ class _Paper:
         self.line(body.name, corners, Ink.SOLID, closed=True, tinted=True)
         if level:
             for a in (-0.32, 0.32):
-                round_ = [there(a + wheel * cos(x), floor + wheel + wheel * sin(x)) for x in _around()]
-                self.line(f"wheel of {body.name}", round_, Ink.SOLID, closed=True, tinted=True, smooth=True)
+                self.marks.append(Dot(f"wheel of {body.name}", there(a, floor + wheel), wheel, open=True))
         if sprung or damped:
             wall = [there(left, floor), there(left, tall + 0.25)]
             self.line("wall", wall, Ink.THIN)
@@ -626,7 +625,7 @@ class _Paper:
         """Short strokes on the far side of a line."""
         length = dist(first, second)
         along = _direction(first, second)
-        count = max(3, ceil(length / 0.16))
+        count = max(3, ceil(length / 0.2))
         for k in range(count):
             s = length * (k + 0.75) / count
             foot = first[0] + s * along[0], first[1] + s * along[1]
@@ -981,10 +980,6 @@ def _between(first: Place, second: Place) -> Place:
 
 def _beyond(first: Place, second: Place, times: float) -> Place:
     return first[0] + times * (second[0] - first[0]), first[1] + times * (second[1] - first[1])
-
-
-def _around() -> list[float]:
-    return [2 * pi * k / 12 for k in range(12)]
 
 
 def _coil(first: Place, second: Place) -> list[Place]:

@@ -238,6 +238,13 @@ class Link:
 
 
 @dataclass(frozen=True)
+class Numbered:
+    """Where the formula with the label ``key`` stands: its number on paper, a link on a screen; a terminal has none."""
+
+    key: str
+
+
+@dataclass(frozen=True)
 class Phrase:
     """Parts one after the other."""
 
@@ -276,7 +283,11 @@ class Citation:
 #: What stands in the gaps of a sentence, where it is made piece by piece.
 Gaps = dict[str, "Inline | Sequence[Inline]"]
 #: What stands in a line; a ``str`` that is no message is the same in every language: a name, punctuation.
-Inline = Said | Strong | Graded | Link | Phrase | Emphasis | Verbatim | Unit | Citation | Math | str
+Inline = Said | Strong | Graded | Link | Numbered | Phrase | Emphasis | Verbatim | Unit | Citation | Math | str
+
+
+#: What the keys of conditions begin with: there are references to these.
+CONDITION = "condition:"
 
 
 # --- blocks -----------------------------------------------------------------------------------------------------------

@@ -145,6 +145,10 @@ class Writer:
     def _(self, value: content.Phrase) -> str:
         return "".join(text for text, _ in self.pieces(value))
 
+    @inline.register
+    def _(self, value: content.Numbered) -> str:
+        return ""
+
     @inline.register(content.Strong)
     @inline.register(content.Graded)
     @inline.register(content.Link)

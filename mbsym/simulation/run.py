@@ -230,6 +230,7 @@ def _integrals(analysis: Analysis | None, scenario: Scenario) -> tuple[tuple[Any
 
     try:
         known = tuple(item for item in analysis.integrals if item.kind != ENERGY)
-        return (*known, *found_integrals(analysis, scenario.parameters)), ""
+        found = (*known, *found_integrals(analysis, scenario.parameters))
+        return found, "" if found else "none is known beside the energy, which is watched in every run"
     except Unavailable as reason:
         return (), str(reason)

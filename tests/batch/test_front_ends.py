@@ -194,7 +194,7 @@ def test_the_command_writes_them(tmp_path: Path) -> None:
     keeps_to_junit(suites)
     assert {suite.get("name", "").rpartition("/")[2] for suite in suites} == {"simple-pendulum.yaml", "wrong.yaml"}
     (run,) = json.loads((out / "mbsym.sarif").read_text(encoding="utf-8"))["runs"]
-    assert {result["ruleId"] for result in run["results"]} == {"missing-value"}
+    assert {result["ruleId"] for result in run["results"]} == {"no-bodies"}
     page = _Page()
     page.feed((out / "index.html").read_text(encoding="utf-8"))
     assert all((out / link).exists() for link in page.links)

@@ -160,11 +160,11 @@ def test_a_cart_has_wheels_on_the_ground_and_its_spring_a_wall() -> None:
     """Cart, wheels, ground in this order from above; spring and damper from the wall to it; x from where it is zero."""
     found = drawn(CART)
     box = stroke(found, "cart")
-    wheels = [np.array(x.points) for x in strokes(found, "wheel of cart")]
+    wheels = [x for x in found.marks if isinstance(x, Dot) and x.of == "wheel of cart"]
     ground = stroke(found, "ground")
     assert len(wheels) == 2
-    assert all(np.min(wheel[:, 1]) == pytest.approx(ground[0][1]) for wheel in wheels)
-    assert all(np.max(wheel[:, 1]) == pytest.approx(np.min(box[:, 1])) for wheel in wheels)
+    assert all(x.place[1] - x.radius == pytest.approx(ground[0][1]) for x in wheels)
+    assert all(x.place[1] + x.radius == pytest.approx(np.min(box[:, 1])) for x in wheels)
     wall = stroke(found, "wall")
     spring, damper = stroke(found, "spring: x"), strokes(found, "damper: x")
     assert spring[0][0] == pytest.approx(wall[0][0])

@@ -175,7 +175,9 @@ def test_matrices_stand_side_by_side_where_they_fit(analysis: mbsym.Analysis) ->
 
 def test_notes_bars_and_script_letters(analysis: mbsym.Analysis) -> None:
     line = content.Display(Relation(Symbol("M", look="bar"), "=", 0), "", (worded("stable"),))
-    assert in_latex(analysis).block(line) == r"\longformula{\bar{M} = 0 \quad\penalty0 \text{(stable)}}"
+    assert in_latex(analysis).block(line) == (
+        r"\longformula[mbsym:pendulum:eq:1]{\bar{M} = 0 \quad\penalty0 \text{(stable)}}"  # every number has a label
+    )
     assert "\u00af" in in_html(analysis).block(line)
     assert in_html(analysis).block(line).endswith('<p class="note soft">(stable)</p>')
     assert in_latex(analysis).math(Symbol("A", look="script")) == r"\mathcal{A}"

@@ -80,3 +80,17 @@ def test_frames_that_would_take_too_much_are_told(monkeypatch: pytest.MonkeyPatc
     assert "There are no poses of these, they would take too many operations: frame" in " ".join(text.split())
     assert module(analysis).FRAMES == ("cart", "tool/0")
     assert "too many operations: frame" in " ".join(str(FORMATS["casadi"].render(analysis, ())).split())
+
+
+def test_what_moves_as_prescribed_makes_forces_of_inertia_at_rest() -> None:
+    """A bead on a hoop that turns at Omega:  m R^2 theta'' - m R^2 Omega^2 sin cos + m g R sin + b theta' = 0.
+
+    c does not vanish with theta', so that it is no C(q, q') q'; that is said.
+    """
+    analysis = mbsym.load(SHIPPED / "bead-on-hoop.yaml", problems=())
+    model = module(analysis)
+    at_rest = -0.1 * 0.3**2 * 8**2 * np.sin(0.7) * np.cos(0.7)
+    assert model.coriolis([0.7], [0.0], model.DEFAULTS) == pytest.approx([at_rest], rel=1e-14)
+    assert "where nothing moves as prescribed" in model.coriolis.__doc__
+    header = str(FORMATS["c"].companions[0].render(analysis, ()))
+    assert "C(q, q') q' where nothing moves as prescribed" in header

@@ -167,6 +167,45 @@ def worst_difference(text: str, converted: Converted, module: ModuleType, states
     return worst
 
 
+def regressor_rank(text: str, converted: Converted, states: int = 40) -> int:
+    """The rank of Pinocchio's regressor of all standard parameters, stacked at random states; columns of length one."""
+    model = peer(text, converted.floating)
+    data, source = model.createData(), np.random.default_rng(5)
+    rows = []
+    for _ in range(states):
+        there = pinocchio.neutral(model)
+        for name, value in zip(converted.joints, source.normal(size=len(converted.joints)), strict=True):
+            _place(model, there, [name], [value])
+        v, a = source.normal(size=(2, model.nv))
+        own = [k for name in converted.joints for k in _velocities(model, name)]
+        still = np.setdiff1d(range(model.nv), own)
+        v[still] = a[still] = 0
+        rows.append(pinocchio.computeJointTorqueRegressor(model, data, there, v, a)[own])
+    stacked = np.vstack(rows)
+    lengths = np.linalg.norm(stacked, axis=0)
+    return int(np.linalg.matrix_rank(stacked[:, lengths > 1e-9] / lengths[lengths > 1e-9], rtol=1e-9))
+
+
+def worst_frame(text: str, converted: Converted, module: ModuleType) -> tuple[float, int]:
+    """The largest difference of poses and Jacobians at a random state, and of how many frames."""
+    model = peer(text, converted.floating)
+    data, q = model.createData(), np.random.default_rng(6).normal(size=len(converted.joints))
+    there = pinocchio.neutral(model)
+    for name, value in zip(converted.joints, q, strict=True):
+        _place(model, there, [name], [value])
+    columns = [k for name in converted.joints for k in _velocities(model, name)]
+    pinocchio.computeJointJacobians(model, data, there)
+    pinocchio.framesForwardKinematics(model, data, there)
+    worst, known = 0.0, [name for name in module.FRAMES if model.existFrame(name)]
+    for name in known:
+        number = model.getFrameId(name)
+        pose = module.frame_pose(name, q, module.DEFAULTS) - data.oMf[number].homogeneous
+        theirs = pinocchio.getFrameJacobian(model, data, number, pinocchio.LOCAL_WORLD_ALIGNED)[:, columns]
+        slopes = module.frame_jacobian(name, q, module.DEFAULTS) - theirs
+        worst = max(worst, float(np.abs(pose).max()), float(np.abs(slopes).max()))
+    return worst, len(known)
+
+
 def mimics(text: str) -> dict[str, tuple[str, float, float]]:
     """Joint: leader, multiplier and offset, chains of them followed to their first joint."""
     root = ElementTree.fromstring(text)

@@ -118,7 +118,8 @@ def available(scalar: str) -> bool:
 
 
 #: Longer programs are split into functions of ``PART`` operations, for which compilers take more than linear time, and
-#: are not searched for operations that could be done side by side, which takes longest and gains some percent.
+#: are not searched for operations that could be done side by side, which takes longest and gains some percent; nor is
+#: there anything that higher levels of optimisation would find in them in twice the time.
 LONG, PART = 4_000, 500
 
 
@@ -688,8 +689,8 @@ def compiled(codes: Mapping[str, Code], scalar: str = FLOAT64, more: str = "", m
         parts.append(function_text(name, code, chosen))
         if many:
             parts.append(many_text(name, code, chosen))
-    longest = max((len(code.program.live(code.outputs)) for code in codes.values()), default=0)
-    return Library("\n".join([*parts, more, ATTRIBUTES]), thorough=longest <= LONG)
+    short = max((len(code.program.live(code.outputs)) for code in codes.values()), default=0) <= LONG
+    return Library("\n".join([*parts, more, ATTRIBUTES]), level=2 if short else 1, thorough=short)
 
 
 def kernel(code: Code, scalar: str = FLOAT64) -> Kernel:

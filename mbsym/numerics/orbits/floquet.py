@@ -193,7 +193,7 @@ def jacobian_on_motion(dynamics: Dynamics) -> tuple[Code, bool]:
         raise NotPeriodic("the description has no unperturbed motion (motion:)")
     n, rhs, jacobian = dynamics.size, dynamics.right_hand_side, dynamics.jacobian
     if dynamics.switches.outputs:
-        raise NotPeriodic("the equations hold sign, abs or step, whose derivatives jump")
+        raise NotPeriodic("the equations hold sign, abs or step, or a table with kinks, whose derivatives jump")
     fresh = bound(dynamics.scenario)
     time = fresh.input("t")
     for place, (name, velocity) in enumerate(zip(dynamics.system.coordinates, dynamics.system.velocities, strict=True)):

@@ -235,9 +235,9 @@ def _places(first: Solution, second: Solution, end: float, rows: _Rows, most: in
     for after, until in pairwise(ahead):
         count = max(16, int(most * len(SHARES) * (until - after) / (end - now)))
         inside = uneven(after, until, count)
-        times = np.union1d(np.append(inside[(inside > after) & (inside < until)], until), rows.among(after, until))
-        for some in np.array_split(times, min(OFTEN, len(times))):  # whoever watches may have seen enough
-            yield some, _at(first, one, some, second=False), _at(second, other, some, second=True), False
+        every = np.union1d(np.append(inside[(inside > after) & (inside < until)], until), rows.among(after, until))
+        for part in np.array_split(every, min(OFTEN, len(every))):  # whoever watches may have seen enough
+            yield part, _at(first, one, part, second=False), _at(second, other, part, second=True), False
 
 
 #: (times, the first, the second, whether steps are followed): then the two are the steps there, else their states.
@@ -248,9 +248,8 @@ def _evaluated(block: Sequence[_Place]) -> tuple[Any, Any, Any]:
     """(times, states of the first, of the second) of all places of a block, those on steps in one go."""
     steps, found = [place for place in block if place[3]], [place[:3] for place in block if not place[3]]
     if steps:
-        own = [place[0] for place in steps]
-        on = (states_on([place[which] for place in steps], own) for which in (1, 2))
-        found.insert(0, (np.concatenate(own), *on))
+        own, first, second, _ = zip(*steps, strict=True)
+        found.insert(0, (np.concatenate(own), states_on(first, own), states_on(second, own)))
     times, one, other = (np.concatenate(parts, axis=-1) for parts in zip(*found, strict=True))
     return times, one, other
 

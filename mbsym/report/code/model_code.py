@@ -300,7 +300,7 @@ def _named_parts(found: NamedDynamics, n: int) -> Iterator[Part]:
     """What robotics calls by name."""
     balance = "M q'' + c + g = generalised forces of other loads"
     for name, words, one, argument in (
-        ("coriolis", f"c of {balance}: the vector C(q, q') q'", found.coriolis, ""),
+        ("coriolis", f"c of {balance}: C(q, q') q' where nothing moves as prescribed", found.coriolis, ""),
         ("gravity", f"g of {balance}, of the fields of gravity", found.gravity, ""),
         (
             "inverse_dynamics",

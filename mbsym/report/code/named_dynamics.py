@@ -242,8 +242,8 @@ class _Placed:
                 swept = [e[1] * d[2] - e[2] * d[1], e[2] * d[0] - e[0] * d[2], e[0] * d[1] - e[1] * d[0], *e]
                 for name, slope in frame.angle_derivatives.items():
                     self._add(found, name, [slope * x for x in swept])
-            for name, slope in frame.offset_derivatives.items():
-                self._add(found, name, [axis.dot(slope) for axis in before] + [self.program.zero] * 3)
+            for name, moved in frame.offset_derivatives.items():
+                self._add(found, name, [axis.dot(moved) for axis in before] + [self.program.zero] * 3)
             number = frame.parent
         return found
 

@@ -124,7 +124,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         title=plain(system.name),
         description=fill(plain(system.description), 110),
         n=n,
-        defaults=[(item.name, _default(item.value)) for item in system.parameters],
+        defaults=[(item.name, default(item.value)) for item in system.parameters],
         meanings=[(item.name, plain(item.told)) for item in parameters if item.told],
         units=wrap(f"Units: {', '.join(told)}.", 110, break_long_words=False) if told else [],
         axes=[
@@ -204,7 +204,7 @@ def plain(words: str) -> str:
     return " ".join(words.replace("\\", "/").replace('"', "'").split())
 
 
-def _default(value: Expression | None) -> str:
+def default(value: Expression | None) -> str:
     """A number as Python reads it, or None: nothing is made up."""
     if value is None:
         return "None"

@@ -18,7 +18,7 @@ from mbsym.formulas.names import greek
 from mbsym.formulas.notation import notation
 from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.report import content
-from mbsym.report.content import Inline, Math, say
+from mbsym.report.content import CONDITION, Inline, Math, say
 from mbsym.report.html import formulas
 from mbsym.report.html.description import expression, point_of_table, speed_form
 from mbsym.report.html.drawing import svg
@@ -110,6 +110,10 @@ class Writer:
     @inline.register
     def _(self, value: content.Link) -> Markup:
         return Markup('<a href="#{}">{}</a>').format(value.to, self.inline(value.text))
+
+    @inline.register
+    def _(self, value: content.Numbered) -> Markup:
+        return Markup('\u00a0<a class="there" href="#{}">\u2193</a>').format(_anchor(value.key))
 
     @inline.register
     def _(self, value: content.Phrase) -> Markup:
@@ -253,7 +257,10 @@ class Writer:
     @block.register
     def _(self, value: content.Display) -> Markup:
         notes = (Markup('\n<p class="note soft">({})</p>').format(self.inline(note)) for note in value.notes)
-        return Markup("").join((self._displayed(value.value), *notes))
+        shown = Markup("").join((self._displayed(value.value), *notes))
+        if not value.key.startswith(CONDITION):
+            return shown
+        return Markup('<div id="{}">{}</div>').format(_anchor(value.key), shown)
 
     def _displayed(self, shown: Math | tuple[Inline, ...]) -> Markup:
         match shown:
@@ -421,3 +428,7 @@ class Writer:
 
 #: Letters for private use, which stand for values in notation.
 _FIRST = 0xE000
+
+
+def _anchor(key: str) -> str:
+    return f"formula-{key.replace(':', '-')}"

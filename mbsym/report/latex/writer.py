@@ -90,6 +90,10 @@ class Writer:
         return self.said(value)
 
     @inline.register
+    def _(self, value: content.Numbered) -> str:
+        return f"~\\eqref{{{self.labels.of(value.key)}}}"
+
+    @inline.register
     def _(self, value: content.Phrase) -> str:
         return self._joined(value.parts)
 
@@ -232,6 +236,7 @@ class Writer:
 
     @block.register
     def _(self, value: content.Heading) -> str:
+        self.labels.begin(value.key)
         return heading(self.labels, self.form, value.key, self.said(value.title)) + "\n"
 
     @block.register
@@ -397,8 +402,8 @@ class Writer:
         return self.math(value)
 
     def _display(self, written: str, key: str = "") -> str:
-        label = f"[{self.labels.equation(key)}]" if key else ""
-        return f"\\longformula{label}{{{written}}}"
+        label = self.labels.equation(key) if key else self.labels.next()
+        return f"\\longformula[{label}]{{{written}}}"
 
 
 def _spaced(words: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -37,6 +38,7 @@ from mbsym.report.conditions import (
     statements,
 )
 from mbsym.report.content import (
+    CONDITION,
     Block,
     Cited,
     Definitions,
@@ -236,7 +238,7 @@ def _told(part: SubsystemStability, number: int, several: bool, results: Results
         for k, (powers, multiplicity) in enumerate(factors(part), start=1):
             factor = Polynomial(tuple(powers), variable, multiplicity)
             yield Display(Relation(k, ":", factor), f"factor:{number}:{k}")
-    seen, told = Shown(), label_meanings(part.ring, theory.requirements)
+    seen, told = _Keyed(number), label_meanings(part.ring, theory.requirements)
     wanted = list(statements(part.ring, theory.requirements, True, told))
     if theory.verdict.stable:  # this method leaves open what is decided otherwise
         wanted = [replace(x, place=Place.NECESSARY) if x.place is Place.METHOD else x for x in wanted]
@@ -278,7 +280,38 @@ def _without_numbers(results: Results) -> list[str]:
     return [name for name in lacking if name in used] if any(x.value is not None for x in system.parameters) else []
 
 
-def _case_told(case: CaseStatement, first: bool, seen: Shown) -> Iterator[Block]:
+class _Keyed(Shown):
+    """What was shown, each under a key of its own."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__()
+        self._number, self._taken = number, Counter[str]()
+
+    def key(self, item: Statement) -> str:
+        """That of the formula which shows it first; nothing where a name is enough.  Once for each item, in order."""
+        if self.reference(item) is not None:
+            return ""
+        word = re.sub(r"[^A-Za-z0-9]+", "-", str(item.label)).strip("-")
+        self._taken[word] += 1
+        count = self._taken[word]
+        return f"{CONDITION}{self._number}:{word}" + (f":{count}" if count > 1 else "")
+
+
+def condition_keys(part: SubsystemStability, number: int) -> Iterator[tuple[Statement, str]]:
+    """The conditions of a subsystem that are shown by formulas, each with the key of its own."""
+    seen, told = _Keyed(number), label_meanings(part.ring, part.theory.requirements)
+    known = list(statements(part.ring, part.theory.requirements, True, told))
+    for case in cases(part.ring, part.theory.cases, told, part.theory.uncovered):
+        if case.all_of or case.any_of or case.otherwise:
+            known += [*case.all_of, *case.any_of]
+    for item in known:
+        key = seen.key(item)
+        if key and item.formula is not None:
+            yield item, key
+        seen.show(item)
+
+
+def _case_told(case: CaseStatement, first: bool, seen: _Keyed) -> Iterator[Block]:
     word = concluded(case.word, case.theorems)
     if case.otherwise:
         yield paragraph(Said("Otherwise"), " ", *word, ":")
@@ -294,15 +327,15 @@ def _case_told(case: CaseStatement, first: bool, seen: Shown) -> Iterator[Block]
     yield paragraph(worded(case.explanation))
 
 
-def _conditions(items: Sequence[Statement], seen: Shown) -> Iterator[Block]:
+def _conditions(items: Sequence[Statement], seen: _Keyed) -> Iterator[Block]:
     """Conditions; of a polynomial that was shown before only its name."""
     for item in items:
         yield from _condition_told(item, seen)
         seen.show(item)
 
 
-def _condition_told(item: Statement, seen: Shown) -> Iterator[Block]:
-    reference, label = seen.reference(item), label_of(item.label)
+def _condition_told(item: Statement, seen: _Keyed) -> Iterator[Block]:
+    reference, label, key = seen.reference(item), label_of(item.label), seen.key(item)
     remark: tuple[Inline, ...] = (worded(item.remark),) if item.remark else ()
     note: tuple[Inline, ...] = (worded(item.note),) if item.note else ()
     if reference is not None:
@@ -310,17 +343,17 @@ def _condition_told(item: Statement, seen: Shown) -> Iterator[Block]:
         yield Display(Relation(*own, label_of(reference.under), reference.relation, 0))
     elif item.formula is None:
         never = item.never is not None and item.never.terms < SHORT
-        yield Display(Relation(label, *(("=", item.never) if never else ()), item.relation, 0), notes=note)
+        yield Display(Relation(label, *(("=", item.never) if never else ()), item.relation, 0), key, note)
     elif item.told is not None:
         text = "written out [[terms]] terms, of degree [[degree]]; in full in results.json"
         long = say(text, terms=str(item.formula.terms), degree=str(item.formula.degree))
-        yield Display(Relation(label, ":", item.told.formula, item.relation, 0), notes=(long, *remark))
+        yield Display(Relation(label, ":", item.told.formula, item.relation, 0), key, (long, *remark))
         letters = seen.unshown(item.told)
         if letters:
             yield Definitions(Said("with"), tuple(Relation(letter, "=", value) for letter, value in letters))
     else:
         shown = Readable(item.formula, not item.note)
-        yield Display(Relation(label, ":", shown, item.relation, 0), notes=note or remark)
+        yield Display(Relation(label, ":", shown, item.relation, 0), key, note or remark)
 
 
 def label_of(label: str) -> Math:

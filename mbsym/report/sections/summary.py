@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
@@ -33,6 +33,7 @@ from mbsym.report.content import (
     Math,
     Name,
     Number,
+    Numbered,
     Phrase,
     Relation,
     Said,
@@ -44,6 +45,7 @@ from mbsym.report.content import (
 from mbsym.report.sections.canonical import TITLES
 from mbsym.report.sections.equations import is_short, short_equations
 from mbsym.report.sections.equilibrium import exists_if
+from mbsym.report.sections.stability import condition_keys
 from mbsym.report.sections.system import unperturbed_motion
 from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line, titles
 from mbsym.report.words.verdicts import decided, grade, verdict, where
@@ -58,6 +60,9 @@ MOST_CONDITIONS, MOST_CASES, MOST_COORDINATES = 4, 4, 8
 
 #: Nor is a position told by more coordinates.
 MOST_DRAWN = 6
+
+#: Conditions, each with the key of the formula that shows it.
+Keys = Sequence[tuple[Statement, str]]
 
 _DRAWN: WeakKeyDictionary[Analysis, tuple[Drawing, ...]] = WeakKeyDictionary()
 
@@ -180,10 +185,10 @@ def _stability(found: Stability, results: Results) -> Iterator[Inline]:
     if presumed:
         yield Phrase((*presumed[1:], ":"))
     if not several:
-        yield from _part(found.subsystems[0], "verdict")
+        yield from _part(found.subsystems[0], 1, "verdict")
         return
     yield Phrase((Said("the whole system"), ": ", *verdict(found.verdict, "verdict")))
-    word, told = found.verdict.word, [list(_part(part, "")) for part in found.subsystems]
+    word, told = found.verdict.word, [list(_part(part, k, "")) for k, part in enumerate(found.subsystems, start=1)]
     alike = all(part.theory.verdict.word is word for part in found.subsystems)
     if alike and (word.stable or word is Word.UNSTABLE) and all(len(lines) == 1 for lines in told):
         return
@@ -193,7 +198,7 @@ def _stability(found: Stability, results: Results) -> Iterator[Inline]:
     yield Phrase(("(", Said("of each group of coordinates while the others keep to the unperturbed motion"), ")"))
 
 
-def _part(part: SubsystemStability, key: str) -> Iterator[Inline]:
+def _part(part: SubsystemStability, number: int, key: str) -> Iterator[Inline]:
     """The verdict on a subsystem, or which verdict follows where: the first case that applies is the one."""
     theory = part.theory
     known = cases(part.ring, theory.cases, label_meanings(part.ring, theory.requirements), theory.uncovered)
@@ -207,11 +212,12 @@ def _part(part: SubsystemStability, key: str) -> Iterator[Inline]:
         return
     if word is Word.UNSTABLE_BUT_BORDERS and any(one.word is not Word.UNSTABLE for one in known):
         return  # the conditions of the others hold nowhere inside
+    keys = list(condition_keys(part, number))
     seen: list[Formula] = []
     last: list[Relation] = []
     for k, case in enumerate(known[:MOST_CASES]):
         every, either = _conditions(case, seen)
-        told_where = _where(case, every, either, last) if every or either else _counted(case)
+        told_where = _where(case, every, either, last, keys) if every or either else _counted(case)
         yield Phrase((*((Said("otherwise"), " ") if k else ()), told_where))
         last = every
     if len(known) > MOST_CASES:
@@ -246,16 +252,38 @@ def _counted(case: CaseStatement) -> Inline:
     return Link(say(text, verdict=verdict, count=str(count)), "problem-6")
 
 
-def _where(case: CaseStatement, every: list[Relation], either: list[Relation], before: list[Relation]) -> Inline:
+def _where(
+    case: CaseStatement,
+    every: list[Relation],
+    either: list[Relation],
+    before: list[Relation],
+    keys: Keys,
+) -> Inline:
     """The verdict with its conditions; ``before``: those of the case in front of it."""
     verdict = Phrase(where(case.word, case.theorems))
     if len(either) > 1 and not every and [one.parts for one in either] == [_reversed(one) for one in before]:
         return say("[[verdict]] if one of these is negative", verdict=verdict)
     between = (", ", Said("and"), " ") if every and either else ()
-    conditions = Phrase((joined(every, ", "), *between, joined(either, " ", Said("or"), " ")))
+    told = [Phrase((one, *_numbered(one, keys))) for one in every]
+    others = [Phrase((one, *_numbered(one, keys))) for one in either]
+    conditions = Phrase((joined(told, ", "), *between, joined(others, " ", Said("or"), " ")))
     # Without a theorem behind it "gyroscopically stabilised only if" would be read as "only if".
     text = "[[verdict]] if [[conditions]]" if case.theorems else "[[verdict]], if [[conditions]]"
     return say(text, verdict=verdict, conditions=conditions)
+
+
+def _numbered(one: Relation, keys: Keys) -> tuple[Numbered, ...]:
+    """Where the condition stands in problem 6, a positive number times it, or its opposite reversed."""
+    left, relation, _ = one.parts
+    assert isinstance(left, Formula)
+    for item, key in keys:
+        assert item.formula is not None
+        ratio = rational_ratio(left.polynomial, item.formula.polynomial)
+        if ratio is not None and relation == (
+            item.relation if ratio > 0 else OPPOSITE.get(item.relation, item.relation)
+        ):
+            return (Numbered(key),)
+    return ()
 
 
 def _reversed(one: Relation) -> tuple[Math | str, ...]:

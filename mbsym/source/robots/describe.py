@@ -18,7 +18,7 @@ from mbsym.expressions.rates import is_rate
 from mbsym.source.bodies import is_body_name
 from mbsym.source.robots.numbers import NOWHERE, Texts, is_of_a_body, opposite
 from mbsym.source.robots.placing import Moving, Step, steps
-from mbsym.source.robots.robot import GROUND, Inertial, Joint, Link, Robot, Shape
+from mbsym.source.robots.robot import GROUND, Inertial, Joint, JointTie, Link, PointTie, Robot, Shape
 from mbsym.source.scope import MAX_NAME
 from mbsym.source.yaml_writer import scalar_text
 
@@ -65,11 +65,13 @@ class _Writer:
     loads: list[str] = field(default_factory=list)
     limits: list[str] = field(default_factory=list)
     inputs: list[str] = field(default_factory=list)
+    constraints: list[str] = field(default_factory=list)
     joints: list[str] = field(default_factory=list)
     still: list[str] = field(default_factory=list)
     names: dict[str, str] = field(default_factory=dict)  # of the file's links
     taken: set[str] = field(default_factory=set)
     leading: dict[str, str] = field(default_factory=dict)  # the coordinates of joints that others may follow
+    refs: dict[str, str] = field(default_factory=dict)
     frames: int = 0
 
     def described(self) -> Described:
@@ -81,6 +83,8 @@ class _Writer:
                 self.names[link.name] = GROUND
             else:
                 self._link(link, stems)
+        for tie in self.robot.ties:
+            self._tie(tie)
         head = [f"# From the robot '{self._comment(self.robot.name)}'."]
         if self.robot.left_out:
             head.append(f"# Left out: {self._comment('; '.join(self.robot.left_out))}.")
@@ -95,6 +99,7 @@ class _Writer:
         lines += ["inputs:", *self.inputs] if self.inputs else []
         lines += ["bodies:", *self.bodies]
         lines += ["loads:", *self.loads] if self.loads else []
+        lines += ["constraints:", *self.constraints] if self.constraints else []
         lines += ["limits:", *self.limits] if self.limits else []
         return Described("\n".join(lines) + "\n", tuple(self.joints), self.frames, tuple(self.still))
 
@@ -121,6 +126,7 @@ class _Writer:
             for joint in kept:
                 count += joint.led is None
                 stems.append(f"q{count}" if joint.led is None else "")
+            self.refs |= {joint.name: joint.ref for joint in kept}
             self.leading |= dict(zip((joint.name for joint in kept), stems, strict=True))
             links.append((replace(link, joints=kept), stems))
         return links
@@ -160,6 +166,29 @@ class _Writer:
         size = self._named("g", known[0].lstrip("-"), "acceleration of gravity")
         direction = ["0" if part == "0" else "-1" if part.startswith("-") else "1" for part in self.robot.gravity]
         return f"acceleration: {size}, direction: {_list(direction)}"
+
+    # --- ties ---
+
+    def _tie(self, tie: JointTie | PointTie) -> None:
+        if isinstance(tie, PointTie):
+            ends = (
+                f"{{body: {place if place == GROUND else scalar_text(place)}, point: {_list(point)}}}"
+                for place, point in (
+                    (self.names.get(tie.first, GROUND), tie.first_point),
+                    (self.names.get(tie.second, GROUND), tie.second_point),
+                )
+            )
+            self.constraints.append(f"  - coincide: [{', '.join(ends)}]")
+            return
+        left, right = self._deviation(tie.first), self._deviation(tie.second)
+        powers = ["", f"*({right})", *(f"*({right})**{k}" for k in range(2, len(tie.coefficients)))]
+        terms = [f"({x}){power}" for x, power in zip(tie.coefficients, powers, strict=False) if x != "0"]
+        self.constraints.append(f"  - relation: {left} = {' + '.join(terms) or '0'}")
+
+    def _deviation(self, joint: str) -> str:
+        """A joint's coordinate less what it is at zero; "0" of one that is held still."""
+        name = self.leading.get(joint, "")
+        return _linear("1", name, opposite(self.refs[joint])) if name else "0"
 
     # --- bodies ---
 
@@ -228,7 +257,7 @@ class _Writer:
                 self._load(f"damper: {{coordinate: {first}, coefficient: {joint.damping}{factor}}}")
             return Moving(joint, (), _linear(multiplier, first, offset))
         names = self._coordinates(joint, stem)
-        return Moving(joint, names, names[0] if len(names) == 1 else "")
+        return Moving(joint, names, _linear("1", names[0], opposite(joint.ref)) if len(names) == 1 else "")
 
     def _coordinates(self, joint: Joint, stem: str) -> tuple[str, ...]:
         self.joints.append(joint.name)

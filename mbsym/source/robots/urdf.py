@@ -175,6 +175,9 @@ def _joint(element: Element, named: Mapping[str, Element], reader: Reader) -> tu
     if limit is not None and element.get("type") in ("revolute", "prismatic"):
         limits = (reader.number(limit, "lower"), reader.number(limit, "upper"))
         limits = limits if float(limits[0]) < float(limits[1]) else None
+    led = _led(element, named, reader) if kind != "free" else None
+    if led is not None and limits is not None:
+        reader.leave_out("limits of a joint that mimics another")
     effort = "0" if limit is None else reader.number(limit, "effort")
     return (
         Joint(
@@ -185,7 +188,7 @@ def _joint(element: Element, named: Mapping[str, Element], reader: Reader) -> tu
             damping=damping,
             driven=kind != "free",
             effort=effort if float(effort) > 0 else "",
-            led=_led(element, named, reader) if kind != "free" else None,
+            led=led,
         ),
     )
 
