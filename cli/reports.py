@@ -186,10 +186,10 @@ def _show(
         told = finding(known)
         show_finding(told, analysis.system.name, path, seconds, written, writer, lines, not request.verbose)
     if found is not None:
-        from mbsym.report.runs.ledger import ledger_lines
-        from mbsym_cli.ledger import show_ledger
+        from mbsym.report.runs.ledger import ledger_blocks
+        from mbsym_cli.show import show
 
-        show_ledger(ledger_lines(found), found.unmeasured)
+        show(writer.document(ledger_blocks(found)))
 
 
 def _documents(known: Results, writer: Writer, request: Request) -> Iterator[Line]:

@@ -18,6 +18,12 @@ _COLOURS = {"exact": "green", "verified numerically": "green", "FAILED": "bold r
 _COLOURS |= {"undecided": "yellow", "singular": "yellow"}
 
 
+def show(lines: Iterable[Line], indent: int = 2) -> None:
+    """Lines of a document, so far to the right."""
+    for parts, whole, margin in lines:
+        tell(" " * indent, *parts, whole=whole, margin=None if margin is None else margin + indent)
+
+
 def show_finding(
     found: Facts,
     title: str,
@@ -30,8 +36,7 @@ def show_finding(
 ) -> None:
     """What was found, each with its name; ``further`` lines; where all of it is, and how ``more`` of it is told."""
     tell((title, "bold"), (f"  {printable(path)}, {seconds:.2f} s", "dim"))
-    for parts, whole, margin in (*writer.document([found]), *further):
-        tell("  ", *parts, whole=whole, margin=None if margin is None else margin + 2)
+    show((*writer.document([found]), *further))
     if files:
         page = next((x for x in files if x.name == "report.html"), files[0])
         texts = ("[[file]]", "[[file]] (files there: [[count]])")
