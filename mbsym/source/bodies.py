@@ -252,7 +252,8 @@ def _complain_of_order(draft: Draft, name: str, drafts: list[Draft], span: Span,
         parent = parents[name]
         name = parent.text if isinstance(parent, Scalar) else INERTIAL
     if name == draft.name:
-        message = "bodies are attached in a circle: " + " -> ".join([*chain[:6], draft.name])
+        circle = " -> ".join([*chain[:6], draft.name])
+        message = Message("bodies are attached in a circle: [[bodies]]", bodies=circle)
         reading.error("cyclic-bodies", message, span, "one of them hangs on the inertial frame 0")
     else:
         hint = Message(
