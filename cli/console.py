@@ -8,7 +8,7 @@ import re
 import shutil
 import sys
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from rich.text import Text
 
     from mbsym.model.system import System
+    from mbsym.report.plain_writer import Line
     from mbsym.studies.study import Rows
 
 #: Exit codes: everything held; a result failed its self-check, or is missing; the input is wrong.
@@ -193,6 +194,12 @@ def tell(*parts: str | tuple[str, str], indent: int = 0, whole: bool = False, ma
     width = None if whole else asked_width()
     lines = [wrapped(line.expandtabs(), width, margin) for line in words.translate(_CONTROLS).split("\n")]
     print("\n".join(lines).replace(UNBROKEN, " "))
+
+
+def show(lines: Iterable[Line], indent: int = 2) -> None:
+    """Lines of a document, so far to the right."""
+    for parts, whole, margin in lines:
+        tell(" " * indent, *parts, whole=whole, margin=None if margin is None else margin + indent)
 
 
 #: Columns of a wide table that does not go to a terminal.

@@ -121,7 +121,7 @@ def _without_run(file: Path, system: System, settings: tuple[str, ...], asked: O
 
 def _made(file: Path, wanted: Wanted, quiet: bool) -> tuple[str, list[str]]:
     """The page, and what is to be said of it."""
-    from mbsym.picture.page import viewed
+    from mbsym.report.viewer.page import viewed
 
     with progress(quiet or wanted.time is None, file.name, wanted.time or 1.0) as watch:
         return viewed(wanted.system, wanted.overrides, wanted.time, wanted.modes, wanted.equilibria, watch)

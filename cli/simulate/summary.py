@@ -11,8 +11,7 @@ from mbsym.model.quantities import time_unit, unit_of, with_unit
 from mbsym.report.content import facts, say
 from mbsym.report.language import Language
 from mbsym.report.unit_text import pretty
-from mbsym_cli.console import asked_width, printable, tell
-from mbsym_cli.show import show
+from mbsym_cli.console import asked_width, printable, show, tell
 
 if TYPE_CHECKING:
     from mbsym.model.system import System

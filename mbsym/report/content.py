@@ -9,17 +9,21 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
+from mbsym.expressions.message import Said
 from mbsym.expressions.rates import without_velocity
 from mbsym.expressions.tree import Expression
 from mbsym.formulas.formula import Column, Formula, Matrix
 from mbsym.formulas.told import Told
 from mbsym.report.words.passages import Passage
+
+if TYPE_CHECKING:
+    from mbsym.picture.sketch import Sketch
 
 # --- mathematics ------------------------------------------------------------------------------------------------------
 
@@ -203,32 +207,9 @@ Math = (
 # --- text -------------------------------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class Said:
-    """A sentence by its English text, which finds its translation.
-
-    ``$...$`` is notation in the common part of TeX, ``[[name]]`` a gap, outside of mathematics or inside; ``gaps``
-    says what stands there.
-    """
-
-    text: str
-    gaps: Mapping[str, Inline | Sequence[Inline]] = field(default_factory=dict)
-
-
 def say(text: str, **gaps: Inline | Sequence[Inline]) -> Said:
     """``Said`` with its gaps by name."""
     return Said(text, gaps)
-
-
-@dataclass(frozen=True)
-class Words:
-    """A word or sentences of a result in English, of which the translation is looked for.
-
-    ``variable``: the letter of characteristic polynomials, which the words call lambda.
-    """
-
-    text: str
-    variable: str = ""
 
 
 @dataclass(frozen=True)
@@ -254,6 +235,13 @@ class Link:
 
     text: Inline
     to: str
+
+
+@dataclass(frozen=True)
+class Numbered:
+    """Where the formula with the label ``key`` stands: its number on paper, a link on a screen; a terminal has none."""
+
+    key: str
 
 
 @dataclass(frozen=True)
@@ -294,8 +282,12 @@ class Citation:
 
 #: What stands in the gaps of a sentence, where it is made piece by piece.
 Gaps = dict[str, "Inline | Sequence[Inline]"]
-#: What stands in a line; a ``str`` is as it is in every language: a name of a body, a number, punctuation.
-Inline = Said | Words | Strong | Graded | Link | Phrase | Emphasis | Verbatim | Unit | Citation | Math | str
+#: What stands in a line; a ``str`` that is no message is the same in every language: a name, punctuation.
+Inline = Said | Strong | Graded | Link | Numbered | Phrase | Emphasis | Verbatim | Unit | Citation | Math | str
+
+
+#: What the keys of conditions begin with: there are references to these.
+CONDITION = "condition:"
 
 
 # --- blocks -----------------------------------------------------------------------------------------------------------
@@ -437,6 +429,14 @@ class Beside:
 
 
 @dataclass(frozen=True)
+class Drawing:
+    """The drawing of a system, and what is said below it; a terminal is without it."""
+
+    drawn: Sketch
+    caption: tuple[Said, ...]
+
+
+@dataclass(frozen=True)
 class Folded:
     """What a screen unfolds on request; paper is without it."""
 
@@ -479,6 +479,7 @@ Block = (
     | Facts
     | Cited
     | Beside
+    | Drawing
     | Folded
     | Intermediates
     | Steps
@@ -507,7 +508,7 @@ def facts(pairs: Iterable[tuple[str, str]]) -> Facts:
     for title, text in pairs:
         if title or not items:
             items.append((title, []))
-        items[-1][1].append(Words(text))
+        items[-1][1].append(text)
     named = {"warning": Graded(say("warning"), "open")}
     return Facts(tuple(Fact(named.get(title) or say(title), tuple(lines)) for title, lines in items))
 
@@ -537,10 +538,3 @@ def speed(name: str) -> Name:
 def speeds(names: Iterable[str]) -> Listed:
     """Variables of velocity side by side."""
     return Listed(tuple(map(speed, names)))
-
-
-def pieces(text: str) -> Iterator[tuple[bool, str]]:
-    """The parts of a message: (whether it is notation, the part)."""
-    for k, piece in enumerate(text.split("$")):
-        if piece:
-            yield k % 2 == 1, piece

@@ -63,7 +63,7 @@ def _is_symbol(scalar: Scalar, reading: Reading) -> bool:
     try:
         check(scalar.text)
     except _Wrong as wrong:
-        reading.error("bad-symbol", str(wrong), scalar.place(wrong.start, wrong.end), _HINT)
+        reading.error("bad-symbol", wrong.args[0], scalar.place(wrong.start, wrong.end), _HINT)
         return False
     return True
 

@@ -83,11 +83,9 @@ def test_the_ledger_is_told_in_russian(tmp_path: Path) -> None:
 
 def test_a_sentence_without_translation_is_seen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Planted: one message about the energy stays English."""
-    say = Language.say
+    sentence = Language.sentence
     english = "[[standing]]; largest drift [[measured]]"
-    monkeypatch.setattr(
-        Language, "say", lambda self, x, *a: x if getattr(x, "text", "") == english else say(self, x, *a)
-    )
+    monkeypatch.setattr(Language, "sentence", lambda self, x, *a: x if x == english else sentence(self, x, *a))
     with pytest.raises(AssertionError, match="largest"):
         test_no_english_is_said_of_a_run_in_russian("usual", tmp_path)
 

@@ -51,7 +51,7 @@ def sentences(found: InverseDynamics) -> Iterator[tuple[str, str]]:
     tied = " and the forces of constraints" if found.system.constraints else ""
     yield "equations", f"{counted(n, 'equation', 'equations')} for {counted(k, 'input', 'inputs')}{tied}"
     for name, values in zip(found.names, found.inputs, strict=True):
-        yield name, f"from {values.min():.6g} to {values.max():.6g}"
+        yield name, f"from {values.min() + 0.0:.6g} to {values.max() + 0.0:.6g}"
     left = f"{found.left:.1e} of the size of their terms"
     if found.exact:
         yield "motion", f"these inputs give it at all {len(found.times)} times: what is left of the equations is {left}"

@@ -11,7 +11,7 @@ from io import StringIO
 from mbsym.algebra.certainty import Certainty
 from mbsym.expressions.message import Message, joined, worded
 from mbsym.numerics.ledger.entry import NEEDED, NOT_NEEDED, OPEN, SECONDS, Ledger, Measure, Saving
-from mbsym.report.content import Block, Fact, Facts, Graded, Phrase, Subheading, Words, paragraph
+from mbsym.report.content import Block, Fact, Facts, Graded, Phrase, Subheading, paragraph
 from mbsym.report.documents.results import ledger as doc
 from mbsym.report.documents.writer import plain
 
@@ -63,16 +63,16 @@ def ledger_blocks(found: Ledger) -> Iterator[Block]:
     for standing, title in _TITLES.items():
         own = [line for line in lines if line.standing == standing]
         if own or standing == NOT_NEEDED:
-            yield Subheading((Graded(Words(title), "bad") if standing == NEEDED else Words(title),))
-            yield Facts(tuple(map(_fact, own))) if own else paragraph("  ", Words(Message("nothing")))
+            yield Subheading((Graded(title, "bad") if standing == NEEDED else title,))
+            yield Facts(tuple(map(_fact, own))) if own else paragraph("  ", Message("nothing"))
     if found.unmeasured:
         kinds = joined(map(worded, found.unmeasured), ", ")
-        yield paragraph(Graded(Words(Message("not measured, beyond the budget: [[kinds]]", kinds=kinds)), "open"))
+        yield paragraph(Graded(Message("not measured, beyond the budget: [[kinds]]", kinds=kinds), "open"))
 
 
 def _fact(line: LedgerLine) -> Fact:
-    why = Phrase((Words(line.why), " (", Graded(Words(line.how), _GRADES.get(line.how, "good")), ")"))
-    return Fact(Words(line.kind), (Words(line.what), why, *map(Words, line.saved)))
+    why = Phrase((worded(line.why), " (", Graded(worded(line.how), _GRADES.get(line.how, "good")), ")"))
+    return Fact(worded(line.kind), (line.what, why, *line.saved))
 
 
 def _names(names: Sequence[str]) -> Message:
