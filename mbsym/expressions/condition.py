@@ -68,8 +68,8 @@ def parse_condition(text: str, known: Collection[str], complaints: Complaints, s
     relations = list(_RELATION.finditer(text, begin))
     if len(relations) != 1:
         where = span_of(*relations[1].span()) if relations else span_of(begin, max(begin + 1, len(text)))
-        message = "more than one of = < >" if relations else "a condition has one of = < >"
-        complaints.error("bad-condition", message, where, _EXAMPLE)
+        many = "more than one of = < >" if relations else "a condition has one of = < >"
+        complaints.error("bad-condition", many, where, _EXAMPLE)
         return None
     relation = relations[0]
     words = list(_WORD.finditer(text, relation.end()))

@@ -543,7 +543,7 @@ class _Parser:
     def trailing(self, token: _Token) -> _Refused:
         """Something stands where an operator should: most often a forgotten product sign."""
         previous = self.tokens[self.position - 1] if self.position else token
-        hint = None
+        hint: str | None = None
         if token.text == "^":
             return self.refusal("bad-expression", "'^' is not an operator", token, "write ** for a power")
         if token.kind in ("name", "number") or token.text == "(":

@@ -192,7 +192,8 @@ def _check_numbers(body: Body, values: Mapping[str, Fraction], span: Span, readi
         hint = "taken for rounding, as it is less than a millionth; the numbers are used as they stand"
         reading.complaints.warning("rounded-inertia", told, span, hint)
     elif has_negative_energy(body, values) and not _is_possible_elsewhere(body, values):
-        message += "; its kinetic energy would be negative" if body.inertia.accepted else ""
+        if body.inertia.accepted:
+            message = joined([message, Message("its kinetic energy would be negative")], "; ")
         reading.error("bad-inertia", message, span, _values_hint(*entries))
     elif _is_possible_elsewhere(body, values) and (not body.inertia.accepted or has_negative_energy(body, values)):
         hint = "with inertia about: mass centre it would be possible"
@@ -415,6 +416,6 @@ def _check_assumption_values(system: System, reading: Reading) -> None:
         )
         reading.error("broken-assumption", message, assumption.span, "change the values, or leave the assumption out")
     if (against := contradictory(system)) is not None:
-        message = "no values of the parameters keep this assumption and those before it"
+        contradiction = "no values of the parameters keep this assumption and those before it"
         hint = "declared signs and relations count as well"
-        reading.error("contradictory-assumptions", message, against.span, hint)
+        reading.error("contradictory-assumptions", contradiction, against.span, hint)

@@ -92,9 +92,9 @@ class Section:
         if other:
             text = "did you mean [[other]]? The kinds of [[what]] are: [[kinds]]"
             hint = Message(text, other=other, what=worded(self.what), kinds=", ".join(self.kinds))
-        hint = Message("did you mean '[[other]]'?", other=misspelt) if misspelt else unsupported or hint
+        way = Message("did you mean '[[other]]'?", other=misspelt) if misspelt else unsupported or hint
         message = Message("unknown kind of [[what]] [[kind]]", what=worded(self.what), kind=ascii_safe(key.text))
-        reading.error(f"unknown-{self.what}", message, key.span, hint)
+        reading.error(f"unknown-{self.what}", message, key.span, way)
         return misspelt
 
 
@@ -278,8 +278,9 @@ class Item:
         entries = list(self.reading.entries(node, f"'{self.name}'"))
         known = self.reading.scope.of_kind(of)
         if spelled := _spelled_out(entries, known, of):
-            text = "the key is the [[of]] itself: write [[spelled]]: and then its expression"
-            hint = Message(text, of=of, spelled=spelled)
+            text = "the key is the [[of]] itself: write [[spelled]]: and then [[what]]"
+            what = worded("the force" if allowed.what == "a force" else allowed.what)
+            hint = Message(text, of=worded(of), spelled=spelled, what=what)
             message = Message("unknown key '[[of]]' of a [[name]]", of=of, name=self.name)
             self.reading.error("unknown-key", message, entries[0].key.span, hint)
             return ()

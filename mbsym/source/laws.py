@@ -66,9 +66,7 @@ def _read(
     every: bool = False,
 ) -> dict[str, Expression]:
     found: dict[str, Expression] = {}
-    wrong = [
-        Message("there is no [[kind]] called [[name]]", kind=kind, name=name) for name in given if name not in known
-    ]
+    wrong = [f"there is no {kind} called {name}" for name in given if name not in known]
     wrong += [f"no motion is given for {name}" for name in known if every and name not in given]
     for name, value in given.items():
         complaints = Complaints()

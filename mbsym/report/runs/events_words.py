@@ -41,8 +41,8 @@ def events_lines(run: Simulation) -> Iterator[tuple[str, Message]]:
         yield "warning", Message(text, event=event.name)
     if run.section is not None:
         points = Message("points: [[count]]", count=len(run.section.times))
-        event, said = run.section.section.condition.text, joined([points, *since], "; ")
-        yield "section", Message("[[event]]: [[said]]", event=event, said=said)
+        condition, said = run.section.section.condition.text, joined([points, *since], "; ")
+        yield "section", Message("[[event]]: [[said]]", event=condition, said=said)
     if found.beyond:
         text = "only the first [[most]] events were kept; there were [[more]] more"
         yield "warning", Message(text, most=MOST, more=found.beyond)
