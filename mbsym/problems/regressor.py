@@ -50,6 +50,9 @@ from mbsym.model.system import System, acceleration_name
 #: Of each column so many monomials take part in the elimination at first.
 _FIRST = 4
 
+#: So many functions, some of them too long for the ring, are proved independent at most.
+MOST_PROVED = 150
+
 #: The monomials of moving quantities of one function, each with its constant coefficient; U's have a mark.
 _Column = Mapping[tuple[Any, ...], Polynomial]
 
@@ -189,7 +192,14 @@ def _slots(
     functions, split = Energies(frames), _Split(ring, system)
     columns: dict[Slot, _Column] = {}
     long: list[Slot] = []
-    for slot in dict.fromkeys(slot for shares in regrouped(frames).values() for slot in shares):
+    outgrown: set[int] = set()  # frames; what they carry has longer formulas yet
+    for slot in sorted({slot for shares in regrouped(frames).values() for slot in shares}):
+        above = slot[0]
+        while above >= 0 and above not in outgrown:
+            above = frames.frames[above].parent
+        if above >= 0:
+            long.append(slot)
+            continue
         try:
             kinetic, force = functions.of(slot)
             columns[slot] = split(ring.reduce(kinetic), ring.reduce(force))
@@ -197,9 +207,12 @@ def _slots(
             if error.limit is None:
                 raise
             long.append(slot)
+            outgrown.add(slot[0])
     ordered = {slot: columns[slot] for slot in sorted(columns)}
     kept, dependent = _relations(ring, ordered)
     kept = [*kept, *long]
+    if long and len(kept) > MOST_PROVED:
+        raise NoClosedForm(Message("formulas of T are too long to find the relations between their parts"))
     if long:
         _independent(frames, system, kept)
     made: dict[Slot, dict[Slot, Quotient]] = {slot: {slot: Quotient.of(ring.one)} for slot in kept}

@@ -15,8 +15,9 @@ from click.testing import CliRunner
 from conftest import SHIPPED
 
 import mbsym
-from mbsym.algebra.failures import Failure
+from mbsym.algebra.failures import Failure, Limit, NoClosedForm
 from mbsym.analysis import Analysis
+from mbsym.mechanics.articulation import articulation
 from mbsym.mechanics.loads.kinds import base_acceleration
 from mbsym.mechanics.newton_euler import Accelerations, residuals
 from mbsym.mechanics.regressor import KINDS, Standard, column
@@ -199,6 +200,37 @@ def test_a_wrong_function_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     q, qd, qdd = np.random.default_rng(1).normal(size=(3, 3))
     tau = own.regressor(q, qd, qdd, p) @ own.base_parameters(p)
     assert np.abs(tau - model.inverse_dynamics(q, qd, qdd, p)).max() > 1e-3
+
+
+@pytest.mark.parametrize("rows", [ELBOW, RX90])
+def test_what_is_too_long_for_the_ring_is_proved_in_balls(rows: Rows, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As if only the first two links' formulas had room: the same sums; with a bound of none of them it refuses."""
+    analysis = arm(rows)
+    wanted = [sum_of(one) for one in regressor(analysis.scene).base]
+    right, asked = problem.Energies.of, []
+
+    def short(self: Any, slot: tuple[int, str]) -> Any:
+        asked.append(slot)
+        if slot[0] > 2 and self.algebra is analysis.ring:
+            raise NoClosedForm("too long", limit=Limit.TERMS)
+        return right(self, slot)
+
+    monkeypatch.setattr(problem.Energies, "of", short)
+    assert [sum_of(one) for one in regressor(analysis.scene).base] == wanted
+    assert asked
+    monkeypatch.setattr(problem, "MOST_PROVED", 3)
+    with pytest.raises(NoClosedForm, match="too long to find"):
+        regressor(analysis.scene)
+
+
+def test_functions_that_depend_on_each_other_are_not_proved_independent() -> None:
+    """Jzz of the first link and the inertia of its rotor are one function, q1'^2/2."""
+    analysis = arm(ELBOW, rotors=True)
+    frames = articulation(analysis.scene)
+    first = [(frames.frame_of["L1"], "Jzz"), (frames.frame_of["rotor 1"], "Jzz")]
+    with pytest.raises(NoClosedForm):
+        problem._independent(frames, analysis.system, first)
+    problem._independent(frames, analysis.system, [first[0], (frames.frame_of["rotor 3"], "Jzz")])
 
 
 def test_turned_axes_give_quotients_and_roots() -> None:
