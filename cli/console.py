@@ -8,7 +8,7 @@ import re
 import shutil
 import sys
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
@@ -18,7 +18,7 @@ import click
 
 from mbsym.algebra.failures import LOG
 from mbsym.algebra.parts import missing
-from mbsym.expressions.counting import counted
+from mbsym.expressions.message import Message
 from mbsym.expressions.safe import UNBROKEN
 from mbsym.expressions.safe import safe as escaped
 
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from rich.text import Text
 
     from mbsym.model.system import System
+    from mbsym.report.plain_writer import Line
     from mbsym.studies.study import Rows
 
 #: Exit codes: everything held; a result failed its self-check, or is missing; the input is wrong.
@@ -195,6 +196,12 @@ def tell(*parts: str | tuple[str, str], indent: int = 0, whole: bool = False, ma
     print("\n".join(lines).replace(UNBROKEN, " "))
 
 
+def show(lines: Iterable[Line], indent: int = 2) -> None:
+    """Lines of a document, so far to the right."""
+    for parts, whole, margin in lines:
+        tell(" " * indent, *parts, whole=whole, margin=None if margin is None else margin + indent)
+
+
 #: Columns of a wide table that does not go to a terminal.
 WIDE = 400
 
@@ -272,25 +279,29 @@ def read_description(path: Path, unconstrained: str = "", moving: str = "") -> S
     ``unconstrained`` names a command that does not know constraints: each of them is complained about.  ``moving``
     names one that needs equations of motion, which a system that is given by its matrices has not.
     """
+    from mbsym.report.language import Language
     from mbsym.source import load, render
+    from mbsym.source.recognition import language_of
 
     system, complaints, text = load(path)
+    say = Language(language_of(text)).say
     if system is not None and (system.constraints or system.linear) and not complaints.errors:
         from mbsym.analysis.soundness import complain as complain_of
 
         complain_of(system, complaints)
     for one in system.constraints if system is not None and unconstrained else ():
-        message = f"'mbsym {unconstrained}' does not take constraints into account yet"
+        message = Message("'mbsym [[command]]' does not take constraints into account yet", command=unconstrained)
         complaints.error("constraints", message, one.span, "without it this would be another system")
     if system is not None and system.linear is not None and moving:
-        message = f"'mbsym {moving}' is about bodies, and this system is given by its matrices"
+        words = "'mbsym [[command]]' is about bodies, and this system is given by its matrices"
+        message = Message(words, command=moving)
         complaints.error("given-by-matrices", message, system.linear.span, "'mbsym run' judges its stability")
     for complaint in complaints.sorted():
-        diagnose(render(complaint, text, str(path)))
-    errors = len(complaints.errors)
-    if errors:
-        complain(path, f"{counted(errors, 'error', 'errors')}; nothing was written.")
-    return None if errors else system
+        diagnose(render(complaint, text, str(path), say))
+    if count := len(complaints.errors):
+        many = "[[count]] errors; nothing was written." if count > 1 else "[[count]] error; nothing was written."
+        complain(path, say(Message(many, count=count)))
+    return None if complaints.errors else system
 
 
 def read_held(file: Path, command: str, constrained: bool = False, moving: bool = True) -> System | None:
@@ -305,8 +316,11 @@ def read_held(file: Path, command: str, constrained: bool = False, moving: bool 
     system = read_description(file, "" if constrained else command, command if moving else "")
     if system is None or not system.inputs:
         return system
+    from mbsym.report.language import Language
+
     values = ", ".join(f"{one.name} = {text(one.held)}" for one in system.inputs)
-    complain(file, f"note: for '{command}' the inputs are constant, as on the unperturbed motion: {values}")
+    words = "note: for '[[command]]' the inputs are constant, as on the unperturbed motion: [[values]]"
+    complain(file, Language(system.language).say(Message(words, command=command, values=values)))
     return held(system)
 
 

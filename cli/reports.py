@@ -27,6 +27,7 @@ from mbsym_cli.console import (
     printable,
     read_description,
     reason_of,
+    show,
     status,
     tell,
     trace,
@@ -190,10 +191,9 @@ def _show(
         told = finding(known)
         show_finding(told, analysis.system.name, path, seconds, written, writer, lines, not request.verbose)
     if found is not None:
-        from mbsym.report.runs.ledger import ledger_lines
-        from mbsym_cli.ledger import show_ledger
+        from mbsym.report.runs.ledger import ledger_blocks
 
-        show_ledger(ledger_lines(found), found.unmeasured)
+        show(writer.document(ledger_blocks(found)))
 
 
 def _documents(known: Results, writer: Writer, request: Request) -> Iterator[Line]:
@@ -254,8 +254,7 @@ def show_finding(
 ) -> None:
     """What was found, each with its name; ``further`` lines; where all of it is, and how ``more`` of it is told."""
     tell((title, "bold"), (f"  {printable(path)}, {seconds:.2f} s", "dim"))
-    for parts, whole, margin in (*writer.document([found]), *further):
-        tell("  ", *parts, whole=whole, margin=None if margin is None else margin + 2)
+    show((*writer.document([found]), *further))
     if files:
         page = next((x for x in files if x.name == "report.html"), files[0])
         texts = ("[[file]]", "[[file]] (files there: [[count]])")

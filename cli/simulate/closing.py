@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
@@ -11,20 +10,15 @@ import click
 from mbsym.expressions.safe import quoted
 from mbsym.model.constraints import listed as constraints_listed
 from mbsym.source.scope import did_you_mean, listed
-from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, complain
 from mbsym_cli.option_groups import group
 from mbsym_cli.options import Options
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
-    from mbsym.numerics.closing import NotClosed
     from mbsym.numerics.scenario import Scenario
     from mbsym.simulation import Request
     from mbsym_cli.simulate.many import Many
     from mbsym_cli.simulate.request import Asked
-
-#: So many gaps are told one by one.
-MOST_GAPS = 8
 
 
 @dataclass(frozen=True)
@@ -82,32 +76,6 @@ def check_constrained(system: System | None, wanted: Asked, many: Many, asked: O
         hint = "these do: auto, dop853, rk45, rk4, taylor, radau, bdf"
         message = f"{request.method} does not keep to constraints ({told})"
         asked.complain("--method", "unsuitable-method", message, hint)
-
-
-def not_closed(file: Path, found: NotClosed, system: System) -> int:
-    """Says which state comes closest, and its gaps; the exit code."""
-    from mbsym.model.quantities import unit_of, with_unit
-    from mbsym.report.unit_text import pretty
-
-    complain(file, f"error[{found.code}]: {found}")
-    names = (*system.coordinates, *system.velocities)
-    shown = names if any(gap.velocity for gap in found.gaps) else system.coordinates
-    state = ", ".join(
-        f"{name} = {with_unit(f'{value:.6g}', pretty(unit_of(system, name)))}"
-        for name, value in zip(shown, found.state.tolist(), strict=False)
-    )
-    complain(file, f"  closest found: {state}")
-    for gap in sorted(found.gaps, key=lambda one: -one.size)[:MOST_GAPS]:
-        line = "" if gap.row.span is None else f" (line {gap.row.span.line})"
-        complain(file, f"  gap of {gap.row.label}{line}: {gap.size:.6g}{' (velocity)' if gap.velocity else ''}")
-    if found.singular:
-        complain(file, "  hint: accelerations do not follow from constraints in such a position; start elsewhere")
-    elif found.fixed:
-        complain(file, f"  hint: fix fewer initial values than {', '.join(found.fixed)}, or change them")
-    else:
-        complain(file, "  hint: check lengths and the initial position; a start nearer to a closed one may succeed")
-    complain(file, "nothing was written.")
-    return BAD_INPUT if found.fixed else BROKEN_DOWN
 
 
 def begun_at(given: Scenario | None, request: Request) -> Scenario | None:

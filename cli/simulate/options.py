@@ -35,6 +35,7 @@ class Output:
     animate: bool
     out: Path | None
     quiet: bool
+    verbose: bool
 
     @property
     def wanted(self) -> str:
@@ -60,4 +61,5 @@ output_options = group(
     click.option("--animate", is_flag=True, help="animation.html and animation.gif; the same as formats html,gif."),
     click.option("--out", "-o", type=OutPath(path_type=Path, file_okay=False), help="Folder.  [default: reports/NAME]"),
     click.option("--quiet", "-q", is_flag=True, help="Print only what went wrong."),
+    click.option("--verbose", "-v", is_flag=True, help="Tell how it was done, too: method, setting, work, what rests."),
 )

@@ -7,13 +7,17 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mbsym.expressions.message import Message
 from mbsym.model.quantities import time_unit
+from mbsym.report.language import Language
 from mbsym.report.unit_text import pretty
-from mbsym_cli.console import BROKEN_DOWN, OK, complain, console, printable, status
+from mbsym_cli.console import BROKEN_DOWN, OK, complain, status
 from mbsym_cli.simulate.choice import Wanted
 from mbsym_cli.simulate.request import Asked
+from mbsym_cli.simulate.summary import print_lines
 
 if TYPE_CHECKING:
+    from mbsym.model.system import System
     from mbsym.numerics.scenario import Scenario
     from mbsym.simulation import Request, Simulation
     from mbsym.simulation.run import Stage
@@ -44,9 +48,7 @@ def simulated_to(
 
 def only_planned(file: Path, given: Scenario, asked: Asked) -> int:
     """Prints the plan; the exit code says whether it reaches what was asked for."""
-    from rich.text import Text
-
-    from mbsym.report.runs.plan_words import plan_lines
+    from mbsym.report.runs.plan_words import bound_lines, choice_lines
     from mbsym.simulation.accurate import plan_for
 
     goal = asked.goal
@@ -55,19 +57,17 @@ def only_planned(file: Path, given: Scenario, asked: Asked) -> int:
         plan, settled = plan_for(given, asked.request, goal.accuracy, goal.pins)
     if asked.quiet:
         if not plan.reached:
-            complain(file, "no plan is shown to reach the accuracy asked for")
+            text = Message("no plan is shown to reach the accuracy asked for")
+            complain(file, Language(given.system.language).say(text))
         return OK if plan.reached else BROKEN_DOWN
-    out = console()
-    out.print(Text.assemble((given.system.name, "bold"), (f"  {printable(file)}", "dim")))
-    for name, text in plan_lines(plan, pretty(time_unit(given.system))):
-        style = "yellow" if name == "warning" else "bold cyan"
-        out.print(Text.assemble("  ", (f"{name:<10} ", style), text))
-    print_repeat(file, goal, settled)
+    print_lines(file, given.system, (*bound_lines(plan, pretty(time_unit(given.system))), *choice_lines(plan)))
+    print_repeat(file, given.system, goal, settled)
     return OK if plan.reached else BROKEN_DOWN
 
 
-def print_repeat(file: Path, goal: Wanted, settled: Request) -> None:
+def print_repeat(file: Path, system: System, goal: Wanted, settled: Request) -> None:
     """The command that makes the same trajectory without choosing, on a line of its own to be pasted."""
     from mbsym.report.runs.plan_words import repeating_command
 
-    print(f"  to repeat:\n{repeating_command(str(file), goal.settings, settled, goal.carried)}")
+    repeat = Language(system.language).say(Message("to repeat:"))
+    print(f"  {repeat}\n{repeating_command(str(file), goal.settings, settled, goal.carried)}")

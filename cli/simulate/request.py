@@ -33,6 +33,7 @@ class Asked:
     formats: tuple[str, ...]
     quiet: bool
     goal: Wanted | None = None
+    verbose: bool = False
 
 
 #: Read from their texts alone.

@@ -9,30 +9,35 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.safe import quoted as ascii_safe
+from mbsym.report.language import Language
+from mbsym.studies.study import Exit, Refusal
 from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, complain, printable, reason_of, status
 from mbsym_cli.files import room_beside
 from mbsym_cli.options import Options
 from mbsym_cli.progress import progress
-from mbsym_cli.simulate.closing import not_closed
 from mbsym_cli.simulate.files import write_files
 from mbsym_cli.simulate.planned import InterruptedPlanning, only_planned, planning, print_repeat, simulated_to
 from mbsym_cli.simulate.request import Asked
 from mbsym_cli.simulate.summary import broken, print_summary
 
 if TYPE_CHECKING:
+    from mbsym.algebra.failures import Failure
+    from mbsym.numerics.methods.interface import Breakdown
     from mbsym.numerics.scenario import Scenario
     from mbsym.simulation import Simulation
 
 
 def run(file: Path, folder: Path, given: Scenario, wanted: Asked, options: Options) -> int:
     """The exit code; ``options`` takes the complaint of a method that does not apply here."""
-    from mbsym.algebra.failures import Failure, SingularPoint
-    from mbsym.numerics.closing import NotClosed, NothingMoves
+    from mbsym.algebra.failures import Failure
     from mbsym.numerics.enclosure.field import NotAnalytic
     from mbsym.numerics.methods.interface import Breakdown, Unusable
     from mbsym.simulation import NoEvent, simulate
+    from mbsym.studies.closing import not_closed
 
+    say = Language(given.system.language).say
     try:
         if wanted.goal is not None and wanted.goal.only_plan:
             return only_planned(file, given, wanted)
@@ -45,16 +50,12 @@ def run(file: Path, folder: Path, given: Scenario, wanted: Asked, options: Optio
                     found = simulate(given, request, watch, stage)
             return _delivered(file, folder, found, wanted)
     except InterruptedPlanning:
-        complain(file, "interrupted while the run was being planned; nothing was run or written")
+        complain(file, say(Message("interrupted while the run was being planned; nothing was run or written")))
         return INTERRUPTED
     except NoEvent as error:
         options.complain(f"--{error.option}", "no-value", f"{ascii_safe(error.text)} has no value: {error.reason}")
         options.refused(file)
         return BAD_INPUT
-    except Breakdown as error:
-        complain(file, f"error[no-plan]: the motion does not come to the end, so nothing can be planned: {error}")
-        complain(file, "nothing was written.")
-        return BROKEN_DOWN
     except Unusable as error:
         options.complain("--method", "unsuitable-method", str(error), "--method auto chooses one that can")
         options.refused(file)
@@ -64,20 +65,11 @@ def run(file: Path, folder: Path, given: Scenario, wanted: Asked, options: Optio
         options.complain("--certify", "not-analytic", f"{error} in the equations has no power series", hint)
         options.refused(file)
         return BAD_INPUT
-    except SingularPoint as error:
-        complain(file, f"error[singular]: singular at these values: {error}")
-        complain(file, "nothing was written.")
-        return BROKEN_DOWN
-    except NotClosed as error:
-        return not_closed(file, error, given.system)
-    except NothingMoves as error:
-        complain(file, f"error[{error.code}]: {error}")
-        complain(file, f"  hint: {error.remedy}")
-        complain(file, "nothing was written.")
-        return BROKEN_DOWN
-    except Failure as error:
-        complain(file, f"error[no-program]: there is no program for these equations: {error}")
-        complain(file, "nothing was written.")
+    except (Breakdown, Failure) as error:
+        refusal = not_closed(error, given.system) or _refusal(error, say)
+        for text in (refusal.text, *refusal.more):
+            complain(file, text)
+        return refusal.code
     except OSError as error:
         complain(file, f"the results cannot be written: {reason_of(error)}")
     except MemoryError:
@@ -85,14 +77,34 @@ def run(file: Path, folder: Path, given: Scenario, wanted: Asked, options: Optio
     return FAILED
 
 
+def _refusal(error: Breakdown | Failure, say: Callable[[str], str]) -> Refusal:
+    """Of a run that cannot be begun."""
+    from mbsym.algebra.failures import Failure, SingularPoint
+    from mbsym.numerics.closing import NothingMoves
+
+    nothing = say(Message("nothing was written."))
+    if not isinstance(error, Failure):
+        text = Message("the motion does not come to the end, so nothing can be planned: [[why]]", why=error.told)
+        return Refusal(f"error[no-plan]: {say(text)}", Exit.BROKEN_DOWN, (nothing,))
+    if isinstance(error, SingularPoint):
+        text = Message("singular at these values: [[why]]", why=error.reason)
+        return Refusal(f"error[singular]: {say(text)}", Exit.BROKEN_DOWN, (nothing,))
+    if isinstance(error, NothingMoves):
+        hint = say(Message("hint: [[hint]]", hint=error.remedy))
+        return Refusal(f"error[{error.code}]: {say(error.reason)}", Exit.BROKEN_DOWN, (f"  {hint}", nothing))
+    text = Message("there is no program for these equations: [[why]]", why=error.reason)
+    return Refusal(f"error[no-program]: {say(text)}", Exit.FAILED, (nothing,))
+
+
 def _delivered(file: Path, folder: Path, found: Simulation, asked: Asked) -> int:
     if found.no_invariants:
-        print(f"no first integrals: {found.no_invariants}", file=sys.stderr)
+        text = Message("no first integrals: [[why]]", why=found.no_invariants)
+        print(Language(found.system.language).say(text), file=sys.stderr)
     paths = write_files(folder, found, asked)
     if not asked.quiet:
-        print_summary(file, found, paths)
+        print_summary(file, found, paths, asked.verbose)
         if asked.goal is not None:
-            print_repeat(file, asked.goal, found.request)
+            print_repeat(file, found.system, asked.goal, found.request)
     return _code(file, found, paths)
 
 
@@ -105,12 +117,11 @@ def _code(file: Path, found: Simulation, paths: list[Path]) -> int:
         return BROKEN_DOWN
     stopped = isinstance(found.error, NoEstimate) and found.error.why is Lacking.INTERRUPTED
     if found.trajectory.interrupted or stopped:
-        kept = (
-            f"; kept up to t = {found.times[-1]:.9g} in {printable(paths[0].parent)}"
-            if found.trajectory.interrupted
-            else ""
-        )
-        complain(file, f"interrupted{kept}")
+        text = Message("interrupted")
+        if found.trajectory.interrupted:
+            kept, where = f"{found.times[-1]:.9g}", printable(paths[0].parent)
+            text = Message("interrupted; kept up to t = [[time]] in [[folder]]", time=kept, folder=where)
+        complain(file, Language(found.system.language).say(text))
         return INTERRUPTED
     proof = found.certificate
     if proof is not None and not (proof.whole and proof.narrow):

@@ -49,7 +49,7 @@ def simulated(
     given, overrides = (None, {}) if system is None else given_numbers(file, system, settings, asked, laws, own)
     system = system if given is None else given.system
     seen = variables.seen(system)
-    wanted = read_request(system, texts, output.wanted, output.quiet, asked)
+    wanted = replace(read_request(system, texts, output.wanted, output.quiet, asked), verbose=output.verbose)
     for group in further.values():
         wanted = replace(wanted, request=group.added(wanted.request, seen, asked))
     wanted = replace(wanted, request=going_on(wanted.request, begun_at(given, wanted.request), typed, asked))

@@ -14,6 +14,7 @@ from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from difflib import get_close_matches
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.parser import SpanOf, names_apart, parse_expression
 from mbsym.expressions.place import Complaints
 from mbsym.expressions.safe import quoted
@@ -49,18 +50,26 @@ def parse_condition(text: str, known: Collection[str], complaints: Complaints, s
     """The condition that a text is, or None with at least one complaint; names are looked up among ``known``."""
     before = complaints.error_count
     if len(text) > MAX_LENGTH:
-        complaints.error("too-long", f"a condition has at most {MAX_LENGTH} characters", span_of(0, 1))
+        complaints.error(
+            "too-long",
+            Message("a condition has at most [[most]] characters", most=MAX_LENGTH),
+            span_of(0, 1),
+        )
         return None
     title, colon, _ = text.partition(":")
     begin = len(title) + 1 if colon else 0
     if colon and (not _TITLE.match(title) or len(title.strip()) > MAX_TITLE):
-        message = f"{quoted(title.strip())} is no title: letters, digits, _, - and blanks, {MAX_TITLE} at most"
+        message = Message(
+            "[[file]] is no title: letters, digits, _, - and blanks, [[most]] at most",
+            file=quoted(title.strip()),
+            most=MAX_TITLE,
+        )
         complaints.error("bad-title", message, span_of(0, max(1, len(title))))
     relations = list(_RELATION.finditer(text, begin))
     if len(relations) != 1:
         where = span_of(*relations[1].span()) if relations else span_of(begin, max(begin + 1, len(text)))
-        message = "more than one of = < >" if relations else "a condition has one of = < >"
-        complaints.error("bad-condition", message, where, _EXAMPLE)
+        many = "more than one of = < >" if relations else "a condition has one of = < >"
+        complaints.error("bad-condition", many, where, _EXAMPLE)
         return None
     relation = relations[0]
     words = list(_WORD.finditer(text, relation.end()))
@@ -74,9 +83,16 @@ def parse_condition(text: str, known: Collection[str], complaints: Complaints, s
         if word.group() == "mod" and place == 0:
             period = _expression(text, word.end(), after, known, complaints, span_of)
         elif word.group() == "mod" or text[word.end() : after].strip() or place + 1 < len(words):
-            complaints.error("bad-condition", f"{word.group()} does not stand here", span_of(*word.span()), _EXAMPLE)
+            complaints.error(
+                "bad-condition",
+                Message("[[word]] does not stand here", word=word.group()),
+                span_of(*word.span()),
+                _EXAMPLE,
+            )
         elif side:
-            message = f"{relation.group()} says already that it is {direction}"
+            message = Message(
+                "[[word]] says already that it is [[direction]]", word=relation.group(), direction=direction
+            )
             complaints.error("bad-condition", message, span_of(*word.span()), "rising and falling go with =")
         else:
             direction = word.group()
@@ -101,8 +117,12 @@ def _expression(
         if isinstance(node, Name) and node.name not in (*known, *CONSTANTS) and node.span is not None:
             close = get_close_matches(node.name[:MAX_TITLE], sorted(known)[:200], n=1)
             listed = ", ".join(sorted(known)[:20])
-            hint = f"did you mean '{close[0]}'?" if close else f"there are {listed}"
-            complaints.error("unknown-name", f"unknown name {quoted(node.name)}", node.span, hint)
+            hint = (
+                Message("did you mean '[[other]]'?", other=close[0])
+                if close
+                else Message("there are [[listed]]", listed=listed)
+            )
+            complaints.error("unknown-name", Message("unknown name [[name]]", name=quoted(node.name)), node.span, hint)
     return found if complaints.error_count == before else None
 
 

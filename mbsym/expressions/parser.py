@@ -23,6 +23,7 @@ from math import ceil
 
 from mbsym.expressions.angles import linear_form
 from mbsym.expressions.constants import meaningless
+from mbsym.expressions.message import Message
 from mbsym.expressions.place import Complaint, Complaints, Span
 from mbsym.expressions.safe import quoted
 from mbsym.expressions.table import Table
@@ -175,7 +176,11 @@ def parse_expression(
     errors_before = complaints.error_count
     try:
         if len(text) > bounds.length:
-            complaints.error("too-long", f"an expression has at most {bounds.length} characters", span_of(0, 1))
+            complaints.error(
+                "too-long",
+                Message("an expression has at most [[length]] characters", length=bounds.length),
+                span_of(0, 1),
+            )
             raise _Refused
         parser = _Parser(text, _tokens(text, complaints, span_of), complaints, span_of)
         parser.named = named
@@ -186,7 +191,9 @@ def parse_expression(
         return None
     if complaints.error_count == errors_before and (nothing := meaningless(tree)) is not None:
         node, why = nothing
-        complaints.error("no-number", f"this is no real number: {why}", node.span, _no_number_hint(node))
+        complaints.error(
+            "no-number", Message("this is no real number: [[why]]", why=why), node.span, _no_number_hint(node)
+        )
         return tree
     return tree if complaints.error_count == errors_before else None
 
@@ -250,7 +257,10 @@ def _tokens(text: str, complaints: Complaints, span_of: SpanOf) -> list[_Token]:
         if match is None:
             strange += 1
             if strange > MAX_STRANGE:
-                message = f"and more characters without a meaning: the first {MAX_STRANGE} are shown"
+                message = Message(
+                    "and more characters without a meaning: the first [[most]] are shown",
+                    most=MAX_STRANGE,
+                )
                 complaints.error("bad-character", message, span_of(position, len(text)))
                 break
             position = _complain_of_character(text, position, complaints, span_of)
@@ -273,9 +283,12 @@ def _complain_of_character(text: str, position: int, complaints: Complaints, spa
     if character == "'" and position and text[position - 1].isalnum():
         hint = "a velocity is written theta_dot"
     if hint is None and character.isalpha():
-        hint = f"names are Latin letters, digits and _: write {in_latin(character)}"
+        hint = Message("names are Latin letters, digits and _: write [[latin]]", latin=in_latin(character))
     complaints.error(
-        "bad-character", f"the character {ascii_safe(shown)} has no meaning here", span_of(position, end), hint
+        "bad-character",
+        Message("the character [[shown]] has no meaning here", shown=ascii_safe(shown)),
+        span_of(position, end),
+        hint,
     )
     return end
 
@@ -301,7 +314,9 @@ def _latin_letter(character: str) -> str:
 def decimal_comma(text: str) -> str | None:
     """The hint for a number such as ``0,5`` in a text."""
     match = _DECIMAL_COMMA.search(text)
-    return match and f"numbers have a decimal point: write {match.group(1)}.{match.group(2)}"
+    return match and Message(
+        "numbers have a decimal point: write [[whole]].[[part]]", whole=match.group(1), part=match.group(2)
+    )
 
 
 class _Parser:
@@ -391,8 +406,12 @@ class _Parser:
             return Number(Fraction(1))
         value = form.constant
         if abs(value) > MAX_EXPONENT or value.denominator > MAX_DENOMINATOR:
-            bounds = f"at most {MAX_EXPONENT} in size, a fraction of at most {MAX_DENOMINATOR} parts"
-            self.complain("bad-exponent", f"an exponent is {bounds}", start, end)
+            bounds = Message(
+                "at most [[most]] in size, a fraction of at most [[parts]] parts",
+                most=MAX_EXPONENT,
+                parts=MAX_DENOMINATOR,
+            )
+            self.complain("bad-exponent", Message("an exponent is [[bounds]]", bounds=bounds), start, end)
             raise _Refused
         return Number(value, self.span_of(start, end))
 
@@ -410,11 +429,16 @@ class _Parser:
             raise self.refusal("bad-expression", "the expression ends too early", token)
         if token.text == "^":
             raise self.refusal("bad-expression", "'^' is not an operator", token, "write ** for a power")
-        raise self.refusal("bad-expression", f"unexpected {ascii_safe(token.text)}", token)
+        raise self.refusal("bad-expression", Message("unexpected [[what]]", what=ascii_safe(token.text)), token)
 
     def name(self, token: _Token) -> Expression:
         if token.text in FUNCTIONS:
-            raise self.refusal("bad-expression", f"{token.text} needs an argument", token, f"write {token.text}(...)")
+            raise self.refusal(
+                "bad-expression",
+                Message("[[what]] needs an argument", what=token.text),
+                token,
+                Message("write [[what]](...)", what=token.text),
+            )
         return self.grown(Name(token.text, self.span_of(token.start, token.end)))
 
     def call(self, token: _Token) -> Expression:
@@ -423,7 +447,7 @@ class _Parser:
         if not known:
             self.complain(
                 "unknown-function",
-                f"unknown function {ascii_safe(token.text)}",
+                Message("unknown function [[what]]", what=ascii_safe(token.text)),
                 token.start,
                 token.end,
                 _function_hint(token.text, self.tables),
@@ -442,13 +466,18 @@ class _Parser:
             found.append(self.sum(0))
         self.nesting -= 1
         if self.next.text == ")" and len(found) < wanted:
-            raise self.refusal("bad-expression", f"{wanted} arguments are wanted", self.next, f"write {usage}")
+            raise self.refusal(
+                "bad-expression",
+                Message("[[wanted]] arguments are wanted", wanted=wanted),
+                self.next,
+                Message("write [[usage]]", usage=usage),
+            )
         if self.next.text == ")":
             self.advance()
             return found
         if self.next.text == ",":
-            message = "one argument only" if wanted == 1 else f"{wanted} arguments only"
-            hint = decimal_comma(self.text) or (f"write {usage}" if usage else None)
+            message = "one argument only" if wanted == 1 else Message("[[wanted]] arguments only", wanted=wanted)
+            hint = decimal_comma(self.text) or (Message("write [[usage]]", usage=usage) if usage else None)
             raise self.refusal("bad-expression", message, self.next, hint)
         if self.next.kind == "end":
             hint = "within {...} or [...] quote what holds commas" if wanted > len(found) else None
@@ -458,7 +487,9 @@ class _Parser:
     def nest(self, token: _Token) -> None:
         self.nesting += 1
         if self.nesting > self.bounds.nesting:
-            raise self.refusal("too-deep", f"parentheses nest at most {self.bounds.nesting} deep", token)
+            raise self.refusal(
+                "too-deep", Message("parentheses nest at most [[nesting]] deep", nesting=self.bounds.nesting), token
+            )
 
     def literal(self, token: _Token) -> Fraction:
         """The exact value of a decimal literal, after a look at its size."""
@@ -468,7 +499,9 @@ class _Parser:
         whole, decimals = whole.lstrip("0"), decimals.rstrip("0")
         if len(exponent) > 4 or len(whole) + shift > MAX_DIGITS or len(decimals) - shift > MAX_DIGITS:
             raise self.refusal(
-                "bad-number", f"a number has at most {MAX_DIGITS} digits before and after the point", token
+                "bad-number",
+                Message("a number has at most [[most]] digits before and after the point", most=MAX_DIGITS),
+                token,
             )
         digits = Fraction(int((whole + decimals) or "0"), 10 ** len(decimals))
         return digits * Fraction(10) ** shift
@@ -483,12 +516,14 @@ class _Parser:
         self.kept.append(node)
         if self.nodes > self.bounds.nodes:
             raise self.refusal(
-                "too-long", f"an expression has at most {self.bounds.nodes} parts", self.tokens[self.position - 1]
+                "too-long",
+                Message("an expression has at most [[nodes]] parts", nodes=self.bounds.nodes),
+                self.tokens[self.position - 1],
             )
         if depth > self.bounds.depth:
             raise self.refusal(
                 "too-deep",
-                f"an expression nests at most {self.bounds.depth} operations deep",
+                Message("an expression nests at most [[depth]] operations deep", depth=self.bounds.depth),
                 self.tokens[self.position - 1],
                 "group long sums with parentheses",
             )
@@ -508,51 +543,64 @@ class _Parser:
     def trailing(self, token: _Token) -> _Refused:
         """Something stands where an operator should: most often a forgotten product sign."""
         previous = self.tokens[self.position - 1] if self.position else token
-        hint = None
+        hint: str | None = None
         if token.text == "^":
             return self.refusal("bad-expression", "'^' is not an operator", token, "write ** for a power")
         if token.kind in ("name", "number") or token.text == "(":
-            hint = f"write {previous.text}*{token.text} for a product"
+            hint = Message("write [[what]]*[[what2]] for a product", what=previous.text, what2=token.text)
         if previous.kind == "number" and token.kind == "name":
             hint = _unit_hint(previous.text, token.text, self.named) or hint
         if token.text == ",":
             hint = decimal_comma(self.text)
         if previous.kind == "number" and re.fullmatch(r"[0-9_]+", token.text):
-            hint = f"digits stand together: write {previous.text}{token.text.replace('_', '')}"
+            hint = Message(
+                "digits stand together: write [[what]][[joined]]",
+                what=previous.text,
+                joined=token.text.replace("_", ""),
+            )
         elif previous.kind == token.kind == "number" and previous.end == token.start:
             hint = "a number has one decimal point"
         if token.text == ")":
             return self.refusal("bad-expression", "this parenthesis was never opened", token)
-        return self.refusal("bad-expression", f"an operator is missing before {ascii_safe(token.text)}", token, hint)
+        return self.refusal(
+            "bad-expression",
+            Message("an operator is missing before [[what]]", what=ascii_safe(token.text)),
+            token,
+            hint,
+        )
 
 
 def _unit_hint(value: str, unit: str, named: bool) -> str | None:
     """For a number with a unit behind it; where names may stand, the unit may be meant as a factor, too."""
     if unit.lower() in _DEGREES:
         short = " or pi/6" if value == "30" else ""
-        return f"angles are in radians: write {value}*pi/180{short}"
+        return Message("angles are in radians: write [[value]]*pi/180[[short]]", value=value, short=short)
     if unit.lower() in _RADIANS:
-        return f"angles are in radians: write {value} alone"
+        return Message("angles are in radians: write [[value]] alone", value=value)
     if named and unit not in _UNITS:
         return None
-    product = f"; for a product write {value}*{unit}" if named else ""
-    return f"no units beside numbers: write numbers only, and units under units:{product}"
+    product = Message("; for a product write [[value]]*[[unit]]", value=value, unit=unit) if named else ""
+    return Message("no units beside numbers: write numbers only, and units under units:[[product]]", product=product)
 
 
 def _function_hint(name: str, tables: Iterable[str]) -> str:
     tabulated = get_close_matches(name, tables, n=1)
     if tabulated:
-        return f"did you mean '{tabulated[0]}'?"
+        return Message("did you mean '[[other]]'?", other=tabulated[0])
     if name in _FOREIGN_FUNCTIONS:
-        return f"write {_FOREIGN_FUNCTIONS[name]}"
+        return Message("write [[function]]", function=_FOREIGN_FUNCTIONS[name])
     lower = name.lower()[:40]
     begun = [one for one in FUNCTIONS if lower.startswith(one)]  # cosine, sinus, exponential
     close = [max(begun, key=len)] if begun else get_close_matches(lower, FUNCTIONS, n=1)
     if close:
-        return f"did you mean '{close[0]}'?"
+        return Message("did you mean '[[other]]'?", other=close[0])
     if len(name) <= 3 and name not in _NO_FACTORS:
-        return f"write {name}*(...) for a product; the functions are {', '.join(FUNCTIONS)}"
-    return f"the functions are {', '.join(FUNCTIONS)}"
+        return Message(
+            "write [[name]]*(...) for a product; the functions are [[functions]]",
+            name=name,
+            functions=", ".join(FUNCTIONS),
+        )
+    return Message("the functions are [[functions]]", functions=", ".join(FUNCTIONS))
 
 
 def _is_zero(tree: Expression) -> bool:

@@ -24,7 +24,8 @@ class Complaint:
     """What is wrong, where, and what to try next.
 
     ``code`` is a short stable word such as ``unknown-name``; ``severity`` is ``error`` or ``warning``; a span of
-    None means that the complaint concerns the file as a whole.
+    None means that the complaint concerns the file as a whole.  ``message`` and ``hint`` are messages, in English
+    wherever nobody says them in the language of the description.
     """
 
     code: str

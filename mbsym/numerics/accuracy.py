@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from enum import Enum
+from enum import StrEnum
 from math import inf
 
 import numpy as np
@@ -60,7 +60,7 @@ EARLY, FAR_TOO_LONG = 0.2, 1.5
 LEAST_ROUNDINGS, LEAST_OF_SCIPY = 4.0, 2.3e-14  # in units of eps; rtol
 
 
-class Lacking(Enum):
+class Lacking(StrEnum):
     """Why there is no estimate."""
 
     NOT_ASKED = "none was asked for"

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mbsym.expressions.message import Message
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import (
     BLOW_UP,
@@ -42,7 +43,8 @@ def bound_of(initial: Any) -> float:
 def wrong_at_once(dynamics: Dynamics, initial: Any, begin: float = 0.0) -> Breakdown | None:
     """What is wrong with the initial state itself: there the right-hand side must exist."""
     if not np.all(np.abs(initial) < LARGEST_START):
-        return Breakdown(BLOW_UP, f"the initial state itself is beyond {LARGEST_START:g}", begin, initial)
+        beyond = Message("the initial state itself is beyond [[bound]]", bound=f"{LARGEST_START:g}")
+        return Breakdown(BLOW_UP, beyond, begin, initial)
     lost = _lost_rank(dynamics, initial) if begin == 0 else ""
     if lost:
         return Breakdown(SINGULAR_CONSTRAINTS, lost, begin, initial)
@@ -69,9 +71,13 @@ def _lost_rank(dynamics: Dynamics, initial: Any) -> str:
         return ""
     rank, usual = len(known.independent(0.0, initial)), len(known.kept)
     if rank == usual:
-        what = f"what the constraint rows allow at this position to first order (their rank is {rank})"
-        return f"{what} they stop at second order" if known.obstructed(initial) else ""
-    return f"of {usual} constraint rows that are independent beside this position, {rank} are independent in it"
+        text = (
+            "what the constraint rows allow at this position to first order (their rank is [[rank]]) they stop at "
+            "second order"
+        )
+        return Message(text, rank=rank) if known.obstructed(initial) else ""
+    text = "of [[usual]] constraint rows that are independent beside this position, [[rank]] are independent in it"
+    return Message(text, usual=usual, rank=rank)
 
 
 def _neighbours(state: Any, time: float) -> Any:
@@ -97,7 +103,8 @@ def diagnosed(dynamics: Dynamics, found: Breakdown, past: Any) -> Breakdown:
         return Breakdown(UNDEFINED, message, found.time, found.state)
     bound = bound_of(past[1:, 0])
     if not np.all(np.abs(state) < bound):
-        return Breakdown(BLOW_UP, f"a coordinate or velocity is beyond {bound:.0e}", found.time, found.state)
+        message = Message("a coordinate or velocity is beyond [[bound]]", bound=f"{bound:.0e}")
+        return Breakdown(BLOW_UP, message, found.time, found.state)
     return found
 
 
@@ -132,8 +139,9 @@ def _vanishing(dynamics: Dynamics, t: float, state: Any, others: Any, least: flo
     if not ratio < least:
         return ""
     if dynamics.constraints is not None:
-        return f"a pivot of M or of J M^-1 J^T (constraints) is {ratio:.1e} of its usual size"
-    return f"a pivot of M is {ratio:.1e} of its usual size"
+        text = "a pivot of M or of J M^-1 J^T (constraints) is [[ratio]] of its usual size"
+        return Message(text, ratio=f"{ratio:.1e}")
+    return Message("a pivot of M is [[ratio]] of its usual size", ratio=f"{ratio:.1e}")
 
 
 def least_pivot(dynamics: Dynamics, found: Trajectory) -> tuple[float, float]:

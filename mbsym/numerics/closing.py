@@ -20,6 +20,7 @@ from flint import arb, ctx
 
 from mbsym.algebra import rationals
 from mbsym.algebra.failures import Constrained, Failure
+from mbsym.expressions.message import Message, joined
 from mbsym.mechanics.constraints.rows import RowName
 from mbsym.model.states import InStates
 from mbsym.numerics.constrained import Constraints
@@ -92,13 +93,23 @@ class NotClosed(Failure):
 
     def __init__(self, state: Any, gaps: Sequence[Gap], fixed: Sequence[str], singular: bool = False) -> None:
         worst = max(gaps, key=lambda gap: gap.size)
-        what = "velocities satisfy them" if worst.velocity else "position satisfies them"
-        held = f" with {', '.join(fixed)} fixed" if fixed else ""
-        text = f"the constraints cannot be closed at these values{held}: no {what} near what is given"
         if singular:
-            rank = "near what is given they seem to lose their rank"
-            text = f"the constraints are satisfied only to roundings{held}: {rank}"
-        super().__init__(f"{text} (gap {worst.size:.6g} in {worst.row.label})")
+            text = (
+                "the constraints are satisfied only to roundings: near what is given they seem to lose their rank (gap "
+                "[[gap]] in [[row]])"
+            )
+        elif worst.velocity:
+            text = (
+                "the constraints cannot be closed at these values: no velocities satisfy them near what is given (gap "
+                "[[gap]] in [[row]])"
+            )
+        else:
+            text = (
+                "the constraints cannot be closed at these values: no position satisfies them near what is given (gap "
+                "[[gap]] in [[row]])"
+            )
+        held = [Message("fixed: [[names]]", names=", ".join(fixed))] if fixed else []
+        super().__init__(joined([Message(text, gap=f"{worst.size:.6g}", row=worst.row.label), *held], "; "))
         self.state, self.gaps, self.fixed, self.singular = state, tuple(gaps), tuple(fixed), singular
 
 
@@ -110,10 +121,9 @@ class NothingMoves(Constrained):
     def __init__(self, found: Scenario) -> None:
         place = zip(found.system.coordinates, map(float, found.positions), strict=True)
         shown = ", ".join(f"{name} = {x if abs(x) > NOUGHT else 0:.9g}" for name, x in place)
-        super().__init__(
-            f"the constraints leave no freedom at these values: nothing can move from {shown}, which satisfies them",
-            remedy="check lengths and angles: a mechanism that closes on itself may move at special values only",
-        )
+        text = "the constraints leave no freedom at these values: nothing can move from [[state]], which satisfies them"
+        remedy = Message("check lengths and angles: a mechanism that closes on itself may move at special values only")
+        super().__init__(Message(text, state=shown), remedy=remedy)
 
 
 def moving(found: Closed) -> Closed:

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
-from enum import Enum
+from enum import StrEnum
 from fractions import Fraction
 from itertools import pairwise
 from random import Random
@@ -54,7 +54,7 @@ SEEN, UNSEEN = 1e-6, 1e-10
 PROOF_STEPS = 1_000_000
 
 
-class Standing(Enum):
+class Standing(StrEnum):
     """How far it is known that a quantity is constant along the motion."""
 
     PROVED = "proved"
@@ -68,7 +68,7 @@ class Standing(Enum):
         return None if self is Standing.UNDECIDED else self is not Standing.CHANGING
 
 
-class Doubt(Enum):
+class Doubt(StrEnum):
     """Why nothing is decided."""
 
     CONTRADICTED = "its rate vanishes at the states looked at, and yet the run changes it"
@@ -77,7 +77,7 @@ class Doubt(Enum):
     NO_VALUES = "it has no finite value along this run"
 
 
-class Measure(Enum):
+class Measure(StrEnum):
     """What a ``scale`` is."""
 
     KINETIC = "the largest kinetic energy"

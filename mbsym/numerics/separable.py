@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from mbsym.expressions.message import Message, joined
 from mbsym.expressions.tree import number
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import COUNTS, Breakdown, Method, Piece, Run, Setting, Traits, Work
@@ -107,14 +108,13 @@ def _traits(parts: Sequence[Part], methods: Sequence[Method]) -> Traits:
     """Those of the one method, or of several."""
     first = methods[0].traits
     scalars = tuple(kind for kind in first.scalars if all(kind in method.traits.scalars for method in methods))
-    title = "; ".join(
-        f"{', '.join(part.names)}: {method.traits.title}" for part, method in zip(parts, methods, strict=True)
-    )
+    pairs = zip(parts, methods, strict=True)
+    title = joined([joined([", ".join(part.names), method.traits.title], ": ") for part, method in pairs], "; ")
     same = all(method.traits.name == first.name for method in methods)
     orders = {method.traits.order for method in methods}
     return Traits(
         name=first.name if same else "parts",
-        title=f"{first.title}, each part by itself" if same else title,
+        title=Message("[[method]], each part by itself", method=first.title) if same else title,
         order=first.order if len(orders) == 1 else None,
         fixed=first.fixed,
         scalars=scalars,

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
+from mbsym.expressions.message import Message
 from mbsym.model.system import System
 from mbsym.numerics.breakdowns import bound_of, diagnosed, wrong_at_once
 from mbsym.numerics.dynamics import Dynamics
@@ -309,8 +310,9 @@ def _checked(rows: Any, times: Any, bound: float) -> None:
         return
     first = int(np.argmin(fine))
     state = rows[:, first]
-    bad = "is not a number" if np.any(np.isnan(state)) else f"is beyond {bound:.0e}"
-    message = f"a coordinate or velocity {bad}"
+    message = Message("a coordinate or velocity is beyond [[bound]]", bound=f"{bound:.0e}")
+    if np.any(np.isnan(state)):
+        message = Message("a coordinate or velocity is not a number")
     raise Breakdown(BLOW_UP, message, float(times[first]), np.array(state, dtype=float), rows[:, :first])
 
 

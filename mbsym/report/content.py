@@ -502,6 +502,17 @@ def joined(items: Iterable[Inline], *between: Inline) -> Phrase:
     return Phrase(tuple(parts[len(between) :]))
 
 
+def facts(pairs: Iterable[tuple[str, str]]) -> Facts:
+    """What is said under titles, one after the other; without a title it goes on.  Warnings stand out."""
+    items: list[tuple[str, list[Inline]]] = []
+    for title, text in pairs:
+        if title or not items:
+            items.append((title, []))
+        items[-1][1].append(text)
+    named = {"warning": Graded(say("warning"), "open")}
+    return Facts(tuple(Fact(named.get(title) or say(title), tuple(lines)) for title, lines in items))
+
+
 def equalities(pairs: Iterable[tuple[Math, Math]], key: str) -> Iterator[Display]:
     """Each is equal to its other one, in lines of their own; ``key`` and its number is that of its label."""
     for k, (left, right) in enumerate(pairs, start=1):

@@ -7,6 +7,7 @@ from contextlib import nullcontext
 from dataclasses import replace
 from math import isfinite
 
+from mbsym.expressions.message import Message
 from mbsym.model.system import System
 from mbsym.numerics.accuracy import ErrorEstimate, Lacking, NoEstimate
 from mbsym.numerics.dynamics import Dynamics
@@ -108,14 +109,14 @@ def simulate_accurately(
         if last:
             plan = replace(plan, contradicted=True, remarks=(*plan.remarks, missed))
             break
-        missed += ": repeated more finely"
+        missed = Message("[[missed]]: repeated more finely", missed=missed)
         plan = replace(plan, setting=finer, remarks=(*plan.remarks, missed))
         settled = replace(settled, tolerance=plan.setting.tolerance, step=plan.setting.step)
         found = simulate(scenario, settled, watch, stage)
     if isinstance(found.error, NoEstimate) and found.error.why in UNSHOWN:
-        plan = replace(plan, unshown=found.error.why.value)
+        plan = replace(plan, unshown=found.error.why)
     plan = replace(plan, bounds=tuple(_proved(bound, found) for bound in _raised(plan, found)))
-    return replace(found, plan=plan, chosen=replace(found.chosen, why="chosen for the accuracy asked for"))
+    return replace(found, plan=plan, chosen=replace(found.chosen, why=Message("chosen for the accuracy asked for")))
 
 
 def _raised(plan: Plan, found: Simulation) -> tuple[Bound, ...]:
@@ -171,11 +172,10 @@ def _missed(plan: Plan, found: Simulation, times: float) -> str:
     for quantity, target in zip(found.error.quantities, targets, strict=True):
         error = quantity.largest / quantity.scale
         if isfinite(target) and times * error > target:
-            what = "which is" if error > target else "and twice that is"
-            return (
-                f"{quantity.name} was {error:.1e} wrong with {_shown(plan.setting)} by the estimate of that run, "
-                f"{what} more than {target:.0e}"
-            )
+            more = Message("which is" if error > target else "and twice that is")
+            text = "[[name]] was [[error]] wrong with [[how]] by the estimate of that run, [[more]] more than [[most]]"
+            wrong, how = f"{error:.1e}", _shown(plan.setting)
+            return Message(text, name=quantity.name, error=wrong, how=how, more=more, most=f"{target:.0e}")
     return ""
 
 
@@ -190,4 +190,6 @@ def _finer(plan: Plan) -> Setting:
 
 
 def _shown(setting: Setting) -> str:
-    return f"steps of {setting.step:g}" if setting.step is not None else f"tolerance {setting.tolerance:g}"
+    if setting.step is not None:
+        return Message("step [[step]]", step=f"{setting.step:g}")
+    return Message("tolerance [[tolerance]]", tolerance=f"{setting.tolerance:g}")

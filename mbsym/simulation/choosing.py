@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from mbsym.expressions.message import Message, joined
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.events.switching import rates
 from mbsym.numerics.kernels.interface import FLOAT64
@@ -31,7 +32,8 @@ def chosen_for(dynamics: Dynamics, request: Request, resting: Reduced | None) ->
         method = taken.method(method)
     frequency = max(choice.frequency for choice in choices)
     times = sample_times(request, frequency, dynamics.system)
-    why, measured = ("; ".join(dict.fromkeys(filter(None, texts))) for texts in zip(*map(_words, choices), strict=True))
+    why = joined(dict.fromkeys(choice.why for choice in choices), "; ")
+    measured = joined(dict.fromkeys(choice.measured for choice in choices if choice.measured), "; ")
     shares: tuple[PartMethod, ...] = ()
     if len(parts) > 1 and not fixed:
         pairs = zip(parts, choices, strict=True)
@@ -55,11 +57,8 @@ def may_change(request: Request) -> bool:
     return request.arithmetic == FLOAT64 and (request.method == "auto" or going_on)
 
 
-def _words(choice: Choice) -> tuple[str, str]:
-    return choice.why, choice.measured
-
-
 def _asked(request: Request) -> str:
     """Why a method that has a name in the request is there."""
     earlier = request.earlier
-    return "as in the earlier run" if earlier is not None and earlier.method == request.method else "as asked for"
+    again = earlier is not None and earlier.method == request.method
+    return Message("as in the earlier run" if again else "as asked for")

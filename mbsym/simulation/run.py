@@ -16,6 +16,7 @@ from dataclasses import replace
 from math import inf
 from typing import TYPE_CHECKING, Any
 
+from mbsym.expressions.message import Message
 from mbsym.model.states import InStates, described, in_states
 from mbsym.numerics import simulate as integration
 from mbsym.numerics.accuracy import ErrorEstimate, Lacking, NoEstimate, contradicted, estimated
@@ -162,7 +163,8 @@ def refuse_in_states(system: System, request: Request) -> None:
     if wrong:
         raise ValueError("; ".join(wrong))
     if request.method in METHODS and METHODS[request.method].traits.conservative:
-        raise Unusable(f"{request.method} {NOT_IN_STATES}")
+        text = "[[method]] integrates coordinates and their velocities only; this system has speeds"
+        raise Unusable(Message(text, method=request.method))
 
 
 def _dynamics(scenario: Scenario, ring: Ring | None, request: Request) -> Dynamics:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from mbsym.expressions.angles import angle_name
+from mbsym.expressions.message import Message, worded
 from mbsym.expressions.parser import ascii_safe, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import CONSTANTS, ZERO, Expression, Name, is_number, subtract, walk
@@ -17,7 +18,7 @@ from mbsym.source.identity import vanishes
 from mbsym.source.keys import BODY, INERTIA, MASS_CENTRE, ROTATION
 from mbsym.source.placed import Mapping, Node, Scalar, Sequence, TooManyComplaints
 from mbsym.source.reading import ZERO_VECTOR, Fields, Reading, comma_hint
-from mbsym.source.scope import ANGLE, RADIUS, VELOCITY, Allowed, closest, did_you_mean, slip_of, why_no_name
+from mbsym.source.scope import ANGLE, RADIUS, VELOCITY, Allowed, closest, did_you_mean, listed, slip_of, why_no_name
 from mbsym.source.shapes import read_shapes
 
 MAX_BODIES = 250
@@ -53,7 +54,7 @@ def draft_bodies(node: Node | None, reading: Reading) -> list[Draft]:
         return []
     items = reading.items(node, "'bodies'")
     if len(items) > MAX_BODIES:
-        message = f"a system has at most {MAX_BODIES} bodies, not {len(items)}"
+        message = Message("a system has at most [[most]] bodies, not [[items]]", most=MAX_BODIES, items=len(items))
         reading.error("too-large", message, node.span)
         raise TooManyComplaints  # without them every name would be unknown
     if not items and isinstance(node, Sequence):
@@ -71,7 +72,7 @@ def draft_bodies(node: Node | None, reading: Reading) -> list[Draft]:
 
 
 def _draft(number: int, node: Node, reading: Reading) -> Draft:
-    fields = reading.fields(node, f"body {number}", BODY)
+    fields = reading.fields(node, Message("body [[number]]", number=number), BODY)
     given = fields.require("name")
     scalar = None if given is None else reading.scalar(given, "the name of a body")
     if scalar is None:
@@ -79,8 +80,8 @@ def _draft(number: int, node: Node, reading: Reading) -> Draft:
     name = " ".join(scalar.text.split())
     if not is_body_name(name):
         hint = "letters, digits, blanks and . / _ -, beginning with a letter"
-        reading.error("bad-name", f"a body cannot be called {ascii_safe(name)}", scalar.span, hint)
-    fields.what = f"body {ascii_safe(name)}"
+        reading.error("bad-name", Message("a body cannot be called [[name]]", name=ascii_safe(name)), scalar.span, hint)
+    fields.what = Message("body [[name]]", name=ascii_safe(name))
     return Draft(number, name, scalar.span, fields, [])
 
 
@@ -93,7 +94,9 @@ def _check_repeated(drafts: list[Draft], reading: Reading) -> None:
     seen: set[str] = set()
     for draft in drafts:
         if draft.name in seen:
-            reading.error("repeated-name", f"a second body called {ascii_safe(draft.name)}", draft.name_span)
+            reading.error(
+                "repeated-name", Message("a second body called [[name]]", name=ascii_safe(draft.name)), draft.name_span
+            )
         seen.add(draft.name)
 
 
@@ -103,7 +106,11 @@ def _declare_listed(draft: Draft, reading: Reading) -> None:
         return
     items = reading.lone_or_items(node, "'coordinates'")
     if len(items) > MAX_COORDINATES:
-        reading.error("too-large", f"a joint introduces at most {MAX_COORDINATES} coordinates", node.span)
+        reading.error(
+            "too-large",
+            Message("a joint introduces at most [[most]] coordinates", most=MAX_COORDINATES),
+            node.span,
+        )
         return
     for item in items:
         scalar = reading.scalar(item, "a coordinate")
@@ -124,8 +131,12 @@ def _declare_inferred(draft: Draft, slips: set[str], reading: Reading) -> None:
             slip = slip_of(name, [one for one in reading.scope.kinds if one not in slips])
             if slip is not None:
                 slips.add(name)
-                message = f"the undeclared angle '{name}' becomes a coordinate of its own"
-                hint = f"did you mean '{slip}'? If not, add 'coordinates: [{name}]' to this body"
+                message = Message("the undeclared angle '[[name]]' becomes a coordinate of its own", name=name)
+                hint = Message(
+                    "did you mean '[[other]]'? If not, add 'coordinates: [[[name]]]' to this body",
+                    other=slip,
+                    name=name,
+                )
                 reading.complaints.warning("resembling-name", message, item.span, hint)
             reading.scope.declare(name, "coordinate", item.span)
             draft.coordinates.append(Scalar(name, item.span, literal=False))
@@ -156,7 +167,10 @@ def _assume_forgotten(draft: Draft, reading: Reading) -> None:
                 continue
             if listed is None or isinstance(listed, (Scalar, Sequence)):
                 reading.error(
-                    "unknown-name", f"unknown name '{one.name}'", one.span, _coordinate_hint(one, draft, close)
+                    "unknown-name",
+                    Message("unknown name '[[name]]'", name=one.name),
+                    one.span,
+                    _coordinate_hint(one, draft, close),
                 )
             scope.assumed.add(one.name)
             draft.coordinates.append(Scalar(one.name, one.span or node.span, literal=False))
@@ -166,10 +180,15 @@ def _assume_forgotten(draft: Draft, reading: Reading) -> None:
 def _coordinate_hint(name: Name, draft: Draft, close: str | None) -> str:
     together = ", ".join([*(scalar.text for scalar in draft.coordinates), name.name])
     verb = "write" if draft.fields.get("coordinates") is not None else "add"
-    listed = f"{verb} 'coordinates: [{together}]' {'in' if verb == 'write' else 'to'} this body"
+    text = (
+        "write 'coordinates: [[[names]]]' in this body"
+        if verb == "write"
+        else "add 'coordinates: [[[names]]]' to this body"
+    )
+    way = Message(text, names=together)
     if close:
-        return f"{close} If it is a coordinate of its own, {listed}"
-    return f"if it is a coordinate, {listed}; if it is a parameter, declare it under 'parameters'"
+        return Message("[[other]] If it is a coordinate of its own, [[listed]]", other=close, listed=way)
+    return Message("if it is a coordinate, [[listed]]; if it is a parameter, declare it under 'parameters'", listed=way)
 
 
 def _bare_name(node: Node) -> str | None:
@@ -233,10 +252,15 @@ def _complain_of_order(draft: Draft, name: str, drafts: list[Draft], span: Span,
         parent = parents[name]
         name = parent.text if isinstance(parent, Scalar) else INERTIAL
     if name == draft.name:
-        message = "bodies are attached in a circle: " + " -> ".join([*chain[:6], draft.name])
+        circle = " -> ".join([*chain[:6], draft.name])
+        message = Message("bodies are attached in a circle: [[bodies]]", bodies=circle)
         reading.error("cyclic-bodies", message, span, "one of them hangs on the inertial frame 0")
     else:
-        hint = f"put body {ascii_safe(chain[-1] if len(chain) < 2 else chain[1])} before {ascii_safe(draft.name)}"
+        hint = Message(
+            "put body [[chain]] before [[name]]",
+            chain=ascii_safe(chain[-1] if len(chain) < 2 else chain[1]),
+            name=ascii_safe(draft.name),
+        )
         reading.error("body-order", "a body is attached to an earlier body; this one comes later", span, hint)
 
 
@@ -252,8 +276,8 @@ def read_body_name(
         return name
     named = known if possible is None else possible
     which = "the bodies are" if possible is None else "the bodies before this one are"
-    hint = did_you_mean(name, named) or f"{which}: {', '.join([INERTIAL, *named[:8]])}"
-    reading.error("unknown-body", f"there is no body {ascii_safe(name)}", scalar.span, hint)
+    hint = did_you_mean(name, named) or listed(which, [INERTIAL, *named[:8]])
+    reading.error("unknown-body", Message("there is no body [[name]]", name=ascii_safe(name)), scalar.span, hint)
     return None
 
 
@@ -261,7 +285,7 @@ def _rotation(node: Node | None, draft: Draft, reading: Reading) -> Rotation:
     """The turns that there are: axes numbered 0 are dropped, so that {3, 0, 0} and {3} are the same rotation."""
     if node is None:
         return Rotation()
-    fields = reading.fields(node, f"the rotation of {draft.fields.what}", ROTATION)
+    fields = reading.fields(node, Message("the rotation of [[what]]", what=worded(draft.fields.what)), ROTATION)
     axes_node, angles_node = fields.require("axes"), fields.require("angles")
     if axes_node is None or angles_node is None:
         return Rotation()
@@ -271,7 +295,9 @@ def _rotation(node: Node | None, draft: Draft, reading: Reading) -> Rotation:
     if len(axes) > 3:
         reading.error("wrong-shape", "a joint has at most three rotation axes", axes_node.span, "add a massless body")
     if len(angles) != len(axes):
-        message = f"each axis has its angle: {len(axes)} wanted, not {len(angles)}"
+        message = Message(
+            "each axis has its angle: [[axes]] wanted, not [[angles]]", axes=len(axes), angles=len(angles)
+        )
         reading.error("wrong-shape", message, angles_node.span, comma_hint(angle_items, len(axes)))
         return Rotation()
     for axis, angle, item in zip(axes, angles, angle_items, strict=True):
@@ -298,8 +324,9 @@ def _check_rounded(angle: Expression, item: Node, reading: Reading) -> None:
         share = Fraction(twelfths, 12)
         written = ("" if share.numerator == 1 else f"{share.numerator}*") + "pi"
         written += "" if share.denominator == 1 else f"/{share.denominator}"
-        message = f"this angle is {'-' if value < 0 else ''}{written} rounded, and is taken as it stands"
-        hint = f"write {'-' if value < 0 else ''}{written}: the formulas become much shorter"
+        written = f"-{written}" if value < 0 else written
+        message = Message("this angle is [[written]] rounded, and is taken as it stands", written=written)
+        hint = Message("write [[written]]: the formulas become much shorter", written=written)
         reading.complaints.warning("rounded-angle", message, item.span, hint)
 
 
@@ -312,8 +339,15 @@ def _axis(node: Node, reading: Reading) -> int | None:
         return int(scalar.text)
     hint = "for the opposite sense, turn by the negative angle" if scalar.text.startswith("-") else None
     if scalar.text.lower() in ("x", "y", "z"):
-        hint = f"write {'xyz'.index(scalar.text.lower()) + 1}: the axes x, y, z are numbered 1, 2, 3"
-    reading.error("bad-axis", f"rotation axes are 1, 2, 3 or 0, not {ascii_safe(scalar.text)}", scalar.span, hint)
+        hint = Message(
+            "write [[index]]: the axes x, y, z are numbered 1, 2, 3", index="xyz".index(scalar.text.lower()) + 1
+        )
+    reading.error(
+        "bad-axis",
+        Message("rotation axes are 1, 2, 3 or 0, not [[what]]", what=ascii_safe(scalar.text)),
+        scalar.span,
+        hint,
+    )
     return None
 
 
@@ -338,7 +372,7 @@ def _accepted(node: Node, fields: Fields, reading: Reading) -> tuple[Node, bool]
     """The tensor alone, and whether ``{tensor: ..., accept: true}`` says to take it as given."""
     if not isinstance(node, Mapping):
         return node, False
-    given = reading.fields(node, f"the inertia of {fields.what}", INERTIA)
+    given = reading.fields(node, Message("the inertia of [[what]]", what=worded(fields.what)), INERTIA)
     tensor, accept = given.require("tensor"), given.get("accept")
     word = None if accept is None else reading.word(accept, "'accept'", ("true", "false"))
     return tensor or Sequence(tuple(Scalar("0", node.span, literal=False) for _ in range(3)), node.span), word == "true"
@@ -361,11 +395,13 @@ def _tensor(node: Node, reading: Reading) -> Tensor:
             difference = subtract(rows[row][column], rows[column][row])
             if reading.errors == errors and vanishes(difference) is False:
                 assert isinstance(below, Sequence)
-                entries = f"{row + 1},{column + 1} and {column + 1},{row + 1}"
-                message = f"a tensor of inertia is symmetric: entries {entries} differ"
+                entries = Message("[[row]],[[column]] and [[column]],[[row]]", row=row + 1, column=column + 1)
+                message = Message("a tensor of inertia is symmetric: entries [[entries]] differ", entries=entries)
                 if _is_rounding(difference, rows[column][row]):
-                    hint = (
-                        f"taken for rounding, as it is less than a millionth; {column + 1},{row + 1} is used for both"
+                    hint = Message(
+                        "taken for rounding, as it is less than a millionth; [[column]],[[row]] is used for both",
+                        column=column + 1,
+                        row=row + 1,
                     )
                     reading.complaints.warning("rounded-inertia", message, below.items[column].span, hint)
                     rows[row] = _with(rows[row], column, rows[column][row])

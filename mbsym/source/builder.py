@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints
 from mbsym.model.admissibility import known_values
@@ -169,7 +170,7 @@ def _reactions(fields: Fields, bodies: list[str], reading: Reading) -> tuple[str
             message = "the inertial frame 0 has no joint"
             reading.error("unknown-body", message, item.span, "name the body that the joint moves")
         elif name in found:
-            reading.error("repeated-key", f"{ascii_safe(name)} is given twice", item.span)
+            reading.error("repeated-key", Message("[[name]] is given twice", name=ascii_safe(name)), item.span)
         else:
             found.append(name)
     return tuple(found)
@@ -186,7 +187,7 @@ def _coordinates(
         if scalar is None or not reading.scope.check_name(scalar.text, scalar.span, allowed):
             continue
         if scalar.text in found:
-            reading.error("repeated-key", f"{ascii_safe(scalar.text)} is given twice", scalar.span)
+            reading.error("repeated-key", Message("[[what]] is given twice", what=ascii_safe(scalar.text)), scalar.span)
         found.append(scalar.text)
     return tuple(found)
 
@@ -212,5 +213,9 @@ def _check_version(fields: Fields, reading: Reading) -> None:
     node = fields.require("mbsym", "begin the file with 'mbsym: 1'")
     scalar = None if node is None else reading.scalar(node, "'mbsym'")
     if scalar is not None and scalar.text != VERSION:
-        message = f"this is version {ascii_safe(scalar.text)} of the format, and only {VERSION} is known"
+        message = Message(
+            "this is version [[what]] of the format, and only [[known]] is known",
+            what=ascii_safe(scalar.text),
+            known=VERSION,
+        )
         reading.error("bad-version", message, scalar.span)

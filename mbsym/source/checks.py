@@ -11,6 +11,7 @@ from typing import Any
 
 from mbsym.expressions.constants import meaningless
 from mbsym.expressions.constants import value as value_of
+from mbsym.expressions.message import Message, joined
 from mbsym.expressions.place import Span
 from mbsym.expressions.tree import (
     ONE,
@@ -76,8 +77,17 @@ def _check_coordinates(system: System, body: Body, draft: Draft, reading: Readin
         if _moves(body, name):
             continue
         others = [other.name for other in system.bodies if other is not body and _moves(other, name)]
-        hint = f"it moves '{others[0]}': list it there" if others else "use it in an angle or in the connection point"
-        reading.error("idle-coordinate", f"the coordinate '{name}' moves nothing in this joint", scalar.span, hint)
+        hint = (
+            Message("it moves '[[others]]': list it there", others=others[0])
+            if others
+            else "use it in an angle or in the connection point"
+        )
+        reading.error(
+            "idle-coordinate",
+            Message("the coordinate '[[name]]' moves nothing in this joint", name=name),
+            scalar.span,
+            hint,
+        )
 
 
 def _moves(body: Body, name: str) -> bool:
@@ -101,8 +111,13 @@ def _check_relative_velocity(system: System, body: Body, draft: Draft, reading: 
         derived = Derivation(rates)(radius)
         if vanishes(subtract(given, derived), relations) is False:
             span = given.span or draft.fields.key_span("relative velocity")
-            message = f"component {index + 1} is not the derivative of the connection point"
-            reading.error("relative-velocity", message, span, _short(f"the derivative is {text(derived)}"))
+            message = Message("component [[index]] is not the derivative of the connection point", index=index + 1)
+            reading.error(
+                "relative-velocity",
+                message,
+                span,
+                _short(Message("the derivative is [[derived]]", derived=text(derived))),
+            )
 
 
 def _short(hint: str, instead: str = "leave the relative velocity out: it is then derived") -> str:
@@ -141,8 +156,13 @@ def _check_inertia(system: System, body: Body, draft: Draft, values: Mapping[str
     entries = [entry for row in body.inertia.tensor for entry in row]
     for index in range(3):
         if surely_negative(body.inertia.tensor[index][index], signs):
-            message = f"the moment of inertia about axis {index + 1} is negative"
-            reading.error("bad-inertia", f"no body has this inertia: {message}", span, _values_hint(*entries))
+            message = Message("the moment of inertia about axis [[index]] is negative", index=index + 1)
+            reading.error(
+                "bad-inertia",
+                Message("no body has this inertia: [[message]]", message=message),
+                span,
+                _values_hint(*entries),
+            )
             return
     alone = impossible_alone(body.inertia.tensor, signs, values)
     if alone is not None:
@@ -155,7 +175,9 @@ def _check_inertia(system: System, body: Body, draft: Draft, values: Mapping[str
     if doubt is not None:
         own = symbolic_violation(body.inertia.tensor, body.mass, body.mass_centre, False, signs)
         advice = "with inertia about: mass centre it would be possible" if about_joint and own is None else None
-        reading.complaints.warning("impossible-inertia", f"no body has this inertia: {doubt}", span, advice)
+        reading.complaints.warning(
+            "impossible-inertia", Message("no body has this inertia: [[doubt]]", doubt=doubt), span, advice
+        )
 
 
 def _check_numbers(body: Body, values: Mapping[str, Fraction], span: Span, reading: Reading) -> bool:
@@ -164,21 +186,23 @@ def _check_numbers(body: Body, values: Mapping[str, Fraction], span: Span, readi
     if body.inertia is None or violation is None:
         return False
     entries = [entry for row in body.inertia.tensor for entry in row]
-    message = f"no body has this inertia: {violation}"
+    message = Message("no body has this inertia: [[violation]]", violation=violation)
     if body_violation(body, values, ROUNDING) is None:
-        told = f"no body has exactly this inertia: {violation}"
+        told = Message("no body has exactly this inertia: [[violation]]", violation=violation)
         hint = "taken for rounding, as it is less than a millionth; the numbers are used as they stand"
         reading.complaints.warning("rounded-inertia", told, span, hint)
     elif has_negative_energy(body, values) and not _is_possible_elsewhere(body, values):
-        message += "; its kinetic energy would be negative" if body.inertia.accepted else ""
+        if body.inertia.accepted:
+            message = joined([message, Message("its kinetic energy would be negative")], "; ")
         reading.error("bad-inertia", message, span, _values_hint(*entries))
     elif _is_possible_elsewhere(body, values) and (not body.inertia.accepted or has_negative_energy(body, values)):
         hint = "with inertia about: mass centre it would be possible"
         reading.error("bad-inertia", message, span, hint)
     elif not body.inertia.accepted:
         written = _written(inertia_shape(body.inertia))
-        given = "with the given values; " if any(names(entry) for entry in entries) else ""
-        hint = f"{given}if they were identified, write {{tensor: {written}, accept: true}}"
+        hint = Message("if they were identified, write {tensor: [[written]], accept: true}", written=written)
+        if any(names(entry) for entry in entries):
+            hint = joined([Message("with the given values"), hint], "; ")
         reading.error(
             "bad-inertia", message, span, _short(hint, "write {tensor: ..., accept: true} if it was identified")
         )
@@ -203,7 +227,9 @@ def _check_single_moment(
     """Of the only moment that was given no more is asked than its own sign, about the mass centre, too."""
     assert body.inertia is not None
     if not _is_enough(system, body, alone) and not body.inertia.accepted:
-        message = f"no body has this inertia: 0 + 0 is less than the moment of inertia about axis {alone + 1}"
+        message = Message(
+            "no body has this inertia: 0 + 0 is less than the moment of inertia about axis [[alone]]", alone=alone + 1
+        )
         hint = _rod_hint(text(body.inertia.tensor[alone][alone]), alone)
         reading.complaints.warning("single-moment", message, span, hint)
     tensor = numeric_tensor(body.inertia.tensor, values)
@@ -213,7 +239,9 @@ def _check_single_moment(
     violation = offset_violation(tensor, mass, centre, (alone,), ROUNDING)
     if violation is not None:
         given = _values_hint(*(entry for row in body.inertia.tensor for entry in row))
-        reading.error("bad-inertia", f"no body has this inertia: {violation}", span, given)
+        reading.error(
+            "bad-inertia", Message("no body has this inertia: [[violation]]", violation=violation), span, given
+        )
 
 
 def _is_enough(system: System, body: Body, index: int) -> bool:
@@ -257,8 +285,13 @@ def _rod_hint(moment: str, axis: int) -> str:
     """A body with the wanted moment about an axis, which is as good where it turns about this axis only."""
     along = 0 if axis else 1
     rod = ", ".join("0" if index == along else moment for index in range(3))
-    matter = f"in planar motion, turning about axis {axis + 1} only, the other moments do not matter"
-    return _short(f"[{rod}] is a thin rod along axis {along + 1}; {matter}", matter)
+    matter = Message(
+        "in planar motion, turning about axis [[axis]] only, the other moments do not matter", axis=axis + 1
+    )
+    return _short(
+        Message("[[[rod]]] is a thin rod along axis [[along]]; [[matter]]", rod=rod, along=along + 1, matter=matter),
+        matter,
+    )
 
 
 # --- the whole -------------------------------------------------------------------------------------------------------
@@ -284,7 +317,7 @@ def _check_use(system: System, reading: Reading) -> None:
         declared += [("input", one.name, one.span) for one in system.inputs if one.name not in felt]
     for what, name, span in declared:
         if name not in used or what == "input":
-            message = f"the {what} '{name}' is used nowhere"
+            message = Message("the [[what]] '[[name]]' is used nowhere", what=what, name=name)
             reading.complaints.warning("unused-name", message, span, "leave it out, or put it where it belongs")
 
 
@@ -333,7 +366,9 @@ def _check_given(system: System, reading: Reading) -> None:
             continue  # without names it has been judged where it stands
         if (nothing := meaningless(expression, known)) is not None:
             node, why = nothing
-            reading.error("no-number", f"with the given values this is no real number: {why}", node.span)
+            reading.error(
+                "no-number", Message("with the given values this is no real number: [[why]]", why=why), node.span
+            )
 
 
 def _check_relation_values(system: System, reading: Reading) -> None:
@@ -346,7 +381,11 @@ def _check_relation_values(system: System, reading: Reading) -> None:
                 right, error = Fraction(about), _FLOATS * abs(Fraction(about))
         if left is None or right is None or abs(left - right) <= error:
             continue
-        message = f"the given values break this relation: {decimal(left)} is not {decimal(right)}"
+        message = Message(
+            "the given values break this relation: [[left]] is not [[right]]",
+            left=decimal(left),
+            right=decimal(right),
+        )
         if abs(left - right) > abs(right) / _ROUNDED:
             reading.error("conflicting-values", message, relation.span)
         else:
@@ -369,9 +408,14 @@ def _check_assumption_values(system: System, reading: Reading) -> None:
         if assumption in seen:
             continue
         seen.add(assumption)
-        message = f"the given values break this assumption: {decimal(left)} {assumption.relation} {decimal(right)}"
+        message = Message(
+            "the given values break this assumption: [[left]] [[relation]] [[right]]",
+            left=decimal(left),
+            relation=assumption.relation,
+            right=decimal(right),
+        )
         reading.error("broken-assumption", message, assumption.span, "change the values, or leave the assumption out")
     if (against := contradictory(system)) is not None:
-        message = "no values of the parameters keep this assumption and those before it"
+        contradiction = "no values of the parameters keep this assumption and those before it"
         hint = "declared signs and relations count as well"
-        reading.error("contradictory-assumptions", message, against.span, hint)
+        reading.error("contradictory-assumptions", contradiction, against.span, hint)

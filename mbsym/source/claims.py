@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, replace
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.tree import ZERO, Expression, Name, Number, Operation, names
 from mbsym.model.claims import (
@@ -205,13 +206,16 @@ class _Reader:
                 if key in self.fields.found:
                     hint = "add for example state: initial; formulas are compared exactly"
                     self.reading.error(
-                        "missing-key", f"'{key}' is about numbers at a state", self.fields.key_span(key), hint
+                        "missing-key",
+                        Message("'[[key]]' is about numbers at a state", key=key),
+                        self.fields.key_span(key),
+                        hint,
                     )
 
     # --- what is claimed ---
 
     def allowed(self, variable: str) -> Allowed:
-        what = f"a claim about the {self.word}"
+        what = Message("a claim about the [[word]]", word=self.word)
         if self.word.startswith(_CONSTANT_KINDS):
             return Allowed(what, (*_CONSTANTS, *(["variable"] if variable else [])))
         if self.kind.oscillates:
@@ -251,12 +255,16 @@ class _Reader:
         small = self.system.small
         by_motion = self.kind.oscillates and self.system.motion and not self.system.speeds
         if not self.small and not by_motion:
-            message = f"a claim about the {self.word} is about powers of a small parameter, and none is named"
+            message = Message(
+                "a claim about the [[word]] is about powers of a small parameter, and none is named", word=self.word
+            )
             hint = "add for example small parameter: eps"
             self.reading.error("missing-key", message, self.fields.key_span("claim"), hint)
         if small is not None and small.name in names(equals):
             given = self.fields.get("equals")
-            message = f"what stands before a power of the small parameter {small.name} does not hold it"
+            message = Message(
+                "what stands before a power of the small parameter [[name]] does not hold it", name=small.name
+            )
             span = None if given is None else given.span
             self.reading.error("misplaced-name", message, span, "give the coefficient alone")
         node = self.fields.require("order", "write for example order: 1")
@@ -265,8 +273,13 @@ class _Reader:
             return 0
         text = scalar.text.strip()
         if not (text.isascii() and text.isdigit() and len(text) < 3 and int(text) <= MOST_ORDER):
-            message = f"{ascii_safe(scalar.text)} is no order"
-            self.reading.error("bad-number", message, scalar.span, f"write a whole number from 0 to {MOST_ORDER}")
+            message = Message("[[what]] is no order", what=ascii_safe(scalar.text))
+            self.reading.error(
+                "bad-number",
+                message,
+                scalar.span,
+                Message("write a whole number from 0 to [[most]]", most=MOST_ORDER),
+            )
             return 0
         return int(text)
 
@@ -287,7 +300,7 @@ class _Reader:
             return 0
         text = scalar.text.strip()
         if not (text.isascii() and text.isdigit() and len(text) < 5 and int(text) > 0):
-            message = f"{ascii_safe(scalar.text)} is no number of digits"
+            message = Message("[[what]] is no number of digits", what=ascii_safe(scalar.text))
             self.reading.error("bad-number", message, scalar.span, "write a whole number from 1")
             return 0
         return int(text)
@@ -309,9 +322,14 @@ class _Reader:
         words = " ".join(scalar.text.split())
         known = [*self.system.claimable, *(SUMS if self.kind.of == SUM else ())]
         if words not in known:
-            hint = did_you_mean(words, known) or f"one of: {', '.join(known[:12])}"
+            hint = did_you_mean(words, known) or Message("one of: [[known]]", known=", ".join(known[:12]))
             wanted = "a coordinate" if self.kind.of == COORDINATE else "a quantity or a coordinate"
-            self.reading.error("unknown-name", f"{ascii_safe(words)} is not {wanted}", scalar.span, hint)
+            self.reading.error(
+                "unknown-name",
+                Message("[[words]] is not [[wanted]]", words=ascii_safe(words), wanted=wanted),
+                scalar.span,
+                hint,
+            )
         return words
 
     def entry(self) -> tuple[int, ...]:
@@ -341,12 +359,14 @@ class _Reader:
         if text.isascii() and text.isdigit() and len(text) < 4 and 1 <= int(text) <= size:
             return int(text)
         if not size:
-            message = f"the {self.word} has no entries: the system has no inputs, or no outputs"
+            message = Message("the [[word]] has no entries: the system has no inputs, or no outputs", word=self.word)
             self.reading.error("bad-entry", message, scalar.span, "declare them under 'inputs' and 'outputs'")
             return 1
         some = "" if not names else "a coordinate, or " if names == self.system.claimable else f"{names[0]}, ..., or "
-        hint = did_you_mean(text, names) or f"{some}a number from 1 to {size}"
-        message = f"{ascii_safe(text)} is no {'axis' if self.kind.axes else 'row or column'}"
+        hint = did_you_mean(text, names) or Message("[[some]]a number from 1 to [[size]]", some=some, size=size)
+        message = Message(
+            "[[what]] is no [[axes]]", what=ascii_safe(text), axes="axis" if self.kind.axes else "row or column"
+        )
         self.reading.error("bad-entry", message, scalar.span, hint)
         return 1
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 from mbsym.expressions.constants import sign_of
+from mbsym.expressions.message import Message
 from mbsym.expressions.parser import ascii_safe, decimal_comma, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import CONSTANTS, ZERO, Expression, names
@@ -38,7 +39,7 @@ def declared_by_use(reading: Reading) -> list[Parameter]:
     used, reading.scope.by_use = reading.scope.by_use, None
     if not used:
         return []
-    message = f"parameters are declared by their use, all of them real: {', '.join(used)}"
+    message = Message("parameters are declared by their use, all of them real: [[used]]", used=", ".join(used))
     hint = "a section 'Parameters' gives them signs, values and meanings, and slips of the pen are found"
     reading.complaints.warning("declared-by-use", message, min(used.values(), key=lambda span: span.line), hint)
     return [Parameter(name, span=span) for name, span in used.items()]
@@ -58,7 +59,7 @@ def _parameter(entry: Entry, reading: Reading) -> Parameter:
     name, span = entry.key.text, entry.key.span
     if isinstance(entry.value, Mapping):
         return _described(name, span, entry.value, reading)
-    scalar = reading.scalar(entry.value, f"the parameter {ascii_safe(name)}")
+    scalar = reading.scalar(entry.value, Message("the parameter [[name]]", name=ascii_safe(name)))
     if scalar is None:
         return Parameter(name, span=span)
     if scalar.text.lower() in SIGNS:
@@ -72,8 +73,10 @@ def _parameter(entry: Entry, reading: Reading) -> Parameter:
     if value is None or not names(value) <= set(CONSTANTS):
         close = did_you_mean(scalar.text.lower(), SIGNS) or decimal_comma(scalar.text)
         unit = next((one.hint for one in refused if one.hint and re.match("[-+.0-9]", scalar.text)), None)
-        hint = close or unit or f"write a number or one of: {', '.join(SIGNS)}"
-        message = f"a parameter is described by a sign word or a number, not by {ascii_safe(scalar.text)}"
+        hint = close or unit or Message("write a number or one of: [[signs]]", signs=", ".join(SIGNS))
+        message = Message(
+            "a parameter is described by a sign word or a number, not by [[what]]", what=ascii_safe(scalar.text)
+        )
         reading.error("bad-word", message, scalar.span, hint)
         return Parameter(name, span=span)
     reading.check_range(value, scalar)
@@ -86,7 +89,7 @@ def _sign_of(value: Expression | None) -> str:
 
 
 def _described(name: str, span: Span, node: Mapping, reading: Reading) -> Parameter:
-    fields = reading.fields(node, f"the parameter {ascii_safe(name)}", {**PARAMETER, **SIGN_WORDS})
+    fields = reading.fields(node, Message("the parameter [[name]]", name=ascii_safe(name)), {**PARAMETER, **SIGN_WORDS})
     errors = reading.errors
     value = fields.expression("value", NUMBER)
     if reading.errors != errors:
@@ -102,7 +105,7 @@ def _described(name: str, span: Span, node: Mapping, reading: Reading) -> Parame
 def note_unit(name: str, fields: Fields, reading: Reading) -> None:
     """Remember the unit of a record for ``units``."""
     node = fields.get("unit")
-    scalar = None if node is None else reading.scalar(node, f"the unit of {ascii_safe(name)}")
+    scalar = None if node is None else reading.scalar(node, Message("the unit of [[name]]", name=ascii_safe(name)))
     if scalar is not None:
         reading.units.append(Declared(name, scalar.text.strip(), scalar.span))
 
@@ -116,7 +119,7 @@ def _sign(fields: Fields, reading: Reading) -> str | None:
         if flag is None:
             continue
         if sign is not None or given is not None:
-            reading.error("conflicting-keys", f"a second sign: '{word}'", fields.key_span(word))
+            reading.error("conflicting-keys", Message("a second sign: '[[word]]'", word=word), fields.key_span(word))
         elif reading.word(flag, f"'{word}'", ("true",)) is not None:
             sign = word
     return sign
@@ -127,7 +130,11 @@ def _check_sign(parameter: Parameter, span: Span, reading: Reading) -> None:
         return
     found = sign_of(parameter.value)
     if found is not None and not has_sign(Fraction(found), parameter.sign):
-        reading.error("sign-contradiction", f"'{parameter.name}' is declared {parameter.sign}, its value is not", span)
+        reading.error(
+            "sign-contradiction",
+            Message("'[[name]]' is declared [[sign]], its value is not", name=parameter.name, sign=parameter.sign),
+            span,
+        )
 
 
 def read_values(node: Node | None, parameters: list[Parameter], reading: Reading) -> list[Parameter]:
@@ -145,7 +152,7 @@ def read_values(node: Node | None, parameters: list[Parameter], reading: Reading
             continue
         parameter = by_name[entry.key.text]
         if parameter.value is not None and parameter.value != value:
-            message = f"'{parameter.name}' already has another value under 'parameters'"
+            message = Message("'[[name]]' already has another value under 'parameters'", name=parameter.name)
             reading.error("conflicting-values", message, entry.key.span)
             continue
         by_name[parameter.name] = replace(parameter, value=value)
@@ -166,7 +173,7 @@ def read_prescribed(entry: Entry, reading: Reading) -> Prescribed:
     name, allowed = entry.key.text, Allowed("the rate of a prescribed motion")
     if isinstance(entry.value, Scalar):
         return Prescribed(name, reading.expression(entry.value, allowed), span=entry.key.span)
-    fields = reading.fields(entry.value, f"the prescribed motion {ascii_safe(name)}", PRESCRIBED)
+    fields = reading.fields(entry.value, Message("the prescribed motion [[name]]", name=ascii_safe(name)), PRESCRIBED)
     rate = fields.required_expression("rate", allowed)
     note_unit(name, fields, reading)
     initial: Expression | None = fields.expression("initial", Allowed("an initial value"))

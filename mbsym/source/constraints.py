@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import differentiate, names, subtract
 from mbsym.model.constraints import Coincide, Constraint, Distance, Parallel, Relation, Rolling, Velocity
 from mbsym.model.system import INERTIAL, rational
@@ -37,7 +38,7 @@ def _apart(item: Item, first: str, second: str, keys: set[str]) -> None:
     """Two different bodies are tied; one body, or a body and its own frame, are not."""
     if keys <= item.sound and first == second:
         called = "the inertial frame" if first == INERTIAL else f"'{first}'"
-        message = f"both ends of '{item.name}' are on {called}: that ties nothing"
+        message = Message("both ends of '[[name]]' are on [[body]]: that ties nothing", name=item.name, body=called)
         item.reading.error("same-body", message, item.span, "name two different bodies")
 
 
@@ -73,8 +74,12 @@ def _velocity(item: Item, made: Velocity) -> bool:
         slope = differentiate(g, name)
         for other in speeds[k:]:
             if other in names(slope) and vanishes(differentiate(slope, other)) is not True:
-                what = f"'{name}' is not alone in its term" if other == name else f"'{name}' meets '{other}'"
-                message = f"this relation is not linear in the velocities: {what}"
+                what = (
+                    Message("'[[name]]' is not alone in its term", name=name)
+                    if other == name
+                    else Message("'[[name]]' meets '[[other]]'", name=name, other=other)
+                )
+                message = Message("this relation is not linear in the velocities: [[what]]", what=what)
                 item.reading.error("not-linear", message, item.value.span, "a(q, t)*q_dot + ... + b(q, t) = 0")
                 return False
     return True

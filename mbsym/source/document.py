@@ -8,6 +8,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.place import Complaint, Complaints
 from mbsym.model.system import System
 from mbsym.source.builder import build
@@ -44,9 +45,16 @@ class _BoundedComplaints(Complaints):
     def rest(self, stopped: bool) -> Iterator[Complaint]:
         """A complaint about the file for each kind that was cut off, and for what was not read any more."""
         for (severity, code), count in sorted(self.more.items()):
-            yield Complaint("too-many", f"and {count} more of the kind {code}", severity=severity)
+            yield Complaint(
+                "too-many",
+                Message("and [[count]] more of the kind [[code]]", count=count, code=code),
+                severity=severity,
+            )
         if stopped and len(self.items) + self.more.total() >= MAX_COMPLAINTS:
-            yield Complaint("too-many", f"with {len(self.items) + self.more.total()} complaints reading was given up")
+            yield Complaint(
+                "too-many",
+                Message("with [[items]] complaints reading was given up", items=len(self.items) + self.more.total()),
+            )
 
 
 def read(text: str, filename: str = "<string>", folder: Path | None = None) -> tuple[System | None, Complaints]:
@@ -136,16 +144,19 @@ def file_bytes(path: Path) -> tuple[bytes, Complaint | None]:
             return file.read(4 * MAX_TEXT + 1), None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        return b"", Complaint("unreadable", f"the file cannot be read: {reason}")
+        return b"", Complaint("unreadable", Message("the file cannot be read: [[reason]]", reason=reason))
 
 
 def _decoded(data: bytes) -> tuple[str, Complaint | None]:
     if len(data) > 4 * MAX_TEXT:
-        return "", Complaint("too-large", f"a description has at most {MAX_TEXT} characters")
+        return "", Complaint("too-large", Message("a description has at most [[most]] characters", most=MAX_TEXT))
     if b"\0" in data:
         return "", Complaint("unreadable", "this is a binary file, not a text")
     try:
         return data.decode("utf-8"), None
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        return "", Complaint("not-utf8", f"the file is not UTF-8 text (byte {error.start}, line {line})")
+        return "", Complaint(
+            "not-utf8",
+            Message("the file is not UTF-8 text (byte [[start]], line [[line]])", start=error.start, line=line),
+        )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from mbsym.expressions.message import Message, worded
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.tree import Expression
 from mbsym.model.inputs import Input, Output
@@ -42,9 +43,11 @@ def _input(entry: Entry, reading: Reading) -> Input | None:
     declared = reading.scope.declare(name, "input", entry.key.span)
     if isinstance(entry.value, Scalar):
         if entry.value.text.strip():
-            meaning = reading.free_text(entry.value, f"the meaning of the input {ascii_safe(name)}")
+            meaning = reading.free_text(
+                entry.value, Message("the meaning of the input [[name]]", name=ascii_safe(name))
+            )
     else:
-        fields = reading.fields(entry.value, f"the input {ascii_safe(name)}", INPUT)
+        fields = reading.fields(entry.value, Message("the input [[name]]", name=ascii_safe(name)), INPUT)
         note_unit(name, fields, reading)
         meaning = fields.text("meaning")
     return Input(name, meaning, span=entry.key.span) if declared else None
@@ -66,7 +69,16 @@ def read_outputs(node: Node | None, reading: Reading) -> tuple[Output, ...]:
 
 def _bound(count: int, what: str, node: Node, reading: Reading) -> None:
     if count > MAX_INPUTS:
-        reading.error("too-large", f"a system has at most {MAX_INPUTS} {what}, not {count}", node.span)
+        reading.error(
+            "too-large",
+            Message(
+                "a system has at most [[most]] [[what]], not [[count]]",
+                most=MAX_INPUTS,
+                what=worded(what),
+                count=count,
+            ),
+            node.span,
+        )
 
 
 def held_values(motion: tuple[MotionEntry, ...], reading: Reading) -> dict[str, Expression]:

@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from mbsym.expressions.message import Message, worded
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Span
 from mbsym.expressions.tree import ZERO, Expression
@@ -66,8 +67,8 @@ class Section:
 
     def _item(self, node: Node, bodies: list[str], reading: Reading) -> Any | None:
         if not isinstance(node, placed.Mapping) or len(node.entries) != 1:
-            message = f"a {self.what} is one key, its kind, with its data"
-            reading.error("wrong-shape", message, node.span, f"write '- {self.example}'")
+            message = Message("a [[what]] is one key, its kind, with its data", what=worded(self.what))
+            reading.error("wrong-shape", message, node.span, Message("write '- [[example]]'", example=self.example))
             return None
         entry = node.entries[0]
         name = self._kind(entry.key, reading)
@@ -87,11 +88,13 @@ class Section:
         other = self.meant.get(word)
         unsupported = None if other else UNSUPPORTED.get(word)
         misspelt = None if unsupported else closest(kind, self.kinds, _MISSPELT)
-        known = f"kinds of {self.what} are: {', '.join(self.kinds)}"
-        hint = f"did you mean {other}? The {known}" if other else f"the {known}"
-        hint = f"did you mean '{misspelt}'?" if misspelt else unsupported or hint
-        message = f"unknown kind of {self.what} {ascii_safe(key.text)}"
-        reading.error(f"unknown-{self.what}", message, key.span, hint)
+        hint = Message("the kinds of [[what]] are: [[kinds]]", what=worded(self.what), kinds=", ".join(self.kinds))
+        if other:
+            text = "did you mean [[other]]? The kinds of [[what]] are: [[kinds]]"
+            hint = Message(text, other=other, what=worded(self.what), kinds=", ".join(self.kinds))
+        way = Message("did you mean '[[other]]'?", other=misspelt) if misspelt else unsupported or hint
+        message = Message("unknown kind of [[what]] [[kind]]", what=worded(self.what), kind=ascii_safe(key.text))
+        reading.error(f"unknown-{self.what}", message, key.span, way)
         return misspelt
 
 
@@ -162,7 +165,11 @@ class Item:
         if not found:
             names = " nor ".join(f"'{way.keys[0]}'" for way in ways)
             if fields.sound:  # else there was no mapping
-                self.reading.error("missing-key", f"{fields.what} has neither {names}", fields.span)
+                self.reading.error(
+                    "missing-key",
+                    Message("[[what]] has neither [[names]]", what=worded(fields.what), names=names),
+                    fields.span,
+                )
             return None
         fields.exclude(found[-1].keys[0], (key for key in self.kind.keys if key not in found[-1].keys))
         return found[-1]
@@ -231,7 +238,7 @@ class Item:
         if isinstance(node, Sequence):
             vector = "[0, 0, 1]" if record.called == "axis" else "[0, 0, 0]"
             hint = ", ".join(f"{{body: {body}, {record.called}: {vector}}}" for body in "AB")
-            message = f"{what} wants two items, not {len(items)}"
+            message = Message("[[what]] wants two items, not [[items]]", what=worded(what), items=len(items))
             self.reading.error("wrong-shape", message, node.span, f"[{hint}]")
         return None
 
@@ -254,8 +261,10 @@ class Item:
         signs = [k for k, character in enumerate(written) if character == "="]
         if len(signs) != 1:
             how = "no '='" if not signs else "more than one '='"
-            message = f"a {self.name} is one equation, and this has {how}"
-            self.reading.error("bad-equation", message, scalar.span, f"write for example {wanted.example}")
+            message = Message("a [[name]] is one equation, and this has [[how]]", name=self.name, how=how)
+            self.reading.error(
+                "bad-equation", message, scalar.span, Message("write for example [[example]]", example=wanted.example)
+            )
             return None
         whole = Scalar(written, scalar.span, scalar.literal)
         sides = [whole.part(0, signs[0]), whole.part(signs[0] + 1, len(written))]
@@ -269,8 +278,10 @@ class Item:
         entries = list(self.reading.entries(node, f"'{self.name}'"))
         known = self.reading.scope.of_kind(of)
         if spelled := _spelled_out(entries, known, of):
-            hint = f"the key is the {of} itself: write {spelled}: and then {allowed.what.replace('a ', 'the ', 1)}"
-            message = f"unknown key '{of}' of a {self.name}"
+            text = "the key is the [[of]] itself: write [[spelled]]: and then [[what]]"
+            what = worded("the force" if allowed.what == "a force" else allowed.what)
+            hint = Message(text, of=worded(of), spelled=spelled, what=what)
+            message = Message("unknown key '[[of]]' of a [[name]]", of=of, name=self.name)
             self.reading.error("unknown-key", message, entries[0].key.span, hint)
             return ()
         for entry in entries:

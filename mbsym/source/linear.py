@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.tree import ZERO, Expression, Number
 from mbsym.model.linear import MATRICES, PARTS, GivenMatrix, LinearModel, MatrixFile, Rows
@@ -25,14 +26,20 @@ def declare_linear(node: Node | None, whole: Fields, reading: Reading) -> tuple[
         return None
     for key in OF_BODIES:
         if key in whole.found:
-            message = f"{ascii_safe(key)} does not go with a 'linear system', which is given by its matrices"
+            message = Message(
+                "[[key]] does not go with a 'linear system', which is given by its matrices", key=ascii_safe(key)
+            )
             reading.error("conflicting-keys", message, whole.key_span(key), "leave one of them out")
     hint = "write {coordinates: [x, y], K: [[k1, 0], [0, k2]]}"
     fields = reading.fields(node, "a linear system", LINEAR_SYSTEM, hint)
     names, found = fields.require("coordinates", hint), []
     items = () if names is None else reading.items(names, "'coordinates'")
     if names is not None and isinstance(names, Sequence) and not 1 <= len(items) <= MOST_COORDINATES:
-        message = f"a linear system has 1 to {MOST_COORDINATES} coordinates, not {len(items)}"
+        message = Message(
+            "a linear system has 1 to [[most]] coordinates, not [[items]]",
+            most=MOST_COORDINATES,
+            items=len(items),
+        )
         reading.error("wrong-shape", message, names.span)
     for item in items:
         scalar = reading.scalar(item, "a coordinate")
@@ -66,16 +73,26 @@ def read_linear(fields: Fields, coordinates: tuple[str, ...], inputs: int, readi
 
 def _matrix(key: str, node: Node, shape: tuple[int, int], reading: Reading) -> GivenMatrix | None:
     """One matrix of a shape, or None where something was complained about."""
-    what = f"the matrix {key}"
+    what = Message("the matrix [[key]]", key=key)
     if isinstance(node, Mapping):
         return _from_file(key, node, shape, reading)
     if not isinstance(node, Sequence):
-        reading.shape_error(node, what, "a list of rows", f"write [[{_zeros(shape[1])}], ...], or {{file: {key}.mtx}}")
+        reading.shape_error(
+            node,
+            what,
+            "a list of rows",
+            Message("write [[[[row]]], ...], or {file: [[key]].mtx}", row=_zeros(shape[1]), key=key),
+        )
         return None
     errors, (height, width) = reading.errors, shape
     items = reading.items(node, what)
     if len(items) != height:
-        message = f"{what} has {height} rows, one for each coordinate, not {len(items)}"
+        message = Message(
+            "[[what]] has [[height]] rows, one for each coordinate, not [[items]]",
+            what=what,
+            height=height,
+            items=len(items),
+        )
         flat = items and not any(isinstance(item, Sequence) for item in items)
         hint = "a matrix is a list of rows: [[a, b], [c, d]]" if flat else None
         reading.error("wrong-shape", message, node.span, hint)
@@ -84,11 +101,23 @@ def _matrix(key: str, node: Node, shape: tuple[int, int], reading: Reading) -> G
     spans = []
     for number, item in enumerate(items, 1):
         if not isinstance(item, Sequence):
-            reading.shape_error(item, f"row {number} of {what}", "a list", f"write [{_zeros(width)}]")
+            reading.shape_error(
+                item,
+                Message("row [[number]] of [[what]]", number=number, what=what),
+                "a list",
+                Message("write [[[row]]]", row=_zeros(width)),
+            )
             continue
         if len(item.items) != width:
             of = "one for each input" if key == "B" else "one for each coordinate"
-            message = f"row {number} of {what} has {width} entries, {of}, not {len(item.items)}"
+            message = Message(
+                "row [[number]] of [[what]] has [[width]] entries, [[of]], not [[items]]",
+                number=number,
+                what=what,
+                width=width,
+                of=of,
+                items=len(item.items),
+            )
             reading.error("wrong-shape", message, item.span, comma_hint(item.items, width))
             continue
         rows.append(tuple(reading.expression(cell, ENTRY) for cell in item.items))
@@ -102,7 +131,9 @@ def _zeros(count: int) -> str:
 
 def _from_file(key: str, node: Node, shape: tuple[int, int], reading: Reading) -> GivenMatrix | None:
     """``{file: K.mtx, sha256: ...}``."""
-    fields = reading.fields(node, f"the matrix {key}", MATRIX_FILE, f"write {{file: {key}.mtx}}")
+    fields = reading.fields(
+        node, Message("the matrix [[key]]", key=key), MATRIX_FILE, Message("write {file: [[key]].mtx}", key=key)
+    )
     named = fields.require("file")
     scalar = None if named is None else reading.scalar(named, "'file'")
     if scalar is None:
@@ -118,12 +149,22 @@ def _from_file(key: str, node: Node, shape: tuple[int, int], reading: Reading) -
     stated = fields.get("sha256")
     wanted = None if stated is None else reading.scalar(stated, "'sha256'")
     if wanted is not None and wanted.text.strip().lower() != read.digest:
-        message = f"{file} is not the file that is meant: its SHA-256 is {read.digest}"
+        message = Message(
+            "[[file]] is not the file that is meant: its SHA-256 is [[digest]]", file=file, digest=read.digest
+        )
         reading.error("matrix-file", message, wanted.span, "leave the key out where any content will do")
         return None
     found = (len(read.rows), len(read.rows[0]))
     if found != shape:
-        message = f"{file} holds a matrix of {found[0]} x {found[1]}, and {key} is {shape[0]} x {shape[1]} here"
+        message = Message(
+            "[[file]] holds a matrix of [[found]] x [[found2]], and [[key]] is [[rows]] x [[columns]] here",
+            file=file,
+            found=found[0],
+            found2=found[1],
+            key=key,
+            rows=shape[0],
+            columns=shape[1],
+        )
         reading.error("wrong-shape", message, scalar.span)
         return None
     rows: Rows = tuple(tuple(Number(x) if x else ZERO for x in row) for row in read.rows)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.safe import hides
 from mbsym.source.placed import MAX_TEXT
@@ -15,7 +16,14 @@ def normalised(text: str) -> str:
 def check_characters(text: str, complaints: Complaints) -> bool:
     """Whether a normalised text can be read at all: of sane size, not empty, and free of control characters."""
     if len(text) > MAX_TEXT:
-        complaints.error("too-large", f"a description has at most {MAX_TEXT} characters; this one has {len(text)}")
+        complaints.error(
+            "too-large",
+            Message(
+                "a description has at most [[most]] characters; this one has [[what]]",
+                most=MAX_TEXT,
+                what=len(text),
+            ),
+        )
         return False
     clean = True
     for number, line in enumerate(text.split("\n"), start=1):
@@ -24,7 +32,10 @@ def check_characters(text: str, complaints: Complaints) -> bool:
             clean = False
             complaints.error(
                 "control-character",
-                f"the control character U+{ord(line[column - 1]):04X} may not stand in a description",
+                Message(
+                    "the control character U+[[code]] may not stand in a description",
+                    code=f"{ord(line[column - 1]):04X}",
+                ),
                 Span(number, column),
             )
     return clean

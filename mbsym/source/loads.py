@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.parser import parse_expression
 from mbsym.expressions.place import Complaints
 from mbsym.expressions.tree import Name, Number
@@ -50,14 +51,22 @@ def _check_one_spelling(loads: tuple[Load, ...], reading: Reading) -> None:
     spelled = [load for load in loads if isinstance(load, ForceFunction)]
     for load in spelled[1:]:
         if load.spelled != spelled[0].spelled:
-            message = f"this file already uses '{spelled[0].spelled}'; U = -potential, so use one of them only"
+            message = Message(
+                "this file already uses '[[spelled]]'; U = -potential, so use one of them only",
+                spelled=spelled[0].spelled,
+            )
             reading.error("conflicting-keys", message, load.span)
 
 
 def _newtonian_gravity(item: Item, load: NewtonianGravity) -> bool:
     if {"about", "centre"} <= item.sound and load.centre == load.about and load.order != EXACT:
         message = "the field is expanded about a point away from the centre"
-        item.key_error("conflicting-keys", message, "about", f"only with order: {EXACT} the field is not expanded")
+        item.key_error(
+            "conflicting-keys",
+            message,
+            "about",
+            Message("only with order: [[order]] the field is not expanded", order=EXACT),
+        )
     return True
 
 
@@ -77,7 +86,7 @@ def _vector_hint(value: Node) -> str:
         size, tree = value.text.strip(), parse_expression(value.text, Complaints(), value.place)
         size = size if isinstance(tree, Name | Number) else f"({size})"
         vector = "" if tree is None else f"0, -{size}, 0"
-    return f"write {{vector: [{vector if 0 < len(vector) <= MAX_SHOWN else '0, -9.81, 0'}]}}"
+    return Message("write {vector: [[[written]]]}", written=vector if 0 < len(vector) <= MAX_SHOWN else "0, -9.81, 0")
 
 
 def _damper(item: Item, load: Load) -> bool:

@@ -16,6 +16,7 @@ from fractions import Fraction
 from pathlib import Path, PurePosixPath
 from typing import Any
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.parser import ascii_safe
 
 #: A file has at most so many bytes.
@@ -54,7 +55,10 @@ def read_matrix(folder: Path | None, file: str, most: int) -> Read:
     elif ending in (".mtx", ".mm"):
         rows = _from_market(data, file, most)
     else:
-        raise Unreadable(f"{_plain(file)} is no file of a matrix", "MatrixMarket (.mtx) and NumPy (.npy) are read")
+        raise Unreadable(
+            Message("[[file]] is no file of a matrix", file=_plain(file)),
+            "MatrixMarket (.mtx) and NumPy (.npy) are read",
+        )
     return Read(rows, hashlib.sha256(data).hexdigest())
 
 
@@ -75,20 +79,29 @@ def _bytes(folder: Path | None, file: str) -> bytes:
         if not path.is_relative_to(folder.resolve()):
             raise Unreadable(_BESIDE)
         if not path.is_file():
-            raise Unreadable(f"there is no file {_plain(file)} beside the description")
+            raise Unreadable(Message("there is no file [[file]] beside the description", file=_plain(file)))
         with path.open("rb") as opened:
             data = opened.read(MOST_BYTES + 1)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
-        raise Unreadable(f"{_plain(file)} cannot be read: {reason}") from error
+        raise Unreadable(Message("[[file]] cannot be read: [[reason]]", file=_plain(file), reason=reason)) from error
     if len(data) > MOST_BYTES:
-        raise Unreadable(f"{_plain(file)} has more than {MOST_BYTES} bytes", "reduce the model before")
+        raise Unreadable(
+            Message("[[file]] has more than [[most]] bytes", file=_plain(file), most=MOST_BYTES),
+            "reduce the model before",
+        )
     return data
 
 
 def _sized(rows: int, columns: int, file: str, most: int) -> None:
     if not (1 <= rows <= most and 1 <= columns <= most):
-        message = f"{_plain(file)} holds a matrix of {rows} x {columns}, and 1 to {most} rows and columns are read"
+        message = Message(
+            "[[file]] holds a matrix of [[rows]] x [[columns]], and 1 to [[most]] rows and columns are read",
+            file=_plain(file),
+            rows=rows,
+            columns=columns,
+            most=most,
+        )
         raise Unreadable(message, "reduce the model before" if max(rows, columns) > most else None)
 
 
@@ -100,26 +113,47 @@ def _from_market(data: bytes, file: str, most: int) -> Numbers:
     try:
         lines = data.decode("utf-8-sig").splitlines()
     except UnicodeDecodeError as error:
-        raise Unreadable(f"{name} is no UTF-8 text") from error
+        raise Unreadable(Message("[[name]] is no UTF-8 text", name=name)) from error
     head = lines[0].lower().split() if lines else []
     if len(head) != 5 or head[:2] != ["%%matrixmarket", "matrix"]:
-        raise Unreadable(f"{name}:1: no MatrixMarket header", "%%MatrixMarket matrix array real general")
+        raise Unreadable(
+            Message("[[name]]:1: no MatrixMarket header", name=name), "%%MatrixMarket matrix array real general"
+        )
     layout, kind, symmetry = head[2:]
     known = {"array", "coordinate"}, {"real", "integer"}, {"general", "symmetric", "skew-symmetric"}
     for word, words in zip((layout, kind, symmetry), known, strict=True):
         if word not in words:
-            raise Unreadable(f"{name}:1: {ascii_safe(word)} is not read", f"one of: {', '.join(sorted(words))}")
+            raise Unreadable(
+                Message("[[name]]:1: [[word]] is not read", name=name, word=ascii_safe(word)),
+                Message("one of: [[words]]", words=", ".join(sorted(words))),
+            )
     body = [(number, line.split()) for number, line in enumerate(lines, 1) if line.strip() and line[0] != "%"]
     if not body:
-        raise Unreadable(f"{name} has no line of sizes")
+        raise Unreadable(Message("[[name]] has no line of sizes", name=name))
     place, sizes = body[0]
     wanted = 2 if layout == "array" else 3
     if len(sizes) != wanted or not all(map(_WHOLE.match, sizes)):
-        raise Unreadable(f"{name}:{place}: the line of sizes holds {wanted} whole numbers")
+        raise Unreadable(
+            Message(
+                "[[name]]:[[place]]: the line of sizes holds [[wanted]] whole numbers",
+                name=name,
+                place=place,
+                wanted=wanted,
+            )
+        )
     rows, columns = int(sizes[0]), int(sizes[1])
     _sized(rows, columns, file, most)
     if symmetry != "general" and rows != columns:
-        raise Unreadable(f"{name}:{place}: a {symmetry} matrix is square, not {rows} x {columns}")
+        raise Unreadable(
+            Message(
+                "[[name]]:[[place]]: a [[symmetry]] matrix is square, not [[rows]] x [[columns]]",
+                name=name,
+                place=place,
+                symmetry=symmetry,
+                rows=rows,
+                columns=columns,
+            )
+        )
     found = [[Fraction(0)] * columns for _ in range(rows)]
     if layout == "array":
         entries = _listed(body[1:], name, symmetry, rows, columns)
@@ -128,13 +162,23 @@ def _from_market(data: bytes, file: str, most: int) -> Numbers:
     seen = set()
     for number, i, j, value in entries:
         if (i, j) in seen or (symmetry != "general" and (j, i) in seen):
-            raise Unreadable(f"{name}:{number}: the entry {i + 1}, {j + 1} is given twice")
+            raise Unreadable(
+                Message(
+                    "[[name]]:[[number]]: the entry [[i]], [[j]] is given twice",
+                    name=name,
+                    number=number,
+                    i=i + 1,
+                    j=j + 1,
+                )
+            )
         seen.add((i, j))
         found[i][j] = value
         if symmetry != "general" and i != j:
             found[j][i] = value if symmetry == "symmetric" else -value
         if symmetry == "skew-symmetric" and i == j and value:
-            raise Unreadable(f"{name}:{number}: the diagonal of a skew matrix is zero")
+            raise Unreadable(
+                Message("[[name]]:[[number]]: the diagonal of a skew matrix is zero", name=name, number=number)
+            )
     return tuple(map(tuple, found))
 
 
@@ -147,20 +191,43 @@ def _listed(body: list[tuple[int, list[str]]], name: str, symmetry: str, rows: i
     places = [(i, j) for j in range(columns) for i in range(low(j), rows)]
     values = [(number, cell) for number, cells in body for cell in cells]
     if len(values) != len(places):
-        raise Unreadable(f"{name} holds {len(values)} entries, and {len(places)} are announced")
+        raise Unreadable(
+            Message(
+                "[[name]] holds [[values]] entries, and [[places]] are announced",
+                name=name,
+                values=len(values),
+                places=len(places),
+            )
+        )
     return [(number, i, j, _number(cell, name, number)) for (number, cell), (i, j) in zip(values, places, strict=True)]
 
 
 def _placed(body: list[tuple[int, list[str]]], count: int, name: str, rows: int, columns: int) -> _Entries:
     if len(body) != count:
-        raise Unreadable(f"{name} holds {len(body)} entries, and {count} are announced")
+        raise Unreadable(
+            Message(
+                "[[name]] holds [[body]] entries, and [[count]] are announced", name=name, body=len(body), count=count
+            )
+        )
     found = []
     for number, cells in body:
         if len(cells) != 3 or not _WHOLE.match(cells[0]) or not _WHOLE.match(cells[1]):
-            raise Unreadable(f"{name}:{number}: an entry is a row, a column and a value")
+            raise Unreadable(
+                Message("[[name]]:[[number]]: an entry is a row, a column and a value", name=name, number=number)
+            )
         i, j = int(cells[0]), int(cells[1])
         if not (1 <= i <= rows and 1 <= j <= columns):
-            raise Unreadable(f"{name}:{number}: there is no entry {i}, {j} in a matrix of {rows} x {columns}")
+            raise Unreadable(
+                Message(
+                    "[[name]]:[[number]]: there is no entry [[i]], [[j]] in a matrix of [[rows]] x [[columns]]",
+                    name=name,
+                    number=number,
+                    i=i,
+                    j=j,
+                    rows=rows,
+                    columns=columns,
+                )
+            )
         found.append((number, i - 1, j - 1, _number(cells[2], name, number)))
     return found
 
@@ -168,7 +235,9 @@ def _placed(body: list[tuple[int, list[str]]], count: int, name: str, rows: int,
 def _number(cell: str, name: str, line: int) -> Fraction:
     if not _NUMBER.match(cell):
         hint = "numbers have a decimal point" if "," in cell else None
-        raise Unreadable(f"{name}:{line}: {ascii_safe(cell[:40])} is no number", hint)
+        raise Unreadable(
+            Message("[[name]]:[[line]]: [[cell]] is no number", name=name, line=line, cell=ascii_safe(cell[:40])), hint
+        )
     return Fraction(re.sub("[dD]", "e", cell))
 
 
@@ -183,21 +252,33 @@ def _from_numpy(data: bytes, file: str, most: int) -> Numbers:
     try:
         version = npy.read_magic(opened)
         if version not in ((1, 0), (2, 0)):
-            raise Unreadable(f"{name} has version {version[0]}.{version[1]} of the format, and 1.0 and 2.0 are read")
+            raise Unreadable(
+                Message(
+                    "[[name]] has version [[major]].[[minor]] of the format, and 1.0 and 2.0 are read",
+                    name=name,
+                    major=version[0],
+                    minor=version[1],
+                )
+            )
         head = npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0
         shape, by_columns, kind = head(opened)
     except Unreadable:
         raise
     except Exception as error:
-        raise Unreadable(f"{name} is no NumPy file", "save it with numpy.save") from error
+        raise Unreadable(Message("[[name]] is no NumPy file", name=name), "save it with numpy.save") from error
     if kind.hasobject or kind.kind not in "fiu" or kind.itemsize > 8:
-        raise Unreadable(f"{name} holds {kind}, and real numbers of up to 8 bytes are read", "save it as float64")
+        raise Unreadable(
+            Message("[[name]] holds [[kind]], and real numbers of up to 8 bytes are read", name=name, kind=kind),
+            "save it as float64",
+        )
     if len(shape) != 2:
-        raise Unreadable(f"{name} holds an array of {len(shape)} dimensions, and a matrix has 2")
+        raise Unreadable(
+            Message("[[name]] holds an array of [[count]] dimensions, and a matrix has 2", name=name, count=len(shape))
+        )
     rows, columns = shape
     _sized(rows, columns, file, most)
     if len(data) - opened.tell() != rows * columns * kind.itemsize:
-        raise Unreadable(f"{name} is not as long as its header says")
+        raise Unreadable(Message("[[name]] is not as long as its header says", name=name))
     return _exact(data[opened.tell() :], kind, shape, by_columns, name)
 
 
@@ -208,5 +289,9 @@ def _exact(data: bytes, kind: Any, shape: tuple[int, int], by_columns: bool, nam
     for i, row in enumerate(values, 1):
         for j, x in enumerate(row, 1):
             if not math.isfinite(x):
-                raise Unreadable(f"{name}: the entry {i}, {j} is {x}, no number")
+                raise Unreadable(
+                    Message(
+                        "[[name]]: the entry [[i]], [[j]] is [[written]], no number", name=name, i=i, j=j, written=x
+                    )
+                )
     return tuple(tuple(Fraction(x) for x in row) for row in values)

@@ -13,6 +13,7 @@ from itertools import pairwise
 from pathlib import Path
 
 from mbsym.expressions.constants import out_of_range, unsupported_power, value
+from mbsym.expressions.message import Message, worded
 from mbsym.expressions.parser import NO_TABLES, ascii_safe, decimal_comma, names_apart, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import ZERO, Call, Expression, Name, names, walk
@@ -40,7 +41,7 @@ def comma_hint(items: tuple[Node, ...], wanted: int) -> str | None:
         if any(";" in text for text in texts):
             return "components are separated by commas"
         double = next((text for text in texts if _TWO_IN_ONE.search(text) and len(text) <= MAX_SHOWN), None)
-        return double and f"is a comma missing: {_TWO_IN_ONE.sub(', ', double)}?"
+        return double and Message("is a comma missing: [[written]]?", written=_TWO_IN_ONE.sub(", ", double))
     tight = [isinstance(second, Scalar) and _is_decimal_comma(first, second) for first, second in pairwise(items)]
     return "numbers have a decimal point: write 0.5 for 0,5" if any(tight) and not all(tight) else None
 
@@ -50,7 +51,10 @@ def _filled_hint(items: tuple[Node, ...]) -> str | None:
     texts = [item.text.strip() if isinstance(item, Scalar) else "" for item in items]
     if len(texts) > 2 or any(not text or len(text) > MAX_SHOWN for text in texts):
         return None
-    return f"components along the axes 1, 2, 3: for example [{', '.join([*texts, *['0'] * (3 - len(texts))])}]"
+    return Message(
+        "components along the axes 1, 2, 3: for example [[[written]]]",
+        written=", ".join([*texts, *["0"] * (3 - len(texts))]),
+    )
 
 
 #: A list in other brackets, or as a function of other programs: (a, b, c), diag(a, b, c), vector(a, b, c).
@@ -114,14 +118,24 @@ class Reading:
         return self.complaints.error_count
 
     def shape_error(self, node: Node, what: str, wanted: str, hint: str | None = None) -> None:
-        self.error("wrong-shape", f"{what} must be {wanted}, not {placed.kind(node)}", node.span, hint)
+        self.error(
+            "wrong-shape",
+            Message(
+                "[[what]] must be [[wanted]], not [[kind]]",
+                what=worded(what),
+                wanted=worded(wanted),
+                kind=worded(placed.kind(node)),
+            ),
+            node.span,
+            hint,
+        )
 
     def scalar(self, node: Node, what: str) -> Scalar | None:
         if not isinstance(node, Scalar):
             self.shape_error(node, what, "a single value")
             return None
         if not node.text.strip():
-            self.error("missing-value", f"{what} has no value", node.span)
+            self.error("missing-value", Message("[[what]] has no value", what=worded(what)), node.span)
             return None
         return node
 
@@ -130,7 +144,11 @@ class Reading:
         scalar = self.scalar(node, what)
         text = " ".join(scalar.text.split()) if scalar else ""
         if len(text) > MAX_FREE_TEXT:
-            self.error("too-long", f"{what} has at most {MAX_FREE_TEXT} characters", node.span)
+            self.error(
+                "too-long",
+                Message("[[what]] has at most [[most]] characters", what=worded(what), most=MAX_FREE_TEXT),
+                node.span,
+            )
         return text
 
     def word(self, node: Node, what: str, choices: Iterable[str]) -> str | None:
@@ -142,8 +160,13 @@ class Reading:
         word = " ".join(scalar.text.lower().split())
         if word in known:
             return word
-        hint = did_you_mean(word, known) or f"one of: {', '.join(known)}"
-        self.error("bad-word", f"{what} cannot be {ascii_safe(scalar.text)}", scalar.span, hint)
+        hint = did_you_mean(word, known) or Message("one of: [[known]]", known=", ".join(known))
+        self.error(
+            "bad-word",
+            Message("[[what]] cannot be [[what2]]", what=worded(what), what2=ascii_safe(scalar.text)),
+            scalar.span,
+            hint,
+        )
         return None
 
     def expression(self, node: Node, allowed: Allowed) -> Expression:
@@ -170,14 +193,24 @@ class Reading:
             return
         exponent = unsupported_power(tree)
         if exponent is not None:
-            message = f"the power {exponent}: only whole and half exponents are supported"
-            self.error("no-number", message, scalar.span, f"for 2**({exponent}) write exp(log(2)*{exponent})")
+            message = Message("the power [[exponent]]: only whole and half exponents are supported", exponent=exponent)
+            self.error(
+                "no-number",
+                message,
+                scalar.span,
+                Message("for 2**([[exponent]]) write exp(log(2)*[[exponent]])", exponent=exponent),
+            )
         if names(tree) or any(isinstance(node, Call) and node.table for node in walk(tree)):
             return
         if value(tree) is None:
             self.error("no-number", "what this number is cannot be told: too many digits cancel", scalar.span)
         elif why := out_of_range(tree):
-            self.error("no-number", f"nothing can be computed with this number: {why}", scalar.span, "take other units")
+            self.error(
+                "no-number",
+                Message("nothing can be computed with this number: [[why]]", why=why),
+                scalar.span,
+                "take other units",
+            )
 
     def vector(self, node: Node, allowed: Allowed) -> Vector:
         items = self.triple(node, allowed.what)
@@ -194,10 +227,10 @@ class Reading:
         if not isinstance(node, Sequence):
             bare, lone = _bare_list(node, 3), _bare_list(node, 1) if alike else None
             bare = bare or (lone and ", ".join([lone] * 3))
-            self.shape_error(node, what, "a list of three", f"write [{bare or '0, 0, 0'}]")
+            self.shape_error(node, what, "a list of three", Message("write [[[bare]]]", bare=bare or "0, 0, 0"))
             return None
         if len(node.items) != 3:
-            message = f"{what} has three components, not {len(node.items)}"
+            message = Message("[[what]] has three components, not [[items]]", what=worded(what), items=len(node.items))
             self.error("wrong-shape", message, node.span, comma_hint(node.items, 3) or _filled_hint(node.items))
             return None
         return node.items
@@ -206,18 +239,34 @@ class Reading:
         """The entries of a mapping, each key once; ``hint`` is for what is no mapping."""
         if not isinstance(node, placed.Mapping):
             if isinstance(node, Scalar) and not node.text.strip():
-                self.error("missing-value", f"{what} is empty", node.span, hint or "leave the key out")
+                self.error(
+                    "missing-value",
+                    Message("[[what]] is empty", what=worded(what)),
+                    node.span,
+                    hint or "leave the key out",
+                )
             else:
                 self.shape_error(node, what, "a mapping (key: value)", hint)
             return
         if len(node.entries) > MAX_ENTRIES:
-            self.error("too-large", f"{what} has at most {MAX_ENTRIES} entries, not {len(node.entries)}", node.span)
+            self.error(
+                "too-large",
+                Message(
+                    "[[what]] has at most [[most]] entries, not [[entries]]",
+                    what=worded(what),
+                    most=MAX_ENTRIES,
+                    entries=len(node.entries),
+                ),
+                node.span,
+            )
             raise placed.TooManyComplaints  # without them every name would be unknown
         seen: set[str] = set()
         for entry in self.with_decimals(node.entries):
             key = ALIASES.get(entry.key.text, entry.key.text)
             if key in seen:
-                self.error("repeated-key", f"{ascii_safe(entry.key.text)} is given twice", entry.key.span)
+                self.error(
+                    "repeated-key", Message("[[what]] is given twice", what=ascii_safe(entry.key.text)), entry.key.span
+                )
             else:
                 seen.add(key)
                 yield entry
@@ -230,7 +279,11 @@ class Reading:
                 assert isinstance(last.value, Scalar)
                 whole, decimals = last.value.text, entry.key.text
                 span = last.value.place(0, len(whole) + 1 + len(decimals))
-                message = f"here '{whole},{decimals}' is the number {whole} and a key {decimals}"
+                message = Message(
+                    "here '[[whole]],[[decimals]]' is the number [[whole]] and a key [[decimals]]",
+                    whole=whole,
+                    decimals=decimals,
+                )
                 hint = decimal_comma(f"{whole.lstrip('+-')},{decimals}")
                 self.error("bad-number", message, span, hint)
                 last = Entry(last.key, Scalar(f"{whole}.{decimals}", span, literal=False))
@@ -245,7 +298,7 @@ class Reading:
         """The items of a list; a single value is complained about and taken for a list of one."""
         if isinstance(node, Scalar) and node.text.strip():
             bare = _bare_list(node, node.text.count(",") + 1)
-            self.shape_error(node, what, "a list", f"write [{bare}]" if bare else None)
+            self.shape_error(node, what, "a list", Message("write [[[bare]]]", bare=bare) if bare else None)
             parts = [node.text] if bare is None else bare.split(", ")
             return (node,) if len(parts) == 1 else tuple(Scalar(part, node.span, literal=False) for part in parts)
         return self.items(node, what)
@@ -255,7 +308,16 @@ class Reading:
             self.shape_error(node, what, "a list")
             return ()
         if len(node.items) > MAX_ENTRIES:
-            self.error("too-large", f"{what} has at most {MAX_ENTRIES} items, not {len(node.items)}", node.span)
+            self.error(
+                "too-large",
+                Message(
+                    "[[what]] has at most [[most]] items, not [[items]]",
+                    what=worded(what),
+                    most=MAX_ENTRIES,
+                    items=len(node.items),
+                ),
+                node.span,
+            )
             raise placed.TooManyComplaints  # without them every name would be unknown
         return node.items
 
@@ -272,8 +334,14 @@ class Reading:
             else:
                 unsupported = UNSUPPORTED.get(" ".join(entry.key.text.lower().replace("_", " ").split()))
                 guess = None if unsupported else closest(entry.key.text, left)
-                keys = f"did you mean '{guess}'?" if guess else unsupported or f"the keys are: {', '.join(known)}"
-                message = f"unknown key {ascii_safe(entry.key.text)} in {what}"
+                keys = (
+                    Message("did you mean '[[other]]'?", other=guess)
+                    if guess
+                    else unsupported or Message("the keys are: [[known]]", known=", ".join(known))
+                )
+                message = Message(
+                    "unknown key [[what]] in [[what2]]", what=ascii_safe(entry.key.text), what2=worded(what)
+                )
                 self.error("unknown-key", message, entry.key.span, keys)
                 if guess:
                     misspelt[guess] = entry
@@ -300,7 +368,12 @@ class Fields:
         node = self.get(key)
         if node is None and self.sound:
             label = (self.known[key].label if self.reading.labelled and key in self.known else "") or key
-            self.reading.error("missing-key", f"{self.what} has no {ascii_safe(label)}", self.span, hint)
+            self.reading.error(
+                "missing-key",
+                Message("[[what]] has no [[label]]", what=worded(self.what), label=ascii_safe(label)),
+                self.span,
+                hint,
+            )
         return node
 
     def key_span(self, key: str) -> Span:
@@ -331,5 +404,5 @@ class Fields:
         """Complain about keys that make no sense beside another one."""
         for other in others:
             if other in self.found:
-                message = f"{ascii_safe(other)} does not go with {ascii_safe(key)}"
+                message = Message("[[other]] does not go with [[key]]", other=ascii_safe(other), key=ascii_safe(key))
                 self.reading.error("conflicting-keys", message, self.key_span(other))

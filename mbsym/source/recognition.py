@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from mbsym.model.system import LANGUAGES
 from mbsym.source.labels import HEADER, SECTIONS
 from mbsym.source.lines import normalised
 from mbsym.source.placed import MAX_TEXT
@@ -16,6 +17,7 @@ from mbsym.source.text_lines import HEADING, label_of, lines_of, word_of
 #: Lines that can only be YAML (or JSON): keys that are no labels of the editor.
 _MARKS = re.compile(r"""^[ \t{]*["']?(?:mbsym|bodies|linear system|loads)["']?[ \t]*:""", re.MULTILINE)
 _FIRST = re.compile(r"""(?:[ \t]*(?:\#.*|---.*|%.*)?\n)*([ \t]*)(.?)""")
+_LANGUAGE = re.compile(r"""^["']?[Ll]anguage["']?[ \t]*:[ \t]*["']?(\w+)""", re.MULTILINE)
 _KEY = r"""["']?mbsym["']?[ \t]*:"""
 
 
@@ -35,6 +37,12 @@ def is_description(path: Path) -> bool:
     except (OSError, ValueError):
         return False
     return b"\0" not in data and says_so(data.decode("utf-8", "replace"))
+
+
+def language_of(text: str) -> str:
+    """What a description, sound or not, says of the language of its reports; "" where it says nothing that is one."""
+    found = _LANGUAGE.search(normalised(text))
+    return found[1] if found and found[1] in LANGUAGES else ""
 
 
 def says_so(text: str) -> bool:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
+from mbsym.expressions.message import Message, worded
 from mbsym.expressions.place import Complaint, Span
 from mbsym.expressions.safe import safe
 from mbsym.source.lines import normalised
@@ -14,30 +17,34 @@ escaped = safe
 _ELLIPSIS = "..."
 
 
-def render(complaint: Complaint, text: str, filename: str) -> str:
-    """One complaint for a terminal or a log; ``text`` is the text of the file it is about.
+def _said(text: str) -> str:
+    return text
+
+
+def render(complaint: Complaint, text: str, filename: str, say: Callable[[str], str] = _said) -> str:
+    """One complaint for a terminal or a log; ``text`` is the text of the file it is about, ``say`` its language.
 
     Control characters of the file are shown escaped, and of a long line only the piece around the complaint.
     """
-    head = f"{complaint.severity}[{complaint.code}]: {safe(complaint.message)}"
+    head = f"{complaint.severity}[{complaint.code}]: {safe(say(complaint.message))}"
     if complaint.span is None:
         parts = [f"{safe(filename)}: {head}"]
     else:
         parts = [f"{safe(filename)}:{complaint.span.line}:{complaint.span.column}: {head}"]
         parts += _underlined(complaint.span, normalised(text).split("\n"))
     if complaint.hint:
-        parts.append(f"  hint: {safe(complaint.hint)}")
+        parts.append(f"  {safe(say(Message('hint: [[hint]]', hint=worded(complaint.hint))))}")
     return "\n".join(parts)
 
 
-def render_option(complaint: Complaint, text: str, option: str) -> str:
+def render_option(complaint: Complaint, text: str, option: str, say: Callable[[str], str] = _said) -> str:
     """One complaint about a value on the command line, which stands in no file; ``text`` is that line."""
-    parts = [f"{safe(option)}: {complaint.severity}[{complaint.code}]: {safe(complaint.message)}"]
+    parts = [f"{safe(option)}: {complaint.severity}[{complaint.code}]: {safe(say(complaint.message))}"]
     if complaint.span is not None:
         before, piece, after = _window(normalised(text).split("\n")[0], complaint.span)
         parts += [f"  | {before}{piece}{after}".rstrip(), f"  | {' ' * len(before)}{'^' * max(1, len(piece))}"]
     if complaint.hint:
-        parts.append(f"  hint: {safe(complaint.hint)}")
+        parts.append(f"  {safe(say(Message('hint: [[hint]]', hint=worded(complaint.hint))))}")
     return "\n".join(parts)
 
 

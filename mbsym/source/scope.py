@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
+from mbsym.expressions.message import Message, joined, worded
 from mbsym.expressions.parser import ascii_safe, in_latin
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.rates import ACCELERATION_ENDING, VELOCITY_ENDING, is_rate, without_velocity
@@ -139,7 +140,11 @@ class Scope:
             return False
         if name in self.kinds:
             taken = _KINDS[self.kinds[name]]
-            self.complaints.error("repeated-name", f"{ascii_safe(name)} is already declared as {taken}", span)
+            self.complaints.error(
+                "repeated-name",
+                Message("[[name]] is already declared as [[taken]]", name=ascii_safe(name), taken=taken),
+                span,
+            )
             return False
         self.kinds[name] = kind
         return True
@@ -147,7 +152,12 @@ class Scope:
     def is_name(self, name: str, span: Span) -> bool:
         reason = why_no_name(name)
         if reason is not None:
-            self.complaints.error("bad-name", f"{ascii_safe(name)} cannot be a name: {reason[0]}", span, reason[1])
+            self.complaints.error(
+                "bad-name",
+                Message("[[name]] cannot be a name: [[reason]]", name=ascii_safe(name), reason=reason[0]),
+                span,
+                reason[1],
+            )
         return reason is None
 
     def of_kind(self, *kinds: str) -> list[str]:
@@ -179,10 +189,19 @@ class Scope:
         """A function with a kink or a jump where its derivatives would be wanted."""
         hint = "forces and torques may jump: 'generalized force', 'force', 'torque'"
         if allowed.kinked:
-            message = f"{node.function} jumps, and the derivative of {allowed.what} is a force"
+            message = Message(
+                "[[function]] jumps, and the derivative of [[what]] is a force",
+                function=node.function,
+                what=worded(allowed.what),
+            )
         else:
             kind = "jump" if _kinked_as(node) in JUMPS else "kink"
-            message = f"{allowed.what} may not hold {node.function}, which has a {kind}"
+            message = Message(
+                "[[what]] may not hold [[function]], which has a [[kind]]",
+                what=worded(allowed.what),
+                function=node.function,
+                kind=kind,
+            )
             if node.table is not None:
                 hint = "smooth are tables with between: cubic, outside: extrapolate or error"
         self.complaints.error("not-smooth", message, node.span, hint)
@@ -192,8 +211,10 @@ class Scope:
         assert node.table is not None
         count = len(node.table.points)
         if count > MOST_WRITTEN_OUT:
-            message = (
-                f"a dissipation function with kinks in velocities has at most {MOST_WRITTEN_OUT} points, not {count}"
+            message = Message(
+                "a dissipation function with kinks in velocities has at most [[most]] points, not [[count]]",
+                most=MOST_WRITTEN_OUT,
+                count=count,
             )
             self.complaints.error("too-large", message, node.span, "give the force itself: 'generalized force'")
 
@@ -214,12 +235,18 @@ class Scope:
         if kind is None and self._is_parameter_by_use(name, span, allowed):
             return True
         if kind is None:
-            message = f"unknown name {ascii_safe(name)}"
+            message = Message("unknown name [[name]]", name=ascii_safe(name))
             self.complaints.error("unknown-name", message, span, self._unknown_hint(name, allowed))
         elif kind not in allowed.kinds:
             told = [one for one in allowed.kinds if one not in _RARE or self.of_kind(one)]
             held = _enumerated([_PLURALS[one] for one in told]) or "numbers"
-            message = f"'{name}' is {_KINDS[kind]}, and {allowed.what} holds only {held}"
+            message = Message(
+                "'[[name]]' is [[kinds]], and [[what]] holds only [[held]]",
+                name=name,
+                kinds=worded(_KINDS[kind]),
+                what=worded(allowed.what),
+                held=held,
+            )
             self.complaints.error("misplaced-name", message, span, _misplaced_hint(kind, allowed))
         else:
             return True
@@ -237,10 +264,10 @@ class Scope:
 
     def _unknown_hint(self, name: str, allowed: Allowed) -> str | None:
         if name in self.later:
-            return f"{self.ordered} read in order: move its definition up"
+            return Message("[[names]] read in order: move its definition up", names=self.ordered)
         if name.endswith(ACCELERATION_ENDING) and "acceleration" not in allowed.kinds:
             none = "this claim holds none" if "abbreviation" in allowed.kinds else "they stand in no description"
-            return f"accelerations are what the equations are solved for; {none}"
+            return Message("accelerations are what the equations are solved for; [[why]]", why=none)
         known = [one for one in self.kinds if self.kinds[one] in allowed.kinds and one not in self.beside]
         if "velocity" in allowed.kinds:
             known += [velocity_name(one) for one in self.of_kind("coordinate")]
@@ -255,7 +282,7 @@ class Scope:
             return "a prescribed motion has a constant rate: write the rate"
         reason = why_no_name(name)
         if reason is not None:
-            return f"it cannot be a name: {reason[0]}" + (f"; {reason[1]}" if reason[1] else "")
+            return joined([Message("it cannot be a name: [[why]]", why=reason[0]), *filter(None, reason[1:])], "; ")
         if not allowed.kinds:
             return "a number is wanted here"
         if allowed.kinds == ("coordinate",):
@@ -275,7 +302,8 @@ def _kinked_as(node: Call) -> str:
 def listed(what: str, words: Iterable[str], most: int = 20) -> str | None:
     """``what: a, b, c``, cut where there are too many; None where there are none."""
     known = list(words)
-    return f"{what}: {', '.join(known[:most])}{', ...' if len(known) > most else ''}" if known else None
+    more = [*known[:most], *(["..."] if len(known) > most else [])]
+    return joined([worded(what), ", ".join(more)], ": ") if known else None
 
 
 def _enumerated(words: list[str]) -> str:
@@ -283,6 +311,8 @@ def _enumerated(words: list[str]) -> str:
 
 
 def _misplaced_hint(kind: str, allowed: Allowed) -> str | None:
+    if kind == "time" and allowed.what == "the rate of a prescribed motion":
+        return "the rate alone, without t: psi: w where psi is w*t"
     if kind == "time" and "prescribed" in allowed.kinds:
         return "declare what changes with time under 'prescribed'"
     if kind == "table":
@@ -309,7 +339,7 @@ def closest(word: str, known: Iterable[str], cutoff: float = 0.6) -> str | None:
 def did_you_mean(word: str, known: Iterable[str]) -> str | None:
     """The hint for a word that resembles a known one."""
     close = closest(word, known)
-    return None if close is None else f"did you mean '{close}'?"
+    return None if close is None else Message("did you mean '[[other]]'?", other=close)
 
 
 def slip_of(name: str, known: Iterable[str]) -> str | None:
@@ -338,10 +368,10 @@ def why_no_name(name: str) -> tuple[str, str | None] | None:
         return "it is empty", "write one letter or more"
     if not _IDENTIFIER.match(name):
         latin = in_latin(name[:MAX_NAME])
-        hint = f"write {latin}" if latin != name and _IDENTIFIER.match(latin) else None
+        hint = Message("write [[latin]]", latin=latin) if latin != name and _IDENTIFIER.match(latin) else None
         return "names are Latin letters, digits and _, and begin with a letter", hint
     if len(name) > MAX_NAME:
-        return f"names have at most {MAX_NAME} characters", None
+        return Message("names have at most [[most]] characters", most=MAX_NAME), None
     if name in FUNCTIONS:
         return "it is a function", None
     if name in CONSTANTS:
@@ -349,7 +379,7 @@ def why_no_name(name: str) -> tuple[str, str | None] | None:
     if name == "t":
         return "it is the time", None
     if keyword.iskeyword(name):
-        hint = f"write {'lam or ' if name == 'lambda' else ''}{name}1"
+        hint = Message("write lam or lambda1") if name == "lambda" else Message("write [[name]]1", name=name)
         return "it is a reserved word of Python, in which results are written", hint
     if is_rate(name):
         return "the ending _dot is kept for velocities", None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+from mbsym.expressions.message import Message, worded
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Span
 from mbsym.expressions.tree import ZERO, Expression, names
@@ -40,7 +41,7 @@ def _check_circles(relations: list[Relation], reading: Reading) -> None:
             del needs[name]
     for relation in relations:
         if relation.name in needs and _reaches(relation.name, needs):
-            message = f"'{relation.name}' depends on itself through the relations"
+            message = Message("'[[name]]' depends on itself through the relations", name=relation.name)
             reading.error("relation-cycle", message, relation.span)
 
 
@@ -72,13 +73,15 @@ def read_comparisons(scalar: Scalar, reading: Reading, allowed: Allowed) -> list
     signs = list(_COMPARISON.finditer(scalar.text))
     if not signs:
         hint = "write for example alpha > -1"
-        reading.error("bad-assumption", f"{allowed.what} compares two expressions", scalar.span, hint)
+        reading.error(
+            "bad-assumption", Message("[[what]] compares two expressions", what=worded(allowed.what)), scalar.span, hint
+        )
         return []
     for sign in signs:
         if sign.group() in ("=", "=="):
             span = scalar.place(sign.start(), sign.end())
             hint = "an equation belongs to 'relations'"
-            reading.error("bad-assumption", f"{allowed.what} is an inequality", span, hint)
+            reading.error("bad-assumption", Message("[[what]] is an inequality", what=worded(allowed.what)), span, hint)
             return []
     errors = reading.errors
     cuts = [0, *(edge for sign in signs for edge in sign.span()), len(scalar.text)]
@@ -107,11 +110,15 @@ def read_motion(node: Node | None, reading: Reading) -> tuple[MotionEntry, ...]:
         value: Expression = ZERO
         rate: Expression = ZERO
         if isinstance(entry.value, Mapping):
-            fields = reading.fields(entry.value, f"the motion of {ascii_safe(entry.key.text)}", MOTION)
+            fields = reading.fields(
+                entry.value, Message("the motion of [[what]]", what=ascii_safe(entry.key.text)), MOTION
+            )
             value = fields.expression("value", allowed) or ZERO
             rate = fields.expression("rate", allowed) or ZERO
             if "rate" in keys_of(entry.value) and reading.scope.kinds.get(entry.key.text) == "input":
-                message = f"the input {ascii_safe(entry.key.text)} is constant on the unperturbed motion"
+                message = Message(
+                    "the input [[what]] is constant on the unperturbed motion", what=ascii_safe(entry.key.text)
+                )
                 reading.error("misplaced-key", message, fields.key_span("rate"), "leave 'rate' out")
         else:
             value = reading.expression(entry.value, allowed)
@@ -161,15 +168,24 @@ def read_initial(node: Node | None, reading: Reading) -> tuple[tuple[InitialValu
         known = _is_coordinate(entry.key, "the key of an initial value", node, reading, *declared)
         span: Span = entry.key.span
         if isinstance(entry.value, Mapping):
-            fields = reading.fields(entry.value, f"the initial value of {ascii_safe(entry.key.text)}", INITIAL)
+            fields = reading.fields(
+                entry.value, Message("the initial value of [[what]]", what=ascii_safe(entry.key.text)), INITIAL
+            )
             position, velocity = fields.expression("position", allowed), fields.expression("velocity", allowed)
             if not fields.found:
-                reading.error("missing-key", f"{fields.what} has neither 'position' nor 'velocity'", span)
+                reading.error(
+                    "missing-key",
+                    Message("[[what]] has neither 'position' nor 'velocity'", what=worded(fields.what)),
+                    span,
+                )
         else:
             position, velocity = reading.expression(entry.value, allowed), None
         if known and reading.scope.kind_of(entry.key.text) in DECLARED:
             if velocity is not None:
-                message = f"'{entry.key.text}' has a value at t = 0 and no velocity: that follows from the equations"
+                message = Message(
+                    "'[[what]]' has a value at t = 0 and no velocity: that follows from the equations",
+                    what=entry.key.text,
+                )
                 reading.error("misplaced-key", message, span, f"{entry.key.text}: 0.1")
             own.append(InitialValue(entry.key.text, position, None, span))
         elif known:
@@ -183,7 +199,7 @@ def read_limits(node: Node | None, reading: Reading) -> tuple[Limit, ...]:
     limits = []
     for entry in () if node is None else reading.entries(node, "'limits'"):
         known = _is_coordinate(entry.key, "the key of a limit", node, reading)
-        items = reading.items(entry.value, f"the limits of {ascii_safe(entry.key.text)}")
+        items = reading.items(entry.value, Message("the limits of [[what]]", what=ascii_safe(entry.key.text)))
         if len(items) != 2:
             if isinstance(entry.value, Sequence):
                 reading.error("wrong-shape", "limits are two: the least and the greatest value", entry.value.span)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from mbsym.expressions.message import Message, worded
 from mbsym.expressions.tree import Expression
 from mbsym.model.system import SHAPES, Rotation, Shape
 from mbsym.source.keys import ROTATION, SHAPE
@@ -19,7 +20,10 @@ def read_shapes(node: Node | None, what: str, reading: Reading) -> tuple[Shape, 
     if node is None:
         return ()
     items = reading.items(node, "'shapes'")
-    found = (_shape(reading.fields(item, f"a shape of {what}", SHAPE), reading) for item in items)
+    found = (
+        _shape(reading.fields(item, Message("a shape of [[what]]", what=worded(what)), SHAPE), reading)
+        for item in items
+    )
     return tuple(shape for shape in found if shape is not None)
 
 
@@ -27,8 +31,8 @@ def _shape(fields: Fields, reading: Reading) -> Shape | None:
     kinds = [kind for kind in SHAPES if fields.get(kind) is not None]
     if len(kinds) != 1:
         if fields.sound:
-            message = f"{fields.what} has {'two kinds' if kinds else 'no kind'}"
-            reading.error("wrong-shape", message, fields.span, f"one of {', '.join(SHAPES)}")
+            message = Message("[[what]] has two kinds" if kinds else "[[what]] has no kind", what=worded(fields.what))
+            reading.error("wrong-shape", message, fields.span, Message("one of [[shapes]]", shapes=", ".join(SHAPES)))
         return None
     (kind,) = kinds
     node = fields.get(kind)
@@ -42,7 +46,12 @@ def _sizes(kind: str, node: Node, reading: Reading) -> tuple[Expression, ...]:
     count = SHAPES[kind]
     items = node.items if isinstance(node, Sequence) else (node,)
     if len(items) != count:
-        message = f"a {kind} has {count} size{'s' if count > 1 else ''}, not {len(items)}"
+        text = (
+            "a [[kind]] has [[count]] sizes, not [[items]]"
+            if count > 1
+            else "a [[kind]] has [[count]] size, not [[items]]"
+        )
+        message = Message(text, kind=kind, count=count, items=len(items))
         reading.error("wrong-shape", message, node.span, SHAPE[kind].meaning)
         return ()
     return tuple(reading.expression(item, _SIZE) for item in items)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.parser import ascii_safe
 from mbsym.model.small import SmallParameter
 from mbsym.source.keys import MOST_POWER, SMALL_PARAMETER
@@ -32,7 +33,9 @@ def read_small(node: Node | None, reading: Reading, used: frozenset[str]) -> Sma
         return None
     entry = node.entries[0]
     name, errors = entry.key.text, reading.errors
-    fields = reading.fields(entry.value, f"the small parameter {ascii_safe(name)}", SMALL_PARAMETER, HINT)
+    fields = reading.fields(
+        entry.value, Message("the small parameter [[name]]", name=ascii_safe(name)), SMALL_PARAMETER, HINT
+    )
     given = fields.get("powers")
     powers = () if given is None else tuple(_powers(given, name, reading, used))
     if given is None:
@@ -42,7 +45,10 @@ def read_small(node: Node | None, reading: Reading, used: frozenset[str]) -> Sma
     else:
         reading.scope.is_name(name, entry.key.span)
         if name in reading.scope.kinds:
-            message = f"{ascii_safe(name)} is declared already: with 'powers' the small parameter is a name of its own"
+            message = Message(
+                "[[name]] is declared already: with 'powers' the small parameter is a name of its own",
+                name=ascii_safe(name),
+            )
             reading.error("misplaced-name", message, entry.key.span, "choose another name, or leave 'powers' out")
         elif not powers and reading.errors == errors:
             reading.shape_error(given, "'powers'", "a parameter with a power of the small one", HINT)
@@ -50,7 +56,7 @@ def read_small(node: Node | None, reading: Reading, used: frozenset[str]) -> Sma
     slow = tuple(_variables(fields.get("slow"), "slow", reading))
     for other in slow:
         if other in fast:
-            message = f"{ascii_safe(other)} is declared both fast and slow"
+            message = Message("[[other]] is declared both fast and slow", other=ascii_safe(other))
             reading.error("conflicting-keys", message, entry.key.span, "leave it out of one of the two lists")
     leading = _leading(fields.get("leading"), reading)
     return SmallParameter(name, powers, fast, slow, leading, entry.key.span) if reading.errors == errors else None
@@ -58,7 +64,9 @@ def read_small(node: Node | None, reading: Reading, used: frozenset[str]) -> Sma
 
 def _check_used(name: str, where: Scalar, reading: Reading, used: frozenset[str]) -> None:
     if name not in used:
-        message = f"the small parameter {ascii_safe(name)} occurs in no formula of bodies, loads or relations"
+        message = Message(
+            "the small parameter [[name]] occurs in no formula of bodies, loads or relations", name=ascii_safe(name)
+        )
         reading.error("unused-name", message, where.span, "there is nothing to expand in it; see also 'powers'")
 
 
@@ -77,8 +85,10 @@ def _power(entry: Entry, reading: Reading) -> int | None:
     text = entry.value.text.strip() if isinstance(entry.value, Scalar) else ""
     digits = text.removeprefix("-").removeprefix("+")
     if not digits.isascii() or not digits.isdigit() or not 1 <= int(digits[:9]) <= MOST_POWER:
-        message = (
-            f"the power of {ascii_safe(entry.key.text)} is no whole number from 1 to {MOST_POWER}, or its negative"
+        message = Message(
+            "the power of [[what]] is no whole number from 1 to [[most]], or its negative",
+            what=ascii_safe(entry.key.text),
+            most=MOST_POWER,
         )
         reading.error("bad-number", message, entry.value.span, HINT)
         return None
@@ -91,24 +101,36 @@ def _leading(node: Node | None, reading: Reading) -> str:
         return ""
     if reading.scope.kinds.get(scalar.text) not in _KINDS:
         known = ", ".join(n for n, k in reading.scope.kinds.items() if k in _KINDS)
-        message = f"{ascii_safe(scalar.text)} is no variable"
-        reading.error("unknown-name", message, scalar.span, f"variables are coordinates and speeds: {known}")
+        message = Message("[[what]] is no variable", what=ascii_safe(scalar.text))
+        reading.error(
+            "unknown-name",
+            message,
+            scalar.span,
+            Message("variables are coordinates and speeds: [[known]]", known=known),
+        )
     return scalar.text
 
 
 def _variables(node: Node | None, what: str, reading: Reading) -> Iterator[str]:
     seen: set[str] = set()
     for item in () if node is None else reading.items(node, f"'{what}'"):
-        scalar = reading.scalar(item, f"a {what} variable")
+        scalar = reading.scalar(item, Message("a [[what]] variable", what=what))
         if scalar is None:
             continue
         kind = reading.scope.kinds.get(scalar.text)
         if kind not in _KINDS:
             known = ", ".join(n for n, k in reading.scope.kinds.items() if k in ("coordinate", "speed"))
-            message = f"{ascii_safe(scalar.text)} is no variable"
-            reading.error("unknown-name", message, scalar.span, f"variables are coordinates and speeds: {known}")
+            message = Message("[[what]] is no variable", what=ascii_safe(scalar.text))
+            reading.error(
+                "unknown-name",
+                message,
+                scalar.span,
+                Message("variables are coordinates and speeds: [[known]]", known=known),
+            )
         elif scalar.text in seen:
-            reading.error("repeated-name", f"{ascii_safe(scalar.text)} is listed twice", scalar.span)
+            reading.error(
+                "repeated-name", Message("[[what]] is listed twice", what=ascii_safe(scalar.text)), scalar.span
+            )
         else:
             seen.add(scalar.text)
             yield scalar.text

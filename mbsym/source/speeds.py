@@ -7,6 +7,7 @@ from collections.abc import Callable, Collection, Sequence
 from dataclasses import fields, is_dataclass, replace
 from functools import partial
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Span
 from mbsym.expressions.rates import without_velocity
@@ -53,7 +54,7 @@ def declare_speeds(draft: Draft, reading: Reading) -> None:
         return
     entries = list(reading.entries(node, "'speeds'", "{p: omega1, q: omega2, r: omega3}"))
     if len(entries) > MAX_SPEEDS:
-        reading.error("too-large", f"a body has at most {MAX_SPEEDS} speeds", node.span)
+        reading.error("too-large", Message("a body has at most [[most]] speeds", most=MAX_SPEEDS), node.span)
         return
     for entry in entries:
         if reading.scope.declare(entry.key.text, "speed", entry.key.span):
@@ -78,7 +79,9 @@ def _orientation(node: Node | None, reading: Reading) -> tuple[UnitVector | Quat
             axis = reading.word(entry.value, "the axis of a unit vector", _AXES)
             if axis == QUATERNION and len(entries) > 1:
                 message = "a quaternion tells the whole orientation: nothing stands beside it"
-                reading.error("orientation", message, entry.key.span, f"{{{entry.key.text}: quaternion}}")
+                reading.error(
+                    "orientation", message, entry.key.span, Message("{[[what]]: quaternion}", what=entry.key.text)
+                )
             elif axis == QUATERNION:
                 return _quaternion(entry.key.text, entry.key.span, reading)
             elif axis is not None:
@@ -89,7 +92,9 @@ def _orientation(node: Node | None, reading: Reading) -> tuple[UnitVector | Quat
     for vector in found:
         assert vector.span is not None
         if vector.axis in axes:
-            reading.error("repeated-key", f"a second unit vector along axis {vector.axis}", vector.span)
+            reading.error(
+                "repeated-key", Message("a second unit vector along axis [[axis]]", axis=vector.axis), vector.span
+            )
             continue
         axes.add(vector.axis)
         declared = [reading.scope.declare(name, "unit vector", vector.span) for name in vector.components]
@@ -173,18 +178,25 @@ def check_speeds(system: System, drafts: Sequence[Draft], reading: Reading) -> N
         assert speed.span is not None
         row = _row(system, speed, ordered)
         if row is None:
-            message = f"'{speed.name}' is not linear in the velocities"
+            message = Message("'[[name]]' is not linear in the velocities", name=speed.name)
             reading.error("not-linear", message, speed.span, "a sum of velocities with coefficients in coordinates")
             continue
         if not any(vanishes(x) is not True for x in row):
             hint = "write velocities such as x_dot, or omega1, omega2, omega3 of this body"
-            reading.error("no-velocity", f"'{speed.name}' contains no velocity", speed.span, hint)
+            reading.error("no-velocity", Message("'[[name]]' contains no velocity", name=speed.name), speed.span, hint)
             continue
         rows.append(row)
         if reading.errors == errors and len(independent(rows)) < len(rows):
             others = ", ".join(one.name for one in system.speeds[: len(rows) - 1])
-            message = f"'{speed.name}' follows from {others}: the generalised velocities cannot be found from them"
-            hint = f"there are {len(ordered)} generalised velocities; speeds are independent of each other"
+            message = Message(
+                "'[[name]]' follows from [[others]]: the generalised velocities cannot be found from them",
+                name=speed.name,
+                others=others,
+            )
+            hint = Message(
+                "there are [[count]] generalised velocities; speeds are independent of each other",
+                count=len(ordered),
+            )
             reading.error("dependent-speeds", message, speed.span, hint)
     for body, draft in zip(system.bodies, drafts, strict=True):
         if body.orientation:
@@ -282,20 +294,25 @@ def _check_orientation(system: System, body: Body, draft: Draft, reading: Readin
     angular velocity as speeds."""
     span = draft.fields.key_span("orientation")
     whole = isinstance(body.orientation[0], Quaternion)
-    what = "a quaternion" if whole else "unit vectors"
-    turns = f"{what} {'turns' if whole else 'turn'} with the body"
+    what = Message("a quaternion" if whole else "unit vectors")
+    turns = Message("a quaternion turns with the body" if whole else "unit vectors turn with the body")
     own = {*body.own_angles}
     if len(own) != 3:
-        message = f"this joint has not three angles of its own: {what} would be more than it needs"
+        message = Message("this joint has not three angles of its own: [[what]] would be more than it needs", what=what)
         reading.error("orientation", message, span, "leave 'orientation' out")
         return
     components = {speed.component for speed in system.speeds if speed.body == body.name}
     if not {1, 2, 3} <= components:
         hint = "speeds: {p: omega1, q: omega2, r: omega3}"
-        reading.error("orientation", f"{turns}: its angular velocity is wanted", span, hint)
+        reading.error("orientation", Message("[[turns]]: its angular velocity is wanted", turns=turns), span, hint)
     used = {name: place for name, place in _uses(system, body) if name in own}
     for name, place in used.items():
-        message = f"the angle '{name}' stands in {place}: {what} cannot take its place"
+        message = Message(
+            "the angle '[[name]]' stands in [[place]]: [[what]] cannot take its place",
+            name=name,
+            place=place,
+            what=what,
+        )
         hint = "leave 'orientation' out"
         if place == _LOAD:
             hint += ", or write the load as a force or torque"
@@ -315,12 +332,12 @@ def _uses(system: System, body: Body) -> list[tuple[str, str]]:
     found += [(name, "its connection point") for x in body.connection_point for name in names(x)]
     for other in system.bodies:
         if other is not body:
-            place = f"the joint of {ascii_safe(other.name)}"
+            place = Message("the joint of [[name]]", name=ascii_safe(other.name))
             expressions = (*other.rotation.angles, *other.connection_point)
             found += [(name, place) for x in expressions for name in names(x)]
         for speed in other.speeds:
             held = {without_velocity(name) for name in names(speed.form)}
-            found += [(name, f"the speed '{speed.name}'") for name in held]
+            found += [(name, Message("the speed '[[name]]'", name=speed.name)) for name in held]
     return found
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.parser import ascii_safe
 from mbsym.model.system import WrittenSymbol
 from mbsym.source.keys import LONGEST
@@ -43,13 +44,15 @@ def read_symbols(node: Node | None, reading: Reading) -> tuple[WrittenSymbol, ..
     allowed = Allowed("a name with a symbol", kinds)
     for entry in () if node is None else reading.entries(node, "'latex'"):
         known = reading.scope.check_name(entry.key.text, entry.key.span, allowed)
-        scalar = reading.scalar(entry.value, f"the symbol of {ascii_safe(entry.key.text)}")
+        scalar = reading.scalar(entry.value, Message("the symbol of [[what]]", what=ascii_safe(entry.key.text)))
         if scalar is None or not known or not _is_symbol(scalar, reading):
             continue
         symbol = " ".join(scalar.text.split())
         other = next((one.name for one in found if one.latex == symbol), None)
         if other is not None:
-            message = f"{ascii_safe(entry.key.text)} and {ascii_safe(other)} have the same symbol"
+            message = Message(
+                "[[what]] and [[other]] have the same symbol", what=ascii_safe(entry.key.text), other=ascii_safe(other)
+            )
             reading.error("repeated-symbol", message, scalar.span)
             continue
         found.append(WrittenSymbol(entry.key.text, symbol, entry.key.span))
@@ -60,7 +63,7 @@ def _is_symbol(scalar: Scalar, reading: Reading) -> bool:
     try:
         check(scalar.text)
     except _Wrong as wrong:
-        reading.error("bad-symbol", str(wrong), scalar.place(wrong.start, wrong.end), _HINT)
+        reading.error("bad-symbol", wrong.args[0], scalar.place(wrong.start, wrong.end), _HINT)
         return False
     return True
 
@@ -68,7 +71,7 @@ def _is_symbol(scalar: Scalar, reading: Reading) -> bool:
 def check(text: str) -> None:
     """Raises ``_Wrong`` unless the text is one symbol, perhaps with an index."""
     if len(text) > LONGEST:
-        raise _Wrong(f"a symbol has at most {LONGEST} characters", 0, len(text))
+        raise _Wrong(Message("a symbol has at most [[most]] characters", most=LONGEST), 0, len(text))
     tokens = [(match[0].strip() or " ", match.start()) for match in _TOKEN.finditer(text)]
     place = _stem(tokens, 0, text)
     if [token for token, _ in tokens] == ["\\pi"]:
@@ -88,11 +91,11 @@ def _stem(tokens: list[tuple[str, int]], place: int, text: str) -> int:
     token, _ = tokens[place]
     if token.removeprefix("\\") in _AROUND and token.startswith("\\"):
         if place + 1 == len(tokens) or tokens[place + 1][0] != "{":
-            raise _unexpected(tokens[place], f"{token} needs braces: {token}{{x}}")
+            raise _unexpected(tokens[place], Message("[[token]] needs braces: [[token]]{x}", token=token))
         return _group(tokens, place + 1, text, words=token.startswith("\\math"))
     if re.fullmatch("[A-Za-z]", token) or (token.startswith("\\") and token[1:] in _LETTERS):
         return place + 1
-    raise _unexpected(tokens[place], f"{ascii_safe(token)} is not allowed in a symbol")
+    raise _unexpected(tokens[place], Message("[[token]] is not allowed in a symbol", token=ascii_safe(token)))
 
 
 def _group(tokens: list[tuple[str, int]], place: int, text: str, words: bool) -> int:

@@ -19,6 +19,7 @@ from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path, PurePosixPath
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.table import Points
 
@@ -53,17 +54,29 @@ def read_points(folder: Path | None, file: str, columns: tuple[str, str]) -> Row
         if not path.is_relative_to(folder.resolve()):
             return _refused("a file of points stands beside the description, or in a folder below", None)
         if not path.is_file():
-            return _refused(f"there is no file {ascii_safe(file)} beside the description", None)
+            return _refused(Message("there is no file [[file]] beside the description", file=ascii_safe(file)), None)
         with path.open("rb") as opened:
             data = opened.read(MOST_BYTES + 1)
     except (OSError, ValueError) as error:
-        return _refused(f"{file} cannot be read: {getattr(error, 'strerror', None) or error}", None)
+        return _refused(
+            Message("[[file]] cannot be read: [[why]]", file=file, why=getattr(error, "strerror", None) or error), None
+        )
     if len(data) > MOST_BYTES:
-        return _refused(f"{file} has more than {MOST_BYTES} bytes", "leave out what the motion does not feel")
+        return _refused(
+            Message("[[file]] has more than [[most]] bytes", file=file, most=MOST_BYTES),
+            "leave out what the motion does not feel",
+        )
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        return _refused(f"{file} is no UTF-8 text (line {data.count(bytes([10]), 0, error.start) + 1})", None)
+        return _refused(
+            Message(
+                "[[file]] is no UTF-8 text (line [[count]])",
+                file=file,
+                count=data.count(bytes([10]), 0, error.start) + 1,
+            ),
+            None,
+        )
     return _read(text, file, columns, hashlib.sha256(data).hexdigest())
 
 
@@ -83,24 +96,55 @@ def _rows(text: str) -> Iterator[tuple[int, list[str]]]:
 def _read(text: str, file: str, columns: tuple[str, str], digest: str) -> Rows:
     rows = list(_rows(text))
     if not rows:
-        return _refused(f"{file} has no rows", None)
+        return _refused(Message("[[file]] has no rows", file=file), None)
     head = rows[0][1] if any(not _NUMBER.match(cell) for cell in rows[0][1] if cell) else []
     places = []
     for column in columns:
         place = _place(column, head, len(rows[0][1]))
         if place is None:
-            known = f"its columns are: {', '.join(map(ascii_safe, head[:20]))}" if head else "columns count from 1"
-            return _refused(f"{file}:{rows[0][0]}: there is no column {ascii_safe(column)}", known)
+            known = (
+                Message("its columns are: [[columns]]", columns=", ".join(map(ascii_safe, head[:20])))
+                if head
+                else "columns count from 1"
+            )
+            return _refused(
+                Message(
+                    "[[file]]:[[row]]: there is no column [[column]]",
+                    file=file,
+                    row=rows[0][0],
+                    column=ascii_safe(column),
+                ),
+                known,
+            )
         places.append(place)
     body = rows[1:] if head else rows
     if not 2 <= len(body) <= MOST_POINTS:
-        return _refused(f"{file} has 2 to {MOST_POINTS} rows of numbers, not {len(body)}", None)
+        return _refused(
+            Message(
+                "[[file]] has 2 to [[most]] rows of numbers, not [[count]]",
+                file=file,
+                most=MOST_POINTS,
+                count=len(body),
+            ),
+            None,
+        )
     found, wrong = [], []
     width = len(rows[0][1])
     for number, cells in body:
         if len(cells) != width:
             hint = "numbers have a decimal point" if len(cells) > width else None
-            wrong.append((f"{file}:{number}: {len(cells)} cells, and {width} in the first row", hint))
+            wrong.append(
+                (
+                    Message(
+                        "[[file]]:[[number]]: [[cells]] cells, and [[width]] in the first row",
+                        file=file,
+                        number=number,
+                        cells=len(cells),
+                        width=width,
+                    ),
+                    hint,
+                )
+            )
             continue
         point = [_value(cells[place]) for place in places]
         first, second = point
@@ -108,17 +152,26 @@ def _read(text: str, file: str, columns: tuple[str, str], digest: str) -> Rows:
             where = places[0] if first is None else places[1]
             shown = ascii_safe(cells[where][:40]) if cells[where] else "an empty cell"
             hint = "numbers have a decimal point" if "," in cells[where] else None
-            wrong.append((f"{file}:{number}: {shown} is no number", hint))
+            wrong.append(
+                (Message("[[file]]:[[number]]: [[shown]] is no number", file=file, number=number, shown=shown), hint)
+            )
         else:
             found.append((number, (first, second)))
     for (_, one), (number, later) in pairwise(found):
         if later[0] <= one[0]:
-            message = f"{file}:{number}: the arguments of a table increase from row to row"
+            message = Message(
+                "[[file]]:[[number]]: the arguments of a table increase from row to row", file=file, number=number
+            )
             wrong.append(
                 (message, "take the mean of rows with one argument" if later[0] == one[0] else "sort the rows")
             )
     if len(wrong) > MOST_COMPLAINTS:
-        wrong[MOST_COMPLAINTS:] = [(f"{file}: and {len(wrong) - MOST_COMPLAINTS} more rows like these", None)]
+        wrong[MOST_COMPLAINTS:] = [
+            (
+                Message("[[file]]: and [[more]] more rows like these", file=file, more=len(wrong) - MOST_COMPLAINTS),
+                None,
+            )
+        ]
     return Rows(() if wrong else tuple(point for _, point in found), tuple(wrong), digest)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from itertools import pairwise
 
+from mbsym.expressions.message import Message, worded
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Span
 from mbsym.expressions.table import HOLD, LINEAR, Points, Source, Table
@@ -32,12 +33,12 @@ def read_tables(node: Node | None, reading: Reading) -> tuple[Table, ...]:
 
 def _table(entry: Entry, reading: Reading) -> Table:
     name = entry.key.text
-    what = f"the table {ascii_safe(name)}"
+    what = Message("the table [[name]]", name=ascii_safe(name))
     hint = "write {points: [[0, 0], [1, 2.5]]}"
     fields = reading.fields(entry.value, what, TABLE, hint)
     between, outside = fields.word("between") or LINEAR, fields.word("outside") or HOLD
     unit = fields.get("unit")
-    scalar = None if unit is None else reading.scalar(unit, f"the unit of {ascii_safe(name)}")
+    scalar = None if unit is None else reading.scalar(unit, Message("the unit of [[name]]", name=ascii_safe(name)))
     if scalar is not None:
         reading.units.append(Declared(name, scalar.text.strip(), scalar.span))
     source = None
@@ -68,7 +69,11 @@ def _from_file(fields: Fields, reading: Reading) -> tuple[Points, Source | None]
     wanted = fields.get("sha256")
     stated = None if wanted is None else reading.scalar(wanted, "'sha256'")
     if stated is not None and found.digest and stated.text.strip().lower() != found.digest:
-        message = f"{scalar.text.strip()} is not the file that is meant: its SHA-256 is {found.digest}"
+        message = Message(
+            "[[file]] is not the file that is meant: its SHA-256 is [[digest]]",
+            file=scalar.text.strip(),
+            digest=found.digest,
+        )
         reading.error("table-file", message, stated.span, "leave the key out where any content will do")
     return found.points, Source(scalar.text.strip(), columns, found.digest)
 
@@ -85,9 +90,18 @@ def _columns(node: Node | None, reading: Reading) -> tuple[str, str] | None:
 
 def _points(node: Node, what: str, reading: Reading) -> tuple[Place, ...]:
     """The points, each complained about that is none, or stands in the wrong order."""
-    items = reading.items(node, f"the points of {what}")
+    items = reading.items(node, Message("the points of [[what]]", what=worded(what)))
     if isinstance(node, Sequence) and not 2 <= len(items) <= MAX_POINTS:
-        reading.error("wrong-shape", f"{what} has 2 to {MAX_POINTS} points, not {len(items)}", node.span)
+        reading.error(
+            "wrong-shape",
+            Message(
+                "[[what]] has 2 to [[most]] points, not [[items]]",
+                what=worded(what),
+                most=MAX_POINTS,
+                items=len(items),
+            ),
+            node.span,
+        )
     found = [(point, item.span) for item in items if (point := _point(item, what, reading)) is not None]
     for (one, _), (later, span) in pairwise(found):
         if later[0] <= one[0]:
@@ -104,7 +118,12 @@ def _disordered(one: Place, later: Place, span: Span, reading: Reading) -> None:
 
 def _point(node: Node, what: str, reading: Reading) -> Place | None:
     if not isinstance(node, Sequence) or len(node.items) != 2:
-        reading.shape_error(node, f"a point of {what}", "two numbers", "write [0.5, 2], the argument and the value")
+        reading.shape_error(
+            node,
+            Message("a point of [[what]]", what=worded(what)),
+            "two numbers",
+            "write [0.5, 2], the argument and the value",
+        )
         return None
     numbers = []
     for item in node.items:

@@ -6,6 +6,7 @@ from collections.abc import Mapping as Map
 from collections.abc import Sequence as Items
 from typing import TYPE_CHECKING
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.place import Span
 from mbsym.model.claims import BODY, CLAIMS
 from mbsym.source.grammar import Ends, Kind, Named
@@ -30,9 +31,10 @@ def of_kind(
     found = [(label, value) for label, value in map(reader.load_line, lines) if label is not None]
     named = [value for label, value in found if word_of(label.text) == title]
     if len(named) != 1:
-        how = f"no '{title.capitalize()}'" if not named else f"a second '{title.capitalize()}'"
         place = heading.span if not named else named[1].span
-        reader.error("missing-key" if not named else "repeated-key", f"this {what} has {how}", place)
+        text = "this [[what]] has a second '[[title]]'" if named else "this [[what]] has no '[[title]]'"
+        message = Message(text, what=what, title=title.capitalize())
+        reader.error("repeated-key" if named else "missing-key", message, place)
         return None
     data = [(label, value) for label, value in found if word_of(label.text) != title]
     kind = kinds.get(ALIASES.get(named[0].text, named[0].text))

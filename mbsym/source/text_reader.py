@@ -11,6 +11,7 @@ import re
 from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass, field
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints, Span
 from mbsym.source.keys import CONSTRAINTS, LOADS, VERSION
@@ -95,13 +96,18 @@ class TextReader:
             match = HEADING.match(block.heading.text)
             if match is not None and int(match.group(2)) != number:
                 span = block.heading.place(match.start(2), match.end(2))
-                self.error("bad-number", f"this is description number {number}", span, "number them 1, 2, 3, ...")
+                self.error(
+                    "bad-number",
+                    Message("this is description number [[number]]", number=number),
+                    span,
+                    "number them 1, 2, 3, ...",
+                )
 
     def check_count(self, header: list[Scalar], count: int) -> None:
         for line in header:
             label, value = label_of(line)
             if label is not None and word_of(label.text) == "number of bodies" and value.text != str(count):
-                self.error("body-count", f"{count} bodies are described", value.span)
+                self.error("body-count", Message("[[count]] bodies are described", count=count), value.span)
 
     def labelled(self, line: Scalar, known: Collection[str], what: str) -> tuple[Scalar, str, Scalar] | None:
         """A label out of a known set (or taken for what it resembles): its scalar, its normal form, the value."""
@@ -116,8 +122,17 @@ class TextReader:
         span = line.span if label is None else label.span
         shown = line.text if label is None else label.text
         guess = closest(word_of(shown), known)
-        hint = f"did you mean '{guess}'?" if guess else f"the labels are: {', '.join(known)}"
-        self.error("unknown-key", f"unknown label {ascii_safe(shown)} in {what}", span, hint)
+        hint = (
+            Message("did you mean '[[other]]'?", other=guess)
+            if guess
+            else Message("the labels are: [[known]]", known=", ".join(known))
+        )
+        self.error(
+            "unknown-key",
+            Message("unknown label [[shown]] in [[what]]", shown=ascii_safe(shown), what=what),
+            span,
+            hint,
+        )
         return None if guess is None or label is None else (label, guess, value)
 
     # --- header and sections -----------------------------------------------------------------------------------------

@@ -12,6 +12,7 @@ from typing import Any, TypeVar
 
 import yaml
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.safe import hides
 from mbsym.source.placed import MAX_DEPTH, Entry, Mapping, Node, Scalar, Sequence
@@ -60,7 +61,7 @@ def read_yaml(text: str, complaints: Complaints, extents: dict[int, Extent] | No
         else:
             complaints.error("syntax", _problem(error), span, _hint(error))
     except yaml.YAMLError as error:
-        complaints.error("syntax", f"this is not YAML: {str(error).splitlines()[0]}")
+        complaints.error("syntax", Message("this is not YAML: [[why]]", why=str(error).splitlines()[0]))
     return None
 
 
@@ -72,7 +73,11 @@ def _brackets_bounded(text: str, complaints: Complaints) -> bool:
             if depth > _MAX_BRACKETS:
                 line_start = text.rfind("\n", 0, offset) + 1
                 place = Span(text.count("\n", 0, offset) + 1, offset - line_start + 1)
-                complaints.error("too-deep", f"more than {_MAX_BRACKETS} brackets are open here", place)
+                complaints.error(
+                    "too-deep",
+                    Message("more than [[most]] brackets are open here", most=_MAX_BRACKETS),
+                    place,
+                )
                 return False
         elif character in "]}":
             depth = max(0, depth - 1)
@@ -92,7 +97,7 @@ def _tab(text: str, span: Span | None) -> Span | None:
 
 def _problem(error: yaml.MarkedYAMLError) -> str:
     problem = error.problem or error.context or "not YAML"
-    return f"this is not YAML: {problem}"
+    return Message("this is not YAML: [[problem]]", problem=problem)
 
 
 def _hint(error: yaml.MarkedYAMLError) -> str | None:
@@ -143,7 +148,11 @@ class _Composer:
     def node(self, event: Any, depth: int) -> Node:
         self.refuse_fineries(event)
         if depth > MAX_DEPTH:
-            self.complaints.error("too-deep", f"lists and mappings nest at most {MAX_DEPTH} deep", self.span(event))
+            self.complaints.error(
+                "too-deep",
+                Message("lists and mappings nest at most [[most]] deep", most=MAX_DEPTH),
+                self.span(event),
+            )
             raise _Refused
         if isinstance(event, yaml.SequenceStartEvent):
             return self.sequence(event, depth)
@@ -185,21 +194,25 @@ class _Composer:
         hidden = [character for character in text if character != "\n" and hides(character)]
         if hidden:
             named = ", ".join([f"U+{ord(character):04X}" for character in dict.fromkeys(hidden)][:5])
-            message = f"this text holds control characters ({named}), which may not stand in a description"
+            message = Message(
+                "this text holds control characters ([[named]]), which may not stand in a description", named=named
+            )
             self.complaints.error("control-character", message, self.span(event), "leave the escapes out")
         return "".join(character for character in text if character not in hidden) if hidden else text
 
     def refuse_fineries(self, event: Any) -> None:
         if isinstance(event, yaml.AliasEvent):
-            message = f"aliases are not used in descriptions: '*{event.anchor}'"
+            message = Message("aliases are not used in descriptions: '*[[anchor]]'", anchor=event.anchor)
             self.complaints.error("alias", message, self.span(event), "write the value out, or quote the text")
             raise _Refused
         if event.anchor is not None:
-            message = f"anchors are not used in descriptions: '&{event.anchor}'"
+            message = Message("anchors are not used in descriptions: '&[[anchor]]'", anchor=event.anchor)
             self.complaints.error("alias", message, self.span(event), "write the value out, or quote the text")
         if event.tag is not None:
             hint = "leave the tag out, or quote the text"
-            self.complaints.error("tag", f"tags are not used in descriptions: '{event.tag}'", self.span(event), hint)
+            self.complaints.error(
+                "tag", Message("tags are not used in descriptions: '[[tag]]'", tag=event.tag), self.span(event), hint
+            )
 
     def span(self, event: Any) -> Span:
         """From the beginning of an event to its end, or to the end of its first line."""

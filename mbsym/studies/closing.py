@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from mbsym.expressions.message import Message
+from mbsym.report.language import Language
 from mbsym.studies.study import Exit, Refusal
 
 if TYPE_CHECKING:
@@ -22,7 +24,9 @@ def closed_motion(given: Scenario) -> tuple[Scenario, tuple[str, ...]]:
     from mbsym.report.runs.constrained_run_words import start_lines
 
     found = closed(given)
-    return found.scenario, tuple(f"note: {text}" for text in start_lines(found, given.system)) if found.moves else ()
+    say = Language(given.system.language).say
+    notes = (Message("note: [[text]]", text=text) for text in start_lines(found, given.system))
+    return found.scenario, tuple(map(say, notes)) if found.moves else ()
 
 
 def not_closed(error: Exception, system: System) -> Refusal | None:
@@ -39,15 +43,20 @@ def not_closed(error: Exception, system: System) -> Refusal | None:
         f"{name} = {with_unit(f'{value:.6g}', pretty(unit_of(system, name)))}"
         for name, value in zip(shown, error.state.tolist(), strict=False)
     )
-    lines = [f"  closest found: {state}"]
+    lines = [Message("closest found: [[state]]", state=state)]
     for gap in sorted(error.gaps, key=lambda one: -one.size)[:MOST_GAPS]:
-        place = "" if gap.row.span is None else f" (line {gap.row.span.line})"
-        lines.append(f"  gap of {gap.row.label}{place}: {gap.size:.6g}{' (velocity)' if gap.velocity else ''}")
+        row: str = gap.row.label
+        if gap.row.span is not None:
+            row = Message("[[row]] (line [[line]])", row=row, line=gap.row.span.line)
+        text = "gap of [[row]]: [[size]] (velocity)" if gap.velocity else "gap of [[row]]: [[size]]"
+        lines.append(Message(text, row=row, size=f"{gap.size:.6g}"))
     if error.singular:
-        lines.append("  hint: accelerations do not follow from constraints in such a position; start elsewhere")
+        hint = Message("accelerations do not follow from constraints in such a position; start elsewhere")
     elif error.fixed:
-        lines.append(f"  hint: fix fewer initial values than {', '.join(error.fixed)}, or change them")
+        hint = Message("fix fewer initial values than [[names]], or change them", names=", ".join(error.fixed))
     else:
-        lines.append("  hint: check lengths and the initial position; a start nearer to a closed one may succeed")
-    code = Exit.BAD_INPUT if error.fixed else Exit.BROKEN_DOWN
-    return Refusal(f"error[{error.code}]: {error}", code, (*lines, "nothing was written."))
+        hint = Message("check lengths and the initial position; a start nearer to a closed one may succeed")
+    lines.append(Message("hint: [[hint]]", hint=hint))
+    code, say = Exit.BAD_INPUT if error.fixed else Exit.BROKEN_DOWN, Language(system.language).say
+    told = [f"  {say(one)}" for one in lines]
+    return Refusal(f"error[{error.code}]: {say(error.reason)}", code, (*told, say(Message("nothing was written."))))

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
+from mbsym.expressions.counting import duration
+from mbsym.expressions.message import Message, joined
+from mbsym.report.language import Language
 from mbsym.studies.closing import closed_motion, not_closed
-from mbsym.studies.request import Flag, Number, Values, Words, duration
+from mbsym.studies.request import Flag, Number, Values, Words
+from mbsym.studies.request import duration as length
 from mbsym.studies.study import (
     Answer,
     Asked,
@@ -58,7 +62,7 @@ class Request:
       mbsym tradeoff systems/double-pendulum.yaml --time 60 --target 1e-9
     """
 
-    time: Annotated[float, duration("Simulate from 0 to T (60, 2*pi).")]
+    time: Annotated[float, length("Simulate from 0 to T (60, 2*pi).")]
     _: KW_ONLY
     target: Annotated[float, Number("X", "The error that is good enough.", least=1e-15, most=0.1)] = 1e-9
     values: Values = field(default_factory=dict)
@@ -83,20 +87,21 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Found:
 
     given, notes = closed_motion(asked.motion)
     if request.fidelity and asked.system.constraints:
-        notes = (*notes, "note: simpler models are not compared: with constraints they would begin elsewhere")
+        text = Message("note: simpler models are not compared: with constraints they would begin elsewhere")
+        notes = (*notes, Language(asked.system.language).say(text))
     methods = [table.METHODS[name] for name in request.methods]
     return Found(studied(given, methods, request.time, request.budget, request.fidelity, watch), notes)
 
 
 def answer(asked: Asked, request: Request, found: Found) -> Answer:
-    trade = found.measured.trade
+    trade, say = found.measured.trade, Language(asked.system.language).say
     stopped = trade.interrupted
     if not trade.rows:
-        return Answer(complaints=("interrupted",), code=Exit.INTERRUPTED) if stopped else Answer()
-    lines, files = _lines(request, found.measured), _files(asked, request, found.measured)
-    after = f", t = 0 to {request.time:g}"
+        return Answer(complaints=(say(Message("interrupted")),), code=Exit.INTERRUPTED) if stopped else Answer()
+    lines, files = _lines(request, found.measured, say), _files(asked, request, found.measured)
+    after = f", t = 0 .. {request.time:g}"
     if stopped:
-        complaints = (*found.notes, "interrupted; what was measured is kept")
+        complaints = (*found.notes, say(Message("interrupted; what was measured is kept")))
         return Answer(lines, files, complaints, Exit.INTERRUPTED, after)
     return Answer(lines, files, found.notes, after=after)
 
@@ -117,35 +122,36 @@ def _files(asked: Asked, request: Request, found: trade_study.Study) -> dict[str
     return files | {name.replace(".", f"{mark}."): content for name, content in pictures.items()}
 
 
-def _lines(request: Request, found: trade_study.Study) -> Iterator[Line | Rows]:
+def _lines(request: Request, found: trade_study.Study, say: Callable[[str], str]) -> Iterator[Line | Rows]:
     from mbsym.numerics.trade.fidelity import model_advice
     from mbsym.numerics.trade.tradeoff import advice
 
     trade, models, target = found.trade, found.models, request.target
     truth = trade.reference
-    yield line(
-        f"  reference: {truth.method}, estimated error {truth.error:.1e}, {truth.seconds:.1f} s; "
-        f"errors below {trade.smallest_judged:.0e} are not told apart"
-    )
-    yield _runs(request, found)
+    text = "reference: [[method]], estimated error [[error]], [[time]]; errors below [[least]] are not told apart"
+    error, least, time = f"{truth.error:.1e}", f"{trade.smallest_judged:.0e}", duration(truth.seconds)
+    yield line("  ", say(Message(text, method=truth.method, error=error, time=time, least=least)))
+    yield _runs(request, found, say)
     for order in trade.orders:
         if order.pairs > 1:
-            yield line(
-                f"  {order.method}, {order.scalar}: measured order {order.measured:.2f}, nominal {order.nominal} "
-                f"(from {order.pairs} halvings of the step)"
-            )
+            text = "measured order [[order]], nominal [[nominal]] (halvings of the step: [[count]])"
+            told = Message(text, order=f"{order.measured:.2f}", nominal=order.nominal, count=order.pairs)
+            yield line(f"  {order.method}, {order.scalar}: ", say(told))
     for name, reason in trade.unusable:
-        yield line((f"  {name}: not used: {reason}", "yellow"))
-    yield line(
-        f"  cost: {truth.cost:.2g} for the reference, {trade.spent:.2g} for the runs, of a budget of "
-        f"{request.budget:g}; counted work, in seconds of a usual machine, as in the column cost"
+        yield line("  ", (say(Message("[[method]]: not used: [[why]]", method=name, why=reason)), "yellow"))
+    text = (
+        "cost: [[reference]] for the reference, [[runs]] for the runs, of a budget of [[budget]]; counted work, in "
+        "seconds of a usual machine, as in the column cost"
     )
+    costs = {"reference": f"{truth.cost:.2g}", "runs": f"{trade.spent:.2g}"}
+    yield line("  ", say(Message(text, budget=f"{request.budget:g}", **costs)))
     if models:
-        yield _models(found)
-    yield line((f"{advice(trade, target)} {model_advice(models, target)}".rstrip(), "bold"), always=True)
+        yield _models(found, say)
+    advised = joined(filter(None, (advice(trade, target), model_advice(models, target))))
+    yield line((say(advised), "bold"), always=True)
 
 
-def _runs(request: Request, found: trade_study.Study) -> Rows:
+def _runs(request: Request, found: trade_study.Study, say: Callable[[str], str]) -> Rows:
     """Runs on the front and near the target, or every one."""
     from mbsym.report.runs.tradeoff_table import constrained, shown
 
@@ -153,46 +159,51 @@ def _runs(request: Request, found: trade_study.Study) -> Rows:
     rows = found.trade.rows if request.all_rows else near
     strayed = ("constraints",) if constrained(rows) else ()
     names = ("method", "setting", "error", "drift", *strayed, "evaluations", "steps", "time", "cost", "front")
-    columns = [Column(name, right=name not in ("method", "setting", "front")) for name in names]
+    columns = [Column(say(name), right=name not in ("method", "setting", "front")) for name in names]
     told = shown(rows, found.trade.smallest_judged)
-    return Rows(columns, [[(cell, "" if cells[-1] else "dim") for cell in cells] for cells in told])
+    return Rows(columns, [[(say(cell), "" if cells[-1] else "dim") for cell in cells] for cells in told])
 
 
 def _near(row: Measured, target: float) -> bool:
     return target / 10 < row.error < target * 10
 
 
-def _models(found: trade_study.Study) -> Rows:
+def _models(found: trade_study.Study, say: Callable[[str], str]) -> Rows:
     from mbsym.report.runs.tradeoff_table import models_shown
 
     names = ("model", "what it neglects", "error", "operations", "time")
-    columns = [Column(name, right=place > 1, fold=place < 2) for place, name in enumerate(names)]
-    return Rows(columns, models_shown(found.models))
+    columns = [Column(say(name), right=place > 1, fold=place < 2) for place, name in enumerate(names)]
+    return Rows(columns, [[say(cell) for cell in row] for row in models_shown(found.models)])
 
 
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     from mbsym.numerics.methods.interface import Breakdown
 
     if isinstance(error, Breakdown):
-        return Refusal(_without_reference(error, request), Exit.BROKEN_DOWN)
+        return Refusal(Language(asked.system.language).say(_without_reference(error, request)), Exit.BROKEN_DOWN)
     told = failed(error, "the equations have no program")
     return not_closed(error, asked.system) or (told and Refusal(told.text, Exit.BROKEN_DOWN))
 
 
-def _without_reference(error: Breakdown, request: Request) -> str:
+def _without_reference(error: Breakdown, request: Request) -> Message:
     """A solution that ends is one thing, one that takes too long another."""
     from mbsym.numerics.methods.interface import STEP_LIMIT
     from mbsym.numerics.trade.reference_search import BROKEN, DISAGREE
 
-    if error.kind == BROKEN:
-        return f"no reference solution up to t = {request.time:g} was found: {error.message}"
+    time = f"{request.time:g}"
     if error.kind == DISAGREE:
-        why = f"no two solutions agree, {error.message}: the motion may be chaotic over such a time"
-        return f"there is no reference solution up to t = {request.time:g}: {why}; a shorter --time helps"
-    if error.kind != STEP_LIMIT:
-        return f"there is no reference solution up to t = {request.time:g}: {error}"
-    reached = f"the budget ended at t = {error.time:.3g}; a shorter --time or a larger --budget helps"
-    return f"no reference solution up to t = {request.time:g} was found: {reached}"
+        text = (
+            "there is no reference solution up to t = [[time]]: no two solutions agree, [[which]]: the motion may be "
+            "chaotic over such a time; a shorter --time helps"
+        )
+        return Message(text, time=time, which=error.message)
+    if error.kind not in (BROKEN, STEP_LIMIT):
+        return Message("there is no reference solution up to t = [[time]]: [[why]]", time=time, why=error.told)
+    why = error.message
+    if error.kind == STEP_LIMIT:
+        text = "the budget ended at t = [[time]]; a shorter --time or a larger --budget helps"
+        why = Message(text, time=f"{error.time:.3g}")
+    return Message("no reference solution up to t = [[time]] was found: [[why]]", time=time, why=why)
 
 
 STUDY = Study(

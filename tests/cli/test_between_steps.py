@@ -21,7 +21,7 @@ def simulated(folder: Path, force: str, *options: str) -> tuple[Result, dict[str
     file = folder / "one.yaml"
     file.write_text(f"{HEAD}      x: {force}\ninitial: {{x: {{position: 1}}}}\n")
     options = (*options, "--format", "csv", "--out", str(folder / "out"))
-    done = CliRunner().invoke(main, ["simulate", str(file), "--time", "8", *options])
+    done = CliRunner().invoke(main, ["simulate", str(file), "--time", "8", "-v", *options])
     written = folder / "out" / "simulation.json"
     return done, json.loads(written.read_text()) if written.exists() else {}
 

@@ -43,7 +43,7 @@ def test_two_parts_are_one_run(name: str, tmp_path: Path) -> None:
     kept = table(tmp_path / "first" / "trajectory.csv")
     done = part(tmp_path / "first", 6, "--continue", tmp_path / "first" / "simulation.json")
     assert done.exit_code == 0, done.output
-    assert "from t = 3; 151 rows before it" in done.stdout
+    assert "from t = 3; rows before it: 151" in done.stdout
     assert part(tmp_path / "whole", 6, "--every", "0.02", *how).exit_code == 0
     joined, whole = table(tmp_path / "first" / "trajectory.csv"), table(tmp_path / "whole" / "trajectory.csv")
     assert list(joined) == list(whole)
@@ -209,7 +209,7 @@ def test_events_of_the_earlier_part_are_not_denied(tmp_path: Path) -> None:
     on = ("--continue", tmp_path / "first" / "simulation.json")
     done = part(tmp_path / "second", "101/100", *on, *watched)
     assert done.exit_code == 0, done.output
-    assert "never after t = 1, from where on it was watched" in done.stdout
+    assert "never; watched from t = 1 on" in done.stdout
 
 
 def test_what_the_earlier_method_has_no_use_for_is_refused(tmp_path: Path) -> None:

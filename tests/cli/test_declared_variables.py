@@ -20,7 +20,7 @@ def called(*arguments: object) -> Result:
 
 
 def test_columns_and_words_are_those_of_the_description(tmp_path: Path) -> None:
-    how = ("--time", 300, "--samples", 31, "-f", "csv,svg", "--event", "e1 = e2", "--out", tmp_path)
+    how = ("--time", 300, "--samples", 31, "-f", "csv,svg", "--event", "e1 = e2", "-v", "--out", tmp_path)
     result = called(SATELLITE, *how)
     assert result.exit_code == 0, result.output
     with (tmp_path / "trajectory.csv").open(encoding="utf-8") as file:
@@ -38,7 +38,7 @@ def test_columns_and_words_are_those_of_the_description(tmp_path: Path) -> None:
 
 
 def test_coordinates_are_integrated_where_they_are_asked_for(tmp_path: Path) -> None:
-    how = ("--variables", "coordinates", "--time", 300, "--samples", 31, "-f", "csv", "--out", tmp_path)
+    how = ("--variables", "coordinates", "--time", 300, "--samples", 31, "-f", "csv", "-v", "--out", tmp_path)
     result = called(SATELLITE, *how)
     assert result.exit_code == 0, result.output
     header = (tmp_path / "trajectory.csv").read_text(encoding="utf-8").splitlines()[0].split(",")

@@ -14,8 +14,8 @@ from mbsym.numerics.accuracy import Lacking, NoEstimate
 from mbsym.numerics.conservation import CONTRADICTION, Conservation, Doubt, Measure, Standing, confronted
 from mbsym.report.figures.animation_page import run_sentences
 from mbsym.report.runs.simulation_words import conservation_json, conservation_line, warnings
+from mbsym.report.runs.summary import method_lines, result_lines
 from mbsym.simulation import Simulation
-from mbsym_cli.simulate.summary import _lines
 
 CASES = Path(__file__).parents[1] / "cases" / "statements"
 
@@ -192,11 +192,11 @@ def test_what_makes_a_run_doubtful_is_read_first(error: NoEstimate, broken: bool
     run = mbsym.simulate(CASES / "osc.yaml", 5, estimate=False)
     kept = replace(run.conservation, change=0.5 if broken else 1e-9)
     doubtful = replace(run, error=error, conservation=kept, energy_conservation=kept)
-    lines = [text for _, text in _lines(doubtful, CASES / "osc.yaml")]
+    lines = [text for _, text in result_lines(doubtful, "osc.yaml")]
     for told in (lines, list(run_sentences(doubtful))):
         assert ("does not keep it" if broken else error.why.value) in told[0]
         assert sum("conserved (proved)" in text for text in told[1:]) == 1
-    assert "tolerance" in [text for _, text in _lines(run, CASES / "osc.yaml")][1]
+    assert "tolerance" in [text for _, text in method_lines(run)][1]
 
 
 def test_what_other_motions_change_may_be_constant_along_this_one() -> None:

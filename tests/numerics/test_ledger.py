@@ -408,7 +408,7 @@ def test_the_command_tells_and_writes_the_ledger(tmp_path: Path) -> None:
     file.write_text(satellite_in_plane(), encoding="utf-8")
     found = run("run", file, "--problems", "4,5", "--format", "json", "--ledger", "--out", tmp_path / "out")
     assert found.exit_code == 0, found.output
-    assert "plane motion: psi, phi, sigma" in found.output
+    assert "plane motion psi, phi, sigma" in " ".join(found.output.split())
     assert "(proved)" in found.output
     content = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
     kinds = [item["kind"] for item in content["ledger"]["savings"]]
@@ -449,7 +449,7 @@ def plane(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def simulated(file: Path, folder: Path, *words: Any) -> Any:
-    return run("simulate", file, "--time", 5, "--samples", 21, "--format", "csv", "--out", folder, *words)
+    return run("simulate", file, "--time", 5, "--samples", 21, "--format", "csv", "-v", "--out", folder, *words)
 
 
 @pytest.mark.parametrize("words", [(), ("--arithmetic", "extended"), ("--method", "rk4", "--step", "1e-2")])
@@ -457,7 +457,7 @@ def test_resting_coordinates_are_taken_out_and_put_back(plane: Path, tmp_path: P
     less = simulated(plane, tmp_path / "less", *words)
     whole = simulated(plane, tmp_path / "whole", "--whole", *words)
     assert less.exit_code == whole.exit_code == 0, less.output + whole.output
-    assert "psi, phi, sigma rest (proved): 2 of 5 coordinates integrated" in less.output
+    assert "psi, phi, sigma (proved): 2 of 5 coordinates integrated" in less.output
     assert "rest (" not in whole.output
     names_, values = table(tmp_path / "less")
     others, truth = table(tmp_path / "whole")
@@ -511,7 +511,7 @@ def test_a_coordinate_held_at_an_angle_keeps_it(tmp_path: Path) -> None:
     file.write_text(text, encoding="utf-8")
     found = simulated(file, tmp_path / "out", "--set", "psi=pi/3", "--set", "psi_dot=0")
     assert found.exit_code == 0, found.output
-    assert "psi rests (proved)" in found.output
+    assert "resting psi (proved)" in " ".join(found.output.split())
     names_, values = table(tmp_path / "out")
     psi = values[:, names_.index("psi")]
     assert np.ptp(psi) == 0

@@ -97,7 +97,7 @@ def test_what_would_not_be_seen_is_moved_and_told() -> None:
     assert drawn(PENDULUM).unknown == ("l",)
     (block,) = drawing(mbsym.loads(PENDULUM))
     assert [x.text for x in block.caption] == [
-        "Drawn at $[[values]]$.",
+        "Drawn at [[values]].",
         "Not to scale: no value is given for $[[names]]$.",
     ]
 

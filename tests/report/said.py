@@ -10,6 +10,7 @@ from functools import cache
 from pathlib import Path
 
 import mbsym
+import mbsym_cli
 from mbsym.algebra.failures import Failure
 from mbsym.expressions.message import GAP
 
@@ -34,6 +35,8 @@ class Module(ast.NodeVisitor):
         self.name = name
         self.refusals = refusals
         self.layered = self.name.split("/")[0] in LAYERS
+        # Files of robots say nothing of their language.
+        self.of_descriptions = self.name.startswith(("source/", "expressions/")) and "/robots/" not in self.name
         self.texts: list[Asked] = []
         self.open: list[str] = []
         self.known: dict[str, list[ast.expr]] = {}
@@ -55,6 +58,12 @@ class Module(ast.NodeVisitor):
         name = ast.unparse(node.func).split(".")[-1]
         if name == "Message":
             self._message(node)
+        elif name in ("Measure", "Unusable"):
+            self._words(node.args[:1], node)
+        elif name in ("error", "warning") and self.of_descriptions:
+            self._words([*node.args[1:2], *node.args[3:4], *(x.value for x in node.keywords if x.arg == "hint")], node)
+        elif name in ("Breakdown", "_fail") and self.name.startswith("numerics/"):
+            self._words(node.args[1:2], node)
         elif not self.layered:
             return
         elif name in self.refusals:
@@ -72,10 +81,12 @@ class Module(ast.NodeVisitor):
             starred = any(x.arg is None for x in node.keywords)
             gaps = None if starred else frozenset(x.arg for x in node.keywords if x.arg)
             self.texts.append(Asked(text, self._at(node), gaps))
+        for text in self._named(first):
+            self.texts.append(Asked(text, self._at(node)))
 
     def _words(self, values: list[ast.expr], node: ast.AST, depth: int = 0) -> None:
         for value in values:
-            if isinstance(value, ast.JoinedStr) and depth < 4:
+            if isinstance(value, ast.JoinedStr) and depth < 4 and not _of_names(value):
                 self.open.append(f"{self._at(node)}: {ast.unparse(value)}")
             elif isinstance(value, ast.IfExp):
                 self._words([value.body, value.orelse], node, depth)
@@ -93,19 +104,33 @@ class Module(ast.NodeVisitor):
             yield from self._literals(node.body)
             yield from self._literals(node.orelse)
         elif isinstance(node, ast.Name):
-            for value in self.known.get(node.id, []):
-                if isinstance(value, ast.Constant):
-                    yield from self._literals(value)
+            before = [x for x in self.known.get(node.id, []) if x.lineno <= node.lineno]
+            if before:
+                yield from self._literals(max(before, key=lambda x: x.lineno))
+
+    def _named(self, node: ast.expr) -> Iterator[str]:
+        """Whatever else a name may stand for: of branches, one is nearest to where it is said."""
+        for name in (x.id for x in ast.walk(node) if isinstance(x, ast.Name)):
+            for value in self.known.get(name, []):
+                yield from self._literals(value)
 
     def _at(self, node: ast.AST) -> str:
         return f"{self.name}:{getattr(node, 'lineno', 0)}"
 
 
+def _of_names(node: ast.JoinedStr) -> bool:
+    """Whether nothing but names and signs is put together: ``a: 0.1``."""
+    parts = [x.value for x in node.values if isinstance(x, ast.Constant)]
+    return not has_words(" ".join(map(str, parts))) and any(not str(x).isspace() for x in parts)
+
+
 @cache
 def trees() -> dict[str, ast.Module]:
-    """The modules of the package by their paths."""
-    paths = sorted(ROOT.rglob("*.py"))
-    return {str(path.relative_to(ROOT)): ast.parse(path.read_text(encoding="utf-8")) for path in paths}
+    """The modules of the package and of its commands by their paths."""
+    commands = Path(next(iter(mbsym_cli.__path__)))
+    paths = {str(path.relative_to(ROOT)): path for path in sorted(ROOT.rglob("*.py"))}
+    paths |= {f"cli/{path.relative_to(commands)}": path for path in sorted(commands.rglob("*.py"))}
+    return {name: ast.parse(path.read_text(encoding="utf-8")) for name, path in paths.items()}
 
 
 def refusals() -> frozenset[str]:

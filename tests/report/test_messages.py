@@ -18,13 +18,18 @@ import pytest
 from flint import Ordering, fmpq_mpoly_ctx
 
 import mbsym
-import mbsym_cli
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import NoClosedForm, NoValue, message_of
 from mbsym.analysis.stages import NoResult
 from mbsym.expressions.message import GAP, Message
+from mbsym.mechanics.forward_dynamics import ARTICULATED, FACTORISED
 from mbsym.model.claims import CLAIMS, SUMS
 from mbsym.model.constraints import KIND_NAMES
+from mbsym.numerics.accuracy import Lacking
+from mbsym.numerics.conservation import Doubt, Measure, Standing
+from mbsym.numerics.kernels.interface import EXTENDED
+from mbsym.numerics.methods import interface, sides, tableaux
+from mbsym.numerics.planning import kinds, plan
 from mbsym.problems.checks import HOW_EQUAL
 from mbsym.problems.claims.remarks import Remark, Said, text
 from mbsym.problems.normal_forms.result import Outcome, Theorem
@@ -36,6 +41,7 @@ from mbsym.problems.stability.word import Word
 from mbsym.report.language import LANGUAGES, Language
 from mbsym.report.latex.words import escaped
 from mbsym.report.messages import messages
+from mbsym.report.runs.plan_words import TITLES
 from mbsym.report.words.normal_form_words import REASONS
 from mbsym.report.words.passages import _FROM_ORIGIN, _LESS_GRAVITY, _WORDS
 from tests.report import said
@@ -68,8 +74,7 @@ def test_all_languages_have_the_same_messages() -> None:
 def strings() -> set[str]:
     """Whatever stands in a string of the package, of a command or in a template."""
     found: set[str] = set()
-    commands = Path(next(iter(mbsym_cli.__path__))).rglob("*.py")
-    for tree in [*said.trees().values(), *(ast.parse(path.read_text(encoding="utf-8")) for path in commands)]:
+    for tree in said.trees().values():
         found |= {x.value for x in ast.walk(tree) if isinstance(x, ast.Constant) and isinstance(x.value, str)}
     for path in Path(next(iter(mbsym_templates.__path__))).rglob("*.j2"):
         for pattern in (r'\btr\(("(?:[^"\\\n]|\\.)*")', r'("(?:[^"\\\n]|\\.)*")'):
@@ -150,8 +155,30 @@ def words_of_types() -> set[str]:
     found |= {*_WORDS.values(), *_LESS_GRAVITY.values(), *_FROM_ORIGIN.values()}
     found |= {"sine", "cosine", "root", "reciprocal", "function"}
     found |= {one for one in because.values() if isinstance(one, str)}
+    found |= {*Standing, *Doubt, *Measure, *Lacking, *Certainty, *TITLES.values(), *of_runs()}
     found |= {text(Remark(code, data)) for code in Said for data in DATA if _takes(code, data)}
     return {x for x in found - {"", Place.SUFFICIENT.value, Method.NONE.value} if said.has_words(x)}
+
+
+def of_runs() -> Iterator[str]:
+    """Kinds of savings, shares of bounds, ways to q'', how runs end, what methods are called."""
+    named = {key: value for key, value in vars(kinds).items() if key.isupper() and isinstance(value, str)}
+    yield from (value for key, value in named.items() if key not in ("FINENESS", "KERNEL"))  # never told
+    yield from (plan.MODEL, plan.INTEGRATION, plan.ARITHMETIC, EXTENDED, ARTICULATED, FACTORISED)
+    yield from (interface.BLOW_UP, interface.SINGULAR, interface.STEP_LIMIT, interface.STUCK, interface.UNDEFINED)
+    yield from (interface.SINGULAR_CONSTRAINTS, sides.OUTSIDE, sides.SWITCHING, "energy", "generalised energy")
+    yield from (one.title for one in vars(tableaux).values() if isinstance(one, tableaux.Tableau))
+
+
+@pytest.mark.parametrize("name", ["summary", "plan_words", "constrained_run_words", "state_run_words", "events_words"])
+def test_titles_of_what_is_said_of_a_run_are_translated(name: str) -> None:
+    """The first of every pair that is yielded."""
+    tree = said.trees()[f"report/runs/{name}.py"]
+    pairs = [x.value for x in ast.walk(tree) if isinstance(x, ast.Yield) and isinstance(x.value, ast.Tuple)]
+    found = {x.value for pair in pairs for x in ast.walk(pair.elts[0]) if isinstance(x, ast.Constant)}
+    assert found
+    for language in OTHERS:
+        assert not {x for x in found if isinstance(x, str) and said.has_words(x)} - {x for _, x in messages(language)}
 
 
 def systems() -> Iterator[LinearSystem]:

@@ -19,7 +19,7 @@ from mbsym.numerics.planning.planning import planned
 from mbsym.numerics.planning.prices import cost, cost_of_rows
 from mbsym.numerics.rows import rows
 from mbsym.numerics.scenario import Scenario, scenario
-from mbsym.report.runs.plan_words import plan_lines
+from mbsym.report.runs.plan_words import bound_lines, choice_lines
 
 DOUBLE = Path(__file__).parents[2] / "systems" / "double-pendulum.yaml"
 
@@ -103,7 +103,7 @@ def test_what_nothing_good_could_be_measured_by_is_not_said_to_be_missed(monkeyp
     """The same where explicit steps are too many for a run to measure by: then nothing is known of what was tried."""
     monkeypatch.setattr(planning, "MOST_TO_MEASURE", 0.0)
     plan = planned(scene(OVERDAMPED), Accuracy(1e-12), np.linspace(0, 2, 41))
-    told = "\n".join(text for _, text in plan_lines(plan, None))
+    told = "\n".join(text for _, text in (*bound_lines(plan, None), *choice_lines(plan)))
     assert not plan.reached
     assert "the accuracy asked for is not shown" in told
     assert "not reached" not in told

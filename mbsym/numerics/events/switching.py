@@ -24,6 +24,7 @@ from typing import Any
 import numpy as np
 
 from mbsym.algebra.lookup import numbers_of
+from mbsym.expressions.message import Message
 from mbsym.numerics.dynamics import Dynamics, Frozen
 from mbsym.numerics.kernels.llvm import kernel
 from mbsym.numerics.methods.interface import COUNTS, STEP_LIMIT, Breakdown, Change, Method, Run, Setting, Traits, Work
@@ -196,7 +197,8 @@ class SwitchingRun(Stepping):
     def _considered(self) -> None:
         """Looks, every so many steps, whether the other method is the better one, and turns to it if it is."""
         if self.work.steps + self.work.rejected >= self._setting.step_limit:
-            raise Breakdown(STEP_LIMIT, f"{self.work.steps} steps", self.reached, np.array(self.end, dtype=float))
+            steps = Message("[[count]] steps", count=self.work.steps)
+            raise Breakdown(STEP_LIMIT, steps, self.reached, np.array(self.end, dtype=float))
         made = self.work.steps - self._since[0]
         if made < (IMPLICIT_WINDOW if self._stiff else WINDOW * self._patience):
             return
@@ -205,13 +207,15 @@ class SwitchingRun(Stepping):
         if self._stiff:
             possible = min(step, STABLE / decay) if decay > 0 else step
             if self._dearer * possible > MARGIN * step:
-                self._change(False, f"stiff no longer: motions die out at rates up to {decay:.3g}")
+                text = "stiff no longer: motions die out at rates up to [[rate]]"
+                self._change(False, Message(text, rate=f"{decay:.3g}"))
                 return
         elif step * decay > LIMITED and decay > STIFF * frequency:
             longer = self._tried()
             if longer > self._dearer * step:
                 self._patience = 1
-                self._change(True, f"stiff: motions die out at rates up to {decay:.3g}, explicit steps were {step:.2g}")
+                text = "stiff: motions die out at rates up to [[rate]], explicit steps were [[step]]"
+                self._change(True, Message(text, rate=f"{decay:.3g}", step=f"{step:.2g}"))
                 return
             self._patience *= PATIENCE
         else:

@@ -8,6 +8,7 @@ from fractions import Fraction
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.program import Node, Program
+from mbsym.expressions.message import Message, worded
 from mbsym.mechanics import factorisation
 from mbsym.mechanics.forward_dynamics import ARTICULATED, FACTORISED, forward_dynamics
 from mbsym.mechanics.programs import Programs, programs
@@ -28,8 +29,8 @@ def steady_operations(work: Work) -> Iterator[Saving]:
     every = forward.program.operations(forward.accelerations)
     measures = (Measure("operations of q'' for one state", OPERATIONS, every, work.operations(forward.accelerations)),)
     steady = every - int(measures[0].taken)
-    why = "liveness: no coordinate, velocity or time reaches them"
-    yield Saving(STEADY, (f"{steady} subexpressions",), why, Certainty.PROVED, measures)
+    why = Message("liveness: no coordinate, velocity or time reaches them")
+    yield Saving(STEADY, (Message("[[count]] subexpressions", count=steady),), why, Certainty.PROVED, measures)
 
 
 def dead_operations(work: Work) -> Iterator[Saving]:
@@ -41,8 +42,8 @@ def dead_operations(work: Work) -> Iterator[Saving]:
     every = [alone.program.node(k) for k in range(len(alone.program.instructions))]
     written, live = (alone.program.operations(x, given) for x in (every, alone.accelerations))
     measures = (Measure("operations written for one state", OPERATIONS, written, live),)
-    why = "liveness: counted backwards from q'', no output needs them"
-    yield Saving(DEAD, (f"{written - live} operations",), why, Certainty.PROVED, measures)
+    why = Message("liveness: counted backwards from q'', no output needs them")
+    yield Saving(DEAD, (Message("[[count]] operations", count=written - live),), why, Certainty.PROVED, measures)
 
 
 def route(work: Work) -> Iterator[Saving]:
@@ -59,9 +60,8 @@ def route(work: Work) -> Iterator[Saving]:
         bound_only = False
     quantity = "operations of q'' and the pivots for one state"
     measures = (Measure(quantity, OPERATIONS, costs[other], costs[forward.method], bound_only),)
-    yield Saving(
-        ROUTE, (f"{forward.method} instead of {other}",), "both solve M q'' = f exactly", Certainty.PROVED, measures
-    )
+    what = Message("[[method]] instead of [[other]]", method=worded(forward.method), other=worded(other))
+    yield Saving(ROUTE, (what,), Message("both solve M q'' = f exactly"), Certainty.PROVED, measures)
 
 
 def branch_sparsity(work: Work) -> Iterator[Saving]:
@@ -81,8 +81,10 @@ def branch_sparsity(work: Work) -> Iterator[Saving]:
         Measure("entries of M", COUNT, n * n, n * n - 2 * len(zeros)),
         Measure("operations of solving M q'' = f", OPERATIONS, dense, sparse),
     )
-    why = "structural zeros: coordinates on different branches, or normal to each other, share no kinetic energy"
-    yield Saving(SPARSITY, (f"{2 * len(zeros)} entries of M",), why, Certainty.PROVED, measures)
+    why = Message(
+        "structural zeros: coordinates on different branches, or normal to each other, share no kinetic energy"
+    )
+    yield Saving(SPARSITY, (Message("[[count]] entries of M", count=2 * len(zeros)),), why, Certainty.PROVED, measures)
 
 
 def symmetry(work: Work) -> Iterator[Saving]:
@@ -99,8 +101,9 @@ def symmetry(work: Work) -> Iterator[Saving]:
         Measure("entries of M", COUNT, n + 2 * below, n + below),
         Measure("operations of solving M q'' = f", OPERATIONS, whole, half),
     )
-    why = "identity: M_ij = d2T/dq_i' dq_j' = M_ji"
-    yield Saving(SYMMETRY, (f"{below} entries below the diagonal",), why, Certainty.PROVED, measures)
+    why = Message("identity: M_ij = d2T/dq_i' dq_j' = M_ji")
+    what = Message("[[count]] entries below the diagonal", count=below)
+    yield Saving(SYMMETRY, (what,), why, Certainty.PROVED, measures)
 
 
 def _factorised(work: Work) -> Programs | None:
@@ -164,12 +167,13 @@ def values(work: Work) -> Iterator[Saving]:
         return
     if zero:
         measures = (Measure("operations of q'' at these values", OPERATIONS, without_zeros, here),)
-        why = "exact folding: 0 x = 0, so their terms are no instructions"
+        why = Message("exact folding: 0 x = 0, so their terms are no instructions")
         yield Saving(ZEROS, zero, why, Certainty.PROVED, measures)
     symbolic = work.operations(work.forward.accelerations)
     measures = (Measure("operations of q'' for one state", OPERATIONS, symbolic, without_zeros),)
-    why = "exact folding: constants are rational, 1 x = x, and equal values make equal nodes"
-    yield Saving(VALUES, (f"{len(work.numbers.parameters)} parameters",), why, Certainty.PROVED, measures)
+    why = Message("exact folding: constants are rational, 1 x = x, and equal values make equal nodes")
+    what = Message("[[count]] parameters", count=len(work.numbers.parameters))
+    yield Saving(VALUES, (what,), why, Certainty.PROVED, measures)
 
 
 def _generic(names: Sequence[str]) -> Mapping[str, Fraction]:

@@ -11,6 +11,7 @@ from mbsym.algebra import rationals
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.point import Balls
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import ZERO, Expression, names
 from mbsym.mechanics.forward_dynamics import forward_dynamics
 from mbsym.mechanics.kinematics import Scene
@@ -36,7 +37,7 @@ def massless_bodies(work: Work) -> Iterator[Saving]:
         return replace(body, mass=symbols("m")) if body.name in found else body
 
     other = changed_bodies(work.system, heavy, symbols)
-    why = "structural zero: m = 0 and no inertia, so T, forces and moments of the body are identically 0"
+    why = Message("structural zero: m = 0 and no inertia, so T, forces and moments of the body are identically 0")
     measures = (*work.right_hand_sides(other), *work.kinetic_energies(other))
     yield Saving(MASSLESS, _in_order(work, found), why, Certainty.PROVED, measures)
 
@@ -54,7 +55,10 @@ def welded_bodies(work: Work) -> Iterator[Saving]:
         Measure("seconds of writing the program of q''", SECONDS, spent, work.cost[1]),
     )
     carriers = ", ".join(dict.fromkeys(found.values()))
-    why = f"no coordinate moves them against {carriers}: m, m c and the tensor add up there, once, by Steiner's theorem"
+    why = Message(
+        "no coordinate moves them against [[carriers]]: m, m c and the tensor add up there, once, by Steiner's theorem",
+        carriers=carriers,
+    )
     yield Saving(WELDED, tuple(found), why, Certainty.PROVED, measures)
 
 
@@ -73,7 +77,7 @@ def point_masses(work: Work) -> Iterator[Saving]:
         return replace(body, inertia=Inertia("mass centre", tensor))
 
     other = changed_bodies(work.system, extended, symbols)
-    why = "structural zero: the tensor about the mass centre is 0, so is omega.J omega/2 and its moment"
+    why = Message("structural zero: the tensor about the mass centre is 0, so is omega.J omega/2 and its moment")
     measures = (*work.right_hand_sides(other), *work.kinetic_energies(other))
     yield Saving(POINTS, _in_order(work, found), why, Certainty.PROVED, measures)
 
@@ -94,7 +98,7 @@ def unused_axes(work: Work) -> Iterator[Saving]:
         return replace(body, rotation=Rotation(tuple(x for x, _ in turns), tuple(x for _, x in turns)))
 
     other = changed_bodies(work.system, turned, symbols)
-    why = "structural: a turn that is not there is the identity matrix, and is never multiplied"
+    why = Message("structural: a turn that is not there is the identity matrix, and is never multiplied")
     measures = (*work.right_hand_sides(other), *work.kinetic_energies(other))
     yield Saving(AXES, _in_order(work, found), why, Certainty.PROVED, measures)
 
@@ -116,7 +120,7 @@ def constant_rotations(work: Work) -> Iterator[Saving]:
         return replace(body, rotation=Rotation(body.rotation.axes, angles))
 
     other = changed_bodies(work.system, turned, symbols)
-    why = "the angle holds no coordinate and no time: its sine and cosine are worked out once, or are 0 and 1"
+    why = Message("the angle holds no coordinate and no time: its sine and cosine are worked out once, or are 0 and 1")
     measures = work.right_hand_sides(other, changing=symbols.names)
     yield Saving(TURNS, tuple(found), why, Certainty.PROVED, measures)
 
@@ -134,17 +138,24 @@ def gravity_orders(work: Work) -> Iterator[Saving]:
         ratio = relative_size(work.numbers, load)
         if ratio is None:
             why, how = (
-                f"terms above (l/R)^{order} are dropped; without numbers for l and R nobody knows if that is safe",
+                Message(
+                    "terms above (l/R)^[[order]] are dropped; without numbers for l and R nobody knows if that is safe",
+                    order=order,
+                ),
                 Certainty.UNDECIDED,
             )
         else:
             dropped, kept = ratio ** (order + 1), ratio ** (order - 1)
-            why = (
-                f"with the size l of the bodies about O1, l/R = {ratio:.1e}: the largest term dropped is "
-                f"about (l/R)^{order + 1} = {dropped:.1e} of nu m/R, {kept:.1e} of the terms of order 2"
+            why = Message(
+                "with the size l of the bodies about O1, l/R = [[ratio]]: the largest term dropped is "
+                "about (l/R)^[[order]] = [[dropped]] of nu m/R, [[kept]] of the terms of order 2",
+                ratio=f"{ratio:.1e}",
+                order=order + 1,
+                dropped=f"{dropped:.1e}",
+                kept=f"{kept:.1e}",
             )
             how = Certainty.ESTIMATED
-        yield Saving(GRAVITY, (f"terms of the field above order {order}",), why, how, measures)
+        yield Saving(GRAVITY, (Message("terms of the field above order [[order]]", order=order),), why, how, measures)
 
 
 def relative_size(numbers: Scenario | None, load: NewtonianGravity) -> float | None:

@@ -11,6 +11,7 @@ from mbsym.algebra.characteristic import BUDGET as DETERMINANT
 from mbsym.algebra.characteristic import characteristic_polynomial
 from mbsym.algebra.failures import Failure, Limit
 from mbsym.analysis import PROBLEMS, USUAL_PROBLEMS
+from mbsym.expressions.message import Message, joined, worded
 from mbsym.formulas.formula import Matrix
 from mbsym.numerics.ledger.entry import COUNT, Measure, Saving
 from mbsym.numerics.ledger.work import Counted, Work
@@ -37,11 +38,11 @@ def problems_not_asked(work: Work) -> Iterator[Saving]:
             found = _given_up(work, number)
         else:
             continue  # there is no such result, so nothing was saved
-        why = "liveness: nobody asked for it, and nothing that was asked for needs it"
+        why = Message("liveness: nobody asked for it, and nothing that was asked for needs it")
         if number == 3 and "linearisation" in analysis.derived:
-            why += "; the linearisation is that of the quadratised Lagrangian"
-        what = f"problem {number}, {problem.title}"
-        measures = found.measures(Counted(0, 0, 0.0), "it")
+            why = joined([why, Message("the linearisation is that of the quadratised Lagrangian")], "; ")
+        what = Message("problem [[number]], [[title]]", number=number, title=worded(problem.title))
+        measures = found.measures(Counted(0, 0, 0.0), Message("it"))
         yield Saving(NOT_ASKED, (what,), why, Certainty.PROVED, measures)
 
 
@@ -67,10 +68,10 @@ def vanishing_entries(work: Work) -> Iterator[Saving]:
     n = len(found.coordinates)
     entries = sum(not m[i, j].is_zero for m in found.matrices for i in range(n) for j in range(n))
     gone = [name for name, matrix in letters.items() if matrix.is_zero]
-    what = [f"{5 * n * n - entries} of {5 * n * n} entries"]
+    what = [Message("[[count]] of [[all]] entries", count=5 * n * n - entries, all=5 * n * n)]
     if gone:
-        what.append(f"{', '.join(gone)} as a whole")
-    why = "identities of the ring: their polynomials are 0"
+        what.append(Message("[[matrices]] as a whole", matrices=", ".join(gone)))
+    why = Message("identities of the ring: their polynomials are 0")
     measures = (Measure("entries of M, D, G, K, N", COUNT, 5 * n * n, entries),)
     yield Saving(ENTRIES, tuple(what), why, Certainty.PROVED, measures)
 
@@ -88,7 +89,7 @@ def subsystems(work: Work) -> Iterator[Saving]:
     here = Counted(sum(x.terms or 0 for x in divided), sum(x.steps for x in divided), sum(x.seconds for x in divided))
     there = _characteristic(work, found, range(len(found.coordinates)))
     names = ("{" + ", ".join(found.coordinates[i] for i in part) + "}" for part in parts)
-    why = "identities of the ring: no matrix couples them, so the determinant is the product of theirs"
+    why = Message("identities of the ring: no matrix couples them, so the determinant is the product of theirs")
     measures = there.measures(here, "det(M s^2 + (D + G) s + K + N)")
     yield Saving(SUBSYSTEMS, tuple(names), why, Certainty.PROVED, measures)
 

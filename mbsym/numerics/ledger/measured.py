@@ -14,6 +14,7 @@ from math import isfinite
 import numpy as np
 
 from mbsym.algebra.certainty import Certainty
+from mbsym.expressions.message import Message, joined
 from mbsym.numerics.ledger import described
 from mbsym.numerics.ledger.entry import OPERATIONS, Measure, Saving
 from mbsym.numerics.ledger.work import Wanted, Work
@@ -49,14 +50,14 @@ def simpler_model(work: Work) -> Iterator[Saving]:
     model = taken.model
     before = scene.rich.right_hand_side.operations
     measures = (Measure("operations of the right-hand side at these values", OPERATIONS, before, taken.operations),)
-    why = f"simulate --accuracy {work.wanted.accuracy:g} leaves it out"
+    why = Message("simulate --accuracy [[accuracy]] leaves it out", accuracy=f"{work.wanted.accuracy:g}")
     for kind, what in _left_out(scene, model):
         yield _held(Saving(kind, what, why, Certainty.ESTIMATED, measures), taken, work.wanted)
 
 
 def _left_out(scene: Scene, model: Model) -> Iterator[tuple[str, tuple[str, ...]]]:
     if model.linear:
-        yield LINEARITY, ("all that is not linear in the deviation",)
+        yield LINEARITY, (Message("all that is not linear in the deviation"),)
     bodies, others = parted(scene.scenario, model)
     if bodies:
         yield MASSES, bodies
@@ -79,11 +80,14 @@ def _held(saving: Saving, tried: Tried, wanted: Wanted) -> Saving:
     """A saving with what it changes of the motion, beside what a model may change at this accuracy."""
     tolerable = PART * wanted.accuracy
     if not isfinite(tried.worst):
-        why = f"{saving.why}; what that changes of the motion could not be measured"
-        return replace(saving, why=f"{why}: {tried.why}" if tried.why else why, how=Certainty.UNDECIDED)
-    word = "no more" if tried.worst <= tolerable else "more"
-    why = (
-        f"{saving.why}; until {wanted.time:g} it changes the motion by {tried.worst:.1e} of its size, {word} than the "
-        f"{tolerable:g} that a model may at an accuracy of {wanted.accuracy:g}"
+        why = Message("[[why]]; what that changes of the motion could not be measured", why=saving.why)
+        return replace(saving, why=joined(filter(None, (why, tried.why)), ": "), how=Certainty.UNDECIDED)
+    word = Message("no more than" if tried.worst <= tolerable else "more than")
+    text = (
+        "until [[time]] it changes the motion by [[worst]] of its size, [[word]] the [[most]] that a model may at an "
+        "accuracy of [[accuracy]]"
     )
+    time, worst, most, accuracy = f"{wanted.time:g}", f"{tried.worst:.1e}", f"{tolerable:g}", f"{wanted.accuracy:g}"
+    changed = Message(text, time=time, worst=worst, word=word, most=most, accuracy=accuracy)
+    why = joined([saving.why, changed], "; ")
     return replace(saving, why=why, how=tried.how, error=tried.worst, tolerable=tolerable)

@@ -9,6 +9,7 @@ from flint import arb, ctx
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.message import Message, joined
 from mbsym.expressions.tree import names
 from mbsym.mechanics.generalized import generalized_forces
 from mbsym.mechanics.kinematics import Scene
@@ -28,7 +29,7 @@ from mbsym.problems.energy import Energy
 STATES, PRECISION, INSTRUCTIONS = 3, 256, 3_000_000
 
 #: A reason that lets terms of L keep the parameter.
-FACTOR = "identity of the ring: it only changes a common factor of each row of M q'' = f, and cancels"
+FACTOR = Message("identity of the ring: it only changes a common factor of each row of M q'' = f, and cancels")
 
 
 def resting_coordinates(work: Work) -> Iterator[Saving]:
@@ -44,8 +45,10 @@ def resting_coordinates(work: Work) -> Iterator[Saving]:
     _, spent = work.timed(lambda: _written(found.reduction.scenario))
     before, after = found.operations
     normal = _plane(found.dynamics.system)
-    plane = f"; what is left moves in the plane normal to inertial axis {normal}" if normal else ""
-    why = f"from this initial state, with q_S held, f_S and M_SF vanish for all other q, q', t: q_S'' = 0{plane}"
+    why = Message("from this initial state, with q_S held, f_S and M_SF vanish for all other q, q', t: q_S'' = 0")
+    if normal:
+        text = "what is left moves in the plane normal to inertial axis [[axis]]"
+        why = joined([why, Message(text, axis=normal)], "; ")
     n = whole.size
     measures = (
         Measure("coordinates to integrate", COUNT, n, n - len(found.names)),
@@ -70,10 +73,13 @@ def separate_parts(work: Work) -> Iterator[Saving]:
     measures = (
         Measure("coordinates that share their steps", COUNT, whole.size, max(sizes)),
         Measure(
-            "entries of the Jacobian of an implicit step", COUNT, (2 * whole.size) ** 2, sum(4 * n * n for n in sizes)
+            "entries of the Jacobian of an implicit step",
+            COUNT,
+            (2 * whole.size) ** 2,
+            sum(4 * n * n for n in sizes),
         ),
     )
-    why = "the blocks of M between them vanish, and none occurs in the accelerations of another"
+    why = Message("the blocks of M between them vanish, and none occurs in the accelerations of another")
     yield Saving(PARTS, tuple(" and ".join(part.names) for part in parts), why, Certainty.PROVED, measures)
 
 
@@ -111,9 +117,9 @@ def cyclic_coordinates(work: Work) -> Iterator[Saving]:
     if not found:
         return
     n = len(work.system.coordinates)
-    why = (
-        "identities of the ring: dL/dq = 0 and Q = 0, so p = dL/dq' is constant and q follows by a quadrature; "
-        "told, not used: mbsym simulate integrates them"
+    why = Message(
+        "identities of the ring: dL/dq = 0 and Q = 0, so p = dL/dq' is constant and q follows by "
+        "a quadrature; told, not used: mbsym simulate integrates them"
     )
     measures = (Measure("order of the equations, on a level of the momenta", COUNT, 2 * n, 2 * (n - len(found))),)
     yield Saving(CYCLIC, found, why, Certainty.PROVED, measures)
@@ -146,15 +152,15 @@ def dropped_parameters(work: Work) -> Iterator[Saving]:
     }
     unread = [name for name in used if name not in live]
     if unread:
-        why = "liveness: no instruction that q'' needs reads it"
+        why = Message("liveness: no instruction that q'' needs reads it")
         yield Saving(DROPPED, tuple(unread), why, Certainty.PROVED, _dropped(work, used, unread))
     read = [name for name in used if name in live]
     by_reason: dict[tuple[str, Certainty], list[str]] = {}
     for name in _without_influence(work, read):
         by_reason.setdefault(_reason(work, name), []).append(name)
-    for (why, how), found in by_reason.items():
-        measures = _dropped(work, used, found)[: 1 if why == FACTOR else 2]
-        yield Saving(DROPPED, tuple(found), why, how, measures)
+    for (reason, how), found in by_reason.items():
+        measures = _dropped(work, used, found)[: 1 if reason == FACTOR else 2]
+        yield Saving(DROPPED, tuple(found), reason, how, measures)
 
 
 def _dropped(work: Work, used: Sequence[str], found: Sequence[str]) -> tuple[Measure, ...]:
@@ -211,10 +217,11 @@ def _reason(work: Work, name: str) -> tuple[str, Certainty]:
         ring, matrix = equations.mass_matrix[0, 0].ring, equations.mass_matrix.polynomials
         rows = [[*row, force.polynomial] for row, force in zip(matrix, equations.forcing, strict=True)]
         if not any(holds(ring, x, name) for row in rows for x in row):
-            return "identity of the ring: it cancels from M and f", Certainty.PROVED
+            return Message("identity of the ring: it cancels from M and f"), Certainty.PROVED
         if _proportional(ring, rows, name):
             return FACTOR, Certainty.PROVED
-    return f"q'' is the same for two values at {STATES} random states, in {PRECISION}-bit balls", Certainty.VERIFIED
+    text = "q'' is the same for two values at [[states]] random states, in [[bits]]-bit balls"
+    return Message(text, states=STATES, bits=PRECISION), Certainty.VERIFIED
 
 
 def _proportional(ring: Ring, rows: Sequence[Sequence[Polynomial]], name: str) -> bool:

@@ -14,6 +14,7 @@ import numpy as np
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
+from mbsym.expressions.message import Message
 from mbsym.model.system import rational
 from mbsym.numerics.body_motion import BodyMotions, body_motions
 from mbsym.numerics.dynamics import Dynamics
@@ -50,10 +51,14 @@ def skew_plane(work: Work) -> Iterator[Saving]:
     if e is None or np.sum(np.abs(e) > ALONG) < 2:
         return
     direction = ", ".join(f"{x:.6g}" for x in e)
-    why = (
-        f"at {TIMES} times until {work.wanted.time:g} all angular velocities are along ({direction}) of inertial space "
-        f"and all velocities normal to it, but for {off:.0e} of them; told, not used: mbsym simulate integrates all "
-        "coordinates"
+    why = Message(
+        "at [[times]] times until [[time]] all angular velocities are along ([[direction]]) of "
+        "inertial space and all velocities normal to it, but for [[part]] of them; told, not "
+        "used: mbsym simulate integrates all coordinates",
+        times=TIMES,
+        time=f"{work.wanted.time:g}",
+        direction=direction,
+        part=f"{off:.0e}",
     )
     measures = (
         Measure(

@@ -16,6 +16,7 @@ from mbsym.algebra.point import Balls
 from mbsym.algebra.program import Node
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.analysis import Analysis
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import Expression, Name
 from mbsym.formulas.names import free_name
 from mbsym.mechanics.energy import kinetic_energy
@@ -55,10 +56,12 @@ class Counted:
     def measures(self, here: Counted, of: str) -> tuple[Measure, ...]:
         """This counterfactual against what was derived ``here``, which was finished."""
         assert here.terms is not None
-        seconds = Measure(f"seconds of deriving {of}", SECONDS, self.seconds, here.seconds, self.terms is None)
+        text = Message("seconds of deriving [[what]]", what=of)
+        seconds = Measure(text, SECONDS, self.seconds, here.seconds, self.terms is None)
         if self.terms is None:
-            return Measure(f"steps of polynomial arithmetic for {of}", COUNT, self.steps, here.steps, True), seconds
-        return Measure(f"terms of {of}", TERMS, self.terms, here.terms), seconds
+            text = Message("steps of polynomial arithmetic for [[what]]", what=of)
+            return Measure(text, COUNT, self.steps, here.steps, True), seconds
+        return Measure(Message("terms of [[what]]", what=of), TERMS, self.terms, here.terms), seconds
 
 
 @dataclass(frozen=True)

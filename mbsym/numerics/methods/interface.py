@@ -13,6 +13,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from mbsym.expressions.message import Message, worded
 from mbsym.numerics.dynamics import Dynamics
 
 #: Where a step vanishes, rates beyond this mean a blow-up.
@@ -22,12 +23,15 @@ LARGEST = 1e12
 class Breakdown(Exception):
     """An integration that cannot go on: ``kind`` says why, at ``time`` in ``state`` (q, q').
 
-    ``filled`` holds the states (2n, j) at the first j of the times that ``Run.fill`` was asked for.
+    ``told`` is all of it in words; ``filled`` holds the states (2n, j) at the first j of the times that ``Run.fill``
+    was asked for.
     """
 
     def __init__(self, kind: str, message: str, time: float, state: Any, filled: Any = None) -> None:
-        super().__init__(f"{kind} at t = {time:.9g}: {message}")
-        self.kind, self.message, self.time, self.state, self.filled = kind, message, time, state, filled
+        self.kind, self.message, self.time, self.state, self.filled = kind, worded(message), time, state, filled
+        text = "[[kind]] at t = [[time]]: [[message]]"
+        self.told = Message(text, kind=Message(kind), time=f"{time:.9g}", message=self.message)
+        super().__init__(str(self.told))
 
 
 BLOW_UP, SINGULAR, STEP_LIMIT, STUCK = "blow-up", "singular mass matrix", "step limit", "step size too small"
@@ -181,4 +185,4 @@ class Unusable(Exception):
 
     def __init__(self, reason: str = "") -> None:
         super().__init__(reason)
-        self.reason = reason
+        self.reason = worded(reason)

@@ -20,6 +20,7 @@ from typing import Any
 
 import numpy as np
 
+from mbsym.expressions.message import Message
 from mbsym.numerics.dynamics import Dynamics, Frozen
 from mbsym.numerics.events.features import SLIDING
 from mbsym.numerics.methods.blocks import MOST, Block, Blocks
@@ -251,7 +252,8 @@ class LandingRun:
             run.restart(self.time, self.state)
             self._ahead = run
         if self.work.steps >= self._setting.step_limit:
-            raise Breakdown(STEP_LIMIT, f"{self.work.steps} steps", self.time, np.array(self.state, dtype=float))
+            made = Message("[[count]] steps", count=self.work.steps)
+            raise Breakdown(STEP_LIMIT, made, self.time, np.array(self.state, dtype=float))
         before, changes = {name: getattr(run.work, name) for name in COUNTS}, len(run.work.changes)
         try:
             return run.step(bound)

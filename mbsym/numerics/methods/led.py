@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from mbsym.expressions.message import Message
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.bridge import Bridge, bridge
 from mbsym.numerics.methods.interface import SINGULAR_CONSTRAINTS, Breakdown, Piece, Run, Unusable
@@ -28,7 +29,7 @@ TIMES = 2
 #: A correction beyond this part of the state is none: the constraints are nearly singular there.
 LARGEST_PART = 1e-2
 
-DO = "these methods do: rk4, rk45, dop853, taylor, scipy-rk45, scipy-dop853, radau, bdf"
+DO = Message("these methods do: rk4, rk45, dop853, taylor, scipy-rk45, scipy-dop853, radau, bdf")
 
 #: So many states at ends of steps or questions are kept, to look back from a singular position.
 REMEMBERED = 400
@@ -81,10 +82,13 @@ def nearly_singular(time: Any, state: Any) -> Breakdown:
 def refuse(dynamics: Dynamics, method: str) -> None:
     """Raises Unusable for a method that does not lead states back, where there is something to be kept."""
     if dynamics.constraints is not None:
-        kept = f"{method} does not keep to constraints ({dynamics.constraints.told()})"
-        raise Unusable(f"{kept}; {DO}")
+        told = dynamics.constraints.told()
+        raise Unusable(
+            Message("[[method]] does not keep to constraints ([[told]]); [[these]]", method=method, told=told, these=DO)
+        )
     if dynamics.correction is not None:
-        raise Unusable(f"{method} does not keep quaternions and unit vectors at their lengths; {DO}")
+        text = "[[method]] does not keep quaternions and unit vectors at their lengths; [[these]]"
+        raise Unusable(Message(text, method=method, these=DO))
 
 
 class LedRun:

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from mbsym.expressions.message import Message
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import FLOAT64
 from mbsym.numerics.methods.interface import (
@@ -104,7 +105,7 @@ class LibraryRun(Stepping):
     def one(self, until: float | None = None) -> None:
         """One step of the solver."""
         if self.work.steps >= self._limit:
-            raise self._fail(STEP_LIMIT, f"{self.work.steps} steps")
+            raise self._fail(STEP_LIMIT, Message("[[count]] steps", count=self.work.steps))
         with np.errstate(all="ignore"), warnings.catch_warnings():
             warnings.simplefilter("ignore")
             if self._solver is None:
@@ -163,7 +164,7 @@ class Library:
 
     def __init__(self, name: str, solver: str, order: int | None, implicit: bool = False) -> None:
         self._solver = solver
-        title = f"SciPy's {solver}" + (", for stiff systems" if implicit else "")
+        title = Message("SciPy's [[solver]], for stiff systems" if implicit else "SciPy's [[solver]]", solver=solver)
         self.traits = Traits(name, title, order, fixed=False, implicit=implicit)
 
     @property
@@ -178,7 +179,7 @@ class Library:
     ) -> LibraryRun:
         """A run in float64.  Raises Unusable for another arithmetic."""
         if scalar != FLOAT64:
-            raise Unusable(f"{self.traits.name} runs in float64 only")
+            raise Unusable(Message("[[name]] runs in float64 only", name=self.traits.name))
         state = [float(x) for x in dynamics.scenario.state] if initial is None else initial
         return LibraryRun(self, dynamics, setting, state, at)
 

@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from mbsym.expressions.message import Message
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64, Code
 from mbsym.numerics.kernels.llvm import SCALARS, Library, Scalar, available, compiled
@@ -236,7 +237,7 @@ class CompiledRun(Stepping):
         """So many steps may be tried before machine code is left, as far as the limit allows any."""
         left = self.limit - self.work.steps - self.work.rejected
         if left <= 0:
-            raise self._fail(STEP_LIMIT, f"{self.work.steps} steps", self.clock[TIME], self.x)
+            raise self._fail(STEP_LIMIT, Message("[[count]] steps", count=self.work.steps), self.clock[TIME], self.x)
         self.count[LEFT] = min(attempts, left)
 
     def _judge(self, reply: int) -> None:
@@ -265,7 +266,7 @@ class FixedRun(CompiledRun):
         self, dynamics: Dynamics, tableau: Tableau, setting: Setting, scalar: str, initial: Any, at: float
     ) -> None:
         if setting.step is None or not (isfinite(setting.step) and setting.step > 0):
-            raise Unusable(f"{tableau.name} needs a step (--step)")
+            raise Unusable(Message("[[name]] needs a step (--step)", name=tableau.name))
         super().__init__(dynamics, tableau, setting, scalar)
         self.step_length = self.clock_type(setting.step)
         self.clock[STEP], self.clock[SLACK] = self.step_length, self.step_length * MISSED
@@ -370,9 +371,11 @@ class AdaptiveRun(CompiledRun):
         size = float(np.max(np.abs(self.x), initial=0.0))
         steep = float(np.max(np.abs(self.k[0]), initial=0.0))
         if self.count[INFINITE] or not size < LARGEST or not steep < LARGEST:
-            message = f"values or rates grow too large to go on (largest rate {steep:.2g})"
+            message = Message("values or rates grow too large to go on (largest rate [[rate]])", rate=f"{steep:.2g}")
             return self._fail(BLOW_UP, message, self.clock[TIME], self.x)
-        return self._fail(STUCK, f"step {float(self.clock[STEP]):.2g}", self.clock[TIME], self.x)
+        return self._fail(
+            STUCK, Message("step [[step]]", step=f"{float(self.clock[STEP]):.2g}"), self.clock[TIME], self.x
+        )
 
 
 @dataclass(frozen=True)
@@ -387,7 +390,7 @@ class RungeKutta:
         scalars = (FLOAT64, FLOAT32, EXTENDED)
         return Traits(
             name=tableau.name,
-            title=f"{tableau.title}, compiled",
+            title=Message("[[method]], compiled", method=Message(tableau.title)),
             order=tableau.order,
             fixed=not tableau.errors,
             scalars=scalars,
@@ -398,7 +401,7 @@ class RungeKutta:
     ) -> FixedRun | AdaptiveRun:
         """A run of compiled steps.  Raises Unusable for an arithmetic that this machine lacks, or without a step."""
         if not available(scalar):
-            raise Unusable(f"this machine has no {scalar} arithmetic")
+            raise Unusable(Message("this machine has no [[scalar]] arithmetic", scalar=scalar))
         run = AdaptiveRun if self.tableau.errors else FixedRun
         state = initial_state(dynamics, SCALARS[scalar].dtype) if initial is None else initial
         return run(dynamics, self.tableau, setting, scalar, state, at)

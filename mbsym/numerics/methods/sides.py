@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from mbsym.algebra.lookup import numbers_of
+from mbsym.expressions.message import Message, joined
 from mbsym.expressions.table import Curve
 from mbsym.numerics.dynamics import Dynamics, Frozen
 from mbsym.numerics.events.features import SLIDING
@@ -178,9 +179,11 @@ class Sides:
             if curve is not None and curve.bounded and side in (1, len(curve.knots) + 1):
                 value = float(self.at(time, state)[k])
                 end = float(curve.knots[0] if side == 1 else curve.knots[-1])
-                where = f"begins at {end:.9g}" if side == 1 else f"ends at {end:.9g}"
-                beyond = "" if abs(value - end) <= 1e-9 * (1 + abs(end)) else f", and its argument is {value:.9g}"
-                message = f"the table {curve.table.name} {where}{beyond}"
+                text = "the table [[name]] begins at [[end]]" if side == 1 else "the table [[name]] ends at [[end]]"
+                message = Message(text, name=curve.table.name, end=f"{end:.9g}")
+                if abs(value - end) > 1e-9 * (1 + abs(end)):
+                    argument = Message("its argument is [[value]]", value=f"{value:.9g}")
+                    message = joined([message, argument], ", ")
                 raise Breakdown(OUTSIDE, message, float(time), np.array(state, dtype=float))
 
 

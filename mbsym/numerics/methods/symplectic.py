@@ -33,6 +33,7 @@ from typing import Any
 import numpy as np
 from flint import arb, ctx
 
+from mbsym.expressions.message import Message
 from mbsym.model.system import System
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
@@ -77,7 +78,7 @@ class MidpointRun(Stepping):
         self, dynamics: Dynamics, method: Symplectic, setting: Setting, scalar: str, initial: Any, at: float
     ) -> None:
         if setting.step is None or not (isfinite(setting.step) and setting.step > 0):
-            raise Unusable(f"{method.name} needs a step (--step)")
+            raise Unusable(Message("[[name]] needs a step (--step)", name=method.name))
         self.limit = setting.step_limit
         n = self.n = dynamics.size
         chosen = SCALARS[scalar]
@@ -183,7 +184,9 @@ class MidpointRun(Stepping):
         while self.count[NUMBER] < goal:
             first, now = int(self.count[NUMBER]), float(self.reached)
             if self.work.steps >= self.limit:
-                raise Breakdown(STEP_LIMIT, f"{self.work.steps} steps", now, np.array(self.end, dtype=float))
+                raise Breakdown(
+                    STEP_LIMIT, Message("[[count]] steps", count=self.work.steps), now, np.array(self.end, dtype=float)
+                )
             before = self.x.copy()
             last = min(goal, first + min(self._at_once, self.limit - self.work.steps))
             self._counted(first, self._midpoint(*self._pointers, first, last))
@@ -268,9 +271,10 @@ class MidpointRun(Stepping):
         state = known if known is not None else np.where(np.isfinite(before), before, 0.0)
         if self.count[TROUBLE] == NOT_FINITE or not finite:
             raise Breakdown(BLOW_UP, "a value is no longer finite", now, np.array(state, dtype=float))
-        message = (
-            f"the implicit equation has no solution within {MOST_ITERATIONS} iterations; "
-            f"h = {float(self.clock[STEP]):.3g} is too long"
+        message = Message(
+            "the implicit equation has no solution within [[count]] iterations; h = [[step]] is too long",
+            count=MOST_ITERATIONS,
+            step=f"{float(self.clock[STEP]):.3g}",
         )
         raise Breakdown(STUCK, message, now, np.array(state, dtype=float))
 
@@ -350,11 +354,10 @@ class Symplectic:
         refuse(dynamics, self.name)
         loads = without_potential(dynamics.system)
         if loads:
-            raise Unusable(
-                f"{self.name} is for conservative systems; these loads have no potential: {', '.join(loads)}"
-            )
+            text = "[[name]] is for conservative systems; these loads have no potential: [[loads]]"
+            raise Unusable(Message(text, name=self.name, loads=", ".join(loads)))
         if not available(scalar) or scalar not in self.traits.scalars:
-            raise Unusable(f"{self.name} does not run in {scalar} here")
+            raise Unusable(Message("[[name]] does not run in [[scalar]] here", name=self.name, scalar=scalar))
         state = initial_state(dynamics, SCALARS[scalar].dtype) if initial is None else initial
         return MidpointRun(dynamics, self, setting, scalar, state, at)
 
@@ -374,7 +377,7 @@ def _yoshida() -> tuple[Fraction, ...]:
 
 
 METHODS = (
-    Symplectic("midpoint", "variational midpoint rule", 2, (Fraction(1),)),
-    Symplectic("midpoint4", "variational midpoint rule, composed to order 4", 4, _suzuki()),
-    Symplectic("midpoint6", "variational midpoint rule, composed to order 6", 6, _yoshida()),
+    Symplectic("midpoint", Message("variational midpoint rule"), 2, (Fraction(1),)),
+    Symplectic("midpoint4", Message("variational midpoint rule, composed to order 4"), 4, _suzuki()),
+    Symplectic("midpoint6", Message("variational midpoint rule, composed to order 6"), 6, _yoshida()),
 )

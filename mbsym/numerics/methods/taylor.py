@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from mbsym.expressions.message import Message
 from mbsym.numerics.dynamics import Dynamics, Frozen
 from mbsym.numerics.kernels.cells import place_of
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64, Code
@@ -89,7 +90,7 @@ def expressions(code: Code, heyoka: Any, dtype: Any) -> list[Any]:
             case function, [a]:
                 known: Callable[[Any], Any] | None = getattr(heyoka, function, None)
                 if known is None:
-                    raise Unusable(f"heyoka has no function {function}")
+                    raise Unusable(Message("heyoka has no function [[function]]", function=function))
                 found = known(a)
         values[number] = found
     return [values[node.number] for node in code.outputs]
@@ -115,7 +116,8 @@ def _integrator(dynamics: Dynamics, tolerance: float, scalar: str) -> Any:
                 fp_type=kind,
             )
         except TypeError as missing:
-            raise Unusable(f"this heyoka has no {scalar} arithmetic ({missing})") from None
+            text = "this heyoka has no [[scalar]] arithmetic ([[why]])"
+            raise Unusable(Message(text, scalar=scalar, why=missing)) from None
 
     return copy.deepcopy(once(dynamics, ("taylor", tolerance, scalar), make))
 
@@ -206,7 +208,7 @@ class TaylorRun(Stepping):
         goal = until - 2 * last
         while last > 0 and goal - taylor.time > 8 * last:
             if work.steps >= self._limit:
-                raise self._fail(STEP_LIMIT, f"{work.steps} steps", taylor.time, taylor.state)
+                raise self._fail(STEP_LIMIT, Message("[[count]] steps", count=work.steps), taylor.time, taylor.state)
             now, before = taylor.time, np.array(taylor.state)
             at_once = min(STEPS_AT_A_TIME, self._limit - work.steps)
             outcome, shortest, _, made, *_ = taylor.propagate_until(self._dtype(goal), max_steps=at_once)
@@ -221,7 +223,7 @@ class TaylorRun(Stepping):
         """One step that keeps its series."""
         taylor, work = self._taylor, self.work
         if work.steps >= self._limit:
-            raise self._fail(STEP_LIMIT, f"{work.steps} steps", taylor.time, taylor.state)
+            raise self._fail(STEP_LIMIT, Message("[[count]] steps", count=work.steps), taylor.time, taylor.state)
         now, before = taylor.time, np.array(taylor.state)
         if self._led is not None and self._led.near(now, before):
             raise nearly_singular(now, before)
@@ -243,8 +245,9 @@ class TaylorRun(Stepping):
         if step > self._least * max(1.0, abs(now)):
             return
         if not np.all(np.abs(self._taylor.state) < LARGEST):
-            raise self._fail(BLOW_UP, f"a coordinate or velocity is beyond {LARGEST:.0e}", now, before)
-        raise self._fail(STUCK, f"step {float(step):.2g}", now, before)
+            bound = Message("a coordinate or velocity is beyond [[bound]]", bound=f"{LARGEST:.0e}")
+            raise self._fail(BLOW_UP, bound, now, before)
+        raise self._fail(STUCK, Message("step [[step]]", step=f"{float(step):.2g}"), now, before)
 
     @staticmethod
     def _fail(kind: str, message: str, time: Any, state: Any) -> Breakdown:
@@ -256,7 +259,7 @@ class Taylor:
 
     traits = Traits(
         name="taylor",
-        title="Taylor series of high order (heyoka)",
+        title=Message("Taylor series of high order (heyoka)"),
         order=None,
         fixed=False,
         scalars=(FLOAT64, FLOAT32, EXTENDED),

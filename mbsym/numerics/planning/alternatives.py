@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from mbsym.expressions.message import Message
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.planning.model_choice import PART, Tried
 from mbsym.numerics.planning.pilot import USUAL_SLOPE, Bench, Trial, finest
@@ -39,9 +40,9 @@ def _other(
     if judged is not None and not _tried_in_vain(bench, found, judged[2], wanted):
         options.append((judged[0] * price, judged[1], False))
     if not options:
-        why = f"{found.scalar} has no finer tolerance"
-        if found.scalar == FLOAT64 and EXTENDED in found.method.traits.scalars:
-            why += "; extended arithmetic is needed"
+        needed = found.scalar == FLOAT64 and EXTENDED in found.method.traits.scalars
+        text = "[[scalar]] has no finer tolerance; extended arithmetic is needed"
+        why = Message(text if needed else "[[scalar]] has no finer tolerance", scalar=found.scalar)
         return Alternative(target * factor, why=why, model=name)
     cost, label, measured = min(options)
     times = cost / found.cost

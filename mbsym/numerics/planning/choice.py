@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from mbsym.expressions.message import Message
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.events.switching import STABLE, STIFF, Switching, rates
 from mbsym.numerics.kernels.interface import FLOAT64
@@ -76,12 +77,15 @@ def _at_first(dynamics: Dynamics, tolerance: float, time_: float, scalar: str) -
     steps = decay * time_ / STABLE
     # Where the oscillations are as fast as that, they need the short steps themselves.
     if decay <= STIFF * frequency or steps <= OF_NO_ACCOUNT:
-        return Choice(explicit, "explicit, of high order: nothing stiff in the initial state", decay, frequency)
+        why = Message("explicit, of high order: nothing stiff in the initial state")
+        return Choice(explicit, why, decay, frequency)
     if steps <= FEW_STEPS:
-        why = f"explicit, of high order: motions die out at rates up to {decay:.3g}, about {steps:.2g} steps"
+        text = "explicit, of high order: motions die out at rates up to [[rate]], about [[steps]] steps"
+        why = Message(text, rate=f"{decay:.3g}", steps=f"{steps:.2g}")
         return Choice(explicit, why, decay, frequency)
     if scalar != FLOAT64:
-        return Choice(explicit, f"the implicit methods do not compute in {scalar}", decay, frequency)
+        why = Message("the implicit methods do not compute in [[scalar]]", scalar=scalar)
+        return Choice(explicit, why, decay, frequency)
     setting = Setting(tolerance=tolerance)
     best, least = explicit, _predicted(dynamics, explicit, setting, time_, steps)
     first = least
@@ -90,16 +94,13 @@ def _at_first(dynamics: Dynamics, tolerance: float, time_: float, scalar: str) -
         if found is not None and found < least:
             best, least = METHODS[name], found
     if best is explicit:
-        why = f"motions die out at rates up to {decay:.3g}, yet explicit steps cost less here, by counted work"
-        return Choice(best, why, decay, frequency, f"about {first:.2g} s by the counted work of a short trial")
-    why = f"stiff: motions die out at rates up to {decay:.3g}, which would cost an explicit method {steps:.2g} steps"
-    return Choice(
-        best,
-        why,
-        decay,
-        frequency,
-        f"about {least:.2g} s instead of {first:.2g} s, by the counted work of short trials",
-    )
+        text = "motions die out at rates up to [[rate]], yet explicit steps cost less here, by counted work"
+        measured = Message("about [[cost]] s by the counted work of a short trial", cost=f"{first:.2g}")
+        return Choice(best, Message(text, rate=f"{decay:.3g}"), decay, frequency, measured)
+    text = "stiff: motions die out at rates up to [[rate]], which would cost an explicit method [[steps]] steps"
+    why = Message(text, rate=f"{decay:.3g}", steps=f"{steps:.2g}")
+    text = "about [[cost]] s instead of [[other]] s, by the counted work of short trials"
+    return Choice(best, why, decay, frequency, Message(text, cost=f"{least:.2g}", other=f"{first:.2g}"))
 
 
 def _predicted(dynamics: Dynamics, method: Method, setting: Setting, time_: float, steps: float) -> float:

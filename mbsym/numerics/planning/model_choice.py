@@ -16,6 +16,7 @@ import numpy as np
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
+from mbsym.expressions.message import Message
 from mbsym.model.loads import EXACT
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.ensembles.parametrised import Parametrised
@@ -107,7 +108,7 @@ def richest(scenario: Scenario) -> tuple[Model, Dynamics, str]:
             assert found.right_hand_side.outputs
             return model, found, reason
         except Failure as trouble:
-            reason = f"there is no program for {model.label}: {trouble}"
+            reason = Message("there is no program for [[label]]: [[trouble]]", label=model.label, trouble=trouble)
     found = Dynamics(scenario)
     assert found.right_hand_side.outputs
     return Model(), found, reason
@@ -195,7 +196,8 @@ def _held_against(scene: Scene, model: Model, truth: _Truth) -> tuple[Tried, Dyn
     naive = _naive(scene, dynamics)
     if not naive <= HOPELESS * PART:
         errors = np.full(len(scene.targets), inf)
-        return Tried(model, operations, naive, errors, Certainty.ESTIMATED, "far off by its residual"), dynamics
+        why = Message("far off by its residual")
+        return Tried(model, operations, naive, errors, Certainty.ESTIMATED, why), dynamics
     return _estimated(scene, model, dynamics, truth), dynamics
 
 
@@ -211,7 +213,7 @@ def _estimated(scene: Scene, model: Model, dynamics: Dynamics, truth: _Truth) ->
         found = confirmed(found, rerun, scene.scale[:-1], 0.1 * unit)
         how, why = (
             Certainty.MEASURED,
-            "" if found.confirmed or not trusted else "a rerun with the richer model says otherwise",
+            "" if found.confirmed or not trusted else Message("a rerun with the richer model says otherwise"),
         )
     elif not found.trusted:
         errors = np.full(len(scene.targets), inf)

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
+from mbsym.expressions.message import Message, joined
 from mbsym.expressions.tree import names
 from mbsym.mechanics.variables import expressions
 from mbsym.model.loads import EXACT, GRAVITY_ORDERS
@@ -36,12 +37,15 @@ class Model:
         """``gravity of order 2, linearised, without c``."""
         parts = []
         if self.gravity is not None:
-            parts.append("exact gravity" if self.gravity == EXACT else f"gravity of order {self.gravity}")
+            exact = self.gravity == EXACT
+            parts.append(
+                Message("exact gravity") if exact else Message("gravity of order [[order]]", order=self.gravity)
+            )
         if self.linear:
-            parts.append("linearised")
+            parts.append(Message("linearised"))
         if self.without:
-            parts.append(f"without {', '.join(self.without)}")
-        return ", ".join(parts) or "as described"
+            parts.append(Message("without [[names]]", names=", ".join(self.without)))
+        return joined(parts, ", ") if parts else Message("as described")
 
 
 def scenario_of(scenario: Scenario, model: Model) -> Scenario:

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from mbsym.algebra.certainty import Certainty
+from mbsym.expressions.message import Message
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.planning.models import Model
 
@@ -148,8 +149,8 @@ class Alternative:
 def poorly_measured(known: float) -> str:
     """What is said of a run to measure by that is ``known`` to this part of the sizes only."""
     if not isfinite(known):
-        return "no run could be had to measure settings by"
-    return f"what settings were measured by is itself known to {known:.1e} only"
+        return Message("no run could be had to measure settings by")
+    return Message("what settings were measured by is itself known to [[known]] only", known=f"{known:.1e}")
 
 
 @dataclass(frozen=True)

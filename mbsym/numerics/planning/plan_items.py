@@ -9,6 +9,7 @@ from math import inf, isfinite
 import numpy as np
 
 from mbsym.algebra.certainty import Certainty
+from mbsym.expressions.message import Message, joined
 from mbsym.model.loads import GRAVITY_ORDERS
 from mbsym.model.welded import lumped
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64
@@ -85,29 +86,31 @@ def _models(settled: Settled) -> Iterator[Item]:
     scene, model = settled.scene, settled.model
     taken = model.taken
     given = described(scene.scenario)
-    why = "as asked for" if GRAVITY in settled.pinned else _why_model(model)
+    why = Message("as asked for") if GRAVITY in settled.pinned else _why_model(model)
     if given.gravity is not None:
         refused = tuple(_refused(settled, one) for one in model.tried if _other_order(one.model, taken.model))
         richer = taken.model.gravity is not None and GRAVITY_ORDERS.index(taken.model.gravity) > GRAVITY_ORDERS.index(
             given.gravity
         )
-        why = f"{why}; richer than described (order {given.gravity})" if richer else why
+        if richer:
+            why = Message("[[why]]; richer than described (order [[order]])", why=why, order=given.gravity)
         alone = not (taken.model.linear or taken.model.without)
         error = _worst(settled, taken) if alone else None
         yield Item(GRAVITY, (), str(taken.model.gravity), why, error, taken.how, taken.operations, refused=refused)
     lines = [one for one in model.tried if one.model.linear]
     if lines or taken.model.linear:
-        chosen = "linear" if taken.model.linear else "nonlinear"
+        chosen = Message("linear" if taken.model.linear else "nonlinear")
         refused = tuple(_refused(settled, one) for one in lines if one.model != taken.model)
         error = _worst(settled, taken) if taken.model.linear else None
-        why = "as asked for" if LINEARITY in settled.pinned else _why_model(model)
+        why = Message("as asked for") if LINEARITY in settled.pinned else _why_model(model)
         yield Item(LINEARITY, (), chosen, why, error, taken.how, taken.operations, refused=refused)
     if taken.model.without:
-        why = "as asked for" if LEFT_OUT in settled.pinned else "this motion does not feel them"
+        why = Message("as asked for" if LEFT_OUT in settled.pinned else "this motion does not feel them")
         bodies, others = parted(scene.scenario, taken.model)
         left = ", ".join(taken.model.without)
         if bodies:
-            yield Item(MASSES, bodies, f"without {left}", why, _worst(settled, taken), taken.how, taken.operations)
+            gone = Message("without [[names]]", names=left)
+            yield Item(MASSES, bodies, gone, why, _worst(settled, taken), taken.how, taken.operations)
         if others:
             error = None if bodies else _worst(settled, taken)  # that of all together stands with the bodies
             yield Item(LEFT_OUT, others, ", ".join(others), why, error, taken.how, taken.operations)
@@ -115,10 +118,12 @@ def _models(settled: Settled) -> Iterator[Item]:
 
 def _why_model(model: ModelChoice) -> str:
     if model.taken.model == model.faithful:
-        return "nothing simpler is good enough" if len(model.tried) > 1 else "nothing simpler is known"
+        return Message("nothing simpler is good enough" if len(model.tried) > 1 else "nothing simpler is known")
     able = [one.operations for one in model.tried if one.ratio <= PART and one.how is not Certainty.UNDECIDED]
     fewest = model.taken.operations <= min(able, default=0)
-    return "good enough, with the fewest operations of those tried" if fewest else "good enough, with fewer operations"
+    return Message(
+        "good enough, with the fewest operations of those tried" if fewest else "good enough, with fewer operations"
+    )
 
 
 def _other_order(one: Model, taken: Model) -> bool:
@@ -134,23 +139,23 @@ def _resting(settled: Settled) -> Iterator[Item]:
     found = settled.resting
     if found is not None:
         before, after = found.operations
-        why = f"{after} operations a right-hand side instead of {before}"
-        yield Item(RESTING, found.names, "not integrated", why, 0.0, Certainty.PROVED, after)
+        why = Message("[[after]] operations a right-hand side instead of [[before]]", after=after, before=before)
+        yield Item(RESTING, found.names, Message("not integrated"), why, 0.0, Certainty.PROVED, after)
 
 
 def _parts(settled: Settled) -> Iterator[Item]:
     if settled.parts and not settled.found.method.traits.fixed:
         names = tuple(" ".join(part.names) for part in settled.parts)
-        yield Item(PARTS, names, "each by itself", "nothing links them in these equations", 0.0, Certainty.PROVED)
+        why = Message("nothing links them in these equations")
+        yield Item(PARTS, names, Message("each by itself"), why, 0.0, Certainty.PROVED)
 
 
 def _welded(settled: Settled) -> Iterator[Item]:
     found = lumped(settled.scene.scenario.system)
     if found and WELDED not in settled.pinned and not settled.model.taken.model.linear:
-        carriers = ", ".join(dict.fromkeys(found.values()))
-        yield Item(
-            WELDED, tuple(found), f"one with {carriers}", "no coordinate moves them against it", 0.0, Certainty.PROVED
-        )
+        carried = Message("one with [[bodies]]", bodies=", ".join(dict.fromkeys(found.values())))
+        why = Message("no coordinate moves them against it")
+        yield Item(WELDED, tuple(found), carried, why, 0.0, Certainty.PROVED)
 
 
 def _settings(settled: Settled) -> Iterator[Item]:
@@ -158,36 +163,41 @@ def _settings(settled: Settled) -> Iterator[Item]:
     name = found.method.traits.name
     others = _cheapest_others(settled)
     chosen = _why_method(settled, bool(others)) if settled.enough else _closest(settled)
-    why = "as asked for" if METHOD in pinned else chosen
+    why = Message("as asked for") if METHOD in pinned else chosen
     if FINENESS in pinned:
-        why = f"as asked for{_fitting(found)}"
+        why = _fitting(found)
     if settled.choice.method.traits.implicit and METHOD not in pinned:
-        why += f"; motions die out at rates up to {settled.choice.decay:.3g}"
+        why = joined(
+            [why, Message("motions die out at rates up to [[rate]]", rate=f"{settled.choice.decay:.3g}")], "; "
+        )
     yield Item(
         METHOD, (found.method.traits.title,), name, why, None, Certainty.MEASURED, found.seconds, SECONDS, others
     )
-    why = "as asked for" if FINENESS in pinned else _why_fineness(settled)
-    word = f"tolerance {found.fineness:g}" if found.setting.step is None else f"step {found.fineness:g}"
+    why = Message("as asked for") if FINENESS in pinned else _why_fineness(settled)
+    word = Message("tolerance [[tolerance]]", tolerance=f"{found.fineness:g}")
+    if found.setting.step is not None:
+        word = Message("step [[step]]", step=f"{found.fineness:g}")
     yield Item(FINENESS, (), word, why, None, Certainty.MEASURED, found.seconds, SECONDS)
     refused = tuple(_other_scalars(settled))
-    why = "as asked for" if SCALAR in pinned else _why_scalar(settled)
+    why = Message("as asked for") if SCALAR in pinned else _why_scalar(settled)
     yield Item(SCALAR, (), found.scalar, why, None, Certainty.MEASURED, found.seconds, SECONDS, refused)
-    yield Item(KERNEL, (), "scalar", "one motion: nothing to lay side by side", 0.0, Certainty.PROVED)
+    yield Item(KERNEL, (), "scalar", Message("one motion: nothing to lay side by side"), 0.0, Certainty.PROVED)
 
 
 def _why_method(settled: Settled, others: bool) -> str:
     """What is called the cheapest is that by counted work, and is so."""
-    enough = "its measured error, doubled, is small enough"
+    enough = Message("its measured error, doubled, is small enough")
     if not others:
-        return f"{enough}; no other method came to the end here"
+        return Message("[[enough]]; no other method came to the end here", enough=enough)
     least = min((one.cost for one in settled.fitting), default=0.0)
     if settled.found.cost > ALIKE * least:
         return enough
-    return f"by counted work {_cheapest(settled.found, least)} whose measured error, doubled, is small enough"
+    text = "by counted work [[cheapest]] whose measured error, doubled, is small enough"
+    return Message(text, cheapest=_cheapest(settled.found, least))
 
 
 def _cheapest(found: Trial, least: float) -> str:
-    return "the cheapest tried here" if found.cost <= least else "within a tenth of the cheapest tried here"
+    return Message("the cheapest tried here" if found.cost <= least else "within a tenth of the cheapest tried here")
 
 
 def _closest(settled: Settled) -> str:
@@ -197,14 +207,15 @@ def _closest(settled: Settled) -> str:
     near = min((one.cost for one in settled.bench.trials if one.ratio <= 2 * least), default=0.0)
     if found.ratio > 2 * least or found.cost > ALIKE * near:
         return none
-    return f"{none}: by counted work {_cheapest(found, near)} within twice the least error"
+    text = "[[none]]: by counted work [[cheapest]] within twice the least error"
+    return Message(text, none=none, cheapest=_cheapest(found, near))
 
 
 def _none(settled: Settled) -> str:
     """No setting was accurate enough, or none could be told to be."""
     if settled.measured_to is None:
-        return "none tried is accurate enough"
-    return f"{poorly_measured(settled.measured_to)}: none can be told to be enough"
+        return Message("none tried is accurate enough")
+    return Message("[[why]]: none can be told to be enough", why=poorly_measured(settled.measured_to))
 
 
 def _why_fineness(settled: Settled) -> str:
@@ -214,16 +225,16 @@ def _why_fineness(settled: Settled) -> str:
     same = [one for one in settled.fitting if (one.method, one.scalar) == (found.method, found.scalar)]
     coarser = [one.cost for one in same if one.fineness > found.fineness]
     if not coarser:
-        return "the coarsest tried that is good enough"
-    return (
+        return Message("the coarsest tried that is good enough")
+    return Message(
         "good enough, and cheaper by counted work than what is coarser" if found.cost < min(coarser) else "good enough"
     )
 
 
 def _fitting(found: Trial) -> str:
     if found.ratio > 1:
-        return ", too coarse for this accuracy"
-    return ", finer than this accuracy needs" if found.ratio < WASTEFUL else ""
+        return Message("as asked for, too coarse for this accuracy")
+    return Message("as asked for, finer than this accuracy needs" if found.ratio < WASTEFUL else "as asked for")
 
 
 def _why_scalar(settled: Settled) -> str:
@@ -231,13 +242,15 @@ def _why_scalar(settled: Settled) -> str:
     found, fitting = settled.found, settled.fitting
     usual = min((one.cost for one in fitting if one.scalar == FLOAT64), default=None)
     if found.scalar == EXTENDED and usual is None:
-        return "in float64 every error that was measured, doubled, is too large"
+        return Message("in float64 every error that was measured, doubled, is too large")
     if not settled.enough:
         return _none(settled)
     cheaper = usual is not None and found.cost < usual
-    less = "it costs less by counted work" if cheaper and found.scalar != FLOAT64 else ""
+    less = Message("it costs less by counted work") if cheaper and found.scalar != FLOAT64 else ""
     rounding = _rounding(settled.bound) if found.scalar != EXTENDED else ""
-    return ", and ".join(text for text in (rounding, less) if text) or "good enough"
+    if rounding and less:
+        return Message("[[one]], and [[other]]", one=rounding, other=less)
+    return rounding or less or Message("good enough")
 
 
 def _rounding(bound: Bound) -> str:
@@ -246,8 +259,8 @@ def _rounding(bound: Bound) -> str:
     if arithmetic.how is None:
         return ""
     if arithmetic.error <= bound.integrated - arithmetic.error:
-        return "its rounding stays below the error of the method"
-    return "its rounding is most of the error, and small enough"
+        return Message("its rounding stays below the error of the method")
+    return Message("its rounding is most of the error, and small enough")
 
 
 def _cheapest_others(settled: Settled) -> tuple[Refused, ...]:

@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 
 from mbsym.algebra.failures import Defect, Failure
+from mbsym.expressions.message import Message
 from mbsym.model.loads import EXACT, GRAVITY_ORDERS, NewtonianGravity
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import FLOAT64
@@ -35,7 +36,7 @@ from mbsym.numerics.scenario import Scenario
 TIGHT, RESOLVED = 1e-13, 1e-11
 
 #: The label of the model that the description gives.
-DESCRIBED = "as described"
+DESCRIBED = Message("as described")
 
 #: Runs timed for each variant, and what they may cost together (``mbsym.numerics.planning.prices``).
 REPEATS, MOST = 5, 2.0
@@ -76,16 +77,18 @@ def variants(scenario: Scenario) -> Iterator[Variant]:
     system = scenario.system
     fields = system.newtonian_fields
     faithful = min((GRAVITY_ORDERS.index(load.order) + 1 for load in fields), default=0)
-    yield Variant(DESCRIBED, "nothing that the description has", Dynamics(scenario), faithful)
+    yield Variant(DESCRIBED, Message("nothing that the description has"), Dynamics(scenario), faithful)
     for rank, order in enumerate(GRAVITY_ORDERS if fields else (), start=1):
         if all(load.order == order for load in fields) or (order != EXACT and not _expandable(scenario, fields)):
             continue
-        dropped = "nothing of the field" if order == EXACT else f"terms of the field above order {order} in size/R"
-        name = "exact gravity" if order == EXACT else f"gravity of order {order}"
+        dropped, name = Message("nothing of the field"), Message("exact gravity")
+        if order != EXACT:
+            dropped = Message("terms of the field above order [[order]] in size/R", order=order)
+            name = Message("gravity of order [[order]]", order=order)
         yield Variant(name, dropped, Dynamics(replace(scenario, system=system.with_field_order(order))), rank)
     if system.motion:
-        label = "linearised"
-        yield Variant(label, "all that is not linear in the deviation", LinearisedDynamics(scenario), -1)
+        label = Message("linearised")
+        yield Variant(label, Message("all that is not linear in the deviation"), LinearisedDynamics(scenario), -1)
     found = resting(scenario)
     if found is not None:
         yield _reduced(scenario, found)
@@ -101,8 +104,8 @@ def _expandable(scenario: Scenario, fields: Sequence[NewtonianGravity]) -> bool:
 def _reduced(scenario: Scenario, found: Reduction) -> Variant:
     names = ", ".join(found.values)
     free, _ = found.expanded(scenario)
-    what = f"{names}, which rest ({found.how})"
-    return Variant(f"without {names}", what, Dynamics(found.scenario), 0, free)
+    what = Message("[[names]], which rest ([[how]])", names=names, how=found.how)
+    return Variant(Message("without [[names]]", names=names), what, Dynamics(found.scenario), 0, free)
 
 
 def measured(
@@ -148,10 +151,12 @@ def model_advice(models: Sequence[ModelError], target: float) -> str:
     best = max((row for row in models if not row.trouble), key=lambda row: row.variant.rank, default=None)
     if own is None or best is None or best is own or own.trouble or not own.error > RESOLVED:
         return ""
-    text = f"The model as described is {own.error:.1e} away from {best.variant.label}"
+    far, rich = f"{own.error:.1e}", best.variant.label
+    text = Message("The model as described is [[error]] away from [[model]]", error=far, model=rich)
     if own.error > target:
-        return f"{text}: an error of {target:.0e} is one of its equations, not of the motion."
-    return f"{text}, which adds to the error."
+        said = "[[what]]: an error of [[target]] is one of its equations, not of the motion."
+        return Message(said, what=text, target=f"{target:.0e}")
+    return Message("[[what]], which adds to the error.", what=text)
 
 
 def _run(
@@ -169,7 +174,7 @@ def _run(
             for t in times[1:]:
                 found.append(np.array(run.advance(float(t)), dtype=float))
         except Breakdown as reason:
-            return None, operations, run.work.evaluations, time.thread_time() - started, str(reason)
+            return None, operations, run.work.evaluations, time.thread_time() - started, reason.told
         seconds.append(time.thread_time() - started)
         states, evaluations = np.array(found).T, run.work.evaluations
         dear = cost(variant.dynamics, method.traits.name, FLOAT64, run.work)

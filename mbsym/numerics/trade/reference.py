@@ -17,6 +17,7 @@ import numpy as np
 from flint import arb, ctx, fmpq
 
 from mbsym.algebra import rationals
+from mbsym.expressions.message import Message
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.precise import precise
 from mbsym.numerics.methods.interface import BLOW_UP, STEP_LIMIT, Breakdown
@@ -185,4 +186,11 @@ def reference(
         for i, size in enumerate(map(float, scale)):
             error = max(error, *(abs(float(a[i] - b[i])) / size for a, b in zip(first, second, strict=True)))
     seconds = time.perf_counter() - started
-    return Reference(np.asarray(times, dtype=float), states_, error, seconds, f"extrapolation, {BITS} bits", scale)
+    return Reference(
+        np.asarray(times, dtype=float),
+        states_,
+        error,
+        seconds,
+        Message("extrapolation, [[bits]] bits", bits=BITS),
+        scale,
+    )

@@ -24,6 +24,7 @@ import numpy as np
 from flint import arb, ctx
 
 from mbsym.algebra.failures import Defect, Failure
+from mbsym.expressions.message import Message, enumerated
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.kernels.llvm import available
@@ -175,7 +176,8 @@ class _Search:
         scale = scaled(np.max(np.abs(states), axis=1), self.usual(times[places], states[:, places]), differences)
         error = float(np.max(differences / scale))
         if not error < AGREE:
-            raise Breakdown(DISAGREE, f"{method} differ by {error:.1e}", self.end, states[:, -1])
+            why = Message("[[methods]] differ by [[error]]", methods=method, error=f"{error:.1e}")
+            raise Breakdown(DISAGREE, why, self.end, states[:, -1])
         return Reference(times, states, error, 0.0, method, scale, way)
 
 
@@ -188,7 +190,7 @@ def _extrapolated(search: _Search) -> Reference:
         differences = _second(search, times, exact)
         knots = np.array([in_doubles(state) for state in exact]).T
     places, states, missed = _between(search, np.array(times), knots)
-    told = f"extrapolation, {BITS} bits"
+    told = Message("extrapolation, [[bits]] bits", bits=BITS)
     return search.finished(places, states, np.maximum(differences, missed), told, EXTRAPOLATION)
 
 
@@ -281,7 +283,9 @@ def _agreeing(search: _Search, first: _Way, second: _Way, scalar: str, way: str)
     except Ended as ended:
         raise ended.breakdown from None
     differences = np.maximum(missed, [q.largest for q in found.quantities])
-    told = f"{one.traits.name} and {other.traits.name} in {scalar}, tolerances {fine.tolerance:g}, {rough.tolerance:g}"
+    text = "[[methods]] in [[scalar]], tolerances [[tolerances]]"
+    methods, scalars = enumerated((one.traits.name, other.traits.name)), Message(scalar)
+    told = Message(text, methods=methods, scalar=scalars, tolerances=f"{fine.tolerance:g}, {rough.tolerance:g}")
     return search.finished(places, states, differences, told, way)
 
 

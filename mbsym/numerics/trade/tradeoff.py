@@ -31,6 +31,8 @@ from typing import Any
 import numpy as np
 
 from mbsym.algebra.failures import Defect, Failure
+from mbsym.expressions.counting import duration
+from mbsym.expressions.message import Message
 from mbsym.numerics.conservation import Standing, energy_standing, visited
 from mbsym.numerics.constrained import drift
 from mbsym.numerics.dynamics import Dynamics
@@ -166,7 +168,7 @@ def tradeoff(
             for row in _ladder(judge, method, scalar, share, watch):
                 own.append(row)
         except (Unusable, Failure) as reason:
-            unusable.append((method.traits.name, str(reason)))
+            unusable.append((method.traits.name, reason.reason))
         except KeyboardInterrupt:
             interrupted = True
             break
@@ -229,7 +231,7 @@ class _Judge:
         except Breakdown as found:
             wasted = time.thread_time() - started
             self.spent = max(self.spent, before + self._cost(candidate, run.work))
-            return Measured(candidate, inf, inf, run.work.evaluations, run.work.steps, wasted, str(found))
+            return Measured(candidate, inf, inf, run.work.evaluations, run.work.steps, wasted, found.told)
         matrix = np.hstack(states)
         self.spent += COMPARED * len(times)
         error, changed, strayed = self._error(matrix), self._drift(times, matrix), self._strayed(times, matrix)
@@ -359,58 +361,62 @@ def _orders(rows: Sequence[Measured]) -> Iterator[Order]:
             yield Order(name, scalar, nominal, statistics.median(slopes[-3:]), len(slopes))
 
 
-def advice(found: Tradeoff, target: float) -> str:
+def advice(found: Tradeoff, target: float) -> Message:
     """One sentence: which setting reaches the target in the least time, and what a digit more or less would cost.
 
     Nothing is said to be reached but what was measured, with the reference's own error added.
     """
-    known = found.reference.error
+    known, least, wanted = found.reference.error, f"{found.smallest_judged:.0e}", f"{target:.0e}"
     if target < found.smallest_judged:
-        return (
-            f"The reference itself is known to {known:.1e} only: an error of {target:.0e} cannot be "
-            f"judged here; choose a target of at least {found.smallest_judged:.0e}."
+        text = (
+            "The reference itself is known to [[known]] only: an error of [[target]] cannot be judged here; choose a "
+            "target of at least [[least]]."
         )
+        return Message(text, known=f"{known:.1e}", target=wanted, least=least)
     best = found.cheapest(target)
     if best is None:
         nearest = min(found.rows, key=lambda row: row.error)
         if nearest.error == inf:
-            return f"Nothing tried reaches {target:.0e}: no run came to the end."
-        return (
-            f"Nothing tried reaches {target:.0e}; the most accurate is {nearest.candidate.label} with an error of "
-            f"{nearest.error:.1e} in {duration(nearest.seconds)}."
+            return Message("Nothing tried reaches [[target]]: no run came to the end.", target=wanted)
+        text = (
+            "Nothing tried reaches [[target]]; the most accurate is [[setting]] with an error of [[error]] in [[time]]."
         )
+        error, time = f"{nearest.error:.1e}", duration(nearest.seconds)
+        return Message(text, target=wanted, setting=nearest.candidate.label, error=error, time=time)
     judged = best.error > found.smallest_judged
-    error = f"{best.error:.1e}" if judged else f"below {found.smallest_judged:.0e}"
-    return (
-        f"{best.candidate.label} reaches {target:.0e} in the least time measured here: error {error} over the whole "
-        f"interval (the reference is good to {known:.1e}), in {duration(best.seconds)}; one digit more "
-        f"{_more(found, best, target / 10)}, one digit less {_less(found, best, target * 10)}."
+    text = (
+        "[[setting]] reaches [[target]] in the least time measured here: error [[error]] over the whole interval (the "
+        "reference is good to [[known]]), in [[time]]; one digit more [[more]], one digit less [[less]]."
+    )
+    return Message(
+        text,
+        setting=best.candidate.label,
+        target=wanted,
+        error=f"{best.error:.1e}" if judged else Message("below [[bound]]", bound=least),
+        known=f"{known:.1e}",
+        time=duration(best.seconds),
+        more=_more(found, best, target / 10),
+        less=_less(found, best, target * 10),
     )
 
 
-def _more(found: Tradeoff, best: Measured, target: float) -> str:
+def _more(found: Tradeoff, best: Measured, target: float) -> Message:
     if target < found.smallest_judged:
-        return "cannot be judged by this reference"
+        return Message("cannot be judged by this reference")
     other = found.cheapest(target)
     if other is None:
-        return "costs more than anything tried here can give"
+        return Message("costs more than anything tried here can give")
     if other is best:
-        return "costs nothing extra (it is there already)"
-    return f"costs {_compared(other, best)}"
+        return Message("costs nothing extra (it is there already)")
+    return _compared(other, best)
 
 
-def _less(found: Tradeoff, best: Measured, target: float) -> str:
+def _less(found: Tradeoff, best: Measured, target: float) -> Message:
     other = found.cheapest(target)
-    return "saves nothing" if other is None or other is best else f"costs {_compared(other, best)}"
+    return Message("saves nothing") if other is None or other is best else _compared(other, best)
 
 
-def _compared(other: Measured, best: Measured) -> str:
-    return f"{duration(other.seconds)}, {other.seconds / best.seconds:.2g} times as much ({other.candidate.label})"
-
-
-def duration(seconds: float) -> str:
-    """``3.2 ms``."""
-    for limit, factor, unit in ((1e-3, 1e6, "µs"), (1.0, 1e3, "ms")):
-        if seconds < limit:
-            return f"{seconds * factor:.3g} {unit}"
-    return f"{seconds:.3g} s"
+def _compared(other: Measured, best: Measured) -> Message:
+    times, time = f"{other.seconds / best.seconds:.2g}", duration(other.seconds)
+    text = "costs [[time]], [[times]] times as much ([[setting]])"
+    return Message(text, time=time, times=times, setting=other.candidate.label)

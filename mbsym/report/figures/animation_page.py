@@ -14,13 +14,14 @@ import numpy as np
 from markupsafe import Markup
 
 from mbsym import __version__
-from mbsym.expressions.counting import counted
+from mbsym.expressions.message import Message, joined
 from mbsym.model.quantities import energy_unit, time_unit, unit_of, with_unit
 from mbsym.model.system import INERTIAL
 from mbsym.picture.looking import basis
 from mbsym.report.figures.animation import Animation, dots, extent, moving_points, view
 from mbsym.report.html.environment import embedded, page
-from mbsym.report.runs.simulation_words import energy_lines, quality
+from mbsym.report.language import Language
+from mbsym.report.runs.simulation_words import energy_lines, quality, setting_words
 from mbsym.report.unit_text import pretty
 from mbsym.simulation import Simulation
 
@@ -55,22 +56,22 @@ def animation_page(found: Animation, run: Simulation) -> str:
         {},
         ("motion.js",),
         system=system,
-        motion=run_motion(found, run),
+        motion=run_motion(found, run, Language(system.language)),
         parameters=parameters,
         version=__version__,
     )
 
 
-def run_motion(found: Animation, run: Simulation) -> Motion:
+def run_motion(found: Animation, run: Simulation, language: Language) -> Motion:
     """What the template needs of a run, with what is to be said of it."""
-    shown = motion(found, tuple(_sentences(found, run)))
-    return replace(shown, drift_of=drift_of(run))
+    shown = motion(found, tuple(map(language.say, (*run_sentences(run), *drawn_sentences(found)))))
+    return replace(shown, drift_of=language.say(drift_of(run)))
 
 
-def drift_of(run: Simulation) -> str:
+def drift_of(run: Simulation) -> Message:
     """What is conserved drifts by errors alone; anything else may well change."""
-    what = "drift" if run.conservation.standing.conserved is True else "change"
-    return f"{what} of the {run.conservation.quantity}"
+    kept, quantity = run.conservation.standing.conserved is True, Message(run.conservation.quantity)
+    return Message("drift of the [[quantity]]" if kept else "change of the [[quantity]]", quantity=quantity)
 
 
 def motion(found: Animation, sentences: tuple[str, ...]) -> Motion:
@@ -144,50 +145,60 @@ def _room(found: Animation) -> tuple[list[float], float]:
     return [float(x) for x in middle], size or extent(found.positions)
 
 
-def _sentences(found: Animation, run: Simulation) -> Iterator[str]:
-    yield from run_sentences(run)
-    yield from drawn_sentences(found)
-
-
-def run_sentences(run: Simulation) -> Iterator[str]:
+def run_sentences(run: Simulation) -> Iterator[Message]:
     """What makes it doubtful, how it was integrated, whether it reached its end, what it keeps, how wrong it is."""
     doubts, told, unknown = quality(run)
-    yield from (f"Warning: {text}." for text in doubts)
-    error = f"Error of the run: {'; '.join(told)}." if told else "The error of the run was not estimated."
+    yield from (Message("Warning: [[text]].", text=text) for text in doubts)
+    error = Message("The error of the run was not estimated.")
+    if told:
+        error = Message("Error of the run: [[error]].", error=joined(told, "; "))
     if unknown:
         yield error
-    trajectory, setting = run.trajectory, run.trajectory.setting
-    how = f"tolerance {setting.tolerance:g} per step" if setting.step is None else f"step {setting.step:g}"
-    unit = pretty(time_unit(run.system))
-    until = with_unit(f"{float(trajectory.times[-1]):.9g}", unit)
-    yield (
-        f"Integrated from t = 0 to {until} by {run.chosen.method.traits.title} ({how}, {run.arithmetic}; {run.why})."
+    setting, unit = replace(run.trajectory.setting, longest=None), pretty(time_unit(run.system))
+    how = (
+        Message("tolerance [[tolerance]] per step", tolerance=f"{setting.tolerance:g}")
+        if setting.step is None
+        else None
     )
+    how = how or Message("step [[step]]", step=f"{setting.step:g}")
+    until = with_unit(f"{float(run.times[-1]):.9g}", unit)
+    method, how = run.chosen.method.traits.title, setting_words(setting, run.arithmetic)
+    text = "Integrated from t = 0 to [[time]] by [[method]] ([[how]]; [[why]])."
+    yield Message(text, time=until, method=method, how=how, why=run.why)
     if not run.whole:
-        why = run.ended.kind if run.ended is not None else "interrupted"
-        yield f"The run ended early ({why}); {with_unit(f'{float(run.chosen.times[-1]):.9g}', unit)} was asked for."
+        why = Message(run.ended.kind if run.ended is not None else "interrupted")
+        end = with_unit(f"{float(run.chosen.times[-1]):.9g}", unit)
+        yield Message("The run ended early ([[why]]); [[time]] was asked for.", why=why, time=end)
     for which, what in energy_lines(run):
-        yield f"Energy ({which}): {what}."
+        yield Message("Energy ([[which]]): [[what]].", which=which, what=what)
     if not unknown:
         yield error
 
 
-def drawn_sentences(found: Animation) -> Iterator[str]:
+def drawn_sentences(found: Animation) -> Iterator[Message]:
     """What is drawn, and what is not computed."""
     drawn = found.positions
     if found.frames > 1:
         step = with_unit(f"{float(found.times[1] - found.times[0]):.4g}", pretty(time_unit(found.system)))
-        which = "every sample" if found.stride == 1 else f"one of {found.stride} samples"
-        yield (
-            f"{counted(found.frames, 'frame')} ({which} of the run), {step} apart; between frames points are "
-            "joined by straight lines, nothing is computed there."
+        text = (
+            "Frames: [[count]] ([[which]]), [[step]] apart; between frames points are joined by straight lines, "
+            "nothing is computed there."
         )
-    where = "inertial axes" if drawn.frame == INERTIAL else f"the frame '{drawn.frame}'"
-    yield f"Seen in {where}; lines join joints and mass centres."
+        yield Message(text, count=found.frames, which=frames_of(found.stride), step=step)
+    if drawn.frame == INERTIAL:
+        yield Message("Seen in inertial axes; lines join joints and mass centres.")
+    else:
+        yield Message("Seen in the frame '[[frame]]'; lines join joints and mass centres.", frame=drawn.frame)
     if drawn.tips:
-        yield "Lines from a joint with nothing at their end are axes of the body; their length means nothing."
+        yield Message("Lines from a joint with nothing at their end are axes of the body; their length means nothing.")
     if found.outlines:
-        yield "Outlines are the shapes that the description gives, true to scale; no force depends on them."
-    if found.ellipsoids:
-        scale = "true to scale" if found.true_size else "not to scale"
-        yield f"Ellipsoids are homogeneous bodies with the same mass and inertia, {scale}."
+        yield Message("Outlines are the shapes that the description gives, true to scale; no force depends on them.")
+    if found.ellipsoids and found.true_size:
+        yield Message("Ellipsoids are homogeneous bodies with the same mass and inertia, true to scale.")
+    elif found.ellipsoids:
+        yield Message("Ellipsoids are homogeneous bodies with the same mass and inertia, not to scale.")
+
+
+def frames_of(stride: int) -> Message:
+    """Which rows of a run are frames."""
+    return Message("every sample") if stride == 1 else Message("one of [[count]] samples", count=stride)

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from mbsym.expressions.message import Message
+
 if TYPE_CHECKING:
     from mbsym.model.system import System
     from mbsym.report.figures.animation_page import Motion
+    from mbsym.report.language import Language
 
 
-def asked_motion(system: System, time: float | None) -> tuple[Motion | None, str]:
+def asked_motion(system: System, time: float | None, language: Language) -> tuple[Motion | None, str]:
     """(the motion from 0 to ``time``, "") or (None, why there is none); (None, "") where it was not asked for."""
     if time is None:
         return None, ""
@@ -23,6 +26,7 @@ def asked_motion(system: System, time: float | None) -> tuple[Motion | None, str
     try:
         run = simulate(scenario(system), Request(time, variables=COORDINATES))
     except (Incomplete, Failure) as reason:
-        return None, message_of(reason)
+        return None, language.say(message_of(reason))
     found = animation(run)
-    return (None, "no body has a place that could be drawn") if found is None else (run_motion(found, run), "")
+    nothing = language.say(Message("no body has a place that could be drawn"))
+    return (None, nothing) if found is None else (run_motion(found, run, language), "")

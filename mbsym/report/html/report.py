@@ -32,7 +32,9 @@ ORDER = tuple(NUMBERS)
 
 def render(analysis: Analysis, problems: Sequence[int]) -> str:
     """The file's text."""
-    motion, no_motion = asked_motion(analysis.system, analysis.animate)
+    motion, no_motion = asked_motion(
+        analysis.system, analysis.animate, Language(analysis.language or analysis.system.language)
+    )
     scripts = ("report.js", "motion.js") if motion is not None else ("report.js",)
     known, values = context(analysis, problems)
     return page("report.html.j2", known, scripts, motion=motion, no_motion=no_motion, **values)

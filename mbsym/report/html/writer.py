@@ -130,7 +130,10 @@ class Writer:
 
     @inline.register
     def _(self, value: content.Phrase) -> Markup:
-        return self._joined(value.parts)
+        joined = self._joined(value.parts)
+        if isinstance(value.parts[-1] if value.parts else "", content.Numbered):
+            return Markup('<span class="together">{}</span>').format(joined)  # no line ends in front of the link
+        return joined
 
     @inline.register
     def _(self, value: content.Emphasis) -> Markup:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import text
 from mbsym.numerics.events.surfaces import source_of
 from mbsym.numerics.methods.passed import Narrow, Passed
@@ -28,16 +29,16 @@ def between_steps_json(passed: Passed | None) -> doc.BetweenSteps | None:
     )
 
 
-def switch_line(passed: Passed | None) -> str:
-    """``2, at t = 5 and 5.002: a step ends at each``; empty where nothing was switched."""
+def switch_line(passed: Passed | None) -> Message | None:
+    """``2, at t = 5 and 5.002: a step ends at each``; None where nothing was switched."""
     if passed is None or not passed.switches:
-        return ""
-    times = [f"{float(t):.9g}" for t in passed.switches[:SHOWN]]
-    more = ", ..." if len(passed.switches) > SHOWN else ""
-    return f"{len(passed.switches)}, at t = {', '.join(times)}{more}: a step ends at each"
+        return None
+    times = [f"{float(t):.9g}" for t in passed.switches[:SHOWN]] + ["..."] * (len(passed.switches) > SHOWN)
+    text = "[[count]], at t = [[times]]: a step ends at each"
+    return Message(text, count=len(passed.switches), times=", ".join(times))
 
 
-def passed_over(run: Simulation, file: str) -> Iterator[str]:
+def passed_over(run: Simulation, file: str) -> Iterator[Message]:
     """A sentence for every function that steps were too long for, where it stands, and the command that helps."""
     passed = run.trajectory.passed
     if passed is None:
@@ -49,20 +50,22 @@ def passed_over(run: Simulation, file: str) -> Iterator[str]:
         seen.add(one.place)
         yield _told(run, one, file)
     if passed.unresolved:
-        yield (
-            f"in the step at t = {passed.unresolved[0]:.6g} changes of side follow one another too quickly to be told "
-            f"apart: {_command(run, file, run.trajectory.setting.step or 1e-3)}"
+        words = (
+            "in the step at t = [[time]] changes of side follow one another too quickly to be told apart: [[command]]"
         )
+        command = _command(run, file, run.trajectory.setting.step or 1e-3)
+        yield Message(words, time=f"{passed.unresolved[0]:.6g}", command=command)
 
 
-def _told(run: Simulation, one: Narrow, file: str) -> str:
+def _told(run: Simulation, one: Narrow, file: str) -> Message:
     found = None if one.place is None else source_of(run.dynamics, one.place)
-    what = "a load" if found is None else f"{text(found)}"
-    where = "" if found is None or found.span is None else f" (line {found.span.line}, column {found.span.column})"
-    return (
-        f"{what}{where} changes within {one.width:.2g} at t = {one.time:.6g}, and a step of {one.step:.2g} passed it: "
-        f"{_command(run, file, one.width / 4)}"
-    )
+    what = Message("a load") if found is None else text(found)
+    if found is not None and found.span is not None:
+        where = "[[what]] (line [[line]], column [[column]])"
+        what = Message(where, what=what, line=found.span.line, column=found.span.column)
+    words = "[[what]] changes within [[width]] at t = [[time]], and a step of [[step]] passed it: [[command]]"
+    width, time, step = f"{one.width:.2g}", f"{one.time:.6g}", f"{one.step:.2g}"
+    return Message(words, what=what, width=width, time=time, step=step, command=_command(run, file, one.width / 4))
 
 
 def _command(run: Simulation, file: str, step: float) -> str:

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from math import ceil, floor, isfinite, log10
 from typing import Any
 
-from mbsym.expressions.counting import counted
+from mbsym.expressions.counting import duration
+from mbsym.expressions.message import Message, joined
 from mbsym.model.quantities import marked, time_unit, unit_of, with_unit
 from mbsym.model.system import System
 from mbsym.numerics.enclosure.compare import Certificate
@@ -17,11 +18,13 @@ from mbsym.report.unit_text import pretty
 
 #: Why an enclosure ends early.
 WHY = {
-    NO_STEP: "no step could be proved there: a singularity of the equations is near, or their balls grow too fast",
-    TOO_WIDE: "neighbouring motions part too fast",
-    OUT_OF_TIME: "its time is too short",
-    TOO_DEAR: "it takes more work than it may (as many seconds as --certify-seconds says, whatever the work)",
-    INTERRUPTED: "interrupted",
+    NO_STEP: Message(
+        "no step could be proved there: a singularity of the equations is near, or their balls grow too fast"
+    ),
+    TOO_WIDE: Message("neighbouring motions part too fast"),
+    OUT_OF_TIME: Message("its time is too short"),
+    TOO_DEAR: Message("it takes more work than it may (as many seconds as --certify-seconds says, whatever the work)"),
+    INTERRUPTED: Message("interrupted"),
 }
 
 
@@ -33,50 +36,48 @@ def at_most(value: float) -> str:
     return f"{ceil(value / 10.0**power * (1 - 1e-15)) * 10.0**power:.1e}"
 
 
-def certificate_lines(found: Certificate, system: System, rows: int) -> Iterator[str]:
+def certificate_lines(found: Certificate, system: System, rows: int) -> Iterator[Message]:
     """What is proved."""
     if found.rows:
-        which = f"all {rows} rows" if found.whole else f"the first {counted(found.rows, 'row', 'rows')} of {rows}"
-        yield (
-            f"the run is within {at_most(found.largest_error)} of the exact solution at {which} (proved; of each "
-            "quantity's size)"
-        )
-        steps = counted(len(found.enclosure.segments), "step", "steps")
-        known = at_most(found.known)
+        if found.whole:
+            which = Message("all [[rows]] rows", rows=rows)
+        else:
+            which = Message("the first [[rows]] of [[all]] rows", rows=found.rows, all=rows)
+        text = "the run is within [[error]] of the exact solution at [[which]] (proved; of each quantity's size)"
+        yield Message(text, error=at_most(found.largest_error), which=which)
+        known, steps = at_most(found.known), len(found.enclosure.segments)
         if found.narrow and found.width > found.wanted:
-            known += f" ({at_most(found.width)} in the digits of a table)"
-        yield f"the exact solution is known to {known} there: {steps} of {found.enclosure.bits} bits"
+            table = "[[known]] ([[width]] in the digits of a table)"
+            known = Message(table, known=known, width=at_most(found.width))
+        text = "the exact solution is known to [[known]] there: [[steps]] steps of [[bits]] bits"
+        yield Message(text, known=known, steps=steps, bits=found.enclosure.bits)
         if not found.narrow:
-            why = f": {WHY[found.enclosure.cut]}" if found.whole and found.enclosure.cut else ""
-            yield f"that is wider than the {found.wanted:.2g} that was asked for{why}"
+            why = [WHY[found.enclosure.cut]] if found.whole and found.enclosure.cut else []
+            text = "that is wider than the [[wanted]] that was asked for"
+            yield joined([Message(text, wanted=f"{found.wanted:.2g}"), *why], ": ")
     if found.passages:
         proved = [radius for radius in found.passages if radius is not None]
-        which = f"{len(proved)} of the run's {counted(len(found.passages), 'event', 'events')}"
         if proved:
-            yield f"the exact solution has {which}, each once within {at_most(max(proved))} of its time (proved)"
+            text = (
+                "the exact solution has [[count]] of the run's [[all]] events, each once within [[radius]] of its time "
+                "(proved)"
+            )
+            yield Message(text, count=len(proved), all=len(found.passages), radius=at_most(max(proved)))
         else:
-            yield "of the run's events none is proved to be one of the exact solution"
+            yield Message("of the run's events none is proved to be one of the exact solution")
     if not found.whole:
         reached = with_unit(f"{found.enclosure.reached:.6g}", pretty(time_unit(system)))
-        yield f"nothing is proved beyond t = {reached}: {WHY[found.ended]}{_pace(found)}"
+        yield Message("nothing is proved beyond t = [[time]]: [[why]]", time=reached, why=_ended(found))
 
 
-def _pace(found: Certificate) -> str:
-    """How long the whole would take, where that is why it ended."""
-    enclosure = found.enclosure
+def _ended(found: Certificate) -> Message:
+    """With how long the whole would take, where that is why it ended."""
+    enclosure, why = found.enclosure, WHY[found.ended]
     if found.ended not in (OUT_OF_TIME, TOO_DEAR) or not isfinite(enclosure.whole_seconds):
-        return ""
-    steps = counted(len(enclosure.segments), "step", "steps")
-    whole = spelled(enclosure.whole_seconds)
-    return f", {steps} took {spelled(enclosure.seconds)}, at this pace all would take {whole}"
-
-
-def spelled(seconds: float) -> str:
-    """``40 s``, ``3 h``, ``2.1e+03 days``."""
-    for limit, unit, name in ((120.0, 1.0, "s"), (7200.0, 60.0, "min"), (172800.0, 3600.0, "h")):
-        if seconds < limit:
-            return f"{seconds / unit:.2g} {name}"
-    return f"{seconds / 86400.0:.2g} days"
+        return why
+    steps, spent, whole = len(enclosure.segments), duration(enclosure.seconds), duration(enclosure.whole_seconds)
+    text = "[[why]], [[steps]] steps took [[spent]], at this pace all would take [[whole]]"
+    return Message(text, why=why, steps=steps, spent=spent, whole=whole)
 
 
 def certificate_json(found: Certificate, names: list[str]) -> doc.Certificate:

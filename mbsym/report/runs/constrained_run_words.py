@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from msgspec import UNSET, UnsetType
 
-from mbsym.expressions.counting import counted
+from mbsym.expressions.message import Message, joined
 from mbsym.model.quantities import time_unit, unit_of, with_unit
 from mbsym.numerics.closing import NOUGHT
 from mbsym.report.documents import simulation as doc
@@ -26,85 +26,107 @@ POSITIONS, VELOCITIES = "constraint_drift", "constraint_velocity_drift"
 MOST_MOVES = 6
 
 
-def constraint_lines(run: Simulation) -> Iterator[tuple[str, str]]:
-    """(title, text) of the summary's lines; none without constraints."""
+def constraint_lines(run: Simulation) -> Iterator[tuple[str, Message]]:
+    """(title, text) of the summary's lines, without a title what goes on; none without constraints."""
     known = run.dynamics.constraints
     if known is None or run.drift is None or run.closed is None:
         return
+    unit = pretty(time_unit(run.system))
     yield "loops", rows_line(known)
     for place, text in enumerate(start_lines(run.closed, run.system)):
         yield "" if place else "start", text
     yield "drift", drift_line(run.drift, known)
     if run.trajectory.work.singular:
-        yield "singular", singular_line(run.trajectory.work.singular, pretty(time_unit(run.system)))
+        yield "singular", singular_line(run.trajectory.work.singular, unit)
     if run.stepped_over:
-        yield "warning", stepped_over_line(run.stepped_over, pretty(time_unit(run.system)))
+        yield "warning", stepped_over_line(run.stepped_over, unit)
 
 
-def rows_line(known: Constraints) -> str:
-    """``2 independent constraint rows, 1 velocity of 3 is free``; which rows follow from others."""
-    kept = counted(len(known.kept), "independent constraint row", "independent constraint rows")
-    free = f"{known.freedom} of {counted(known.size, 'velocity', 'velocities')} {'is' if known.freedom == 1 else 'are'}"
-    text = f"{kept}, {'at most ' if known.more_is_held else ''}{free} free"
+def rows_line(known: Constraints) -> Message:
+    """``independent constraint rows: 2; free velocities: 1 of 3``; which rows follow from others."""
+    free = (
+        "free velocities: at most [[free]] of [[all]]" if known.more_is_held else "free velocities: [[free]] of [[all]]"
+    )
+    told = [
+        Message("independent constraint rows: [[rows]]", rows=len(known.kept)),
+        Message(free, free=known.freedom, all=known.size),
+    ]
     if known.redundant:
-        names = "; ".join(name.label for name in known.redundant)
-        follow = "follows" if len(known.redundant) == 1 else "follow"
-        text += (
-            f"; {names} {follow} from the others (seen at positions near the start, not proved) and drift with them: "
-            "forces of single constraints are not unique"
+        text = (
+            "these follow from the others (seen at positions near the start, not proved) and drift with them: "
+            "[[names]]; forces of single constraints are not unique"
         )
-    return text
+        told.append(Message(text, names="; ".join(name.label for name in known.redundant)))
+    return joined(told, "; ")
 
 
-def start_lines(closed: Closed, system: System) -> Iterator[str]:
+def start_lines(closed: Closed, system: System) -> Iterator[Message]:
     """How far the initial state was moved to satisfy the constraints."""
-    held = f"; {', '.join(closed.fixed)} fixed" if closed.fixed else ""
+    held = [Message("fixed: [[names]]", names=", ".join(closed.fixed))] if closed.fixed else []
     if not closed.moves:
-        yield f"the initial state satisfies the constraints{held}"
+        yield joined([Message("the initial state satisfies the constraints"), *held], "; ")
         return
+    units = {x.name: pretty(unit_of(system, x.name)) for x in closed.moves}
     if closed.given_stays:
-        yield f"the initial state satisfies the constraints; velocities that were left out follow from them{held}"
-        shown = [f"{x.name} = {with_unit(_shown(x.found), pretty(unit_of(system, x.name)))}" for x in closed.moves]
-        yield ", ".join(shown[:MOST_MOVES]) + (", ..." if len(shown) > MOST_MOVES else "")
+        text = "the initial state satisfies the constraints; velocities that were left out follow from them"
+        yield joined([Message(text), *held], "; ")
+        shown = [f"{x.name} = {with_unit(_shown(x.found), units[x.name])}" for x in closed.moves]
+        yield joined([*shown[:MOST_MOVES], *(["..."] if len(shown) > MOST_MOVES else [])], ", ")
         return
-    how = "closest state" if closed.closest else "state near it (not certain to be the closest)"
-    yield f"what was given does not satisfy the constraints: begun from the {how} that does, by the mass matrix{held}"
+    if closed.closest:
+        text = "what was given does not satisfy the constraints: begun from the closest state that does (mass matrix)"
+    else:
+        text = (
+            "what was given does not satisfy the constraints: begun from a state near it that does (not certain to be "
+            "the closest)"
+        )
+    yield joined([Message(text), *held], "; ")
     largest = sorted(closed.moves, key=lambda move: -abs(move.found - move.given) / (1 + abs(move.given)))
     for move in largest[:MOST_MOVES]:
-        unit = pretty(unit_of(system, move.name))
-        yield f"{move.name} = {with_unit(_shown(move.found), unit)} instead of {move.given:.9g}"
+        taken = with_unit(_shown(move.found), units[move.name])
+        yield Message(
+            "[[name]] = [[taken]] instead of [[given]]", name=move.name, taken=taken, given=f"{move.given:.9g}"
+        )
     if len(largest) > MOST_MOVES:
-        yield f"... and {len(largest) - MOST_MOVES} more; all are in simulation.json"
+        yield Message("... and [[more]] more; all are in simulation.json", more=len(largest) - MOST_MOVES)
 
 
 def _shown(value: float) -> str:
     return f"{value if abs(value) > NOUGHT else 0:.9g}"
 
 
-def drift_line(found: Drift, known: Constraints) -> str:
+def drift_line(found: Drift, known: Constraints) -> Message:
     """The largest drifts of the rows shown, scaled by the scene."""
-    positions, velocities = found.largest
-    first = f"positions {positions:.1e}, " if known.holonomic else "no positions are constrained, "
-    return f"{first}velocities {velocities:.1e} off the constraints at most, in parts of the motion's size"
+    positions, velocities = (f"{x:.1e}" for x in found.largest)
+    if known.holonomic:
+        text = "positions [[q]], velocities [[v]] off the constraints at most, in parts of the motion's size"
+        return Message(text, q=positions, v=velocities)
+    text = "velocities [[v]] off the constraints at most, in parts of the motion's size; no positions are constrained"
+    return Message(text, v=velocities)
 
 
-def singular_line(times: Sequence[float], unit: str | None) -> str:
+def _times(times: Sequence[float], digits: int, unit: str | None) -> str:
+    shown = [f"{time:.{digits}g}" for time in times[:MOST_MOVES]] + (["..."] if len(times) > MOST_MOVES else [])
+    return with_unit(", ".join(shown), unit)
+
+
+def singular_line(times: Sequence[float], unit: str | None) -> Message:
     """Where the motion was continued through positions in which constraints lose their rank."""
-    shown = ", ".join(f"{time:.6g}" for time in times[:MOST_MOVES]) + (", ..." if len(times) > MOST_MOVES else "")
-    return (
-        f"at t = {with_unit(shown, unit)} the constraints lose their rank (branches of motion may meet): there the "
-        "motion is the polynomial that fits it before; it satisfies the constraints behind"
+    text = (
+        "at t = [[times]] the constraints lose their rank (branches of motion may meet): there the motion is the "
+        "polynomial that fits it before; it satisfies the constraints behind"
     )
+    return Message(text, times=_times(times, 6, unit))
 
 
-def stepped_over_line(times: Sequence[float], unit: str | None) -> str:
+def stepped_over_line(times: Sequence[float], unit: str | None) -> Message:
     """Where steps went over positions in which constraints lose their rank."""
-    shown = ", ".join(f"{time:.4g}" for time in times[:MOST_MOVES]) + (", ..." if len(times) > MOST_MOVES else "")
-    return (
-        f"near t = {with_unit(shown, unit)} steps went over a position in which the constraints lose their rank "
-        "(branches of motion may meet): the branch behind is the one that the step met; a smaller tolerance or step "
-        "shows whether it is the smooth one"
+    text = (
+        "near t = [[times]] steps went over a position in which the constraints lose their rank (branches of motion "
+        "may meet): the branch behind is the one that the step met; a smaller tolerance or step shows whether it is "
+        "the smooth one"
     )
+    return Message(text, times=_times(times, 4, unit))
 
 
 def drift_columns(run: Simulation) -> Mapping[str, Any]:

@@ -4,41 +4,45 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from mbsym.expressions.counting import counted
+from mbsym.expressions.message import Message, joined
 from mbsym.model.quantities import time_unit, with_unit
 from mbsym.numerics.events.events import MOST
 from mbsym.report.unit_text import pretty
 from mbsym.simulation import Simulation
 
 
-def events_lines(run: Simulation) -> Iterator[tuple[str, str]]:
+def events_lines(run: Simulation) -> Iterator[tuple[str, Message]]:
     """(title, text) of what happened; ``warning`` where something cannot be told."""
     if run.happened is None:
         return
     found, unit = run.happened.occurrences, pretty(time_unit(run.system))
-    begun = run.request.earlier
-    since = "" if begun is None else f" after t = {with_unit(f'{begun.time:.9g}', unit)}, from where on it was watched"
+    since: list[Message] = []
+    if run.request.earlier is not None:
+        begun = with_unit(f"{run.request.earlier.time:.9g}", unit)
+        since = [Message("watched from t = [[time]] on", time=begun)]
     for place, event in enumerate(found.events):
         own = found.which == place
         times, touches = found.times[own], int((found.turns[own] == 0).sum())
-        said = (counted(len(times), "time", "times") if len(times) else "never") + since
+        told = [Message("never"), *since]
         if len(times):
-            said += f", first at t = {with_unit(f'{times[0]:.9g}', unit)}"
+            first = with_unit(f"{times[0]:.9g}", unit)
+            told = [Message("[[count]] times, first at t = [[time]]", count=len(times), time=first), *since]
+        if len(times) == 1:
+            told[0] = Message("once, at t = [[time]]", time=first)
         if touches:
-            said += f"; {touches} of them touch only, as far as this run can tell: two passages or none"
-        yield "event", f"{event.name}: {said}"
+            text = "[[count]] of them touch only, as far as this run can tell: two passages or none"
+            told.append(Message(text, count=touches))
+        yield "event", Message("[[event]]: [[said]]", event=event.name, said=joined(told, "; "))
     if found.ended is not None:
-        name = found.events[found.ended.event].name
-        yield "stopped", f"at t = {with_unit(f'{found.ended.time:.9g}', unit)} by {name}"
+        time = with_unit(f"{found.ended.time:.9g}", unit)
+        yield "stopped", Message("at t = [[time]] by [[event]]", time=time, event=found.events[found.ended.event].name)
     for event in found.undecided:
-        yield (
-            "warning",
-            f"{event.name}: the two sides were equal all along within the error of a step: nothing can be told",
-        )
+        text = "[[event]]: the two sides were equal all along within the error of a step: nothing can be told"
+        yield "warning", Message(text, event=event.name)
     if run.section is not None:
-        yield (
-            "section",
-            f"{run.section.section.condition.text}: {counted(len(run.section.times), 'point', 'points')}{since}",
-        )
+        points = Message("points: [[count]]", count=len(run.section.times))
+        condition, said = run.section.section.condition.text, joined([points, *since], "; ")
+        yield "section", Message("[[event]]: [[said]]", event=condition, said=said)
     if found.beyond:
-        yield "warning", f"only the first {MOST} events were kept; there were {found.beyond} more"
+        text = "only the first [[most]] events were kept; there were [[more]] more"
+        yield "warning", Message(text, most=MOST, more=found.beyond)

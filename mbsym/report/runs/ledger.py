@@ -1,19 +1,29 @@
-"""The ledger as CSV, as part of ``results.json`` and as lines for the terminal."""
+"""The ledger as CSV, as part of ``results.json`` and as a document."""
 
 from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from io import StringIO
 
 from mbsym.algebra.certainty import Certainty
-from mbsym.numerics.ledger.entry import NOT_NEEDED, SECONDS, Ledger, Measure, Saving
+from mbsym.expressions.message import Message, joined, worded
+from mbsym.numerics.ledger.entry import NEEDED, NOT_NEEDED, OPEN, SECONDS, Ledger, Measure, Saving
+from mbsym.report.content import Block, Fact, Facts, Graded, Phrase, Subheading, paragraph
 from mbsym.report.documents.results import ledger as doc
 from mbsym.report.documents.writer import plain
 
 COLUMNS = ("kind", "what", "why", "how", "quantity", "unit", "without", "with", "saved", "at_least", "standing")
+
+#: By what follows of a saving; an accuracy is that of --accuracy and --until.
+_TITLES = {
+    NOT_NEEDED: Message("ledger: left out because this scene does not need it"),
+    OPEN: Message("ledger: left out; whether this scene needs it depends on the accuracy (--accuracy X --until T)"),
+    NEEDED: Message("ledger: left out although this scene needs it at this accuracy"),
+}
+_GRADES = {Certainty.ESTIMATED: "open", Certainty.UNDECIDED: "open"}
 
 #: So many names are told on the terminal; the files hold all of them.
 MOST_NAMES = 8
@@ -36,7 +46,7 @@ def ledger_lines(found: Ledger) -> tuple[LedgerLine, ...]:
     """Every saving as text; measures that come out equal, or nearly as quick, are left to the files."""
     return tuple(
         LedgerLine(
-            item.kind,
+            worded(item.kind),
             _names(item.what),
             item.why,
             item.how,
@@ -47,15 +57,40 @@ def ledger_lines(found: Ledger) -> tuple[LedgerLine, ...]:
     )
 
 
-def _names(names: Sequence[str]) -> str:
+def ledger_blocks(found: Ledger) -> Iterator[Block]:
+    """What was left out, why that is safe, what it saved; apart, what nobody knows to be safe, and what is not."""
+    lines = ledger_lines(found)
+    for standing, title in _TITLES.items():
+        own = [line for line in lines if line.standing == standing]
+        if own or standing == NOT_NEEDED:
+            yield Subheading((Graded(title, "bad") if standing == NEEDED else title,))
+            yield Facts(tuple(map(_fact, own))) if own else paragraph("  ", Message("nothing"))
+    if found.unmeasured:
+        kinds = joined(map(worded, found.unmeasured), ", ")
+        yield paragraph(Graded(Message("not measured, beyond the budget: [[kinds]]", kinds=kinds), "open"))
+
+
+def _fact(line: LedgerLine) -> Fact:
+    why = Phrase((worded(line.why), " (", Graded(worded(line.how), _GRADES.get(line.how, "good")), ")"))
+    return Fact(worded(line.kind), (line.what, why, *line.saved))
+
+
+def _names(names: Sequence[str]) -> Message:
     more = len(names) - MOST_NAMES
-    return ", ".join(names) if more <= 1 else ", ".join(names[:MOST_NAMES]) + f" and {more} more"
+    if more <= 1:
+        return joined(names, ", ")
+    return Message("[[names]] and [[more]] more", names=joined(names[:MOST_NAMES], ", "), more=more)
 
 
-def _compared(item: Measure) -> str:
-    least = "more than " if item.at_least else ""
-    costs = " (costs more)" if item.saved < 0 else ""
-    return f"{item.quantity}: {_number(item.taken, item)} instead of {least}{_number(item.without, item)}{costs}"
+def _compared(item: Measure) -> Message:
+    taken, without = _number(item.taken, item), _number(item.without, item)
+    if item.at_least:
+        text = "[[quantity]]: [[taken]] instead of more than [[without]]"
+    elif item.saved < 0:
+        text = "[[quantity]]: [[taken]] instead of [[without]] (costs more)"
+    else:
+        text = "[[quantity]]: [[taken]] instead of [[without]]"
+    return Message(text, quantity=worded(item.quantity), taken=taken, without=without)
 
 
 def _number(value: float, item: Measure) -> str:

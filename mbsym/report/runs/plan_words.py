@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING
 from msgspec import UNSET
 
 from mbsym.algebra.certainty import Certainty
-from mbsym.expressions.counting import counted
+from mbsym.expressions.counting import duration
+from mbsym.expressions.message import Message, joined, worded
+from mbsym.model.quantities import with_unit
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.planning.kinds import (
     FINENESS,
@@ -45,12 +47,9 @@ if TYPE_CHECKING:
     from mbsym.expressions.condition import Condition
     from mbsym.simulation import Request
 
-#: How a share is known, in words.
-HOW = {Certainty.MEASURED: "difference from a better run, doubled", Certainty.ESTIMATED: "estimated"}
-
 #: Lines of the plan by kinds of items; the tolerance stands with the method, and one motion needs no word on kernels.
 TITLES = {
-    GRAVITY: "gravity",
+    GRAVITY: "gravity field",
     LINEARITY: "equations",
     LEFT_OUT: "left out",
     MASSES: "masses",
@@ -62,103 +61,126 @@ TITLES = {
 }
 
 
-def duration(seconds: float) -> str:
-    """``91 µs``."""
-    for limit, factor, unit in ((1e-3, 1e6, "µs"), (1.0, 1e3, "ms")):
-        if seconds < limit:
-            return f"{seconds * factor:.3g} {unit}"
-    return f"{seconds:.3g} s"
-
-
-def plan_lines(plan: Plan, unit: str | None) -> Iterator[tuple[str, str]]:
-    """(title, text): the accuracy, the bound with its shares, the choices, a digit more or less."""
-    until = f"{plan.time:g}" + (f" {unit}" if unit else "")
-    yield "accuracy", f"{accuracy_words(plan.accuracy)}, from 0 to {until}"
+def bound_lines(plan: Plan, unit: str | None) -> Iterator[tuple[str, Message]]:
+    """(title, text): the accuracy, the bound with its shares, whether it is reached."""
+    until = with_unit(f"{plan.time:g}", unit)
+    yield "accuracy", Message("[[accuracy]], from 0 to [[time]]", accuracy=accuracy_words(plan.accuracy), time=until)
     for place, bound in enumerate(plan.bounds):
         yield "" if place else "bound", bound_words(bound)
-        yield "", " + ".join(share_words(share) for share in bound.shares)
+        yield "", joined([share_words(share) for share in bound.shares], " + ")
         if bound.proved is not None:
             yield "", proved_words(bound)
     if plan.unshown and not plan.contradicted and all(bound.reached for bound in plan.bounds):
-        yield "warning", f"the accuracy asked for is not shown: the error of this run is not estimated ({plan.unshown})"
+        text = "the accuracy asked for is not shown: the error of this run is not estimated ([[why]])"
+        yield "warning", Message(text, why=plan.unshown)
+    elif not plan.reached and plan.unmeasured:
+        yield "warning", Message("the accuracy asked for is not shown: [[why]]", why=plan.unmeasured)
     elif not plan.reached:
-        why = plan.unmeasured
-        yield "warning", f"the accuracy asked for is not {f'shown: {why}' if why else 'reached'}"
+        yield "warning", Message("the accuracy asked for is not reached")
+    for remark in plan.remarks:
+        yield "note", worded(remark)
+
+
+def choice_lines(plan: Plan) -> Iterator[tuple[str, Message]]:
+    """(title, text): the choices, and what a digit more or less costs."""
     for item in plan.items:
         if item.kind in TITLES:
             yield TITLES[item.kind], item_words(item, plan)
-    for title, other in (("one digit more", plan.more), ("one digit less", plan.less)):
-        if other is not None and other.target < 1:
-            yield "" if title.endswith("less") else "cost", f"{title}, {alternative_words(other, plan)}"
-    for remark in plan.remarks:
-        yield "note", remark
+    title = "cost"
+    if plan.more is not None and plan.more.target < 1:
+        yield title, Message("one digit more, [[cost]]", cost=alternative_words(plan.more, plan))
+        title = ""
+    if plan.less is not None and plan.less.target < 1:
+        yield title, Message("one digit less, [[cost]]", cost=alternative_words(plan.less, plan))
 
 
-def accuracy_words(accuracy: Accuracy) -> str:
-    """``1e-06 of every coordinate and velocity, energy 1e-09``."""
-    every = accuracy.everything
-    parts = [] if every is None else [f"{every:g} of the size of every coordinate and velocity"]
-    return ", ".join([*parts, *(f"{name} {value:g}" for name, value in accuracy.named.items())])
+def accuracy_words(accuracy: Accuracy) -> Message:
+    """``1e-06 of the size of every coordinate and velocity, energy 1e-09``."""
+    text, every = "[[error]] of the size of every coordinate and velocity", accuracy.everything
+    parts = [] if every is None else [Message(text, error=f"{every:g}")]
+    named = [joined([_quantity(name), f"{value:g}"]) for name, value in accuracy.named.items()]
+    return joined([*parts, *named], ", ")
 
 
-def bound_words(bound: Bound) -> str:
+def _quantity(name: str) -> str:
+    return Message("energy") if name == ENERGY else name
+
+
+def bound_words(bound: Bound) -> Message:
     """``theta2 within 4.8e-07 of its size (measured)``; of a quantity that was not named: the worst."""
+    quantity, total = _quantity(bound.quantity), f"{bound.total:.1e}"
     if not isfinite(bound.total):
-        return f"{bound.quantity}: nothing is known, for no run could be had to measure by"
-    of = "the largest kinetic energy" if bound.quantity == ENERGY else "its size"
-    return f"{bound.quantity} within {bound.total:.1e} of {of} ({bound.how})"
+        return Message("[[quantity]]: nothing is known, for no run could be had to measure by", quantity=quantity)
+    if bound.quantity == ENERGY:
+        text = "[[quantity]] within [[total]] of the largest kinetic energy ([[how]])"
+    else:
+        text = "[[quantity]] within [[total]] of its size ([[how]])"
+    return Message(text, quantity=quantity, total=total, how=bound.how)
 
 
-def proved_words(bound: Bound) -> str:
+def proved_words(bound: Bound) -> Message:
     """What a certificate says of the shares that are no model's."""
     assert bound.proved is not None
-    within = "" if bound.proved <= bound.integrated else ", which is wider than those shares"
-    return f"integration + arithmetic at most {at_most(bound.proved)} at every row (proved{within})"
+    if bound.proved <= bound.integrated:
+        text = "integration + arithmetic at most [[bound]] at every row (proved)"
+    else:
+        text = "integration + arithmetic at most [[bound]] at every row (proved, which is wider than those shares)"
+    return Message(text, bound=at_most(bound.proved))
 
 
-def share_words(share: Share) -> str:
+def share_words(share: Share) -> Message:
     """``integration 4.8e-07 (difference from a better run, doubled)``."""
+    name, error = Message(share.name), f"{share.error:.1e}"
     if share.how is None:
-        return f"{share.name} (contained in the integration's)"
+        return Message("[[share]] (contained in the integration's)", share=name)
     if share.error == 0:
-        return f"{share.name} 0 (nothing neglected)" if share.name == MODEL else f"{share.name} 0"
-    how = (
-        "by a rerun with the richest model"
-        if share.name == MODEL and share.how is Certainty.MEASURED
-        else HOW[share.how]
-    )
-    return f"{share.name} {share.error:.1e} ({how})" if share.name != ARITHMETIC else f"{share.name} {share.error:.1e}"
+        return Message("[[share]] 0 (nothing neglected)" if share.name == MODEL else "[[share]] 0", share=name)
+    if share.name == ARITHMETIC:
+        return joined([name, error])
+    if share.how is not Certainty.MEASURED:
+        return Message("[[share]] [[error]] ([[how]])", share=name, error=error, how=share.how)
+    if share.name == MODEL:
+        return Message("[[share]] [[error]] (by a rerun with the richest model)", share=name, error=error)
+    return Message("[[share]] [[error]] (difference from a better run, doubled)", share=name, error=error)
 
 
-def item_words(item: Item, plan: Plan) -> str:
+def item_words(item: Item, plan: Plan) -> Message:
     """``dop853, tolerance 3.3e-08, 91 µs a run: ...; rk45 3.3e-08: error 6.6e-07, about 110 µs``."""
-    chosen = item.chosen
+    chosen: str = worded(item.chosen)
     if item.kind == METHOD:
         fineness = next(one for one in plan.items if one.kind == FINENESS)
-        chosen = f"{chosen}, {fineness.chosen}, {duration(plan.seconds)} a run"
-    what = f"{', '.join(item.what)} " if item.kind in (MASSES, RESTING, PARTS, WELDED) else ""
-    refused = "".join(f"; {refused_words(one, item.unit)}" for one in item.refused)
-    return f"{what}{chosen}: {item.why}{refused}"
+        text, seconds = "[[method]], [[fineness]], [[seconds]] a run", duration(plan.seconds)
+        chosen = Message(text, method=item.chosen, fineness=fineness.chosen, seconds=seconds)
+    if item.kind in (MASSES, RESTING, PARTS, WELDED):
+        chosen = joined([", ".join(item.what), chosen])
+    why = Message("[[chosen]]: [[why]]", chosen=chosen, why=item.why)
+    return joined([why, *(refused_words(one, item.unit) for one in item.refused)], "; ")
 
 
-def refused_words(one: Refused, unit: str) -> str:
+def refused_words(one: Refused, unit: str) -> Message:
     """``rk45 3.3e-08: error 6.6e-07, about 110 µs``."""
-    parts = [f"error {one.error:.1e}"] if one.error is not None else []
-    parts += [one.why] if one.why else []
-    if one.cost is not None:
-        about = f"about {duration(one.cost)}"  # by counted work
-        parts.append(counted(round(one.cost), "operation", "operations") if unit == OPERATIONS else about)
-    return f"{one.word}: {', '.join(parts)}" if parts else one.word
+    parts = [Message("error [[error]]", error=f"{one.error:.1e}")] if one.error is not None else []
+    parts += [worded(one.why)] if one.why else []
+    if one.cost is not None and unit == OPERATIONS:
+        parts.append(Message("[[count]] operations", count=round(one.cost)))
+    elif one.cost is not None:
+        parts.append(Message("about [[cost]]", cost=duration(one.cost)))  # by counted work
+    return joined([worded(one.word), *([joined(parts, ", ")] if parts else [])], ": ")
 
 
-def alternative_words(other: Alternative, plan: Plan) -> str:
+def alternative_words(other: Alternative, plan: Plan) -> Message:
     """``1e-07: about 110 µs, 1.2 times as much work (dop853 5e-09)``: by counted work, and seconds in proportion."""
-    model = f", {other.model}" if other.model else ""
+    target = f"{other.target:.0e}"
     if other.seconds is None:
-        return f"{other.target:.0e}: {other.why}"
-    times = other.times
-    same = "as much work" if 0.95 < times < 1.05 else f"{times:.2g} times as much work"
-    return f"{other.target:.0e}: about {duration(other.seconds)}, {same} ({other.label}{model})"
+        return Message("[[target]]: [[why]]", target=target, why=other.why)
+    setting = joined([other.label, *([worded(other.model)] if other.model else [])], ", ")
+    seconds, times = duration(other.seconds), other.times
+    if 0.95 < times < 1.05:
+        return Message(
+            "[[target]]: about [[seconds]], as much work ([[setting]])", target=target, seconds=seconds, setting=setting
+        )
+    text = "[[target]]: about [[seconds]], [[times]] times as much work ([[setting]])"
+    return Message(text, target=target, seconds=seconds, times=f"{times:.2g}", setting=setting)
 
 
 def repeating_options(request: Request) -> list[str]:

@@ -1,4 +1,4 @@
-"""What is said of a run: conservation and error as words, for the terminal, for ``simulation.json`` and for figures."""
+"""What is said of a run: conservation and error, for the terminal, for figures, and as part of ``simulation.json``."""
 
 from __future__ import annotations
 
@@ -6,11 +6,12 @@ from collections.abc import Iterator, Sequence
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
+from mbsym.expressions.message import Message, joined
 from mbsym.expressions.tree import text
 from mbsym.model.quantities import with_unit
-from mbsym.numerics.accuracy import Against, ErrorEstimate, Lacking, NoEstimate
+from mbsym.numerics.accuracy import ErrorEstimate, Lacking, NoEstimate
 from mbsym.numerics.conservation import Conservation, Standing
-from mbsym.numerics.methods.interface import Change
+from mbsym.numerics.methods.interface import Change, Setting
 from mbsym.report.documents import simulation as doc
 
 if TYPE_CHECKING:
@@ -18,116 +19,132 @@ if TYPE_CHECKING:
     from mbsym.simulation.result import Simulation
 
 
-def standing_words(found: Conservation) -> str:
+def standing_words(found: Conservation) -> Message:
     """``conserved (proved)``, ``not conserved``, ``undecided (why)``."""
     if found.standing in (Standing.PROVED, Standing.VERIFIED):
-        return f"conserved ({found.standing.value})"
-    reason = f" ({found.doubt.value})" if found.doubt is not None else ""
-    return found.standing.value + reason
+        return Message("conserved ([[how]])", how=found.standing)
+    if found.doubt is not None:
+        return Message("[[standing]] ([[why]])", standing=found.standing, why=found.doubt)
+    return Message("[[standing]]", standing=found.standing)
 
 
-def conservation_line(found: Conservation) -> str:
+def conservation_line(found: Conservation) -> Message:
     """With how far the run keeps it, and what that is a part of: a drift is an error, a change is none.
 
     What other motions change may rest along this one, as T - U does at the bottom of a hoop that turns.
     """
+    said = standing_words(found)
     if found.standing is Standing.CHANGING and found.change == 0:
-        return f"{standing_words(found)} in general; constant along this run"
-    what = "drift" if found.standing in (Standing.PROVED, Standing.VERIFIED) else "change"
-    far = f"; largest {what} {_measured(found)}" if isfinite(found.change) else ""
-    return standing_words(found) + far
+        return Message("[[standing]] in general; constant along this run", standing=said)
+    if not isfinite(found.change):
+        return said
+    if found.standing in (Standing.PROVED, Standing.VERIFIED):
+        return Message("[[standing]]; largest drift [[measured]]", standing=said, measured=_measured(found))
+    return Message("[[standing]]; largest change [[measured]]", standing=said, measured=_measured(found))
 
 
-def _measured(found: Conservation) -> str:
+def _measured(found: Conservation) -> Message:
     """``1e-12 times the largest kinetic energy``."""
-    return f"{found.change:.1e} times {found.measure.value}"
+    return Message("[[change]] times [[size]]", change=f"{found.change:.1e}", size=found.measure)
 
 
-def energy_lines(run: Simulation) -> Iterator[tuple[str, str]]:
+def energy_lines(run: Simulation) -> Iterator[tuple[str, Message]]:
     """(which, what is said of it): T2 - T0 - U and T - U, which are the same where nothing moves as prescribed."""
     if not run.dynamics.natural:
-        yield "generalised, T2 - T0 - U", conservation_line(run.conservation)
+        yield "T2 - T0 - U", conservation_line(run.conservation)
     yield "T - U", conservation_line(run.energy_conservation)
 
 
-def invariant_line(found: Conservation) -> str:
+def invariant_line(found: Conservation) -> Message:
     """``momentum of psi (proved): largest drift 1e-12 times the size of its terms``."""
     if found.standing in (Standing.PROVED, Standing.VERIFIED):
-        return f"{found.quantity} ({found.standing.value}): largest drift {_measured(found)}"
-    return f"{found.quantity}: {conservation_line(found)}"
+        text = "[[quantity]] ([[how]]): largest drift [[measured]]"
+        return Message(text, quantity=found.quantity, how=found.standing, measured=_measured(found))
+    return Message("[[quantity]]: [[said]]", quantity=found.quantity, said=conservation_line(found))
 
 
-def against_words(found: Against) -> str:
-    """``dop853, tolerance 1e-12, extended, steps up to 0.005``."""
-    setting = found.setting
-    how = f"step {setting.step:.3g}" if setting.tolerance is None else f"tolerance {setting.tolerance:.0e}"
-    longest = f", steps up to {setting.longest:.3g}" if setting.longest is not None else ""
-    return f"{found.method}, {how}, {found.scalar}{longest}"
+def setting_words(setting: Setting, scalar: str) -> Message:
+    """``tolerance 1e-12 per step, steps up to 0.005, extended``."""
+    if setting.step is not None:
+        told = [Message("step [[step]]", step=f"{setting.step:g}")]
+    else:
+        told = [Message("tolerance [[tolerance]] per step", tolerance=f"{setting.tolerance:g}")]
+    if setting.longest is not None:
+        told.append(Message("steps up to [[step]]", step=f"{setting.longest:.3g}"))
+    return joined([*told, Message(scalar)], ", ")
 
 
-def error_lines(found: ErrorEstimate | NoEstimate) -> Iterator[str]:
+def error_lines(found: ErrorEstimate | NoEstimate) -> Iterator[Message]:
     """The error in words; nothing where none was asked for or the run says itself why it ended."""
     if isinstance(found, NoEstimate):
         if found.why not in (Lacking.NOT_ASKED, Lacking.NOT_WHOLE, Lacking.INTERRUPTED):
-            yield f"not estimated: {found.why.value}"
+            yield Message("not estimated: [[why]]", why=found.why)
         return
-    against = f"of each quantity's size in the whole motion; against {against_words(found.against)}"
+    better = joined([found.against.method, setting_words(found.against.setting, found.against.scalar)], ", ")
+    against = Message("of each quantity's size in the whole motion; against [[run]]", run=better)
+    largest, final = f"{found.largest:.1e}", f"{found.final:.1e}"
     if found.parted is not None:
-        yield (
-            f"at least {found.largest:.1e}: this run and a better one have parted by t = {found.parted:.4g}, and from "
-            f"there on nothing is known of either ({against})"
+        text = (
+            "at least [[error]]: this run and a better one have parted by t = [[time]], and from there on nothing is "
+            "known of either ([[against]])"
         )
+        yield Message(text, error=largest, time=f"{found.parted:.4g}", against=against)
     elif found.largest <= found.rounding:
-        yield f"no more than the rounding of one number, {found.rounding:.1e} ({against})"
+        text = "no more than the rounding of one number, [[rounding]] ([[against]])"
+        yield Message(text, rounding=f"{found.rounding:.1e}", against=against)
+    elif found.largest > 2 * found.final:
+        text = "about [[error]] at the end, [[worst]] at worst ([[against]])"
+        yield Message(text, error=final, worst=largest, against=against)
     else:
-        worst = f", {found.largest:.1e} at worst" if found.largest > 2 * found.final else ""
-        yield f"about {found.final:.1e} at the end{worst} ({against})"
+        yield Message("about [[error]] at the end ([[against]])", error=final, against=against)
     resting = [q for q in found.quantities if q.rests]
-    if resting:
-        names = ", ".join(q.name for q in resting)
-        error = max(q.largest for q in resting)
-        floor = min(q.floor for q in resting)
-        rest = "rests" if len(resting) == 1 else "rest"
-        if error == 0 and floor == 0:
-            yield f"{names} {rest}, in this run and in the better one"
-        else:
-            yield (
-                f"{names} {rest} but for rounding, as far as can be told: the {error:.1e} that the run makes of it is "
-                f"measured by what the motion could do (sizes below {floor:.1e} on which two runs do not agree)"
-            )
+    if not resting:
+        return
+    names, error = ", ".join(q.name for q in resting), max(q.largest for q in resting)
+    floor = min(q.floor for q in resting)
+    if error == 0 and floor == 0:
+        yield Message("at rest in this run and in the better one: [[names]]", names=names)
+        return
+    text = (
+        "at rest but for rounding, as far as can be told: [[names]]; the [[error]] that the run makes of it is "
+        "measured by what the motion could do (sizes below [[floor]] on which two runs do not agree)"
+    )
+    yield Message(text, names=names, error=f"{error:.1e}", floor=f"{floor:.1e}")
 
 
 #: So many changes of the method are told one by one.
 MOST_CHANGES = 6
 
 
-def change_lines(changes: Sequence[Change], unit: str | None) -> Iterator[str]:
+def change_lines(changes: Sequence[Change], unit: str | None) -> Iterator[Message]:
     """Where the run changed its method on the way, and why."""
     for one in changes[:MOST_CHANGES]:
-        yield f"from t = {with_unit(f'{one.time:.9g}', unit)} on {one.method} ({one.why})"
+        time = with_unit(f"{one.time:.9g}", unit)
+        yield Message("from t = [[time]] on [[method]] ([[why]])", time=time, method=one.method, why=one.why)
     if len(changes) > MOST_CHANGES:
-        last = changes[-1]
-        yield (
-            f"... and {len(changes) - MOST_CHANGES} changes more, the last at t = "
-            f"{with_unit(f'{last.time:.9g}', unit)} to {last.method}; all are in simulation.json"
-        )
+        last, more = changes[-1], len(changes) - MOST_CHANGES
+        time = with_unit(f"{last.time:.9g}", unit)
+        text = "... and [[more]] changes more, the last at t = [[time]] to [[method]]; all are in simulation.json"
+        yield Message(text, more=more, time=time, method=last.method)
 
 
-def warnings(conservation: Conservation, error: ErrorEstimate | NoEstimate) -> Iterator[str]:
+def warnings(conservation: Conservation, error: ErrorEstimate | NoEstimate) -> Iterator[Message]:
     """What makes a run doubtful."""
     if conservation.broken:
-        yield (
-            f"the {conservation.quantity} is conserved, and this run does not keep it: it is too coarse; choose a "
-            "smaller --tolerance, or, of a method with steps of one length, a smaller --step"
+        text = (
+            "the [[quantity]] is conserved, and this run does not keep it: it is too coarse; choose a smaller "
+            "--tolerance, or, of a method with steps of one length, a smaller --step"
         )
+        yield Message(text, quantity=Message(conservation.quantity))
     if isinstance(error, ErrorEstimate) and error.parted is not None:
-        yield (
-            f"from t = {error.parted:.4g} on this run and a better one have little in common: the motion is chaotic or "
-            "starts at an unstable rest, the run has stepped over something short, or it is too coarse"
+        text = (
+            "from t = [[time]] on this run and a better one have little in common: the motion is chaotic or starts at "
+            "an unstable rest, the run has stepped over something short, or it is too coarse"
         )
+        yield Message(text, time=f"{error.parted:.4g}")
 
 
-def quality(run: Simulation) -> tuple[list[str], list[str], bool]:
+def quality(run: Simulation) -> tuple[list[Message], list[Message], bool]:
     """(warnings, what is said of the error, whether that is to be read first, as warnings are).
 
     Whoever reads one line of a run that is wrong, or that nobody could judge, shall read that: it stands before what is
@@ -188,10 +205,11 @@ def error_json(found: ErrorEstimate | NoEstimate) -> doc.Estimate | doc.NoEstima
     )
 
 
-def inputs_line(given: Scenario) -> str:
+def inputs_line(given: Scenario) -> Message:
     """``F = sin(3*t); w = 0 (held, as on the unperturbed motion)``: what every input is in a run."""
-    left = "" if all(one.asked for one in given.inputs) else " (held, as on the unperturbed motion)"
-    return "; ".join(f"{one.name} = {text(one.law)}{'' if one.asked else left}" for one in given.inputs)
+    laws = {one: Message("[[name]] = [[law]]", name=one.name, law=text(one.law)) for one in given.inputs}
+    held = "[[law]] (held, as on the unperturbed motion)"
+    return joined([law if one.asked else Message(held, law=law) for one, law in laws.items()], "; ")
 
 
 def laws_json(given: Scenario) -> dict[str, str]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from msgspec import UNSET, UnsetType
 
+from mbsym.expressions.message import Message
 from mbsym.model.states import InStates
 from mbsym.numerics.states import StateDynamics, has_quaternions, norm_drifts
 from mbsym.report.documents import simulation as doc
@@ -26,21 +27,26 @@ def norm_columns(run: Simulation) -> Mapping[str, Any]:
     return {f"{name}_drift" + "_" * (f"{name}_drift" in taken): values for name, values in drifts.items()}
 
 
-def state_lines(run: Simulation) -> Iterator[tuple[str, str]]:
+def state_lines(run: Simulation) -> Iterator[tuple[str, Message]]:
     """(title, text) of the summary's lines; none for a run in coordinates of a system that declares nothing else."""
     system = run.system
     if not isinstance(system, InStates):
         if run.given is not None and run.given.system.speeds:
-            yield "variables", "coordinates and their velocities; speeds are computed from them"
+            yield "variables", Message("coordinates and their velocities; speeds are computed from them")
         return
     assert system.described is not None
-    text = f"{', '.join(system.positions)}; {', '.join(system.own_speeds)}, as declared"
-    yield "variables", text
+    positions, speeds = ", ".join(system.positions), ", ".join(system.own_speeds)
+    yield "variables", Message("[[positions]]; [[speeds]], as declared", positions=positions, speeds=speeds)
     columns = norm_columns(run)
     if columns:
         worst = max(float(np.max(values)) for values in columns.values())
-        what = "norms of quaternions are" if has_quaternions(system.described) else "unit vectors are"
-        yield "drift", f"{what} restored after every step; what is left of it at the rows is {worst:.1e} at most"
+        if has_quaternions(system.described):
+            text = (
+                "norms of quaternions are restored after every step; left of their drift at the rows: [[drift]] at most"
+            )
+        else:
+            text = "unit vectors are restored after every step; left of their drift at the rows: [[drift]] at most"
+        yield "drift", Message(text, drift=f"{worst:.1e}")
 
 
 def states_json(run: Simulation) -> doc.Variables | UnsetType:

@@ -8,10 +8,12 @@ from io import StringIO
 from math import inf, isfinite
 from typing import Any
 
+from mbsym.expressions.counting import duration
+from mbsym.expressions.message import Message, joined, worded
 from mbsym.model.quantities import marked
 from mbsym.numerics.kernels.interface import FLOAT64
 from mbsym.numerics.trade.fidelity import RESOLVED, ModelError
-from mbsym.numerics.trade.tradeoff import Measured, Tradeoff, duration
+from mbsym.numerics.trade.tradeoff import Measured, Tradeoff
 
 COLUMNS = (
     "method", "arithmetic", "tolerance", "step", "error", "drift", "evaluations", "steps", "seconds", "cost", "front",
@@ -92,10 +94,10 @@ def shown(rows: Sequence[Measured], smallest_judged: float) -> list[tuple[str, .
     tied = constrained(rows)
     for row in rows:
         name = row.candidate.method.traits.name
-        error = "fails" if row.trouble else _error(row.error, smallest_judged)
+        error = Message("fails") if row.trouble else _error(row.error, smallest_judged)
         lines.append(
             (
-                name if row.candidate.scalar == FLOAT64 else f"{name} {row.candidate.scalar}",
+                name if row.candidate.scalar == FLOAT64 else joined([name, worded(row.candidate.scalar)]),
                 row.candidate.shown,
                 error,
                 "" if row.trouble else f"{row.drift:.1e}",
@@ -119,6 +121,8 @@ def models_shown(rows: Sequence[ModelError]) -> list[tuple[str, ...]]:
     """Cells for the terminal: model, what it neglects, error, operations, time."""
     lines: list[tuple[str, ...]] = []
     for row in rows:
-        error = row.trouble if row.trouble else f"{row.error:.1e}" if row.error > RESOLVED else f"< {RESOLVED:.0e}"
+        error = (
+            worded(row.trouble) if row.trouble else f"{row.error:.1e}" if row.error > RESOLVED else f"< {RESOLVED:.0e}"
+        )
         lines.append((row.variant.label, row.variant.neglected, error, str(row.operations), duration(row.seconds)))
     return lines

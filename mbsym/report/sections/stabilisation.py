@@ -151,7 +151,7 @@ def content(results: Results) -> Iterator[Block]:
     states = found.feedback.states
     if found.feedback.of_part:
         places = named([name for name in states if not is_velocity(name)])
-        yield paragraph(say(OF_PART, why=worded(found.feedback.of_part), names=places))
+        yield paragraph(say(OF_PART, why=found.feedback.of_part, names=places))
     yield paragraph(Said(FEEDBACK if found.feedback.characteristic else ENCLOSED))
     if found.feedback.of_part or 2 * sum(map(is_velocity, states)) < len(states):
         yield paragraph(Said(STATES, {"names": speeds(states)}))

@@ -29,7 +29,6 @@ from mbsym.report.content import (
     Heading,
     Inline,
     Link,
-    Listed,
     Math,
     Name,
     Number,
@@ -92,7 +91,7 @@ def _drawing(system: System) -> Iterator[Drawing]:
     said = []
     if 0 < len(found.at) <= MOST_DRAWN:
         shown = tuple(Relation(Name(name), "=", Number(f"{value:.3g}")) for name, value in found.at)
-        said.append(say("Drawn at $[[values]]$.", values=Listed(shown)))
+        said.append(say("Drawn at [[values]].", values=shown))
     if found.frame != INERTIAL:
         said.append(say("Seen in the axes of [[frame]].", frame=Emphasis(found.frame)))
     if found.ellipsoids:

@@ -6,18 +6,20 @@ coordinates that are joined by straight lines.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import isfinite
 from typing import Any
 
 import numpy as np
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import Expression
 from mbsym.model.quantities import energy_unit, time_unit
 from mbsym.model.system import System, velocity_name
 from mbsym.numerics.scenario import scenario
-from mbsym.report.figures.animation_page import drift_of, run_sentences
+from mbsym.report.figures.animation_page import drift_of, frames_of, run_sentences
+from mbsym.report.language import Language
 from mbsym.report.runs.constrained_run_words import constraint_lines
 from mbsym.report.unit_text import pretty
 from mbsym.simulation import Request, Simulation, simulate
@@ -69,6 +71,7 @@ def motion_of(run: Simulation) -> Motion:
     if len(found.times) and chosen[-1] != len(found.times) - 1:
         chosen = np.append(chosen, len(found.times) - 1)
     states = np.asarray(found.states[:, chosen], dtype=float)
+    say = Language(run.system.language).say
     units = {"time": pretty(time_unit(run.system)), "energy": pretty(energy_unit(run.system))}
     return Motion(
         times=np.asarray(found.times[chosen], dtype=float),
@@ -77,22 +80,23 @@ def motion_of(run: Simulation) -> Motion:
         kinetic=np.asarray(found.kinetic[chosen], dtype=float),
         energy=np.asarray(found.energy[chosen], dtype=float),
         drift=np.asarray(found.drift[chosen], dtype=float),
-        drift_of=drift_of(run),
+        drift_of=say(drift_of(run)),
         stride=stride,
-        sentences=(*run_sentences(run), *_constrained(run), _frames(len(chosen), stride)),
+        sentences=(*map(say, run_sentences(run)), *_constrained(run, say), say(_frames(len(chosen), stride))),
         units=tuple((name, unit) for name, unit in units.items() if unit),
     )
 
 
-def _constrained(run: Simulation) -> list[str]:
+def _constrained(run: Simulation, say: Callable[[str], str]) -> Iterator[str]:
     """``Drift: ...`` of the constraints."""
-    lines = constraint_lines(run)  # without a title they begin with a name, which keeps its spelling: c is not C
-    return [f"{title[:1].upper()}{title[1:]}: {text}." if title else f"{text}." for title, text in lines]
+    # Without a title they begin with a name, which keeps its spelling: c is not C.
+    for title, text in constraint_lines(run):
+        yield f"{say(title).capitalize()}: {say(text)}." if title else f"{say(text)}."
 
 
-def _frames(count: int, stride: int) -> str:
-    which = "every sample" if stride == 1 else f"one of {stride} samples"
-    return f"{count} frames ({which} of the run); between frames coordinates are joined by straight lines."
+def _frames(count: int, stride: int) -> Message:
+    text = "Frames: [[count]] ([[which]]); between frames coordinates are joined by straight lines."
+    return Message(text, count=count, which=frames_of(stride))
 
 
 def rounded(values: Iterable[float]) -> list[float | None]:

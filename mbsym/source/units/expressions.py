@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.place import Span
 from mbsym.expressions.table import Table
 from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, names, text
@@ -41,14 +42,27 @@ class Dimensions:
             return
         found = self.of(expression)
         if found is not None and not self.inference.equate(found, wanted):
-            message = f"{_shown(expression)} is {self.told(found)}, and {what} is {self.told(wanted)}"
+            message = Message(
+                "[[shown]] is [[told]], and [[what]] is [[told2]]",
+                shown=_shown(expression),
+                told=self.told(found),
+                what=what,
+                told2=self.told(wanted),
+            )
             self.complain(message, _place(expression), None)
 
     def alike(self, left: Expression, right: Expression, how: str) -> None:
         """Two expressions must have the same dimension; a number alone goes with anything."""
         one, other = (self.of(side) if names(side) else None for side in (left, right))
         if one is not None and other is not None and not self.inference.equate(one, other):
-            message = f"{_shown(left)} is {self.told(one)}, {_shown(right)} is {self.told(other)}: they cannot be {how}"
+            message = Message(
+                "[[shown]] is [[told]], [[shown2]] is [[told2]]: they cannot be [[how]]",
+                shown=_shown(left),
+                told=self.told(one),
+                shown2=_shown(right),
+                told2=self.told(other),
+                how=how,
+            )
             self.complain(message, _place(right) or _place(left), None)
 
     def of(self, expression: Expression) -> Form | None:
@@ -78,7 +92,10 @@ class Dimensions:
                 self._sum(Operation("-", argument, end, expression.span), argument, end)
                 return Form()
             case Call(function, argument):
-                self._number(argument, f"{function} takes a pure number, such as an angle in radians")
+                self._number(
+                    argument,
+                    Message("[[function]] takes a pure number, such as an angle in radians", function=function),
+                )
                 return Form()
             case Operation("**", base, exponent):
                 return self._power(base, exponent)
@@ -92,9 +109,15 @@ class Dimensions:
 
     def _tabulated(self, name: str, argument: Expression, found: Form) -> None:
         """All arguments of a table have one dimension."""
-        wanted = self.name_form(f"the argument of {name}")
+        wanted = self.name_form(Message("the argument of [[name]]", name=name))
         if not self.inference.equate(found, wanted):
-            message = f"{_shown(argument)} is {self.told(found)}, and the argument of {name} is {self.told(wanted)}"
+            message = Message(
+                "[[shown]] is [[told]], and the argument of [[name]] is [[told2]]",
+                shown=_shown(argument),
+                told=self.told(found),
+                name=name,
+                told2=self.told(wanted),
+            )
             self.complain(message, _place(argument), None)
 
     def _product(self, left: Expression, right: Expression, power: int) -> Form | None:
@@ -116,7 +139,14 @@ class Dimensions:
         if self.inference.equate(one, other):
             return one
         how = "added" if whole.operator == "+" else "subtracted"
-        message = f"{_shown(left)} is {self.told(one)}, {_shown(right)} is {self.told(other)}: they cannot be {how}"
+        message = Message(
+            "[[shown]] is [[told]], [[shown2]] is [[told2]]: they cannot be [[how]]",
+            shown=_shown(left),
+            told=self.told(one),
+            shown2=_shown(right),
+            told2=self.told(other),
+            how=how,
+        )
         number = next((side for side in (left, right) if not names(side)), None)
         hint = None if number is None else "give the number a name and a unit under 'parameters'"
         self.complain(message, _place(right) or whole.span, hint)
@@ -126,7 +156,9 @@ class Dimensions:
     def _number(self, expression: Expression, rule: str) -> None:
         found = self.of(expression)
         if found is not None and not self.inference.equate(found, Form()):
-            message = f"{_shown(expression)} is {self.told(found)}; {rule}"
+            message = Message(
+                "[[shown]] is [[told]]; [[rule]]", shown=_shown(expression), told=self.told(found), rule=rule
+            )
             self.complain(message, _place(expression), None)
 
     def told(self, form: Form) -> str:
@@ -134,7 +166,13 @@ class Dimensions:
         known = self.inference.reduced(form)
         unknown = " times ".join(f"[{name}]" + ("" if power == 1 else f"^{power}") for name, power in known.unknown)
         base = in_words(known.known)
-        return base if not unknown else unknown if not known.known else f"{base} times {unknown}"
+        return (
+            base
+            if not unknown
+            else unknown
+            if not known.known
+            else Message("[[base]] times [[unknown]]", base=base, unknown=unknown)
+        )
 
 
 def in_words(dimension: Dimension) -> str:

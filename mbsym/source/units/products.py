@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from fractions import Fraction
 
+from mbsym.expressions.message import Message
+
 MAX_UNIT = 60
 MAX_EXPONENT = 20
 
@@ -113,5 +115,5 @@ def _times(one: Powers, other: Powers, power: Fraction | int) -> Powers:
     for name, exponent in other.items():
         made[name] = made.get(name, Fraction(0)) + exponent * power
     if any(abs(exponent) > MAX_EXPONENT for exponent in made.values()):
-        raise Wrong(f"powers of units go to {MAX_EXPONENT}")
+        raise Wrong(Message("powers of units go to [[most]]", most=MAX_EXPONENT))
     return made

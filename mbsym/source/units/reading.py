@@ -9,6 +9,7 @@ from fractions import Fraction
 from functools import cache
 from typing import Any
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.parser import ascii_safe
 from mbsym.model.units import (
     ENERGY,
@@ -123,7 +124,7 @@ def unit(text: str) -> Unit | str:
         except OverflowError:
             return "it is too large or too small"
     if any(abs(value) > MAX_EXPONENT for _, value in found):
-        return f"powers of units go to {MAX_EXPONENT}"
+        return Message("powers of units go to [[most]]", most=MAX_EXPONENT)
     if not 1e-300 < factor < 1e300:
         return "it is too large or too small"
     return Unit(factor, found)
@@ -151,7 +152,7 @@ def _named(name: str) -> Unit | str:
     except KeyError:
         return "only units of length, mass, time, current, temperature, light and amount are known"
     except Exception:  # pint raises many kinds, those of its tokenizer included
-        return f"{ascii_safe(name)} is unknown"
+        return Message("[[name]] is unknown", name=ascii_safe(name))
     if "[mass]" in parsed.dimensionality:
         factor = _in_kilograms(factor, exponents["kg"], registry)
     return Unit(Fraction(factor) if isinstance(factor, int) else factor, dimension(exponents))
@@ -172,17 +173,26 @@ def read_units(node: Node | None, given: Iterable[Declared], reading: Reading) -
         name = entry.key.text
         if not reading.scope.check_key(entry.key.span, name, keys_of(node), allowed):
             continue
-        scalar = reading.scalar(entry.value, f"the unit of {ascii_safe(name)}")
+        scalar = reading.scalar(entry.value, Message("the unit of [[name]]", name=ascii_safe(name)))
         if scalar is None:
             continue
         if name in found:
-            reading.error("repeated-key", f"the unit of '{name}' is given twice", entry.key.span)
+            reading.error("repeated-key", Message("the unit of '[[name]]' is given twice", name=name), entry.key.span)
         found[name] = Declared(name, scalar.text.strip(), scalar.span)
     for one in found.values():
         reason = unit(one.text)
         if isinstance(reason, str):
             close = _likely(one.text)
             close = close if close and isinstance(unit(close), Unit) else closest(one.text, _WRITTEN)
-            hint = f"did you mean '{close}'?" if close else "for example kg, m, s, N, kg*m^2, rad, m/s^2, or 1"
-            reading.error("bad-unit", f"{ascii_safe(one.text)} is no unit: {reason}", one.span, hint)
+            hint = (
+                Message("did you mean '[[other]]'?", other=close)
+                if close
+                else "for example kg, m, s, N, kg*m^2, rad, m/s^2, or 1"
+            )
+            reading.error(
+                "bad-unit",
+                Message("[[what]] is no unit: [[reason]]", what=ascii_safe(one.text), reason=reason),
+                one.span,
+                hint,
+            )
     return tuple(found.values())

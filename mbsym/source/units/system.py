@@ -7,6 +7,7 @@ from collections.abc import Callable, Container, Iterable
 from fractions import Fraction
 from itertools import pairwise
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.place import Span
 from mbsym.expressions.rates import acceleration_name, velocity_name
 from mbsym.expressions.tree import ZERO, Expression, Name
@@ -136,10 +137,24 @@ def _base_units(
 
 def _incoherent(one: Declared, found: Unit, factor: float) -> tuple[str, Span | None, str]:
     if not found.dimension:
-        hint = f"numbers are taken as they stand: multiply them by {factor:.6g}, and write rad or 1"
-        return f"angles are in radians, and pure numbers without a factor: '{one.text}' is neither", one.span, hint
-    message = f"'{one.text}' does not belong to the system of units of the names before"
-    return message, one.span, f"in their units the numbers of '{one.name}' are {factor:.6g} times as large"
+        hint = Message(
+            "numbers are taken as they stand: multiply them by [[factor]], and write rad or 1", factor=f"{factor:.6g}"
+        )
+        return (
+            Message("angles are in radians, and pure numbers without a factor: '[[what]]' is neither", what=one.text),
+            one.span,
+            hint,
+        )
+    message = Message("'[[what]]' does not belong to the system of units of the names before", what=one.text)
+    return (
+        message,
+        one.span,
+        Message(
+            "in their units the numbers of '[[name]]' are [[factor]] times as large",
+            name=one.name,
+            factor=f"{factor:.6g}",
+        ),
+    )
 
 
 def _called(base: str, size: float) -> str | None:
@@ -170,7 +185,9 @@ class _System:
     def check(self) -> None:
         system = self.system
         for motion in system.prescribed:
-            self.expect(motion.rate, self.of(motion.name).times(Form(RATE)), f"the rate of '{motion.name}'")
+            self.expect(
+                motion.rate, self.of(motion.name).times(Form(RATE)), Message("the rate of '[[name]]'", name=motion.name)
+            )
             self.expect(motion.initial, self.of(motion.name), f"'{motion.name}'")
         for body in system.bodies:
             self.body(body)
@@ -195,7 +212,11 @@ class _System:
             self.expect(limit.upper, self.of(limit.coordinate), f"'{limit.coordinate}'")
         for entry in system.motion:
             self.expect(entry.value, self.of(entry.coordinate), f"'{entry.coordinate}'")
-            self.expect(entry.rate, self.of(entry.coordinate).times(Form(RATE)), f"the rate of '{entry.coordinate}'")
+            self.expect(
+                entry.rate,
+                self.of(entry.coordinate).times(Form(RATE)),
+                Message("the rate of '[[coordinate]]'", coordinate=entry.coordinate),
+            )
         self.expect(system.time_scale, RATE, "the rate of dimensionless time")
         for claim in system.claims:
             check_claim(claim, self.dimensions, system.time_scale is not None, system.variables)
