@@ -93,18 +93,20 @@ class _Run:
         typed = {name for name, text in self.texts.items() if text not in (None, (), False)}
         self.writes = isinstance(study.out, Folder) and study.writes(typed)
         self._complain(request, system, typed)
-        code = prevented(file, folder_for(file, self.out) if self.writes else None, system is not None, self.options)
+        kept = self.writes or (isinstance(study.out, Single) and study.out.usual and self.out is None)
+        code = prevented(file, folder_for(file, self.out) if kept else None, system is not None, self.options)
         if code or system is None:
             return code or BAD_INPUT
-        return self._answered(Asked(system, given, printable(file)), request)
+        asked = Asked(system, given, printable(file), folder_for(file, self.out), write_whole)
+        return self._answered(asked, request)
 
     def _described(self) -> System | None:
         """The system, None after complaints; inputs are held, which is said, where the study does so."""
-        study = self.study
+        study, bodies = self.study, self.study.bodies(self.texts)
+        constraints, matrices = study.constraints and not bodies, study.matrices and not bodies
         if study.held:
-            return read_held(self.file, study.name, study.constraints, not study.matrices)
-        unknown = "" if study.constraints else study.name
-        return read_description(self.file, unknown, "" if study.matrices else study.name)
+            return read_held(self.file, study.name, constraints, not matrices)
+        return read_description(self.file, "" if constraints else study.name, "" if matrices else study.name)
 
     def _complain(self, request: Any, system: System | None, typed: Collection[str]) -> None:
         """About what does not go together."""
@@ -164,9 +166,11 @@ class _Run:
             self._tell(asked, answer)
         for text in answer.complaints:
             complain(file, text)
-        if answer.code or self.out is None or study.document is None:
+        usual = study.out.usual if isinstance(study.out, Single) else ""
+        place = self.out or (folder_for(file, None) / usual if usual else None)
+        if answer.code or place is None or study.document is None:
             return answer.code
-        return self._written(self.out, study.document(asked, request, found))
+        return self._written(place, study.document(asked, request, found))
 
     def _tell(self, asked: Asked, answer: Answer) -> None:
         loud = not self.quiet
@@ -189,10 +193,15 @@ class _Run:
         if document.text is None:
             return FAILED
         try:
-            write_whole(out, document.text)
+            if self.out is None:
+                deliver(out.parent, {out.name: document.text}, self.study.name)
+            else:
+                write_whole(out, document.text)
         except OSError as error:
             complain(out, f"cannot be written: {error.strerror or error}")
             return FAILED
+        if document.told and not self.quiet:
+            click.echo(f"{printable(out)}: {document.told}")
         return OK
 
 

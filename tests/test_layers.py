@@ -33,9 +33,9 @@ BELOW = {
     "sweeps": "expressions algebra model mechanics formulas problems analysis maps numerics",
     "report": "expressions algebra model source mechanics formulas problems analysis numerics simulation maps sweeps",
     "studies": "expressions algebra model source mechanics formulas problems analysis maps numerics simulation sweeps"
-    " report",
+    " report batch picture",
     "editing": "expressions algebra model source formulas analysis report",
-    "batch": "expressions algebra model source formulas problems analysis report sweeps __init__",
+    "batch": "expressions algebra model source formulas problems analysis report sweeps",
     "diff": "expressions algebra formulas report",
     "picture": "expressions algebra model source formulas mechanics problems analysis numerics simulation maps report",
     "serving": "expressions algebra model source formulas problems analysis maps numerics simulation report editing"

@@ -93,9 +93,9 @@ def read_many(
         return None, names
     if many.members is not None and members is None:
         return None, names
-    from mbsym.numerics.ensembles.variation import complaints
+    from mbsym.numerics.ensembles.variation import complaints_of
 
-    for name, told, hint in complaints(given.system, found, members):
+    for name, told, hint in complaints_of(given.system, found, members):
         options.complain(f"--vary {name}", "bad-variation", told, hint or None)
     return Varied(tuple(found), members, seed, sampling), names
 

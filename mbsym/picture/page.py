@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 from fractions import Fraction
 from hashlib import sha256
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from markupsafe import escape
 
@@ -35,6 +35,13 @@ BUNDLES = Path(__file__).parents[1] / "serving" / "page"
 Values = Mapping[str, Expression]
 
 
+class Page(NamedTuple):
+    """The file's text, and what is said with it."""
+
+    text: str
+    said: list[str]
+
+
 def viewed(
     system: System,
     overrides: Values,
@@ -42,7 +49,7 @@ def viewed(
     modes: bool = False,
     equilibria: bool = False,
     watch: Callable[[float], None] = lambda t: None,
-) -> tuple[str, list[str]]:
+) -> Page:
     """The page of a system with what is asked for, and the sentences that are told with it.
 
     Modes and equilibria that cannot be had are told of; a motion that cannot is not: raises what ``motion`` and
@@ -54,9 +61,9 @@ def viewed(
         "modes": modes_part(system, overrides) if modes else None,
         "equilibria": equilibria_part(system, overrides) if equilibria else None,
     }
-    said = [f"{system.name}: {sentence}" for sentence in drawn["sentences"]]
+    said = [*drawn["sentences"]]
     said += [f"no {name}: {part['why']}" for name, part in further.items() if part is not None and "why" in part]
-    return view_page(system, drawn, moving, further["modes"], further["equilibria"]), said
+    return Page(view_page(system, drawn, moving, further["modes"], further["equilibria"]), said)
 
 
 def view_page(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 if TYPE_CHECKING:
@@ -93,12 +94,14 @@ def unwatched(text: str, done: float = 0.0, whole: float = 0.0) -> None:
 class Asked:
     """What a study is about: the description, with the values of the request where it is of one motion.
 
-    ``file``: its name, for commands to be pasted.
+    ``file``: its name, for commands to be pasted; ``folder``: where its files go, ``write`` writes one at once, whole.
     """
 
     system: System
     scenario: Scenario | None = None
     file: str = ""
+    folder: Path = Path()
+    write: Callable[[Path, bytes], object] = Path.write_bytes
 
     @property
     def motion(self) -> Scenario:
@@ -114,7 +117,7 @@ class Answer:
     """
 
     lines: Iterable[Line | Rows] = ()
-    files: Mapping[str, str | bytes] = field(default_factory=dict)
+    files: Mapping[str, str | bytes | Iterable[str]] = field(default_factory=dict)
     complaints: Sequence[str] = ()
     code: Exit = Exit.OK
     after: str = ""
@@ -122,10 +125,11 @@ class Answer:
 
 @dataclass(frozen=True)
 class Document:
-    """The text of a single file, None where there is none, and complaints about it."""
+    """The text of a single file, None where there is none, complaints about it; ``told`` stands behind its name."""
 
     text: str | None
     complaints: Sequence[str] = ()
+    told: str = ""
 
 
 @dataclass(frozen=True)
@@ -176,9 +180,10 @@ class Folder:
 
 @dataclass(frozen=True)
 class Single:
-    """One file, a description, is written where ``--out`` says so; ``help`` of that option."""
+    """One file is written where ``--out`` says so; ``help`` of that option, ``usual``: its name without it."""
 
     help: str
+    usual: str = ""
 
 
 R = TypeVar("R")
@@ -198,9 +203,10 @@ class Study(Generic[R, F]):
     what of a request does not go together; fields that could not be read are None there, but among those that were
     ``typed``.
 
-    ``constraints``, ``matrices``: whether descriptions with these are understood; ``held``: whether inputs are held at
-    their constant values.  ``out``: where files go; ``writes``: whether there are any, by what was typed; ``document``
-    makes the single one.  ``timed``: whether the seconds are told.
+    ``constraints``, ``matrices``: whether descriptions with these are understood, ``bodies``: whether neither are, by
+    the texts of the options; ``held``: whether inputs are held at their constant values.  ``out``: where files go;
+    ``writes``: whether there are any, by what was typed; ``document`` makes the single one.  ``timed``: whether the
+    seconds are told.
     """
 
     name: str
@@ -213,6 +219,7 @@ class Study(Generic[R, F]):
     json_help: str = "Print JSON instead of a table."
     constraints: bool = False
     matrices: bool = False
+    bodies: Callable[[Mapping[str, Any]], bool] = lambda texts: False
     held: bool = True
     out: Folder | Single | None = Folder()
     writes: Callable[[Collection[str]], bool] = lambda typed: True
