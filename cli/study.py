@@ -14,6 +14,9 @@ from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 import click
 
+from mbsym.expressions.message import Message
+from mbsym.report.language import Language
+from mbsym.report.plain_writer import Writer
 from mbsym.studies.request import fields_of
 from mbsym.studies.study import Answer, Asked, Document, Folder, Line, NotFit, Rows, Single, Study, Unfit
 from mbsym_cli.console import (
@@ -37,6 +40,8 @@ from mbsym_cli.requests import option_of, read_fields
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
+
+FILES_IN = Message("files in")
 
 Found = TypeVar("Found")
 
@@ -84,10 +89,12 @@ class _Run:
         self.options = Options()
         self.writes = False
         self.started = time.perf_counter()
+        self.say = Language().say
 
     def code(self) -> int:
         study, file = self.study, self.file
         system = self._described()
+        self.say = Language("" if system is None else system.language).say
         values, given = read_fields(file, system, study.request, self.texts, self.options)
         request = study.request(**values)
         typed = {name for name, text in self.texts.items() if text not in (None, (), False)}
@@ -125,10 +132,11 @@ class _Run:
         self.options.sort(order)
 
     def _unfit(self, one: Unfit) -> None:
+        message, hint = self.say(one.message), None if one.hint is None else self.say(one.hint)
         if one.name:
-            self.options.complain_whole(one.option, self._text(one), one.code, one.message, one.hint)
+            self.options.complain_whole(one.option, self._text(one), one.code, message, hint)
         else:
-            self.options.complain(one.option or str(self.file), one.code, one.message, one.hint)
+            self.options.complain(one.option or str(self.file), one.code, message, hint)
 
     def _text(self, one: Unfit) -> str:
         """What was typed for that name."""
@@ -158,14 +166,14 @@ class _Run:
             if refusal is None:
                 raise
             for text in (refusal.text, *refusal.more):
-                complain(file, text)
+                complain(file, self.say(text))
             return refusal.code
         if self.as_json and study.json is not None:
             click.echo(study.json(asked, request, found), nl=False)
         else:
             self._tell(asked, answer)
         for text in answer.complaints:
-            complain(file, text)
+            complain(file, self.say(text))
         usual = study.out.usual if isinstance(study.out, Single) else ""
         place = self.out or (folder_for(file, None) / usual if usual else None)
         if answer.code or place is None or study.document is None:
@@ -177,19 +185,23 @@ class _Run:
         if loud:
             seconds = f", {time.perf_counter() - self.started:.2f} s" if self.study.timed else ""
             tell((asked.system.name, "bold"), (f"  {printable(self.file)}{answer.after}{seconds}", "dim"))
+        writer = Writer(Language(asked.system.language))
         for one in answer.lines:
             if isinstance(one, Line) and (loud or one.always):
                 tell(*one.parts, whole=one.whole)
             elif isinstance(one, Rows) and loud:
                 show_rows(one)
+            elif not isinstance(one, Line | Rows) and loud:
+                for parts, whole, margin in writer.block(one):
+                    tell("  ", *parts, whole=whole, margin=None if margin is None else margin + 2)
         if answer.files and loud:
             folder = folder_for(self.file, self.out)
-            tell("  files in ", (printable(folder), "bold"), f": {', '.join(answer.files)}")
+            tell(f"  {self.say(FILES_IN)} ", (printable(folder), "bold"), f": {', '.join(answer.files)}")
 
     def _written(self, out: Path, document: Document) -> int:
         """The exit code of a single file."""
         for text in document.complaints:
-            complain(self.file, text)
+            complain(self.file, self.say(text))
         if document.text is None:
             return FAILED
         try:
@@ -201,7 +213,7 @@ class _Run:
             complain(out, f"cannot be written: {error.strerror or error}")
             return FAILED
         if document.told and not self.quiet:
-            click.echo(f"{printable(out)}: {document.told}")
+            click.echo(f"{printable(out)}: {self.say(document.told)}")
         return OK
 
 

@@ -36,6 +36,26 @@ class Message(str):
         return (self.text,), dict(self.gaps)
 
 
+class Counted(Message):
+    """A number of things: ``Counted(3, "region")`` is "3 regions"; ``many`` where the plural is another than with an s.
+
+    Other languages have as many forms as their catalogues say.
+    """
+
+    number: int
+    one: str
+
+    def __new__(cls, number: int, one: str, many: str = "") -> Self:
+        self = super().__new__(
+            cls, "[[number]] [[form]]", number=number, form=one if number == 1 else many or one + "s"
+        )
+        self.number, self.one = number, one
+        return self
+
+    def __getnewargs_ex__(self) -> tuple[Any, dict[str, Any]]:
+        return (self.number, self.one, self.gaps["form"]), {}
+
+
 def worded(text: str) -> Message:
     """Words of ours as a message, if they are none yet."""
     return (

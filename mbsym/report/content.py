@@ -15,6 +15,7 @@ from typing import Any
 
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
+from mbsym.expressions.message import Message
 from mbsym.expressions.rates import without_velocity
 from mbsym.expressions.tree import Expression
 from mbsym.formulas.formula import Column, Formula, Matrix
@@ -488,6 +489,17 @@ Block = (
 def paragraph(*parts: Inline) -> Paragraph:
     """A paragraph of these parts."""
     return Paragraph(parts)
+
+
+def worded(text: str) -> Inline:
+    """Words of ours, which are messages, in every language; any other text as it is."""
+    return Words(text) if isinstance(text, Message) else text
+
+
+def facts(pairs: Iterable[tuple[str, str]]) -> Iterator[Facts]:
+    """What was found, each with its name; a ``warning`` stands out."""
+    items = ((Graded(Words(name), "open") if name == "warning" else worded(name), (worded(x),)) for name, x in pairs)
+    yield Facts(tuple(Fact(*item) for item in items))
 
 
 def ragged(*sentences: Inline) -> Paragraph:

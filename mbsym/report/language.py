@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from enum import Enum
 
-from mbsym.expressions.message import Message, filled
-from mbsym.report.messages import messages
+from mbsym.expressions.message import Counted, Message, filled
+from mbsym.report.messages import messages, plurals
 
 #: What may follow ``--language``, and what it is called.
 LANGUAGES = {"en": "English", "ru": "Russian", "es": "Spanish"}
@@ -24,6 +24,7 @@ class Language:
         self.name = name or "en"
         self.babel = _BABEL[self.name]
         self._messages = {} if self.name == "en" else messages(self.name)
+        self._forms, self._form = ({}, int) if self.name == "en" else plurals(self.name)
 
     def sentence(self, english: str, **values: object) -> str:
         """A sentence of the templates, in TeX, with its values filled in."""
@@ -34,6 +35,8 @@ class Language:
 
     def say(self, english: str, context: str = "") -> str:
         """A word, a clause or the sentences of a result, as plain text; English where there is no other."""
+        if isinstance(english, Counted) and english.one in self._forms:
+            return f"{english.number} {self._forms[english.one][self._form(english.number)]}"
         if not isinstance(english, Message):
             return self._known(str(english), context)
         return filled(self._known(english.text, context), lambda name: self._gap(english.gaps[name]))

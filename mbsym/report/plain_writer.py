@@ -345,7 +345,7 @@ class Writer:
         width = max(map(len, labels), default=0) + 2
         for label, fact in zip(labels, value.items, strict=True):
             for k, said in enumerate(fact.lines):
-                name = (label.ljust(width), TITLE) if k == 0 else (" " * width, "")
+                name = (label.ljust(width), _style(fact.name) or TITLE) if k == 0 else (" " * width, "")
                 yield Line((name, *self._shown((said,))), margin=width + 2)
 
     @block.register

@@ -17,7 +17,6 @@ from mbsym.studies.study import (
     Unfit,
     Watch,
     failed,
-    told,
 )
 
 if TYPE_CHECKING:
@@ -143,7 +142,7 @@ def answer(asked: Asked, request: Request, found: Found) -> Answer:
     from mbsym.report.words.expansion_words import of_averaging
 
     one = Averaging(found.averaged.phase, found.averaged, Analysis(found.system, (6,)))
-    return Answer(told(map(ragged, of_averaging(JudgedAverage(one, found.measured, False))), asked.system))
+    return Answer(map(ragged, of_averaging(JudgedAverage(one, found.measured, False))))
 
 
 def document(asked: Asked, request: Request, found: Found) -> Document:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from mbsym.studies.described import public
 from mbsym.studies.request import Number, Values, Whole, duration
-from mbsym.studies.study import Answer, Asked, Exit, Study, Unfit, Watch, no_program, titled
+from mbsym.studies.study import Answer, Asked, Exit, Study, Unfit, Watch, no_program
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
@@ -74,12 +74,13 @@ def lyapunov(asked: Asked, request: Request, watch: Watch) -> Exponents:
 
 
 def answer(asked: Asked, request: Request, found: Exponents) -> Answer:
+    from mbsym.report.content import facts
     from mbsym.report.runs.lyapunov_files import lyapunov_csv, lyapunov_figure, lyapunov_json, sentences
 
     files: dict[str, str | bytes] = {"lyapunov.csv": lyapunov_csv(found)}
     files |= lyapunov_figure(asked.system, found, ("svg", "png")) if len(found.times) > 1 else {}
     files["lyapunov.json"] = lyapunov_json(asked.system, found)
-    lines = titled(sentences(found))
+    lines = facts(sentences(found))
     if found.ended is None:
         return Answer(lines, files)
     code = Exit.INTERRUPTED if found.ended.kind == "interrupted" else Exit.BROKEN_DOWN

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from mbsym.studies.described import public
 from mbsym.studies.request import Named, Number, Values, Word
-from mbsym.studies.study import Answer, Asked, Refusal, Study, Unfit, Watch, no_program, titled
+from mbsym.studies.study import Answer, Asked, Refusal, Study, Unfit, Watch, no_program, refused
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
@@ -77,16 +77,17 @@ def orbit(asked: Asked, request: Request, watch: Watch) -> PeriodicMotion:
 
 
 def answer(asked: Asked, request: Request, found: PeriodicMotion) -> Answer:
+    from mbsym.report.content import facts
     from mbsym.report.runs.orbit_files import orbit_csv, orbit_json, sentences
 
-    return Answer(titled(sentences(found)), {"orbit.csv": orbit_csv(found), "orbit.json": orbit_json(found)})
+    return Answer(facts(sentences(found)), {"orbit.csv": orbit_csv(found), "orbit.json": orbit_json(found)})
 
 
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     from mbsym.numerics.orbits.periodic import NotFound
 
     if isinstance(error, NotFound):
-        return Refusal(f"no periodic motion was found: {error}")
+        return refused("no periodic motion was found", error)
     return no_program(error, asked, request)
 
 

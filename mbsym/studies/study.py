@@ -8,8 +8,9 @@ from enum import IntEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
+from mbsym.expressions.message import Message, joined
+
 if TYPE_CHECKING:
-    from mbsym.algebra.failures import Failure
     from mbsym.model.system import System
     from mbsym.numerics.scenario import Scenario
     from mbsym.report.content import Block
@@ -61,21 +62,6 @@ def line(*parts: str | tuple[str, str], whole: bool = False, always: bool = Fals
     return Line(parts, whole, always)
 
 
-def titled(pairs: Iterable[tuple[str, str]]) -> Iterator[Line]:
-    """Lines with titles; one whose title is ``warning`` stands out."""
-    for title, text in pairs:
-        yield line("  ", (f"{title:<9} ", "yellow" if title == "warning" else "bold cyan"), text)
-
-
-def told(blocks: Iterable[Block], system: System) -> Iterator[Line]:
-    """What reports say, in the language of the description; formulas in Python syntax."""
-    from mbsym.report.language import Language
-    from mbsym.report.plain_writer import Writer
-
-    for parts, whole, _ in Writer(Language(system.language)).document(blocks):
-        yield line("  ", *parts, whole=whole)
-
-
 def heading(text: str) -> Line:
     return line("  ", (text, "bold cyan"))
 
@@ -113,10 +99,11 @@ class Asked:
 class Answer:
     """What is said of a result: ``lines`` beneath the system's name, ``files``, and ``complaints`` after them.
 
-    ``after``: what stands behind the name of the description.
+    Of blocks, and of complaints that are messages, the language is that of the description.  ``after``: what stands
+    behind the name of the description.
     """
 
-    lines: Iterable[Line | Rows] = ()
+    lines: Iterable[Line | Rows | Block] = ()
     files: Mapping[str, str | bytes | Iterable[str]] = field(default_factory=dict)
     complaints: Sequence[str] = ()
     code: Exit = Exit.OK
@@ -227,16 +214,21 @@ class Study(Generic[R, F]):
     timed: bool = False
 
 
-def failed(error: Exception, before: str, said: Callable[[Failure], str] = str) -> Refusal | None:
-    """Of exact studies: what could not be derived, and why."""
+def refused(before: str, error: Exception, code: Exit = Exit.FAILED) -> Refusal:
+    """What could not be had, and why."""
+    from mbsym.algebra.failures import message_of
+
+    return Refusal(joined((Message(before), message_of(error)), ": "), code)
+
+
+def failed(error: Exception, before: str, remedied: bool = False) -> Refusal | None:
+    """Of exact studies: what could not be derived, and why; ``remedied``: with what to try next."""
     from mbsym.algebra.failures import Failure
 
-    return Refusal(f"{before}: {said(error)}") if isinstance(error, Failure) else None
-
-
-def remedied(error: Failure) -> str:
-    """With what to try next."""
-    return f"{error}; {error.remedy}" if error.remedy else str(error)
+    if not isinstance(error, Failure):
+        return None
+    told = refused(before, error)
+    return Refusal(joined((told.text, error.remedy), "; ")) if remedied and error.remedy else told
 
 
 def no_program(error: Exception, asked: Asked, request: object) -> Refusal | None:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from mbsym.maps.axis import Axis
 from mbsym.studies.request import Flag, Named, Number, Numbers, Range, Whole
-from mbsym.studies.study import Answer, Asked, Exit, Line, NotFit, Refusal, Study, Unfit, Watch, heading, line, told
+from mbsym.studies.study import Answer, Asked, Exit, Line, NotFit, Refusal, Study, Unfit, Watch, heading, line
 
 if TYPE_CHECKING:
     from mbsym.analysis.invariant_relations import InvariantRelations
@@ -151,8 +151,8 @@ def _lines(found: Found, system: System) -> Iterator[Line]:
 
     there, integrals = found.there, found.integrals
     formulas = [there.formula(one.polynomial) for one in integrals.generators]
-    yield from told(listed(integrals, integrals.field.variables, formulas), system)
-    yield from told(map(ragged, sentences(integrals)), system)
+    yield from listed(integrals, integrals.field.variables, formulas)
+    yield from map(ragged, sentences(integrals))
     for head, texts in _sections(found):
         yield heading(head)
         for text in texts:
