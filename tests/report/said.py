@@ -78,8 +78,8 @@ class Module(ast.NodeVisitor):
         starred = any(x.arg is None for x in node.keywords)
         gaps = None if starred else frozenset(x.arg for x in node.keywords if x.arg)
         known = self.known.get(first.id, []) if isinstance(first, ast.Name) else []
-        before = [x for x in known if x.lineno < node.lineno]
-        nearest = set(self._literals(before[-1] if before else first))
+        before = [x for x in known if x.lineno <= node.lineno]
+        nearest = set(self._literals(max(before, key=lambda x: x.lineno) if before else first))
         for text in self._literals(first):  # a name that was used before had other texts
             self.texts.append(Asked(text, self._at(node), gaps if text in nearest else None))
 
