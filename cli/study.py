@@ -25,6 +25,7 @@ from mbsym_cli.console import (
     INTERRUPTED,
     OK,
     OutPath,
+    asked_width,
     complain,
     printable,
     read_description,
@@ -42,6 +43,8 @@ if TYPE_CHECKING:
     from mbsym.model.system import System
 
 FILES_IN = Message("files in")
+#: Columns of tables in a file or pipe of which nothing is said.
+WIDTH = 120
 
 Found = TypeVar("Found")
 
@@ -185,7 +188,7 @@ class _Run:
         if loud:
             seconds = f", {time.perf_counter() - self.started:.2f} s" if self.study.timed else ""
             tell((asked.system.name, "bold"), (f"  {printable(self.file)}{answer.after}{seconds}", "dim"))
-        writer = Writer(Language(asked.system.language))
+        writer = Writer(Language(asked.system.language), width=(asked_width() or WIDTH) - 2)
         for one in answer.lines:
             if isinstance(one, Line) and (loud or one.always):
                 tell(*one.parts, whole=one.whole)

@@ -356,7 +356,7 @@ class Writer:
 
     @block.register
     def _(self, value: content.Table) -> Markup:
-        head = Markup("").join(Markup('<th scope="col">{}</th>').format(self.said(x.title)) for x in value.columns)
+        head = Markup("").join(Markup('<th scope="col">{}</th>').format(self.inline(x.title)) for x in value.columns)
         rows = Markup("\n").join(
             Markup("<tr>{}</tr>").format(
                 Markup("").join(Markup("<td>{}</td>").format(self._joined(cell)) for cell in row)

@@ -335,7 +335,7 @@ class Writer:
         if title:
             lines += [f"\\multicolumn{{{len(shown)}}}{{@{{}}l}}{{\\textbf{{{title}}}}}\\\\"]
         else:
-            lines += [" & ".join(self.said(value.columns[k].title) for k in shown) + r"\\\hline\endhead"]
+            lines += [" & ".join(self.inline(value.columns[k].title) for k in shown) + r"\\\hline\endhead"]
         lines += [" & ".join(row) + "\\\\" for row in rows]
         return "\n".join([*lines, "\\end{longtable}"])
 
