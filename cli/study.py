@@ -189,12 +189,12 @@ class _Run:
             seconds = f", {time.perf_counter() - self.started:.2f} s" if self.study.timed else ""
             tell((asked.system.name, "bold"), (f"  {printable(self.file)}{answer.after}{seconds}", "dim"))
         writer = Writer(Language(asked.system.language), width=(asked_width() or WIDTH) - 2)
-        for one in answer.lines:
+        for one in answer.lines if loud or not answer.brief else answer.brief:
             if isinstance(one, Line) and (loud or one.always):
                 tell(*one.parts, whole=one.whole)
             elif isinstance(one, Rows) and loud:
                 show_rows(one)
-            elif not isinstance(one, Line | Rows) and loud:
+            elif not isinstance(one, Line | Rows) and (loud or answer.brief):
                 for parts, whole, margin in writer.block(one):
                     tell("  ", *parts, whole=whole, margin=None if margin is None else margin + 2)
         if answer.files and loud:

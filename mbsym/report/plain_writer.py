@@ -363,6 +363,8 @@ class Writer:
                     pieces = {k: cells[k][line] if line < len(cells[k]) else "" for k in group}
                     turned = {k: str.rjust if value.columns[k].right else str.ljust for k in group}
                     padded = [(turned[k](pieces[k], widths[k]), styles[k]) for k in group]
+                    while len(padded) > 1 and not padded[-1][0].strip():
+                        padded.pop()
                     last = ((padded[-1][0].rstrip(), padded[-1][1]),)
                     yield Line(tuple(x for one in padded[:-1] for x in (one, ("  ", ""))) + last, whole=True)
 

@@ -100,7 +100,7 @@ class Answer:
     """What is said of a result: ``lines`` beneath the system's name, ``files``, and ``complaints`` after them.
 
     Of blocks, and of complaints that are messages, the language is that of the description.  ``after``: what stands
-    behind the name of the description.
+    behind the name of the description; ``brief``: the blocks that ``--quiet`` leaves.
     """
 
     lines: Iterable[Line | Rows | Block] = ()
@@ -108,6 +108,7 @@ class Answer:
     complaints: Sequence[str] = ()
     code: Exit = Exit.OK
     after: str = ""
+    brief: Iterable[Block] = ()
 
 
 @dataclass(frozen=True)

@@ -30,6 +30,7 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.zero_kinds import UNDECIDED, Zero, Zeros, ZeroSet
 from mbsym.algebra.zero_sets import zero_sets
 from mbsym.expressions.angles import linear_form
+from mbsym.expressions.message import Message
 from mbsym.formulas.python import python_text
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.own_energy import own_determinants
@@ -301,5 +302,6 @@ def _searched(given: Scenario, kinds: Kinds, joints: Sequence[tuple[str, ZeroSet
                 value = Value(_multiple_of_pi(turns), _exact(angle))
                 kind = kinds.kind({name: angle})
                 found.append(SingularSet((name,), (value,), "", ({name: value.exact},), False, kind, "", False))
-    how = f"multiples of pi/12 of one coordinate at a time; det M itself was not to be had: {reason}"
+    text = "multiples of pi/12 of one coordinate at a time; det M itself was not to be had: [[reason]]"
+    how = Message(text, reason=reason)
     return Singularities(_joined([*known, *found]), False, how, {})

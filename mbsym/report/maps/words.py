@@ -174,7 +174,7 @@ def row_words(found: Map, cell: Cell) -> tuple[Message, str]:
         return told, ""
     if judged.right:
         told = Message("[[told]], [[roots]] to the right", told=told, roots=message.Counted(judged.right, "root"))
-    return told, Message(judged.verdict.theorem) if judged.verdict.theorem else ""
+    return told, joined(map(Message, judged.verdict.theorems), ", ")
 
 
 def share(value: float) -> str:
