@@ -73,9 +73,9 @@ def _said(found: Groups, effects: bool = True) -> Iterator[str]:
     from mbsym.analysis.in_groups import group_of, product
     from mbsym.expressions.tree import text
 
-    told = "[[parameters]], of them set to 1: [[units]]; [[groups]]"
+    told = "[[parameters]], [[units]] of them set to 1: [[groups]]"
     if found.unused:
-        told = "[[parameters]], of them set to 1: [[units]]; at most [[groups]]"
+        told = "[[parameters]], [[units]] of them set to 1: at most [[groups]]"
     parameters, groups = Counted(len(found.free), "parameter"), Counted(len(found.groups), "group")
     yield Message(told, parameters=parameters, units=len(found.units), groups=groups)
     if found.unused:
