@@ -80,10 +80,9 @@ def _said(found: Groups, effects: bool = True) -> Iterator[str]:
     yield Message(told, parameters=parameters, units=len(found.units), groups=groups)
     if found.unused:
         told = (
-            "not used: [[scalings]]; no other parameter is declared positive, and one that may vanish "
-            "cannot be set to 1"
+            "[[scalings]] not used: no other parameter is declared positive, and one that may vanish cannot be set to 1"
         )
-        yield Message(told, scalings=Counted(found.unused, "more scaling", "more scalings"))
+        yield Message(told, scalings=Counted(found.unused, "scaling more is", "scalings more are"))
     if found.units:
         yield ", ".join(f"{name} = 1" for name in found.units)
     for one in found.groups:
