@@ -180,6 +180,10 @@ def _check_target(name: str, span: Span, system: System, complaints: Complaints)
     if name in (item.name for item in system.notation):
         complaints.error("misplaced-name", f"'{name}' is notation: it follows from the parameters", span)
         return False
+    if name in system.input_names:
+        given = f"'mbsym simulate --input {name}=...' says what it is along a motion"
+        complaints.error("misplaced-name", f"'{name}' is an input and has no value to set", span, given)
+        return False
     hint = did_you_mean(name, _settable(system)) or listed("these have values", _settable(system))
     complaints.error("unknown-name", f"there is nothing called {ascii_safe(name)} to set", span, hint)
     return False

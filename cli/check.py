@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 import mbsym
+from mbsym.expressions.message import Message
 from mbsym.report.language import Language
 from mbsym.source import is_description, load
 from mbsym_cli.console import BAD_INPUT, FAILED, OK, asked_width, defect, printable, read_description, wrapped
@@ -98,12 +99,12 @@ def _check(path: Path) -> int:
 
 def _size(system: System) -> str:
     """What it consists of, in its language."""
-    say, count = Language(system.language).sentence, len(system.coordinates)
+    say, count = Language(system.language).say, len(system.coordinates)
     title = "State variables" if system.linear is not None and system.linear.of_first_order else "Coordinates"
     told = [f"{say(title)}: {f'{count}: ' if count > 1 else ''}{', '.join(system.coordinates)}"]
     if system.linear is not None:
         given = ", ".join(one.key for one in system.linear.matrices)
         return "; ".join([*told, f"{say('given by its matrices')}: {given}"])
     if system.constraints:  # how many of the coordinates are free is another question
-        told.append(say("constraints: [[count]]", count=len(system.constraints)))
-    return "; ".join([*told, say("bodies and frames: [[count]]", count=len(system.bodies))])
+        told.append(say(Message("constraints: [[count]]", count=len(system.constraints))))
+    return "; ".join([*told, say(Message("bodies and frames: [[count]]", count=len(system.bodies)))])

@@ -21,6 +21,7 @@ from mbsym_cli.robots import Choices, described, robot_text
 @click.option("--floating", is_flag=True, help="Of a robot: its first link moves freely, by six coordinates.")
 @click.option("--symbols", is_flag=True, help="Of a robot: masses, lengths, moments are parameters with values.")
 @click.option("--no-damping", is_flag=True, help="Of a robot: without dampers and springs of joints.")
+@click.option("--no-inputs", is_flag=True, help="Of a robot: without an input, torque or force, in driven joints.")
 @click.option(
     "--angles",
     type=click.Choice(["snap", "exact"]),
@@ -33,14 +34,16 @@ def command(
     floating: bool,
     symbols: bool,
     no_damping: bool,
+    no_inputs: bool,
     angles: str | None,
     out: Path | None,
 ) -> None:
     """Convert a description between YAML and the editor's plain text, or make one of a robot's URDF or MJCF.
 
     Between the two spellings comments are not kept; everything that has a meaning is.  Of a robot, what rigid bodies
-    in an open tree have no place for (contacts, actuators, sensors, ...) is left out, and listed; a link that hangs on
-    two joints is an error.  Links and named sites without mass are frames: massless bodies.
+    have no place for (contacts, sensors, ...) is left out, and listed, on the terminal and in every
+    report; a link that hangs on two joints is an error.  In driven joints the torque or force is an input, tau_NAME;
+    joints that mimic others follow them exactly.  Links and named sites without mass are frames: massless bodies.
 
     \b
     Examples:
@@ -58,11 +61,12 @@ def command(
         sys.exit(BAD_INPUT)
     robot = robot_text(file)
     if robot is not None:
-        written = described(file, robot, Choices(floating, symbols, not no_damping, angles == "exact"))
+        written = described(file, robot, Choices(floating, symbols, not no_damping, angles == "exact", not no_inputs))
         system = None if written is None else read(written, f"{file.stem}.yaml")[0]
     else:
-        if floating or symbols or no_damping or angles:
-            complain(file, "is no URDF or MJCF: --floating, --symbols, --no-damping and --angles mean nothing here")
+        if floating or symbols or no_damping or no_inputs or angles:
+            options = "--floating, --symbols, --no-damping, --no-inputs and --angles"
+            complain(file, f"is no URDF or MJCF: {options} mean nothing here")
             sys.exit(BAD_INPUT)
         written, system = None, read_description(file)
     if system is None:

@@ -36,6 +36,7 @@ COMMANDS = {
     "orbit": Listed("mbsym.studies.orbit", "Find a periodic motion near a guess, with its multipliers."),
     "lyapunov": Listed("mbsym.studies.lyapunov", "Measure how fast neighbouring motions part."),
     "floquet": Listed("mbsym.studies.floquet", "Judge stability where coefficients are periodic in time."),
+    "regressor": Listed("mbsym.studies.regressor", "Find base parameters of a robot, and their regressor."),
     "tradeoff": Listed("mbsym.studies.tradeoff", "Measure what accuracy of a simulation costs."),
     "extremes": Listed("mbsym.studies.extremes", "Measure how many digits are kept at extreme values."),
     "map": Listed("mbsym.studies.map", "Divide a plane of parameters into regions of one verdict."),
@@ -60,7 +61,7 @@ COMMANDS = {
 GROUPS = {
     "Start": ("new", "examples", "check", "edit", "explain"),
     "Derive": ("run", "show", "watch", "batch", "diff"),
-    "Motion": ("simulate", "view", "orbit", "inverse", "lyapunov"),
+    "Motion": ("simulate", "view", "orbit", "inverse", "lyapunov", "regressor"),
     "Stability": ("equilibria", "map", "sweep", "floquet", "nonlinear"),
     "Integrals, small parameters": ("integrals", "symmetries", "groups", "average", "expand", "oscillations"),
     "Accuracy": ("tradeoff", "extremes"),

@@ -6,11 +6,12 @@ Whatever fails stays where it happened: a formula in its problem, a problem in i
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mbsym.report.content import say
 from mbsym.report.language import Language
 from mbsym.report.whole_run import derive_all, lost, rendered_all
 from mbsym_cli.assignments import with_settings
@@ -23,9 +24,11 @@ from mbsym_cli.console import (
     complain,
     defect,
     described,
+    printable,
     read_description,
     reason_of,
     status,
+    tell,
     trace,
 )
 from mbsym_cli.files import deliver, delivered, digest_of, obstacle
@@ -37,6 +40,8 @@ if TYPE_CHECKING:
     from mbsym.model.system import System
     from mbsym.numerics.ledger.entry import Ledger
     from mbsym.numerics.ledger.work import Wanted
+    from mbsym.report.brief import Brief
+    from mbsym.report.content import Facts
     from mbsym.report.figures.made_figures import MadeFigure
     from mbsym.report.plain_writer import Line, Writer
     from mbsym.report.rendering import Rendered
@@ -164,7 +169,6 @@ def _show(
     """The run on the terminal."""
     if request.quiet:
         return
-    from mbsym_cli.show import show_brief, show_finding
 
     if request.brief:
         from mbsym.report.brief import brief
@@ -236,3 +240,41 @@ def _complaints(analysis: Analysis, path: Path, files: list[Rendered], request: 
     for error in {described(error): error for error in analysis.defects}.values():
         defect(error, path)
     return bool(defects or open_claims or failed or analysis.defects)
+
+
+def show_finding(
+    found: Facts,
+    title: str,
+    path: Path,
+    seconds: float,
+    files: Sequence[Path],
+    writer: Writer,
+    further: Iterable[Line] = (),
+    more: bool = False,
+) -> None:
+    """What was found, each with its name; ``further`` lines; where all of it is, and how ``more`` of it is told."""
+    tell((title, "bold"), (f"  {printable(path)}, {seconds:.2f} s", "dim"))
+    for parts, whole, margin in (*writer.document([found]), *further):
+        tell("  ", *parts, whole=whole, margin=None if margin is None else margin + 2)
+    if files:
+        page = next((x for x in files if x.name == "report.html"), files[0])
+        texts = ("[[file]]", "[[file]] (files there: [[count]])")
+        if more:
+            texts = ("[[file]] (all of it here: -v)", "[[file]] (files there: [[count]]; all of it here: -v)")
+        tell(writer.said(say(texts[len(files) > 1], file=printable(page), count=str(len(files)))), indent=2)
+
+
+def show_brief(found: Brief, name: str, width: int) -> None:
+    """A run in one line; columns are as wide as they mostly are."""
+    from mbsym.report.plain_writer import STYLES
+    from mbsym.report.words.verdicts import grade
+
+    colour = STYLES[grade(found.worst)] if found.worst else ""
+    tell(
+        (f"{printable(name):<{width}}", "bold"),
+        f"  {found.problems:<8}",
+        (f"  {found.self_check:<32}", colour),
+        f"  {found.claims:<30}",
+        (f"{found.seconds:7.2f} s", "dim"),
+        (f"  {found.missing}" if found.missing else "", "yellow"),
+    )

@@ -26,6 +26,7 @@ class Choices:
     symbols: bool
     damping: bool
     exact_angles: bool
+    inputs: bool
 
 
 def robot_text(file: Path) -> str | None:
@@ -45,12 +46,33 @@ def robot_text(file: Path) -> str | None:
     return data.decode("utf-8", "replace")
 
 
+def _beside(file: Path, name: str) -> str | None:
+    """The text of a file in the folder of another one, or in a folder in that; None where there is none."""
+    folder, other = file.parent.resolve(), (file.parent / name).resolve()
+    if not other.is_relative_to(folder):
+        return None
+    try:
+        with other.open("rb") as stream:
+            return stream.read(_MOST).decode("utf-8", "replace")
+    except (OSError, ValueError):
+        return None
+
+
 def described(file: Path, text: str, choices: Choices) -> str | None:
     """The description in YAML, after saying what it leaves out; None after printing every complaint."""
     from mbsym.source.robots import convert
 
     complaints = Complaints()
-    made = convert(text, complaints, choices.floating, choices.symbols, choices.damping, choices.exact_angles)
+    made = convert(
+        text,
+        complaints,
+        choices.floating,
+        choices.symbols,
+        choices.damping,
+        choices.exact_angles,
+        choices.inputs,
+        lambda name: _beside(file, name),
+    )
     if made is not None:
         _, doubts = read(made.yaml, f"{file.stem}.yaml")
         for doubt in doubts.sorted():  # of the description that was made: its lines are not the file's

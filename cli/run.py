@@ -70,9 +70,9 @@ def command(
 
     Problems: 1 kinematics, 2 energy, 3 equations, 4 equilibrium, 5 linearisation, 6 stability, 7 first integrals,
     8 stabilisation (where it is named, and of systems that are given by their matrices), and where they are named
-    9 polynomial integrals, 10 steady motions and invariant manifolds, 11 terms of higher order.
-    One file that fails does not stop the others; the exit code is the worst: 0 everything holds, 1 a self-check
-    failed or a report could not be written, 2 a description has errors.  Claims (formulas that were printed somewhere,
+    9 polynomial integrals, 10 steady motions and invariant manifolds, 11 terms of higher order, 12 small parameters.
+    One file that fails does not stop the others; the exit code is the worst: 0 no self-check failed, 1 one failed
+    or a report could not be written, 2 a description has errors.  Claims (formulas that were printed somewhere,
     in a description's 'claims') are compared with what is derived; one that does not hold is a finding, not a failure,
     unless --strict-claims is given.
 

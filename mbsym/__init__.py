@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from mbsym.studies.inverse import inverse_dynamics as inverse_dynamics
     from mbsym.studies.lyapunov import lyapunov as lyapunov
     from mbsym.studies.orbit import orbit as orbit
+    from mbsym.studies.regressor import regressor as regressor
     from mbsym.studies.simulate import ensemble as ensemble
     from mbsym.studies.simulate import gradient as gradient
     from mbsym.studies.simulate import plan as plan
@@ -44,6 +45,7 @@ _PLACES = {
     "inverse": ("inverse_dynamics",),
     "lyapunov": ("lyapunov",),
     "orbit": ("orbit",),
+    "regressor": ("regressor",),
     "simulate": ("ensemble", "gradient", "plan", "sensitivities", "simulate"),
     "tables": ("equilibria", "extremes", "tradeoff"),
 }
@@ -60,6 +62,7 @@ __all__ = [
     "lyapunov",
     "orbit",
     "plan",
+    "regressor",
     "sensitivities",
     "simulate",
     "tradeoff",

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from fractions import Fraction
-from functools import cache
+from functools import cache, wraps
 from pathlib import Path
 from typing import Any
 
@@ -47,6 +47,9 @@ needs_chromium = pytest.mark.skipif(CHROMIUM is None, reason="no chromium")
 needs_pdflatex = pytest.mark.skipif(shutil.which("pdflatex") is None, reason="no pdflatex")
 
 TESTS = Path(__file__).parent
+
+#: Machine code is kept beside what pytest keeps, not where the user's own is.
+os.environ["MBSYM_CACHE"] = str(TESTS.parent / ".pytest_cache" / "mbsym")
 
 #: So many compiled libraries wait for a test that needs the same: some hundred kilobytes each.
 MOST_SHARED = 100
@@ -106,6 +109,7 @@ def _shared_machine_code() -> Iterator[None]:
     """What several tests compile is compiled once: a library is a function of its text, and nothing in it changes."""
     compile_text, engines = Library.__init__, OrderedDict[tuple[object, ...], Any]()
 
+    @wraps(compile_text)
     def shared(library: Library, text: str, level: int = 2, thorough: bool = True) -> None:
         key = (text, level, thorough)
         if key in engines:

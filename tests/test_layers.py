@@ -31,13 +31,14 @@ BELOW = {
     "numerics": "expressions algebra model mechanics formulas problems analysis",
     "simulation": "expressions algebra model mechanics formulas problems analysis numerics",
     "sweeps": "expressions algebra model mechanics formulas problems analysis maps numerics",
-    "report": "expressions algebra model source mechanics formulas problems analysis numerics simulation maps sweeps",
+    "picture": "expressions algebra model formulas mechanics problems analysis numerics",
+    "report": "expressions algebra model source mechanics formulas problems analysis numerics simulation maps sweeps"
+    " picture",
     "studies": "expressions algebra model source mechanics formulas problems analysis maps numerics simulation sweeps"
     " report batch picture",
     "editing": "expressions algebra model source formulas analysis report",
     "batch": "expressions algebra model source formulas problems analysis report sweeps",
     "diff": "expressions algebra formulas report",
-    "picture": "expressions algebra model source formulas mechanics problems analysis numerics simulation maps report",
     "serving": "expressions algebra model source formulas problems analysis maps numerics simulation report editing"
     " picture __init__",
     "__init__": "studies",
@@ -145,14 +146,32 @@ UNUSED = (
 #: What validating a description has no use for: files to be written, formulas, balls where fractions do.
 UNCHECKED = (*HEAVY, "importlib.metadata", "flint", "mbsym.analysis", "hashlib", "tempfile", "pickle", *PARTS)
 
+#: What integrating a system has no use for: derivations, plans, the ledger, ways over singular positions.
+UNINTEGRATED = (
+    *(name for name in HEAVY if name not in ("numpy", "llvmlite")),
+    "mbsym.analysis",
+    "mbsym.problems.stability",
+    "mbsym.numerics.ledger",
+    "mbsym.numerics.planning.pilot",
+    "numpy.polynomial",
+    *PARTS,
+)
+
+OPTIONS = {"run": ("--quiet",), "simulate": ("--time", "1", "--format", "csv", "--quiet")}
+
 
 @pytest.mark.parametrize(
     ("command", "name", "unused"),
-    [("run", "double-pendulum", UNUSED), ("check", "double-pendulum", UNCHECKED), ("check", "satellite", UNCHECKED)],
+    [
+        ("run", "double-pendulum", UNUSED),
+        ("check", "double-pendulum", UNCHECKED),
+        ("check", "satellite", UNCHECKED),
+        ("simulate", "double-pendulum", UNINTEGRATED),
+    ],
 )
 def test_a_command_loads_only_what_it_uses(command: str, name: str, unused: tuple[str, ...], tmp_path: Path) -> None:
     """Every module that is imported for nothing is time that every run takes."""
-    options = ["--out", str(tmp_path), "--quiet"] if command == "run" else []
+    options = ["--out", str(tmp_path), *OPTIONS[command]] if command in OPTIONS else []
     arguments = ["mbsym", command, str(ROOT.parent / "systems" / f"{name}.yaml"), *options]
     program = (
         f"import atexit, sys; sys.argv = {arguments}\n"

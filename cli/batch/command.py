@@ -83,8 +83,8 @@ def command(
     OUT/summary.json has what became of everything: outcomes, verdicts, claims, self-checks, complaints with their
     places, digests of the files; index.html shows it, junit.xml and mbsym.sarif tell it to CI systems.
 
-    Exit code, that of the worst: 0 everything holds, 1 a self-check failed, or an internal error or a crash, 2 a
-    description has errors, 4 a budget was met, 130 interrupted.
+    Exit code, that of the worst: 0 no self-check failed (nor a claim, with --strict-claims), 1 one failed, or
+    an internal error or a crash, 2 a description has errors, 4 a budget was met, 130 interrupted.
 
     \b
     Examples:

@@ -77,8 +77,7 @@ def command(
     step of fixed length, but for rounding.
 
     Of a description with speeds these are integrated, and unit vectors or a quaternion in place of angles, so that no
-    angle is singular: they are the columns, and the names in conditions.  --variables coordinates takes coordinates,
-    as is done beside constraints, where angles may be singular.
+    angle is singular: they are the columns, and the names in conditions.  --variables coordinates takes coordinates.
 
     With constraints the initial state is the closest one to what is given that satisfies them; --fixed q1,q1_dot keeps
     values.  Every row is led back to them; trajectory.csv has their drift.  A loop that cannot be closed: exit code 3.

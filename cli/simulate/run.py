@@ -126,7 +126,7 @@ Stage: TypeAlias = Callable[[str], AbstractContextManager[object]]
 def _watching(file: Path, asked: Asked) -> Iterator[tuple[Watch, Stage]]:
     """A bar while it integrates, a spinner before and after."""
     from mbsym.simulation import CERTIFYING, COMPILING, ESTIMATING, INTEGRATING
-    from mbsym.simulation.accurate import PLANNING
+    from mbsym.simulation.run import PLANNING
 
     said = {
         COMPILING: "compiling",

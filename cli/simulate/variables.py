@@ -64,7 +64,7 @@ variables_options = group(
         "--variables",
         metavar="[declared|coordinates]",
         help="Of a description with speeds: integrate these, and unit vectors or quaternions in place of angles, or "
-        "coordinates and their velocities, as is done beside constraints.  [default: declared]",
+        "coordinates and their velocities.  [default: declared]",
     ),
 )
 

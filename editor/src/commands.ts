@@ -1,5 +1,6 @@
 // What can be done to the document as a whole, with its button and its keys; and keys that hold everywhere.
 
+import { beginnings } from "./beginning.js";
 import { ask } from "./dialogs.js";
 import { isTyping, make } from "./elements.js";
 import type { Model } from "./model.js";
@@ -18,7 +19,7 @@ export interface Command {
 
 export function commandsOf(model: Model): Command[] {
   return [
-    { id: "new", words: "Begin from an empty description or an example", button: "New", act: () => begin(model) },
+    { id: "new", words: "Begin anew: from a joint, an example, a text", button: "New", act: () => begin(model) },
     { id: "save", words: "Save", keys: "Ctrl+S", button: "Save", enabled: () => !model.saved, act: () => save(model) },
     { id: "undo", words: "Undo, in every view", keys: "Ctrl+Z", button: "Undo", enabled: () => model.undoable, act: () => model.undo() },
     { id: "redo", words: "Redo", keys: "Ctrl+Shift+Z", button: "Redo", enabled: () => model.redoable, act: () => model.redo() },
@@ -87,21 +88,8 @@ async function convert(model: Model): Promise<void> {
 }
 
 async function begin(model: Model): Promise<void> {
-  const select = make("select", { size: 12, autofocus: true, "aria-label": "Begin from" }, make("option", { value: "", selected: true }, "an empty description"));
-  for (const { name, title } of model.file.examples ?? []) select.append(make("option", { value: name }, `${name}: ${title}`));
-  const done = await ask("Begin anew", [make("p", {}, "The text here is replaced; one undo brings it back."), select], [
-    { words: "Begin", value: true, main: true },
-    { words: "Cancel", value: false },
-  ], false);
-  if (!done) return;
-  try {
-    const found = await model.post<{ text: string; format: Format }>("example", { name: select.value || null });
-    model.replaceText(found.text, found.format);
-    model.select(null);
-    model.say(select.value ? `${select.value} is here` : "an empty description is here");
-  } catch (failure) {
-    model.say(failure instanceof Error ? failure.message : String(failure));
-  }
+  const cards = beginnings(model, () => cards.closest("dialog")?.close());
+  await ask("Begin anew", [make("p", {}, "The text here is replaced; one undo brings it back."), cards], [{ words: "Cancel", value: null }], null);
 }
 
 const KEYS: [string, [string, string][]][] = [

@@ -7,6 +7,7 @@ import { history, invertedEffects, isolateHistory, redo, redoDepth, undo, undoDe
 import { EditorState, StateEffect, StateField, Transaction, type Extension } from "@codemirror/state";
 import { EditorView } from "@codemirror/view";
 
+import { isUnbegun } from "./beginning.js";
 import { Listeners } from "./listeners.js";
 import type { Body, Changed, Complaint, Edit, FileState, Format, Operation, Path, Told, View } from "./seam.js";
 import { Away, get, post, Refused } from "./server.js";
@@ -324,6 +325,8 @@ export class Model extends Listeners<Events> {
     try {
       const view = await this.request<View>("look");
       this.looking = null;
+      view.unbegun = isUnbegun(view);
+      if (view.unbegun) view.complaints = view.complaints.filter((one) => one.severity !== "error");
       this.view = view;
       this.viewed = text;
       // A text in the other spelling was put in: it says so itself.

@@ -46,12 +46,12 @@ export function arranged(parts: Part[], model: Model): Arranged {
   const main = make("main", { class: "panels" });
   const left = make("div", { class: "column" }, at("graph"), splitter("rows", "--left-row", "Height of the structure", 48), at("form"));
   const middle = make("div", { class: "column" }, at("text"));
-  const right = make("div", { class: "column" }, at("picture"), splitter("rows", "--right-row", "Height of the picture", 52), at("results"));
+  const right = make("div", { class: "column" }, at("picture"), splitter("rows", "--right-row", "Height of the picture", 58), at("results"));
   main.append(
     left,
-    splitter("columns", "--left", "Width of the structure", 31),
+    splitter("columns", "--left", "Width of the structure", 26),
     middle,
-    splitter("columns", "--middle", "Right edge of the text", 66),
+    splitter("columns", "--middle", "Right edge of the text", 52),
     right,
   );
   const bars = [make("div", { class: "tabs", role: "tablist", "aria-label": "Panels" }), make("div", { class: "tabs", role: "tablist", "aria-label": "More panels" })];

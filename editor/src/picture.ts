@@ -1,5 +1,6 @@
 // The panel of the picture: drawn anew when the server has understood another text; motion, modes, equilibria on demand.
 
+import { beginnings } from "./beginning.js";
 import { make } from "./elements.js";
 import type { Model } from "./model.js";
 import type { Equilibria, Modes, Motion, Picture } from "./picture/types.js";
@@ -26,7 +27,8 @@ export function panel(host: HTMLElement, model: Model): void {
   );
   const stale = make("p", { class: "picture-stale", role: "status" });
   const place = make("div", { class: "picture-place undrawn" });
-  host.replaceChildren(buttons, stale, place);
+  const cards = make("div", {});
+  host.replaceChildren(buttons, stale, cards, place);
   const viewer = new Viewer(place);
   viewer.onSelect = (name) => model.select(name);
 
@@ -103,6 +105,12 @@ export function panel(host: HTMLElement, model: Model): void {
   }
 
   model.on("view", (view) => {
+    if (view.unbegun !== cards.hasChildNodes()) cards.replaceChildren(...(view.unbegun ? [beginnings(model)] : []));
+    buttons.hidden = place.hidden = view.unbegun === true;
+    if (view.unbegun) {
+      stale.textContent = "";
+      return;
+    }
     if (view.content !== null && view.content === asked) return; // a comment is not drawn
     asked = view.content;
     window.clearTimeout(timer);

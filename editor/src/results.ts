@@ -255,7 +255,7 @@ export function panel(host: HTMLElement, model: Model): void {
       status.textContent = shown.size > 0 ? `Waiting: the text has mistakes. ${EARLIER}` : "Waiting: the text has mistakes.";
       return;
     }
-    if (view.bodies.length === 0 && view.complaints.length > 0) return;
+    if (view.unbegun || (view.bodies.length === 0 && view.complaints.length > 0)) return;
     if (asked === 0) return void begin(); // nobody types yet
     timer = window.setTimeout(() => void begin(), DERIVE_AFTER);
   });

@@ -65,6 +65,8 @@ export interface View {
   complaints: Complaint[];
   /** The same where only comments and blanks differ; null while the text has mistakes. */
   content: string | null;
+  /** Nothing has been described yet, which is no mistake. */
+  unbegun?: boolean;
   [section: string]: unknown;
 }
 
@@ -115,6 +117,7 @@ export interface FileState {
   /** The last event that was told before the file was read. */
   told: string;
   examples?: { name: string; title: string }[];
+  joints?: { name: string; title: string }[];
 }
 
 export interface CompletionItem {

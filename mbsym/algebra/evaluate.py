@@ -8,6 +8,7 @@ from typing import Any
 
 from flint import arb, fmpq
 
+from mbsym.algebra import rationals
 from mbsym.algebra.base import Algebra, Scalar
 from mbsym.algebra.failures import NoValue
 from mbsym.algebra.point import BallsAtRationals, Rationals
@@ -41,7 +42,7 @@ class Carrier:
         self.ring.spend(20 * len(x))
         total = algebra.zero
         for monomial, coefficient in x.terms():
-            term = algebra.number(Fraction(int(coefficient.p), int(coefficient.q)))
+            term = algebra.number(rationals.fraction(coefficient))
             for index, exponent in enumerate(monomial):
                 if exponent:
                     term = algebra.times(term, self._power(index, int(exponent)))
@@ -54,7 +55,7 @@ class Carrier:
         self.ring.spend(20 * len(terms))
         total = algebra.zero
         for coefficient, factors in terms:
-            term = algebra.number(Fraction(int(coefficient.p), int(coefficient.q)))
+            term = algebra.number(rationals.fraction(coefficient))
             for index, exponent in factors:
                 term = algebra.times(term, self._power(index, exponent))
             total = total + term

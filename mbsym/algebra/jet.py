@@ -12,8 +12,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from math import factorial
 
-from flint import fmpq
-
+from mbsym.algebra import rationals
 from mbsym.algebra.base import Algebra
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.ring import Polynomial, Ring
@@ -293,8 +292,7 @@ class Jets(Algebra[Jet]):
             return Jet(ring.function(name, x.value))
         ball = ring.constant_value(x.value)
         if ball is not None and any(
-            name.curve.kinked_at(knot) and ball.contains(fmpq(knot.numerator, knot.denominator))
-            for knot in name.curve.knots
+            name.curve.kinked_at(knot) and ball.contains(rationals.exact(knot)) for knot in name.curve.knots
         ):
             raise NoClosedForm(
                 Message("the table [[table]] has a kink at the motion that is expanded about", table=name.table.name)

@@ -15,6 +15,7 @@ from typing import Any
 
 from flint import acb, arb, fmpq
 
+from mbsym.algebra import rationals
 from mbsym.algebra.base import Algebra, Scalar
 from mbsym.algebra.failures import NotRational, NoValue, SingularPoint
 from mbsym.expressions.angles import LinearForm
@@ -34,7 +35,7 @@ class Rationals(Algebra[fmpq]):
         self.basic = {name: sine_and_cosine(t) for name, t in half_tangents.items()}
 
     def number(self, value: Fraction | int) -> fmpq:
-        return fmpq(value.numerator, value.denominator)
+        return rationals.exact(value)
 
     def sin_cos(self, angle: LinearForm) -> tuple[fmpq, fmpq]:
         sine, cosine = _quarter_turns(angle.turns)
@@ -70,8 +71,8 @@ class Rationals(Algebra[fmpq]):
         if name in ("abs", "sign"):
             return abs(x) if name == "abs" else fmpq((x > 0) - (x < 0))
         if isinstance(name, Tabulated):
-            value = name.curve(Fraction(int(x.p), int(x.q)))
-            return fmpq(value.numerator, value.denominator)
+            value = name.curve(rationals.fraction(x))
+            return rationals.exact(value)
         raise NotRational(Message("[[name]] of a rational number", name=name))
 
 
@@ -97,7 +98,7 @@ class Balls(Algebra[arb]):
         self.values = angles
 
     def number(self, value: Fraction | int) -> arb:
-        return arb(fmpq(value.numerator, value.denominator))
+        return rationals.ball(value)
 
     def vanishes(self, x: arb) -> bool:
         return bool(x.is_zero())
@@ -140,14 +141,14 @@ def _tabulated(curve: Curve, x: arb) -> arb:
     found = arb("nan")
     for piece in range(curve.pieces_at(lower)[0], curve.pieces_at(upper)[-1] + 1):
         u = x if lower == upper else _part(curve, piece, x, lower, upper)
-        u = u - arb(fmpq(curve.bases[piece].numerator, curve.bases[piece].denominator))
+        u = u - rationals.ball(curve.bases[piece])
         value = arb(0)
         for coefficient in reversed(curve.polynomials[piece]):
-            value = value * u + arb(fmpq(coefficient.numerator, coefficient.denominator))
+            value = value * u + rationals.ball(coefficient)
         found = found.union(value) if found.is_finite() else value
     if lower == upper and len(curve.pieces_at(lower)) == 2:  # at a knot it is the mean
         mean = curve(lower)
-        return arb(fmpq(mean.numerator, mean.denominator))
+        return rationals.ball(mean)
     return found
 
 
@@ -159,7 +160,7 @@ def _part(curve: Curve, piece: int, x: arb, lower: Fraction, upper: Fraction) ->
     high = upper if right is None else min(upper, right)
     if (low, high) == (lower, upper):
         return x
-    return arb(fmpq(low.numerator, low.denominator)).union(arb(fmpq(high.numerator, high.denominator)))
+    return rationals.ball(low).union(rationals.ball(high))
 
 
 def _fraction(x: arb) -> Fraction:

@@ -13,12 +13,12 @@ def fraction(x: fmpq) -> Fraction:
     return Fraction(int(x.p), int(x.q))
 
 
-def exact(value: Fraction) -> fmpq:
+def exact(value: Fraction | int) -> fmpq:
     """The library's."""
     return fmpq(value.numerator, value.denominator)
 
 
-def ball(value: Fraction) -> arb:
+def ball(value: Fraction | int) -> arb:
     """As small as the working precision allows."""
     return arb(exact(value))
 

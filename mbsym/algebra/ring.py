@@ -28,6 +28,7 @@ from typing import Any
 from flint import Ordering, arb, ctx, fmpq, fmpq_mpoly_ctx, fmpz, fmpz_poly
 from flint.utils.flint_exceptions import DomainError
 
+from mbsym.algebra import rationals
 from mbsym.algebra.base import Algebra
 from mbsym.algebra.factors import irreducible_factors, rational_ratio
 from mbsym.algebra.failures import Limit, NoClosedForm, SingularPoint
@@ -178,7 +179,7 @@ class Ring(Algebra[Polynomial]):
 
     def number(self, value: Fraction | int) -> Polynomial:
         value = Fraction(value)
-        return self.context.constant(fmpq(value.numerator, value.denominator))
+        return self.context.constant(rationals.exact(value))
 
     def generator(self, kind: str, name: str) -> Polynomial:
         return self._gens[self._index[kind, name]]
@@ -392,7 +393,7 @@ class Ring(Algebra[Polynomial]):
             return made[turns.denominator]()  # up to pi/4 their numerators are 1
         several = turns.numerator if turns.numerator <= _MOST_OF_A_NAMED_ANGLE else 1
         step = turns / several
-        angle = self.generator("parameter", "pi") * fmpq(step.numerator, step.denominator)
+        angle = self.generator("parameter", "pi") * rationals.exact(step)
         known = self._adjoined("sine", angle) is not None
         s, c = self._own_angle(angle)
         if not known and step.numerator == 1:
@@ -522,7 +523,7 @@ class Ring(Algebra[Polynomial]):
             present = [k for k, exponent in enumerate(monomial) if exponent]
             if len(present) != 1 or monomial[present[0]] != 1:
                 return None
-            g, factor = self.generators[present[0]], Fraction(int(coefficient.p), int(coefficient.q))
+            g, factor = self.generators[present[0]], rationals.fraction(coefficient)
             if g.name == "pi":
                 turns = factor
             elif g.argument is None and g.kind in ("coordinate", "prescribed", "parameter") and g.name in self.angles:
@@ -623,7 +624,7 @@ class Ring(Algebra[Polynomial]):
         if x.is_zero():
             return self.zero
         content, factors = self.factored(x)
-        outside, inside, numbers = self.one, self.one, Fraction(int(content.p), int(content.q))
+        outside, inside, numbers = self.one, self.one, rationals.fraction(content)
         for factor, exponent in factors:
             size = (
                 factor if self.is_positive(factor) else -factor if self.assumed and self.is_positive(-factor) else None
@@ -713,7 +714,7 @@ class Ring(Algebra[Polynomial]):
         x = self.reduce(x)
         if x.is_constant() or name.curve.constant is not None:
             at = x.leading_coefficient() if x.is_constant() and x else fmpq(0)
-            return self.number(name.curve(Fraction(int(at.p), int(at.q))))
+            return self.number(name.curve(rationals.fraction(at)))
         index = self._adjoined("function", x, name)
         if index is None:
             moving = {variable for variable in self._derivatives if not self.derivative(x, variable).is_zero()}

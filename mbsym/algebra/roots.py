@@ -21,6 +21,8 @@ from typing import Any
 
 from flint import ctx, fmpq, fmpq_poly
 
+from mbsym.algebra import rationals
+
 Rational = Any  # int, Fraction or flint.fmpq
 Univariate = Any  # a flint.fmpq_poly
 
@@ -54,7 +56,7 @@ class Root:
 def rational(value: Rational) -> Any:
     """int, Fraction or fmpq as fmpq; anything inexact is refused with TypeError."""
     if isinstance(value, Fraction):
-        return fmpq(value.numerator, value.denominator)
+        return rationals.exact(value)
     if isinstance(value, (bool, float)):
         raise TypeError(f"an exact rational number is needed, not {value!r}")
     return fmpq(value)

@@ -180,6 +180,16 @@ def _holds(value: Any, relation: str) -> bool:
 
 
 def _decided(piece: Piece, signs: Signs) -> tuple[Emptiness, Mapping[int, Any] | None]:
+    """Each piece is decided once for the same knowledge, whatever the order of its conditions."""
+    named = {(str(one.polynomial), one.relation): one for one in piece}
+    key = tuple(sorted(named))
+    known = signs.emptiness
+    if key not in known:
+        known[key] = _decide(tuple(named[name] for name in key), signs)
+    return known[key]
+
+
+def _decide(piece: Piece, signs: Signs) -> tuple[Emptiness, Mapping[int, Any] | None]:
     piece = tuple(Atom(signs.normalised(one.polynomial), one.relation) for one in piece)
     if _excluded(piece, signs):
         return Emptiness.EMPTY, None

@@ -246,9 +246,10 @@ class Signs:
     def assuming(self, more: Iterable[tuple[Polynomial, str]]) -> Signs:
         """The same knowledge with further assumptions."""
         more = tuple(more)
-        return (
-            self if not more else Signs(self.context, self.words, (*self.assumptions, *more), self.normal, self.numbers)
-        )
+        if not more:
+            return self
+        known = Signs(self.context, self.words, (*self.assumptions, *more), self.normal, self.numbers)
+        return known if self.normal is not None else _shared(known)
 
     def _decided(self, answer: bool, nonzero: tuple[Polynomial, ...] = ()) -> Condition:
         one = self.context.constant(1)
@@ -287,6 +288,11 @@ class Signs:
     @cached_property
     def _known_terms(self) -> tuple[tuple[Polynomial, SignSet, tuple[Any, ...]], ...]:
         return tuple((polynomial, allowed, tuple(polynomial.terms())) for polynomial, allowed in self._known)
+
+    @cached_property
+    def emptiness(self) -> dict[Any, Any]:
+        """What has been decided of sets of parameters with this knowledge (``semialgebraic``)."""
+        return {}
 
     @cached_property
     def _found(self) -> dict[tuple[str, int], SignSet]:
@@ -722,7 +728,7 @@ def _factored(p: Polynomial) -> tuple[Any, list[tuple[Polynomial, int]]]:
 
 #: What was found out under the same assumptions in the same few generators, whoever asked.
 _SHARED: dict[tuple[Any, ...], Signs] = {}
-_MOST_SHARED = 256
+_MOST_SHARED = 2048
 
 
 def _shared(known: Signs) -> Signs:

@@ -16,6 +16,7 @@ from typing import Any
 
 from flint import Ordering, acb, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
+from mbsym.algebra import rationals
 from mbsym.algebra.base import Algebra
 from mbsym.algebra.failures import Limit, NoClosedForm, SingularPoint
 from mbsym.expressions.angles import LinearForm
@@ -101,7 +102,7 @@ class Tower(Algebra[Element]):
         if isinstance(x, Element):
             return x
         if isinstance(x, Fraction):
-            x = fmpq(x.numerator, x.denominator)
+            x = rationals.exact(x)
         return Element(self, self.context.constant(x), self._unit)
 
     def number(self, value: Fraction | int) -> Element:

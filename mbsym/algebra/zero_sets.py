@@ -16,6 +16,7 @@ from typing import Any
 
 from flint import Ordering, arb, ctx, fmpq, fmpq_mat, fmpq_mpoly_ctx, fmpq_poly
 
+from mbsym.algebra import rationals
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.algebra.generators import occurring
@@ -207,7 +208,7 @@ class HalfAngles:
         p = fmpq_poly([cs.get(k, fmpq(0)) for k in range(max(cs) + 1)])
         if p.degree() == 1:
             value = -p[0] / p[1]
-            exact = Fraction(int(value.p), int(value.q))
+            exact = rationals.fraction(value)
             with ctx.workprec(PRECISION):
                 return [Zero(arb(value), None, exact)]
         return [Zero(root) for root in real_roots(p, PRECISION)]
@@ -237,4 +238,4 @@ def _known_turns(p: Any) -> tuple[Fraction, ...] | None:
 def _angle(turns: Fraction, denominator: int) -> Zero:
     whole = turns * denominator
     with ctx.workprec(PRECISION):
-        return Zero(arb.pi() * arb(fmpq(whole.numerator, whole.denominator)), whole)
+        return Zero(arb.pi() * rationals.ball(whole), whole)

@@ -7,8 +7,9 @@ from fractions import Fraction
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
-from flint import arb, ctx, fmpq
+from flint import arb, ctx
 
+from mbsym.algebra import rationals
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_systems import context, solve
 from mbsym.algebra.ring import Polynomial
@@ -50,9 +51,9 @@ class Several:
         """A ball over the box of midpoints and radii."""
         letters: dict[int, Any] = {}
         for name, (middle, radius) in zip(self.names, point, strict=True):
-            ball = arb(fmpq(middle.numerator, middle.denominator))
+            ball = rationals.ball(middle)
             if radius:
-                ball = ball + arb(0, arb(fmpq(radius.numerator, radius.denominator)).upper())
+                ball = ball + arb(0, rationals.ball(radius).upper())
             if name in self.half.angles:
                 sine, cosine = (ball * arb.pi()).sin_cos()
                 letters[self.half.place[name]], letters[self.half.place[name] + 1] = sine, cosine
@@ -110,7 +111,7 @@ class Several:
     def _values(self, point: Sequence[Fraction]) -> dict[str, Any]:
         found = {}
         for name, x in zip(self.names, point, strict=True):
-            ball = arb(fmpq(x.numerator, x.denominator))
+            ball = rationals.ball(x)
             found[name] = 2 * arb.pi() * self.half.angles[name] * ball if name in self.half.angles else ball
         return found
 

@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from flint import arb, ctx, fmpq
+
+from mbsym.algebra.base import Lowering
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
+from mbsym.algebra.point import Balls
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.analysis.regular import regular_at_zero
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.expressions.angles import linear_form
-from mbsym.expressions.message import Message
-from mbsym.expressions.tree import Call, Expression, Name, children
+from mbsym.expressions.message import Message, joined
+from mbsym.expressions.tree import Call, Expression, Name, Number, Operation, children, names, walk
 from mbsym.formulas.formula import Column, column
 from mbsym.mechanics import newton_euler
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import is_steady, turning
 from mbsym.mechanics.rotation_orders import rotation_orders
 from mbsym.mechanics.variables import expressions
+from mbsym.model.system import System
 from mbsym.problems import linearisation
 from mbsym.problems.linearisation import Linearisation
 
@@ -112,7 +116,8 @@ def first_approximation(analysis: Analysis) -> Linearisation:
 
         return given.first_approximation(analysis)
     if analysis.equilibrium.impossible:
-        never = ", ".join(f"{item} = 0" for item in analysis.equilibrium.impossible)
+        conditions = (Message("$[[left]] = 0$", left=item) for item in analysis.equilibrium.impossible)
+        never = joined(conditions, ", ")
         reason = Message("the given motion does not exist: [[never]] is impossible", never=never)
         raise Unavailable("motion", NoResult(reason, "", "no such motion", "impossible-motion"))
     if analysis.equilibrium.unsteady:
@@ -245,3 +250,46 @@ def steady_order(analysis: Analysis) -> str:
             "with '[[order]]' of body '[[body]]' the coefficients are constant", order=order, body=other.body
         )
     return ""
+
+
+#: Bits in which generic numbers are told from zero.
+BITS = 128
+
+
+def regular_at_zero(system: System) -> bool:
+    """False where a formula of the bodies or loads is singular with all coordinates and velocities zero."""
+    moving = {*system.coordinates, *system.velocities}
+    suspects = [
+        part
+        for whole in expressions((system.bodies, system.loads))
+        for part in _vanishing(whole)
+        if not moving.isdisjoint(names(part))
+    ]
+    with ctx.workprec(BITS):
+        return all(_differs_from_zero(part, moving) for part in suspects)
+
+
+def _vanishing(expression: Expression) -> Iterator[Expression]:
+    """Denominators, radicands, and bases of powers that are not whole positive ones."""
+    for node in walk(expression):
+        if isinstance(node, Operation) and node.operator == "/":
+            yield node.right
+        elif isinstance(node, Operation) and node.operator == "**" and not _whole(node.right):
+            yield node.left
+        elif isinstance(node, Call) and node.function in ("sqrt", "log"):
+            yield node.argument
+
+
+def _whole(exponent: Expression) -> bool:
+    return isinstance(exponent, Number) and exponent.value.denominator == 1 and exponent.value >= 0
+
+
+def _differs_from_zero(part: Expression, moving: set[str]) -> bool:
+    values = {"pi": arb.pi()}
+    for place, name in enumerate(sorted(names(part) - {"pi"})):
+        values[name] = arb(0) if name in moving else arb(fmpq(1_000_003 + 7_919 * place, 999_983))
+    try:
+        value = Lowering(Balls(values), values)(part)
+    except Failure:
+        return False
+    return bool(value.is_finite()) and not value.contains(0)

@@ -28,10 +28,12 @@ from mbsym.problems.stability.verdict import undecided
 from mbsym.problems.telling import ToldSystem, told_system
 
 if TYPE_CHECKING:
+    from mbsym.algebra.ring import Polynomial
     from mbsym.analysis.pipeline import Analysis
     from mbsym.problems.constraints import Constraints
     from mbsym.problems.first_order import FirstOrder
     from mbsym.problems.in_speeds.speeds import SpeedEquations
+    from mbsym.problems.linearisation import Subsystem
     from mbsym.problems.relative_equilibria.equilibria import Equilibria
     from mbsym.problems.stabilisation import Stabilisation
     from mbsym.problems.state_space import StateSpace
@@ -93,11 +95,21 @@ def _in_other_angles(analysis: Analysis) -> Iterator[tuple[Reordered, Stability]
             yield other, found
 
 
+def _leading(part: Subsystem) -> list[list[Polynomial]]:
+    """M; of coordinates that follow by equations of first order (zero rows of M) D + G among each other."""
+    mass = [list(row) for row in part.M.polynomials]
+    following = [i for i, row in enumerate(mass) if all(x.is_zero() for x in row)]
+    for i in following:
+        for j in following:
+            mass[i][j] = part.D.polynomials[i][j] + part.G.polynomials[i][j]
+    return mass
+
+
 def _demand_regular(analysis: Analysis) -> None:
     """Raises Unavailable where M is singular on the motion: K says nothing about stability there."""
     ring, parts = analysis.ring, analysis.judgeable.subsystems
     if analysis.system.linear is not None or all(
-        ring.is_zero(determinant(ring, x.M.polynomials)) is not True for x in parts
+        ring.is_zero(determinant(ring, _leading(x))) is not True for x in parts
     ):
         return
     reason = (
@@ -121,8 +133,8 @@ def _judged(analysis: Analysis) -> Stability:
     scene, linear = analysis.parameters_scene, analysis.judgeable
     found = stability.stability(scene, analysis.balance, linear, analysis.equilibrium, analysis.signs)
     values = None if found.numerical is None else stability.parameter_values(scene, analysis.equilibrium)
-    divisor = "" if values is None or analysis.system.linear is not None else pole(analysis, values)
-    if divisor:
+    divisor = None if values is None or analysis.system.linear is not None else pole(analysis, values)
+    if divisor is not None:
         return replace(found, numerical=undecided(Because.POLE, divisor), spectra=())
     if found.numerical is None or values is None or not found.numerical.word.open:
         return found

@@ -7,8 +7,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from flint import fmpq
-
+from mbsym.algebra import rationals
 from mbsym.algebra.failures import Failure, NoClosedForm, message_of
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.quotients import Quotient
@@ -91,7 +90,7 @@ def expansion(analysis: Analysis, order: int, values: Mapping[str, Fraction] | N
                 ),
                 remedy="see 'mbsym oscillations'",
             )
-    numbers = {n: fmpq(x.numerator, x.denominator) for n, x in (values or {}).items() if n in whole.parameters}
+    numbers = {n: rationals.exact(x) for n, x in (values or {}).items() if n in whole.parameters}
     field = whole.at(numbers) if numbers else whole
     if small.name not in field.parameters and not any(name in field.parameters for name, _ in small.powers):
         raise NoClosedForm(Message("the equations do not depend on [[name]]", name=small.name))

@@ -35,7 +35,8 @@ def normal_forms_of(analysis: Analysis) -> NormalForms:
     values = stability.parameter_values(scene, found)
     nothing = Why.NONE
     if values is not None:
-        nothing = Why.POLE if pole(analysis, values) else Why.NONE if on_motion(scene, found, values) else Why.NO_MOTION
+        divides = pole(analysis, values) is not None
+        nothing = Why.POLE if divides else Why.NONE if on_motion(scene, found, values) else Why.NO_MOTION
     values = values if nothing is Why.NONE else None
     conservative, cyclic = ignorable(analysis)
     result = problem.normal_forms(scene, analysis.system, found, values, conservative, cyclic)

@@ -46,7 +46,7 @@ class Judge:
     def first_approximation(self, values: Mapping[str, Any]) -> Verdict:
         """The verdict of step 1; irrational values are enclosures."""
         divisor = pole(self.analysis, values)
-        return undecided(Because.POLE, divisor) if divisor else self._exact(values)
+        return self._exact(values) if divisor is None else undecided(Because.POLE, divisor)
 
     @cached_property
     def _exact(self) -> ExactVerdicts:

@@ -12,8 +12,9 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-from flint import acb, fmpq
+from flint import acb
 
+from mbsym.algebra import rationals
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.ring import Polynomial, Ring
@@ -148,7 +149,7 @@ def oscillating(
     whole, taylor = _field(analysis, small, order)
     if small.name in given or any(given.get(name) for name, _ in small.powers):
         raise NoClosedForm("what depends on the small parameter cannot be a number")
-    numbers = {n: fmpq(x.numerator, x.denominator) for n, x in given.items() if n in whole.parameters}
+    numbers = {n: rationals.exact(x) for n, x in given.items() if n in whole.parameters}
     field = whole.at(numbers) if numbers else whole
     powers = {n: p for n, p in small.powers if n in field.parameters or n in field.variables}
     for name in system.coordinates:
@@ -288,7 +289,7 @@ def in_letters(tower: Tower, ring: Ring, symbols: Mapping[str, str], x: Element)
     def carried(p: Any) -> Polynomial:
         total = ring.zero
         for monomial, c in p.to_dict().items():
-            term = ring.number(Fraction(int(c.p), int(c.q)))
+            term = ring.number(rationals.fraction(c))
             for index, exponent in enumerate(monomial):
                 if exponent:
                     term = ring.times(term, generator(index) ** int(exponent))

@@ -80,10 +80,10 @@ KNOW_CONSTRAINTS = frozenset(
         *("scene", "held_scene", "parameters_scene", "signs", "kinematics", "energy", "equations", "constraints"),
         *("tied_in_coordinates", "first_order", "small_parameters"),
         *("claims", "checks", "reduced", "residuals", "equilibrium", "first_approximation", "linearisation"),
-        *("state_space", "judgeable", "balance", "stability", "trials", "integrals", "reactions"),
+        *("state_space", "judgeable", "balance", "stability", "trials", "integrals", "reactions", "stabilisation"),
         *(f"check: {name}" for name in ("kinematics", "energy", "equations of motion", *constrained.CHECKS)),
         f"check: {constrained.REACTIONS}",
-        *("check: equilibrium", "check: perturbed motion"),
+        *("check: equilibrium", "check: perturbed motion", "check: stabilisation"),
     )
 )
 
@@ -117,12 +117,12 @@ KNOW_SPEEDS = frozenset(
 IN_COORDINATES = frozenset(
     (
         *("residuals", "expanded", "equilibrium", "first_approximation", "linearisation", "judgeable", "balance"),
-        *("stability", "normal_forms", "trials", "equilibria", *FORMS, forms.BRACKETS),
+        *("stability", "stabilisation", "normal_forms", "trials", "equilibria", *FORMS, forms.BRACKETS),
     )
 )
 #: The checks of these, and the stage that each is about.
 CHECKED_IN_COORDINATES = {"equilibrium": "equilibrium", "linearisation": "linearisation"}
-CHECKED_IN_COORDINATES |= {"perturbed motion": "linearisation", **forms.CHECKED}
+CHECKED_IN_COORDINATES |= {"perturbed motion": "linearisation", "stabilisation": "stabilisation", **forms.CHECKED}
 
 
 class Problem(Derived["Analysis", T]):

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from flint import fmpq
 
+from mbsym.algebra import rationals
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Formula
@@ -17,8 +18,8 @@ if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
 
 
-def pole(analysis: Analysis, values: Mapping[str, Any]) -> str:
-    """A polynomial in parameters that is zero at ``values`` and by which the description divides; "" for none.
+def pole(analysis: Analysis, values: Mapping[str, Any]) -> Formula | None:
+    """A polynomial in parameters that is zero at ``values`` and by which the description divides; None for none.
 
     It does in T, in U, in an applied force or in the unperturbed motion.  The first approximation need not hold it: in
     U = -k x^2/2 - x^4/(b - 4) it does not, and there is no U for b = 4; of the motion r = k a/(k - m w^2) of a bead on
@@ -32,13 +33,13 @@ def pole(analysis: Analysis, values: Mapping[str, Any]) -> str:
     }
     energy = analysis.optional("energy") if poles else None
     if energy is None:
-        return ""
+        return None
     told = [energy.force_function, energy.A0, *energy.A1, *(x for row in energy.A2 for x in row)]
     applied = generalized_forces(analysis.held_scene).values()
     moves = (analysis.parameters_scene.lower(x) for one in analysis.system.motion for x in (one.value, one.rate))
     held = sorted(poles.intersection(occurring([*(x.polynomial for x in told), *applied, *moves])))
     divisor = ring.generators[held[0]].argument if held else None
-    return "" if divisor is None else str(Formula(ring, divisor))
+    return None if divisor is None else Formula(ring, divisor)
 
 
 def _vanishes(ring: Ring, p: Polynomial, values: Mapping[str, Any]) -> bool:
@@ -49,5 +50,5 @@ def _vanishes(ring: Ring, p: Polynomial, values: Mapping[str, Any]) -> bool:
         value = values.get(g.name) if g.kind == "parameter" else None
         if not isinstance(value, Fraction):
             return False
-        at[k] = fmpq(value.numerator, value.denominator)
+        at[k] = rationals.exact(value)
     return bool(p(*at) == 0)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from flint import fmpq
 
+from mbsym.algebra import rationals
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
@@ -98,7 +99,7 @@ def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None) ->
     else:
         whole, transfer = in_speeds(form, equations, also, images)
         vectors, speeds, aside = equations.vectors, equations.speeds, _aside(form, equations.aside)
-    numbers = {name: fmpq(x.numerator, x.denominator) for name, x in (values or {}).items() if name in whole.parameters}
+    numbers = {name: rationals.exact(x) for name, x in (values or {}).items() if name in whole.parameters}
     field = whole.at(numbers) if numbers else whole
     known = _known(whole, field, numbers, transfer, listed)
     grouped_by = [tuple(x for x in components if x in whole.variables) for _, components in vectors]
@@ -180,7 +181,7 @@ def _at(whole: PolynomialField, field: PolynomialField, numbers: Mapping[str, An
 
 def allowed(analysis: Analysis, there: Setting, values: Mapping[str, Fraction], found: Cases) -> Cases:
     """Without the cases whose conditions contradict the signs and assumptions of the description."""
-    numbers = {name: fmpq(x.numerator, x.denominator) for name, x in values.items() if name in there.whole.parameters}
+    numbers = {name: rationals.exact(x) for name, x in values.items() if name in there.whole.parameters}
     assumed = []
     for p, relation in analysis.signs.assumptions:
         with suppress(Failure):  # it holds other parameters than the equations

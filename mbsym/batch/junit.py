@@ -114,4 +114,5 @@ def _claim(number: int, claim: ClaimRow, strict: bool) -> Case:
     if claim.word == "held":
         return Case(name)
     kind = "failure" if strict else "skipped"
-    return Case(name, kind, f"{claim.word}: {claim.outcome}", "\n".join([claim.outcome, *claim.lines]))
+    said = claim.outcome if claim.outcome.startswith(claim.word) else f"{claim.word}: {claim.outcome}"
+    return Case(name, kind, said, "\n".join([claim.outcome, *claim.lines]))

@@ -8,6 +8,7 @@ behind other roots and functions a difference is proved by an enclosure without 
 from __future__ import annotations
 
 import random
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import lcm
@@ -21,6 +22,7 @@ from mbsym.expressions.angles import linear_form
 from mbsym.expressions.parser import DERIVED, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.rates import ACCELERATION_ENDING, VELOCITY_ENDING
+from mbsym.expressions.table import Table
 from mbsym.expressions.tree import Call, Expression, Name, Negative, Operation, walk
 from mbsym.formulas.formula import Formula
 
@@ -41,10 +43,11 @@ _RATES = (ACCELERATION_ENDING, VELOCITY_ENDING)
 
 @dataclass(frozen=True)
 class Known:
-    """What names mean on both sides: coordinates, and the signs of parameters as far as the sides agree."""
+    """What names mean on both sides: coordinates, the signs of parameters as far as the sides agree, and tables."""
 
     coordinates: frozenset[str] = frozenset()
     signs: Mapping[str, str] = field(default_factory=dict)
+    tables: Mapping[str, Table] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -66,7 +69,7 @@ def compared(a: str, b: str, known: Known) -> Comparison:
     """How b differs from a."""
     if a == b:
         return Comparison(True)
-    trees = _parsed(a), _parsed(b)
+    trees = _parsed(a, known.tables), _parsed(b, known.tables)
     if trees[0] is None or trees[1] is None:
         return Comparison(False)
     try:
@@ -75,11 +78,41 @@ def compared(a: str, b: str, known: Known) -> Comparison:
         return Comparison(None)
 
 
-def _parsed(text: str) -> Expression | None:
+#: How formulas call derivatives of a table: ``derivative(derivative(push))(x)``.
+_SLOPE = re.compile(r"((?:derivative\()+)(\w+)(\)+)(?=\()")
+
+
+def _parsed(text: str, tables: Mapping[str, Table]) -> Expression | None:
+    called: dict[str, Table] = dict(tables)
+    orders: dict[str, int] = {}
+
+    def one_name(match: re.Match[str]) -> str:
+        order = match[1].count("(")
+        name = f"{match[2]}__{order}"
+        if order == len(match[3]) and match[2] in tables:
+            called[name], orders[name] = tables[match[2]], order
+        return name
+
     try:
-        return parse_expression(text, Complaints(), lambda start, end: _NOWHERE, bounds=DERIVED)
+        text = _SLOPE.sub(one_name, text) if tables else text
+        tree = parse_expression(text, Complaints(), lambda start, end: _NOWHERE, bounds=DERIVED, tables=called)
+        return _with_slopes(tree, orders) if tree is not None and orders else tree
     except RecursionError:
         return None
+
+
+def _with_slopes(tree: Expression, orders: Mapping[str, int]) -> Expression:
+    """Calls of these names are those of the derivatives of their tables."""
+    match tree:
+        case Negative(operand):
+            return Negative(_with_slopes(operand, orders))
+        case Operation(operator, left, right):
+            return Operation(operator, _with_slopes(left, orders), _with_slopes(right, orders))
+        case Call(function, argument, more=more, table=table):
+            inside = (_with_slopes(one, orders) for one in (argument, *more))
+            first, *others = inside
+            return Call(function, first, None, tuple(others), table, orders.get(function, 0))
+    return tree
 
 
 _NOWHERE = Span(1, 1, 1)

@@ -1,39 +1,46 @@
-"""Messages: what a result says in words, as a value that is English text and can be said in another language.
+"""Messages: what is said in words, as a value that can be said in another language.
 
-A message is found by its English ``text``, in which ``[[name]]`` are gaps; what stands there are names, numbers and
-formulas, the same in every language, or messages.  It is a ``str``, its English, wherever nobody asks for more: in
-JSON, in exceptions, on the terminal.
+A sentence is found by its English ``text``, in which ``$...$`` is notation in the common part of TeX and ``[[name]]`` a
+gap; what stands there are names, numbers and formulas, the same in every language, or sentences.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
+from numbers import Number
 from typing import Any, Self
 
 GAP = re.compile(r"\[\[(\w+)\]\]")
 
 
-class Message(str):
-    """``Message("terms of order [[order]] decide", order=3)``: the English with its gaps filled.
+class Said:
+    """A sentence and what stands in its gaps, outside of notation or inside."""
 
-    A gap is said in another language where it is a ``Message`` itself; any other text, a name above all, stays.
-    Raises ValueError unless each gap of the text has its value and each value its gap.
+    def __init__(self, text: str, gaps: Mapping[str, Any] = {}) -> None:
+        self.text, self.gaps = text, gaps
+
+
+class Message(str, Said):
+    """``Message("terms of order [[order]] decide", order=3)``: a sentence that is its English, with its gaps filled.
+
+    So it is a ``str`` wherever nobody asks for more: in JSON, in exceptions, on the terminal.  Raises ValueError unless
+    each gap of the text has its value and each value its gap.
     """
 
-    text: str
-    gaps: Mapping[str, str]
-
     def __new__(cls, text: str, /, **gaps: object) -> Self:
-        kept = {name: value if isinstance(value, str) else str(value) for name, value in gaps.items()}
-        if kept.keys() != set(GAP.findall(text)):
-            raise ValueError(f"{sorted(kept)} are not the gaps of {text!r}")
-        self = super().__new__(cls, filled(text, kept.__getitem__))
-        self.text, self.gaps = text, kept
-        return self
+        if gaps.keys() != set(GAP.findall(text)):
+            raise ValueError(f"{sorted(gaps)} are not the gaps of {text!r}")
+        return super().__new__(cls, filled(text, lambda name: str(gaps[name])))
 
-    def __getnewargs_ex__(self) -> tuple[tuple[str], dict[str, Any]]:
-        return (self.text,), dict(self.gaps)
+    def __init__(self, text: str, /, **gaps: object) -> None:
+        Said.__init__(self, text, {name: str(x) if isinstance(x, Number) else x for name, x in gaps.items()})
+
+    def __reduce__(self) -> tuple[Callable[..., Self], tuple[()]]:
+        """With formulas as their text: they belong to the rings of one process."""
+        gaps = {name: x if isinstance(x, str) else str(x) for name, x in self.gaps.items()}
+        return partial(type(self), self.text, **gaps), ()
 
 
 class Counted(Message):
@@ -42,18 +49,17 @@ class Counted(Message):
     Other languages have as many forms as their catalogues say.
     """
 
-    number: int
-    one: str
-
     def __new__(cls, number: int, one: str, many: str = "") -> Self:
-        self = super().__new__(
-            cls, "[[number]] [[form]]", number=number, form=one if number == 1 else many or one + "s"
-        )
-        self.number, self.one = number, one
-        return self
+        form = one if number == 1 else many or one + "s"
+        return super().__new__(cls, "[[number]] [[form]]", number=number, form=form)
 
-    def __getnewargs_ex__(self) -> tuple[Any, dict[str, Any]]:
-        return (self.number, self.one, self.gaps["form"]), {}
+    def __init__(self, number: int, one: str, many: str = "") -> None:
+        form = one if number == 1 else many or one + "s"
+        super().__init__("[[number]] [[form]]", number=number, form=form)
+        self.number, self.one = number, one
+
+    def __reduce__(self) -> tuple[Callable[..., Self], tuple[()]]:
+        return partial(type(self), self.number, self.one, str(self.gaps["form"])), ()
 
 
 def worded(text: str) -> Message:
@@ -64,8 +70,9 @@ def worded(text: str) -> Message:
 
 
 def filled(text: str, value: Callable[[str], str]) -> str:
-    """The text with what ``value`` says of each gap in its place."""
-    return GAP.sub(lambda match: value(match[1]), text)
+    """The text as plain text, with what ``value`` says of each gap in its place."""
+    plain = "".join(plain_notation(part) if inside else part for inside, part in pieces(text))
+    return GAP.sub(lambda match: value(match[1]), plain)
 
 
 def joined(parts: Iterable[str], between: str = " ") -> Message:
@@ -78,3 +85,37 @@ def enumerated(parts: Sequence[str]) -> str:
     """``a``, ``a and b``, ``a, b and c``."""
     *first, last = parts
     return Message("[[first]] and [[last]]", first=joined(first, ", "), last=last) if first else last
+
+
+def pieces(text: str) -> Iterable[tuple[bool, str]]:
+    """The parts of a text: (whether it is notation, the part)."""
+    return ((k % 2 == 1, piece) for k, piece in enumerate(text.split("$")) if piece)
+
+
+_ACCENTS = {"ddot": "''", "dot": "'", "bar": "bar"}
+#: What is read in notation, and what stands for it, one after the other.
+_NOTATION = (
+    (r"\\varphi", r"\\phi"),
+    (r"\\([{}])", lambda m: "\x01" if m[1] == "{" else "\x02"),
+    (r" ?\\cdot ?", "."),
+    (r" ?\\times ?", "\u00d7"),
+    (r"\\geq\b", ">="),
+    (r"\\(?:[,;!] ?|quad|penalty\d+)", " "),
+    (r"\\(?:mathrm|text) ?(?:\{(\w+)\})?", lambda m: m[1] or ""),
+    (r"\\(ddot|dot|bar) ?(?:\{\\?(\w+)\}|\\?(\w+))", lambda m: (m[2] or m[3]) + _ACCENTS[m[1]]),
+    (r"\\partial ?", "d"),
+    (r"\\frac(\d)(\d)", r"\1/\2"),
+    (r"\\frac ?\{([^{}]*)\}\{([^{}]*)\}", r"\1/\2"),
+    (r"(?<![A-Za-z][A-Za-z])_\{?(?=\d)", ""),
+    (r"\\([A-Za-z]+)", r"\1"),
+    (r"[{}]", ""),
+    (r" {2,}", " "),
+)  # fmt: skip
+
+
+def plain_notation(tex: str, power: str = "^") -> str:
+    """Notation without the signs that only TeX reads."""
+    tex = re.sub(r"\^\{?(\d+)\}?", lambda m: power + m[1], tex)
+    for pattern, plain in _NOTATION:
+        tex = re.sub(pattern, plain, tex)
+    return tex.replace("\x01", "{").replace("\x02", "}")

@@ -56,6 +56,11 @@ class Table:
         return self.outside == OUTSIDE_ZERO and bool(self.points[0][1] or self.points[-1][1])
 
     @property
+    def held(self) -> str:
+        """What formulas call ``curve`` where f jumps: it keeps the end values that f has not outside."""
+        return f"{self.name}_held"
+
+    @property
     def smooth(self) -> bool:
         """Whether f'' is continuous wherever there is f: a motion may follow it, its acceleration has no jump."""
         return self.between == CUBIC and self.outside in (EXTRAPOLATE, ENDS)
@@ -192,6 +197,11 @@ class Tabulated(str):
     @property
     def table(self) -> Table:
         return self.curve.table
+
+    @property
+    def written(self) -> str:
+        """What formulas call the curve, primes of derivatives apart."""
+        return self.table.held if self.table.jumps and not self.curve.order else self.table.name
 
     @property
     def slope(self) -> Tabulated:

@@ -56,7 +56,7 @@ class _Translation:
             case "root":
                 return sympy.sqrt(argument)
             case "function" if isinstance(g.name, Tabulated):
-                function, order = sympy.Function(g.name.table.name), g.name.curve.order
+                function, order = sympy.Function(g.name.written), g.name.curve.order
                 if not order:
                     return function(argument)
                 own = sympy.Dummy("x")

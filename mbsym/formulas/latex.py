@@ -336,7 +336,7 @@ _FUNCTIONS = (r"\sin", r"\cos", r"\exp", r"\ln", r"\arctan", r"\operatorname{")
 
 def latex_table(name: Tabulated) -> str:
     """A table, with a prime for each derivative."""
-    written = name.table.name.replace("_", "\\_")
+    written = name.written.replace("_", "\\_")
     return f"\\operatorname{{{written}}}{chr(39) * name.curve.order}"
 
 

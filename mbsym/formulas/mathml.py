@@ -345,7 +345,7 @@ class MathPrinter:
         if g.kind == "function" and g.name == "abs":
             return Symbol(f"<mrow>{mo('|')}{self._inner(g.argument)}{mo('|')}</mrow>").raised(exponent)
         if g.kind == "function":
-            table = g.name.table.name + "\u2032" * g.name.curve.order if isinstance(g.name, Tabulated) else ""
+            table = g.name.written + "\u2032" * g.name.curve.order if isinstance(g.name, Tabulated) else ""
             name = Symbol(mi(table or _NAMED[g.name])).raised(exponent)
             return f"<mrow>{name}{APPLY}{bracketed(self._inner(g.argument))}</mrow>"
         if g.name == "pi":

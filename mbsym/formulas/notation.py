@@ -20,7 +20,7 @@ _SIGNS = {
 _ACCENTS = {"dot": "\u02d9", "ddot": "\u00a8", "bar": "\u00af"}
 _VARIANTS = {"varphi": "phi", "varepsilon": "epsilon"}
 _SPACES = {",": "0.167em", ";": "0.278em", " ": "0.25em", "quad": "1em"}
-_FUNCTIONS = ("cos", "sin", "exp", "ln")
+_FUNCTIONS = ("cos", "sin", "exp", "ln", "det")
 #: Where a line may end, and how tall a bracket is: screens see to that.
 _LEFT_TO_SCREENS = ("penalty", "allowbreak", "bigl", "bigr", "Bigl", "Bigr")
 #: Behind these a minus belongs to what follows.

@@ -120,7 +120,7 @@ class _PythonPrinter(InfixPrinter):
     def call(self, function: str, argument: str) -> str:
         if isinstance(function, Tabulated):
             order = function.curve.order
-            function = "derivative(" * order + function.table.name + ")" * order
+            function = "derivative(" * order + function.written + ")" * order
         return f"{function}({argument})"
 
     def symbol(self, generator: Generator) -> str:

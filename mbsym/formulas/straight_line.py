@@ -81,6 +81,13 @@ class _Writer:
         self.written: dict[int, tuple[str, int]] = {}
         self.assignments: list[tuple[str, str]] = []
         self._count = 0
+        #: Of operations on two: the sign, what both sides have to be, what comes of it.
+        self._signs = {
+            "add": (" + ", _SUM, _SUM, _SUM),
+            "subtract": (" - ", _SUM, _PRODUCT, _SUM),
+            "multiply": (dialect.times, _PRODUCT, _ATOM, _PRODUCT),
+            "divide": ("/", _PRODUCT, _ATOM, _PRODUCT),
+        }
 
     def listing(self, inline: bool) -> Listing:
         uses = Counter(operand for number in self.live for operand in self.program.instructions[number].operands)
@@ -114,6 +121,11 @@ class _Writer:
                 return name
 
     def _text(self, instruction: Instruction) -> tuple[str, int]:
+        known = self._signs.get(instruction.operation)
+        if known is not None:
+            sign, left, right, made = known
+            a, b = instruction.operands
+            return f"{self._operand(a, left)}{sign}{self._operand(b, right)}", made
         match instruction.operation, instruction.payload, instruction.operands:
             case "input", str(name), _:
                 return self.names[name], _ATOM
@@ -121,16 +133,8 @@ class _Writer:
                 writable(value.numerator, value.denominator)
                 whole = value.denominator == 1 and value >= 0
                 return self.dialect.number(value), _ATOM if whole else _SUM if value < 0 else _PRODUCT
-            case "add", _, (a, b):
-                return f"{self._operand(a, _SUM)} + {self._operand(b, _SUM)}", _SUM
-            case "subtract", _, (a, b):
-                return f"{self._operand(a, _SUM)} - {self._operand(b, _PRODUCT)}", _SUM
             case "negative", _, (a,):
                 return f"-{self._operand(a, _PRODUCT)}", _SUM
-            case "multiply", _, (a, b):
-                return f"{self._operand(a, _PRODUCT)}{self.dialect.times}{self._operand(b, _ATOM)}", _PRODUCT
-            case "divide", _, (a, b):
-                return f"{self._operand(a, _PRODUCT)}/{self._operand(b, _ATOM)}", _PRODUCT
             case function, _, (a,):
                 return self.dialect.call(function, self._operand(a, _SUM)), _ATOM
         raise ValueError(f"no such operation: {instruction.operation}")

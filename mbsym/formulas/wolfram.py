@@ -6,13 +6,13 @@ injective renaming.  Numbers are exact quotients; decimals of a description such
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from functools import lru_cache
 from weakref import WeakKeyDictionary
 
 from mbsym.algebra.ring import Generator, ParameterRing, Polynomial, Ring
-from mbsym.expressions.table import OUTSIDE_ZERO, Table, Tabulated
+from mbsym.expressions.table import OUTSIDE_ZERO, Curve, Table, Tabulated
 from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, children
 from mbsym.formulas.names import greek, injective, parts
 from mbsym.formulas.python import InfixPrinter, declared_name
@@ -125,13 +125,13 @@ class WolframPrinter(InfixPrinter):
 def wolfram_call(function: str, argument: str) -> str:
     """A function of one argument, known by Python's name, or a table."""
     if isinstance(function, Tabulated):
-        return f"{wolfram_table(function.table)}{chr(39) * function.curve.order}[{argument}]"
+        return f"{wolfram_table(function.written)}{chr(39) * function.curve.order}[{argument}]"
     return f"{_FUNCTIONS.get(function, function.capitalize())}[{argument}]"
 
 
-def wolfram_table(table: Table) -> str:
+def wolfram_table(name: str) -> str:
     """The name of a table, which no other name can be."""
-    return "table$" + "$".join(table.name.split("_"))
+    return "table$" + "$".join(name.split("_"))
 
 
 def wolfram_definition(table: Table) -> str:
@@ -149,13 +149,21 @@ def wolfram_definition(table: Table) -> str:
         for base, polynomial in zip(curve.bases, curve.polynomials, strict=True)
     ]
     before, *inner, last = written
+    held = ""
+    if table.jumps:
+        held = _piecewise(table.held, curve, written) + ";\n"
     if table.outside == OUTSIDE_ZERO:
         before = last = "0"
     if curve.bounded:
         before = last = "Indeterminate"
+    return held + _piecewise(table.name, curve, [before, *inner, last])
+
+
+def _piecewise(name: str, curve: Curve, written: Sequence[str]) -> str:
+    before, *inner, last = written
     cases = [f"{{{before}, x < {wolfram_number(curve.knots[0])}}}"]
     cases += [f"{{{one}, x <= {wolfram_number(knot)}}}" for one, knot in zip(inner, curve.knots[1:], strict=True)]
-    return f"{wolfram_table(table)}[x_] := Piecewise[{{{', '.join(cases)}}}, {last}]"
+    return f"{wolfram_table(name)}[x_] := Piecewise[{{{', '.join(cases)}}}, {last}]"
 
 
 def wolfram_expression(expression: Expression, names: WolframNames) -> str:
@@ -168,7 +176,7 @@ def wolfram_expression(expression: Expression, names: WolframNames) -> str:
         case Negative(operand):
             return f"-{_operand(operand, names)}"
         case Call(_, argument, table=Table() as table):
-            return f"{wolfram_table(table)}[{wolfram_expression(argument, names)}]"
+            return f"{wolfram_table(table.name)}[{wolfram_expression(argument, names)}]"
         case Call(function):
             arguments = [wolfram_expression(one, names) for one in children(expression)]
             if function == "step":

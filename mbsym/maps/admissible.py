@@ -6,7 +6,7 @@ divided by factors whose sign would be another one.  What cannot be expressed in
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
@@ -186,8 +186,3 @@ def _second_moments(scene: Scene, body: Body) -> Iterator[Polynomial]:
     for size in (1,) if diagonal else (1, 2, 3):
         for chosen in combinations(range(3), size):
             yield ring.reduce(determinant([[moments[i][j] for j in chosen] for i in chosen]))
-
-
-def unkept(demands: Sequence[Demand], signs: Sequence[int]) -> tuple[Demand, ...]:
-    """The demands that signs of their polynomials break."""
-    return tuple(one for one, sign in zip(demands, signs, strict=True) if not one.kept(sign))

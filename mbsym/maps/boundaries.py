@@ -27,8 +27,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 
-from flint import fmpq
-
+from mbsym.algebra import rationals
 from mbsym.algebra.characteristic import (
     Coefficients,
     Matrix,
@@ -206,7 +205,7 @@ def _needless(system: LinearSystem, section: Section, known: Sequence[tuple[Poly
         return ()
     context, assumptions = section.context, []
     for axis, x in zip(section.axes, section.context.gens(), strict=True):
-        low, high = (context.constant(fmpq(end.numerator, end.denominator)) for end in (axis.low, axis.high))
+        low, high = (context.constant(rationals.exact(end)) for end in (axis.low, axis.high))
         assumptions += [(x - low, ">="), (high - x, ">=")]
     signs = Signs(context, ("real",) * context.nvars(), (*assumptions, *known))
     if any(signs.sign(minor) != "positive" for minor in leading_minors(system.D)):

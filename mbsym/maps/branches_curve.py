@@ -18,6 +18,7 @@ from typing import Any
 
 from flint import fmpq, fmpq_mat, fmpq_poly
 
+from mbsym.algebra import rationals
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.plane.numbers import Number, compare, number, primitive, roots_between
@@ -75,7 +76,7 @@ class Curve(Varied):
     def __init__(self, chart: Chart, parameter: str, low: Fraction, high: Fraction, limits: Limits) -> None:
         super().__init__(chart, (parameter,), limits)
         self.parameter, self.index = parameter, self.ring.index("parameter", parameter)
-        self.low, self.high = (fmpq(x.numerator, x.denominator) for x in (low, high))
+        self.low, self.high = (rationals.exact(x) for x in (low, high))
 
     def along(self, x: Polynomial) -> Polynomial:
         """The derivative by the parameter.  Raises NoClosedForm where p stands in a root or a function."""

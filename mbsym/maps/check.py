@@ -20,13 +20,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from fractions import Fraction
 from functools import cached_property
 from random import Random
 from typing import Any
 
 from flint import acb_mat, arb, arb_mat, arb_poly, ctx, fmpq, fmpq_mat
 
+from mbsym.algebra import rationals
 from mbsym.algebra.arrangements.arrangement import Arc, Arrangement, Piece, sample_of
 from mbsym.algebra.arrangements.laws import Breach, breaches
 from mbsym.algebra.arrangements.stacks import column
@@ -329,7 +329,7 @@ def _nonzero_roots(part: LinearSystem, point: Sequence[Rational]) -> tuple[list[
     They are the eigenvalues of A, an N x N matrix, on the image of A^N, of which a basis B is found exactly:
     those of X with A B = B X.
     """
-    at = RationalPoint({k: Fraction(int(x.p), int(x.q)) for k, x in enumerate(point)})
+    at = RationalPoint({k: rationals.fraction(x) for k, x in enumerate(point)})
     m, d, g, k, n = (evaluated(matrix, at) for matrix in part.matrices)
     first = state_matrix(fmpq_mat, m.tolist(), (d + g).tolist(), (k + n).tolist(), part.following)
     power = first
@@ -351,7 +351,7 @@ def _in_balls(matrix: Matrix, point: Sequence[Rational], constant: Constant | No
     """A matrix of polynomials in the axes, and perhaps a constant, as balls."""
     n = len(matrix)
     if constant is None:
-        at = RationalPoint({k: Fraction(int(x.p), int(x.q)) for k, x in enumerate(point)})
+        at = RationalPoint({k: rationals.fraction(x) for k, x in enumerate(point)})
         return arb_mat(evaluated(matrix, at))
     flat = [[constant.polynomial_at(entry, point) for entry in row] for row in matrix]
     c = constant.number.enclosure(bits)

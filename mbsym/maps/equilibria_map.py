@@ -16,8 +16,7 @@ from fractions import Fraction
 from random import Random
 from typing import Any
 
-from flint import fmpq
-
+from mbsym.algebra import rationals
 from mbsym.algebra.arrangements import Arrangement, areas, decompose
 from mbsym.algebra.arrangements.arrangement import Region
 from mbsym.algebra.arrangements.drawing import Branches as Drawn
@@ -117,7 +116,7 @@ def _cell(
     sample = _fractions(region.sample)
     if 0 in sample:  # a parameter that vanishes may make the equations others
         sample = inside(made, drawn, region, source) or sample
-    place = Shape.REGION, region.id, Point(*(fmpq(x.numerator, x.denominator) for x in sample))
+    place = Shape.REGION, region.id, Point(*(rationals.exact(x) for x in sample))
     try:
         found = equilibria(system, {**values, names[0]: sample[0], names[1]: sample[1]})
     except Failure:
@@ -162,7 +161,7 @@ def inside(made: Arrangement, drawn: Drawn, region: Region, source: Random) -> t
         if 0 in point:
             continue
         try:
-            place = made.locate(*(fmpq(z.numerator, z.denominator) for z in point))
+            place = made.locate(*(rationals.exact(z) for z in point))
         except ValueError:
             continue
         if isinstance(place, Region) and place.id == region.id:
@@ -171,5 +170,5 @@ def inside(made: Arrangement, drawn: Drawn, region: Region, source: Random) -> t
 
 
 def _fractions(point: Sequence[Any]) -> tuple[Fraction, Fraction]:
-    x, y = (Fraction(int(z.p), int(z.q)) for z in point)
+    x, y = (rationals.fraction(z) for z in point)
     return x, y

@@ -11,6 +11,7 @@ from typing import Any
 
 from flint import fmpq
 
+from mbsym.algebra import rationals
 from mbsym.algebra.failures import Failure, NoValue, SingularPoint
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial, Ring
@@ -55,7 +56,7 @@ class Images:
         #: The names of ``given`` numbers that were put in somewhere.
         self.used: set[str] = set()
         for name, value in given.items():
-            number = context.constant(fmpq(value.numerator, value.denominator))
+            number = context.constant(rationals.exact(value))
             self._found.setdefault(self.ring.index("parameter", name), (number, self._one))
         self.constant = constant
         #: Generators that stand for irrational numbers.

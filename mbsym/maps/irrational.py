@@ -13,6 +13,7 @@ from typing import Any
 
 from flint import ctx, fmpq
 
+from mbsym.algebra import rationals
 from mbsym.algebra.failures import Failure, NoValue
 from mbsym.algebra.plane import Box
 from mbsym.algebra.plane.numbers import Rational, between, sign
@@ -71,7 +72,7 @@ class IrrationalSection:
     def _matrices(self, part: LinearSystem, box: Box) -> list[list[list[Any]]]:
         """M, D, G, K, N of a part in balls over a box."""
         x, y = self.plain.axes
-        numbers = {name: fmpq(value.numerator, value.denominator) for name, value in self.plain.numbers.items()}
+        numbers = {name: rationals.exact(value) for name, value in self.plain.numbers.items()}
         with ctx.workprec(BITS):
             ranges = {x.name: between(box.x0, box.x1, BITS), y.name: between(box.y0, box.y1, BITS)}
             values = _Values(self._scene, self._solved, numbers | ranges)
@@ -88,7 +89,7 @@ class IrrationalSection:
         if self._exact is None:
             one = self._analysis
             self._exact = ExactVerdicts(one.parameters_scene, one.balance, one.judgeable, one.equilibrium, one.signs)
-        point = (Fraction(int(v.p), int(v.q)) for v in (x, y))
+        point = (rationals.fraction(v) for v in (x, y))
         names = {item.name for item in self._analysis.system.parameters}
         known = {name: value for name, value in self.plain.numbers.items() if name in names}
         return self._exact(known | dict(zip((axis.name for axis in self.plain.axes), point, strict=True)))

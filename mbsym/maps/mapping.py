@@ -11,6 +11,7 @@ from typing import Any
 
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
+from mbsym.algebra import rationals
 from mbsym.algebra.arrangements import Arrangement, areas, decompose
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.characteristic import leading_minors
@@ -133,7 +134,7 @@ def with_nonlinear(found: Map, analysis: Analysis, watch: Watch) -> Map:
         if not left:
             return cell
         left -= 1
-        values = {axis.name: Fraction(int(x.p), int(x.q)) for axis, x in zip(found.axes, point, strict=True)}
+        values = {axis.name: rationals.fraction(x) for axis, x in zip(found.axes, point, strict=True)}
         watch("terms of higher order", cell.number, len(found.regions))
         try:
             verdict = judge.decided(cell.judged.verdict, {**there.numbers, **values})
@@ -217,7 +218,7 @@ def without_constant(there: Section, found: Boundaries) -> Boundaries:
 
 def ends(axis: Axis) -> tuple[Any, Any]:
     """As numbers of flint."""
-    return fmpq(axis.low.numerator, axis.low.denominator), fmpq(axis.high.numerator, axis.high.denominator)
+    return rationals.exact(axis.low), rationals.exact(axis.high)
 
 
 def box_of(axes: Sequence[Axis]) -> Box:

@@ -62,11 +62,6 @@ class ExactVerdicts:
         return Judged(verdict, right, real, sum(x[2] for x in signature), sum(x[1] for x in signature), border)
 
 
-def verdict_on(section: Section, place: Place) -> Judged:
-    """The exact verdict at one point; for several, ``ExactVerdicts`` keeps what they share."""
-    return ExactVerdicts(section)(place)
-
-
 def _field(place: Place) -> ExactPoint:
     if isinstance(place, ConstantPoint):
         return place

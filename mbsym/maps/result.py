@@ -13,8 +13,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from flint import fmpq
-
+from mbsym.algebra import rationals
 from mbsym.algebra.arrangements import Arc, Arrangement, Corner, CornerKind
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.plane.line import Line, Zero
@@ -265,7 +264,7 @@ class Map:
 
     def at(self, *values: Fraction) -> Cell | None:
         """The cell of a rational point, exactly; None outside.  Of boxes that meet there, one of which more is said."""
-        x = tuple(fmpq(value.numerator, value.denominator) for value in values)
+        x = tuple(rationals.exact(value) for value in values)
         ground = self.ground
         if isinstance(ground, Line):
             if not ground.low <= x[0] <= ground.high:

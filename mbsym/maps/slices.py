@@ -24,6 +24,7 @@ from typing import Any
 
 from flint import fmpq
 
+from mbsym.algebra import rationals
 from mbsym.algebra.arrangements import Arrangement, decompose
 from mbsym.algebra.arrangements.likeness import alike, corresponding
 from mbsym.algebra.arrangements.space import critical_levels, flattened, levels_of
@@ -288,7 +289,7 @@ def at_level(there: Section, kept: Admissibility, z: Number) -> tuple[Section, A
     for part in there.parts:
         m, d, g, k, n = (tuple(tuple(map(flat, row)) for row in matrix) for matrix in part.matrices)
         parts.append(replace(part, M=m, D=d, G=g, K=k, N=n, turned=tuple(map(flat, part.turned))))
-    values = {} if constant is not None else {there.axes[2].name: Fraction(int(z.p), int(z.q))}
+    values = {} if constant is not None else {there.axes[2].name: rationals.fraction(z)}
     cut = replace(
         there,
         axes=axes,

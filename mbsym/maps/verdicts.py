@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from fractions import Fraction
 from typing import Any
 
 from flint import fmpq, fmpq_mat
 
+from mbsym.algebra import rationals
 from mbsym.algebra.roots import count_real_roots
 from mbsym.maps.section import Section
 from mbsym.problems.stability.exact import inertia
@@ -47,7 +47,7 @@ class Judged:
 
 def verdict_at(section: Section, point: Sequence[Any]) -> Judged:
     """The exact verdict at a rational point, coordinates in the order of the axes."""
-    values = {k: Fraction(int(x.p), int(x.q)) for k, x in enumerate(point)}
+    values = {k: rationals.fraction(x) for k, x in enumerate(point)}
     parts, one_energy = section.judged([(x > 0) - (x < 0) for x in point])
     found = [exact_verdict(part, values) for part in parts]
     verdict = combine((one.verdict for one in found), one_energy)

@@ -13,7 +13,7 @@ is computed once.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
@@ -49,9 +49,12 @@ class ForwardDynamics:
     estimated: frozenset[str] = frozenset()
 
 
-def forward_dynamics(system: System, ring: Ring, method: str | None = None, apart: bool = False) -> ForwardDynamics:
+def forward_dynamics(
+    system: System, ring: Ring, method: str | None = None, apart: bool = False, pushed: Mapping[str, str] | None = None
+) -> ForwardDynamics:
     """The accelerations by ``method``, or by whichever costs less; with ``apart``, welded bodies are not lumped.
 
+    ``pushed``: names of inputs of the program that are forces on these coordinates besides those of the loads.
     Raises SingularPoint if M is singular everywhere, NoClosedForm as the loads do, Constrained, ValueError for a
     method that does not apply.
     """
@@ -60,6 +63,10 @@ def forward_dynamics(system: System, ring: Ring, method: str | None = None, apar
     inputs = program_environment(system, program)
     frames = articulation(scene_without_accelerations(system, ring, program, inputs), apart)
     needed = bias_forces(frames)
+    if pushed:
+        besides = {name: program.input(force) for name, force in pushed.items()}
+        total = {name: value + besides.get(name, program.zero) for name, value in needed.generalized.items()}
+        needed = replace(needed, generalized=total)
     given = constants(system)
     found: dict[str, tuple[tuple[Node, ...], tuple[Node, ...]]] = {}
     operations: dict[str, int] = {}

@@ -30,7 +30,7 @@ from mbsym.mechanics.loads.kinds import actions
 from mbsym.model.system import INERTIAL
 
 
-class _Accelerations(Generic[S]):
+class Accelerations(Generic[S]):
     """alpha_k and a_Ok of every body, in its axes."""
 
     def __init__(self, scene: Scene[S]) -> None:
@@ -69,7 +69,7 @@ class _Accelerations(Generic[S]):
 
 def origin_acceleration(scene: Scene[S], body: str) -> Vector[S]:
     """a_Ok of one body, in its axes."""
-    return _Accelerations(scene).origin[body]
+    return Accelerations(scene).origin[body]
 
 
 def _inertia_wrench(
@@ -95,14 +95,14 @@ def _inertia_wrench(
 
 def inertia_wrenches(scene: Scene[S]) -> dict[str, tuple[Vector[S], Vector[S]]]:
     """(F, N) of every body, in its axes: what its motion needs, the moment about O_k."""
-    found = _Accelerations(scene)
+    found = Accelerations(scene)
     return {
         name: _inertia_wrench(scene, motion, found.angular[name], found.origin[name])
         for name, motion in scene.motions.items()
     }
 
 
-class _Joints(Generic[S]):
+class Joints(Generic[S]):
     """Forces and moments that the joints must supply, body by body, and their projections on the coordinates."""
 
     def __init__(self, scene: Scene[S]) -> None:
@@ -154,7 +154,7 @@ def residuals(scene: Scene[S], loads: bool = True) -> dict[str, S]:
 
     With ``loads`` false the loads are left out: what remains is the inertia part alone.
     """
-    joints = _Joints(scene)
+    joints = Joints(scene)
     for name, wrench in inertia_wrenches(scene).items():
         joints.need(name, *wrench)
     for action in actions(scene) if loads else []:
@@ -164,7 +164,7 @@ def residuals(scene: Scene[S], loads: bool = True) -> dict[str, S]:
 
 def applied_forces(scene: Scene[S]) -> dict[str, S]:
     """The generalised forces of the loads that have no force function, by projection on the joints."""
-    joints = _Joints(scene)
+    joints = Joints(scene)
     for action in actions(scene, potential=False):
         joints.supply(action)
     return {name: -value for name, value in joints.projections().items()}

@@ -25,9 +25,14 @@ from mbsym.model.system import System
 
 @dataclass(frozen=True)
 class SpeedProgram:
-    """Nodes of ``program``, whose inputs bear the declared names: M (n x n), f (n), s' in the order of positions."""
+    """Nodes of ``program``, whose inputs bear the declared names: M (n x n), f (n), s' in the order of positions.
+
+    ``scene`` is the system over it, ``environment`` the names of its inputs.
+    """
 
     program: Program
+    environment: Mapping[str, Node]
+    scene: Scene
     mass_matrix: tuple[tuple[Node, ...], ...]
     forcing: tuple[Node, ...]
     rates: tuple[Node, ...]
@@ -45,6 +50,8 @@ def speed_program(form: SpeedForm) -> SpeedProgram:
     carry = Carrier(form.ring, program, inputs)
     return SpeedProgram(
         program=program,
+        environment=inputs,
+        scene=scene,
         mass_matrix=jacobian(program, residuals, accelerations),
         forcing=tuple(-x for x in forcing),
         rates=tuple(carry(form.rates[position.name]) for position in form.positions),

@@ -9,6 +9,7 @@ from typing import Any
 
 from flint import arb, fmpq
 
+from mbsym.algebra import rationals
 from mbsym.algebra.base import Algebra, Lowering
 from mbsym.algebra.failures import NOT_THERE
 from mbsym.algebra.point import Balls, BallsAtRationals, Rationals
@@ -44,7 +45,7 @@ def drawn(system: System, ring: Ring, source: random.Random, fine: int = 1) -> d
         if not system.assumptions or is_allowed(system, Rationals({}, {}), values):
             return values
     given = {one.name: rational(one.value) for one in system.parameters}
-    return values | {name: fmpq(x.numerator, x.denominator) for name, x in given.items() if x is not None}
+    return values | {name: rationals.exact(x) for name, x in given.items() if x is not None}
 
 
 def is_allowed(system: System, numbers: Algebra[Any], values: Mapping[str, Any]) -> bool:

@@ -73,11 +73,11 @@ def time_derivative(expression: Expression, system: System, frozen: bool = False
     rates: dict[str, Expression] = {}
     if not frozen:
         rates = {"t": ONE} | {item.name: item.rate for item in system.prescribed}
-    for name in system.coordinates:
+    for name, velocity in zip(system.coordinates, system.velocities, strict=True):
         if name in present:
-            rates[name] = Name(velocity_name(name))
-        if velocity_name(name) in present:
-            rates[velocity_name(name)] = Name(acceleration_name(name))
+            rates[name] = Name(velocity)
+        if velocity in present:
+            rates[velocity] = Name(acceleration_name(name))
     for name in sorted(present & rates.keys()):
         total = add(total, multiply(differentiate(expression, name), rates[name]))
     return total

@@ -15,7 +15,7 @@ the axes of their bodies; body "0" is the inertial frame.  ``mbsym.mechanics.con
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from mbsym.expressions.message import Message, joined
 from mbsym.expressions.place import Span
@@ -61,11 +61,12 @@ class Distance:
 
 @dataclass(frozen=True, slots=True)
 class Relation:
-    """f(q, t) = 0; ``left`` = ``right`` as it was written."""
+    """f(q, t) = 0; ``left`` = ``right`` as it was written, but for unit vectors, which stand in ``in_vectors``."""
 
     left: Expression
     right: Expression
     span: Span | None = _span()
+    in_vectors: tuple[Expression, ...] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +75,8 @@ class Rolling:
 
     ``contact`` is the radius vector from the origin of the body to the contact, in the axes of ``axes``: a point moves
     in a body that rolls, and may be any expression in coordinates.  The material points of both bodies that are there
-    have the same velocity.
+    have the same velocity.  Where the contact is given in unit vectors it stands in ``in_vectors`` as it was written,
+    and ``contact`` has the angles that these replace.
     """
 
     body: str
@@ -82,6 +84,7 @@ class Rolling:
     axes: str
     on: str
     span: Span | None = _span()
+    in_vectors: tuple[Expression, ...] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,6 +107,16 @@ KIND_NAMES: dict[type[Constraint], str] = {
     Rolling: "rolling",
     Velocity: "velocity",
 }
+
+
+def as_written(constraint: Constraint) -> Constraint:
+    """The constraint with unit vectors where the description has them."""
+    match constraint:
+        case Relation(in_vectors=(left, right)):
+            return replace(constraint, left=left, right=right, in_vectors=None)
+        case Rolling(in_vectors=(x, y, z)):
+            return replace(constraint, contact=(x, y, z), in_vectors=None)
+    return constraint
 
 
 def kind_name(constraint: Constraint) -> str:

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from mbsym.expressions.place import Span
 from mbsym.expressions.tree import ZERO, Expression
+
+if TYPE_CHECKING:
+    from mbsym.model.system import System
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,3 +33,13 @@ class Output:
     name: str
     value: Expression
     span: Span | None = field(default=None, compare=False, repr=False)
+
+
+def force_names(system: System) -> tuple[str, ...]:
+    """Names for generalised forces that the system has not, in the order of its coordinates."""
+    taken = {*system.coordinates, *system.velocities, *system.parameter_names, *system.input_names, *system.variables}
+    taken |= {item.name for item in system.prescribed}
+    stem = "tau"
+    while any(f"{stem}_{name}" in taken for name in system.coordinates):
+        stem += "u"
+    return tuple(f"{stem}_{name}" for name in system.coordinates)

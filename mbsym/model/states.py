@@ -7,11 +7,12 @@ They stand where else coordinates and velocities do, and need be no pairs of the
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from functools import cached_property
 
 from mbsym.model.system import System
 
 
-@dataclass(frozen=True, slots=True, repr=False)
+@dataclass(frozen=True, repr=False)
 class InStates(System):
     """``described`` seen in its own variables, ``positions`` s and ``own_speeds`` u by name."""
 
@@ -19,12 +20,12 @@ class InStates(System):
     positions: tuple[str, ...] = ()
     own_speeds: tuple[str, ...] = ()
 
-    @property
+    @cached_property
     def coordinates(self) -> tuple[str, ...]:
         """s."""
         return self.positions
 
-    @property
+    @cached_property
     def velocities(self) -> tuple[str, ...]:
         """u."""
         return self.own_speeds

@@ -21,6 +21,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from mbsym.expressions.guessing import GuessesNames
@@ -218,7 +219,7 @@ class WrittenSymbol:
     span: Span | None = _span()
 
 
-@dataclass(frozen=True, slots=True, repr=False)
+@dataclass(frozen=True, repr=False)  # without slots: what is asked for in every loop is remembered
 class System(GuessesNames):
     """A whole description.
 
@@ -267,14 +268,14 @@ class System(GuessesNames):
     def __repr__(self) -> str:
         return f"System({self.name!r}, {len(self.bodies)} bodies, coordinates {', '.join(self.coordinates) or 'none'})"
 
-    @property
+    @cached_property
     def coordinates(self) -> tuple[str, ...]:
         """The generalised coordinates q, body by body: the order of every vector and matrix."""
         if self.linear is not None:
             return self.linear.coordinates
         return tuple(name for body in self.bodies for name in body.coordinates)
 
-    @property
+    @cached_property
     def velocities(self) -> tuple[str, ...]:
         return tuple(velocity_name(name) for name in self.coordinates)
 
@@ -333,10 +334,11 @@ class System(GuessesNames):
 
     def body(self, name: str) -> Body:
         """The body of that name.  Raises KeyError where there is none."""
-        for body in self.bodies:
-            if body.name == name:
-                return body
-        raise KeyError(name)
+        return self._named[name]
+
+    @cached_property
+    def _named(self) -> dict[str, Body]:
+        return {body.name: body for body in reversed(self.bodies)}
 
     def path(self, name: str) -> tuple[str, ...]:
         """From the inertial frame to a body: ("0", ..., name)."""

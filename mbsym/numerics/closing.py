@@ -16,14 +16,17 @@ from fractions import Fraction
 from typing import Any, TypeVar
 
 import numpy as np
-from flint import arb, ctx, fmpq
+from flint import arb, ctx
 
+from mbsym.algebra import rationals
 from mbsym.algebra.failures import Constrained, Failure
 from mbsym.mechanics.constraints.rows import RowName
+from mbsym.model.states import InStates
 from mbsym.numerics.constrained import Constraints
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.precise import precise
 from mbsym.numerics.scenario import PRECISION, Scenario, rounded
+from mbsym.numerics.states import StateDynamics
 
 #: Steps of Newton's method and of the descent to the least gap, of the way along the constraints, of the refinement.
 STEPS, ALONG, REFINED = 200, 60, 40
@@ -115,7 +118,7 @@ class NothingMoves(Constrained):
 
 def moving(found: Closed) -> Closed:
     """What was closed.  Raises NothingMoves where its constraints hold it."""
-    constraints = Dynamics(found.scenario).constraints
+    constraints = _constraints(found.scenario)
     if constraints is None or constraints.freedom or not constraints.steady:
         return found
     state = np.array([float(x) for x in found.scenario.state])
@@ -133,9 +136,9 @@ def closed(scenario: Scenario, fixed: Collection[str] = ()) -> Closed:
     """
     if not scenario.system.constraints:
         return Closed(scenario)
-    constraints = Dynamics(scenario).constraints
+    constraints = _constraints(scenario)
     assert constraints is not None
-    system, n = scenario.system, len(scenario.system.coordinates)
+    system, p = scenario.system, constraints.places
     names = (*system.coordinates, *system.velocities)
     held = tuple(name for name in names if name in fixed)
     exact = _Exact(constraints)
@@ -150,7 +153,7 @@ def closed(scenario: Scenario, fixed: Collection[str] = ()) -> Closed:
     if given:
         searches.insert(0, _Search(constraints, names, tuple(name for name in names if name in given or name in held)))
     position, closest = _first(searches, lambda search: search.position(start))
-    there = np.concatenate([position, start[n:]])
+    there = np.concatenate([position, start[p:]])
     state = _first(searches, lambda search: search.velocity(there))
     found = _first(searches, lambda search: exact.refined(scenario.state, state, search))
     moves = [
@@ -160,8 +163,13 @@ def closed(scenario: Scenario, fixed: Collection[str] = ()) -> Closed:
     ]
     moved = {name for name, old, new in zip(names, scenario.state, found, strict=True) if old != new}
     typed = {name: value for name, value in scenario.typed.items() if name not in moved}
-    new = replace(scenario, positions=tuple(found[:n]), velocities=tuple(found[n:]), typed=typed)
+    new = replace(scenario, positions=tuple(found[:p]), velocities=tuple(found[p:]), typed=typed)
     return Closed(new, tuple(moves), closest, held, scenario.unstated)
+
+
+def _constraints(scenario: Scenario) -> Constraints | None:
+    """Those of a scenario in its variables."""
+    return (StateDynamics if isinstance(scenario.system, InStates) else Dynamics)(scenario).constraints
 
 
 T = TypeVar("T")
@@ -182,14 +190,15 @@ class _Search:
 
     def __init__(self, constraints: Constraints, names: Sequence[str], fixed: tuple[str, ...]) -> None:
         self.constraints, self.fixed = constraints, fixed
-        free = np.array([name not in fixed for name in names])
-        self.n, self.h = constraints.size, constraints.holonomic
-        self._free = free[: self.n], free[self.n :]
+        self.n, self.p, self.h = constraints.size, constraints.places, constraints.holonomic
+        own = (None if place is None else names[place] for place in constraints.own_places)
+        #: By ways that a position can go, and by velocities.
+        self.free = np.array([name not in fixed for name in own]), np.array([x not in fixed for x in names[self.p :]])
 
     def rows(self, state: Any, velocity: bool) -> tuple[Any, Any, Any]:
         """(f or g, A = J W, W): W (n, free) takes lengths measured by M to the free values."""
         values = self.constraints.at(0.0, state)
-        free = self._free[velocity]
+        free = self.free[velocity]
         weights = np.zeros((self.n, int(np.sum(free))))
         whole = self.constraints.weights(0.0, state)
         masses = np.linalg.inv(whole @ whole.T)[np.ix_(free, free)]
@@ -201,10 +210,10 @@ class _Search:
     def position(self, start: Any) -> tuple[Any, bool]:
         """A position on the constraints, and whether it is the closest one to ``start``.  Raises NotClosed."""
         if not self.h:
-            return start[: self.n].copy(), True
+            return start[: self.p].copy(), True
         found = self._descended(start)
         better, closest = self._along(found, start)
-        return better[: self.n], closest
+        return better[: self.p], closest
 
     def _descended(self, start: Any) -> Any:
         """Newton's method with steps that shorten the gap, damped (Levenberg-Marquardt) where it cannot be closed."""
@@ -213,9 +222,7 @@ class _Search:
         for _ in range(STEPS):
             if self._small(f, rows, found) and damping == 0.0:
                 break
-            step = weights @ _shortest(rows, -f, damping)
-            moved = found.copy()
-            moved[: self.n] += step
+            moved = self.constraints.displaced(0.0, found, weights @ _shortest(rows, -f, damping))
             new, new_rows, new_weights = self.rows(moved, False)
             if np.all(np.isfinite(new)) and np.linalg.norm(new) < np.linalg.norm(f):
                 found, f, rows, weights = moved, new, new_rows, new_weights
@@ -228,7 +235,7 @@ class _Search:
                     break
         if not self._small(f, rows, found):
             gaps = [Gap(name, abs(float(x))) for name, x in zip(self.constraints.names, f, strict=False)]
-            raise NotClosed(found, gaps, [x for x in self.fixed if x in self.constraints.inputs[1 : self.n + 1]])
+            raise NotClosed(found, gaps, [x for x in self.fixed if x in self.constraints.inputs[1 : self.p + 1]])
         return found
 
     def _along(self, found: Any, start: Any) -> tuple[Any, bool]:
@@ -236,10 +243,9 @@ class _Search:
         reached = found
         for _ in range(ALONG):
             f, rows, weights = self.rows(found, False)
-            back = np.linalg.lstsq(weights, start[: self.n] - found[: self.n], rcond=None)[0]
+            back = np.linalg.lstsq(weights, self.constraints.towards(0.0, found, start), rcond=None)[0]
             tangent = back - _shortest(rows, rows @ back)
-            moved = found.copy()
-            moved[: self.n] += weights @ (tangent + _shortest(rows, -f))
+            moved = self.constraints.displaced(0.0, found, weights @ (tangent + _shortest(rows, -f)))
             if not np.all(np.isfinite(moved)):
                 return reached, False
             if np.linalg.norm(tangent) <= 1e-9 * (np.linalg.norm(back) + 1e-30) or not np.any(back):
@@ -254,13 +260,13 @@ class _Search:
         found = state.copy()
         for _ in range(6):
             f, rows, weights = self.rows(found, False)
-            found[: self.n] += weights @ _shortest(rows, -f)
+            found = self.constraints.displaced(0.0, found, weights @ _shortest(rows, -f))
         f, rows, _ = self.rows(found, False)
         return found if self._small(f, rows, found) else otherwise
 
     def _small(self, f: Any, rows: Any, state: Any) -> bool:
-        partials = np.abs(self.constraints.at(0.0, state).partials[: len(f)])
-        slopes = self.constraints.slopes(partials, 1 + np.abs(state[: self.n]))
+        partials = np.abs(self.constraints.at(0.0, state).gradients)
+        slopes = self.constraints.slopes(partials, 1 + np.abs(state[: self.p]))
         return bool(np.all(np.abs(f) <= CLOSED * slopes))
 
     def velocity(self, state: Any) -> Any:
@@ -268,10 +274,10 @@ class _Search:
         found = state.copy()
         for _ in range(3):
             g, rows, weights = self.rows(found, True)
-            found[self.n :] += weights @ _shortest(rows, -g)
+            found[self.p :] += weights @ _shortest(rows, -g)
         g, _, _ = self.rows(found, True)
         partials = np.abs(self.constraints.at(0.0, found).partials)
-        slopes = self.constraints.slopes(partials, 1 + np.abs(found[self.n :]))
+        slopes = self.constraints.slopes(partials, 1 + np.abs(found[self.p :]))
         if not np.all(np.abs(g) <= CLOSED * slopes):
             gaps = [Gap(name, abs(float(x)), True) for name, x in zip(self.constraints.names, g, strict=True)]
             raise NotClosed(found, gaps, self.fixed)
@@ -296,21 +302,24 @@ class _Exact:
         self._constraints = constraints
         self._bits = PRECISION + 64
         self._rows: Callable[[Sequence[arb]], list[arb]] = precise(constraints.code, self._bits)
+        flow = constraints.flow
+        self._restoring = None if flow is None else precise(flow.restoring, self._bits)
 
     def residuals(self, state: Sequence[Fraction]) -> list[arb]:
         """f and g."""
         h, r = self._constraints.holonomic, len(self._constraints)
         with ctx.workprec(self._bits):
-            point = [arb(0), *(arb(fmpq(x.numerator, x.denominator)) for x in state)]
+            point = [arb(0), *(rationals.ball(x) for x in state)]
             return [x.mid() for x in self._rows(point)[: h + r]]
 
     def satisfied(self, state: Sequence[Fraction]) -> bool:
         """Whether the state is on the constraints as far as its bits tell."""
         values = self._constraints.at(0.0, [float(x) for x in state])
-        h, n = self._constraints.holonomic, self._constraints.size
+        p, slopes_of = self._constraints.places, self._constraints.slopes
         sizes = 1 + np.abs(np.array([float(x) for x in state]))
-        partials, slopes_of = np.abs(values.partials), self._constraints.slopes
-        slopes = np.concatenate([slopes_of(partials[:h], sizes[:n]), slopes_of(partials, sizes[n:])])
+        slopes = np.concatenate(
+            [slopes_of(np.abs(values.gradients), sizes[:p]), slopes_of(np.abs(values.partials), sizes[p:])]
+        )
         with ctx.workprec(self._bits):
             least = arb(2) ** (32 - PRECISION)
             return all(abs(x) <= least * (1 + float(s)) for x, s in zip(self.residuals(state), slopes, strict=True))
@@ -318,9 +327,8 @@ class _Exact:
     def refined(self, given: Sequence[Fraction], state: Any, search: _Search) -> tuple[Fraction, ...]:
         """The state with as many bits as numbers have; values that did not move keep what was given."""
         found = [Fraction(x) for x in state.tolist()]
-        free = np.concatenate(search._free)
-        found = [new if moves else old for old, new, moves in zip(given, found, free, strict=True)]
-        h, n = self._constraints.holonomic, self._constraints.size
+        found = [old if float(old) == float(new) else new for old, new in zip(given, found, strict=True)]
+        h, p = self._constraints.holonomic, self._constraints.places
         for _ in range(REFINED):
             if self.satisfied(found):
                 break
@@ -334,9 +342,16 @@ class _Exact:
                 # Residuals are beyond the range of roundings: they are scaled before they become floats.
                 right = np.array([-float(x / largest) for x in part])
                 scale = rounded(largest)
-                for k, change in enumerate(weights @ _shortest(rows, right)):
-                    found[k + n * velocity] += scale * Fraction(float(change))
+                way = weights @ _shortest(rows, right)
+                change = way if velocity else self._constraints.turned(0.0, point, way)
+                for k, x in enumerate(change):
+                    found[k + p * velocity] += scale * Fraction(float(x))
             found = [_short(x) for x in found]
+            if self._restoring is not None:  # Newton's step, in as many bits
+                with ctx.workprec(self._bits):
+                    balls = [arb(0), *(rationals.ball(x) for x in found)]
+                    moves = [rounded(x.mid()) for x in self._restoring(balls)]
+                found[:p] = [_short(x + move) for x, move in zip(found, moves, strict=False)]
         if not self.satisfied(found):
             left = zip(self._constraints.names, self.residuals(found), strict=False)
             gaps = [Gap(name, abs(float(x))) for name, x in left]
@@ -347,4 +362,4 @@ class _Exact:
 def _short(value: Fraction) -> Fraction:
     """Rounded to ``PRECISION`` bits."""
     with ctx.workprec(PRECISION):
-        return rounded(arb(fmpq(value.numerator, value.denominator)))
+        return rounded(rationals.ball(value))

@@ -19,8 +19,9 @@ from random import Random
 from typing import Any
 
 import numpy as np
-from flint import arb, ctx, fmpq
+from flint import arb, ctx
 
+from mbsym.algebra import rationals
 from mbsym.algebra.derivative import gradient
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.program import Node
@@ -136,7 +137,8 @@ def energy_standing(
     """
     rate = dynamics.energy_rate
     if dynamics.in_states:
-        proved = not rate.terms or _vanishes(dynamics, rate)
+        unmoved = dynamics.constraints is None or dynamics.constraints.steady
+        proved = unmoved and (not rate.terms or _vanishes(dynamics, rate))
         return (Standing.PROVED, None) if proved else standing(dynamics, dynamics.relative_energy, 0, points, (), near)
     if dynamics.constraints is not None and not dynamics.constraints.steady:
         return on_constraints(dynamics, [*dynamics.energy_power.outputs, *dynamics.constraint_power.outputs], points)
@@ -161,7 +163,7 @@ def _power(dynamics: Dynamics, rate: EnergyRate, state: Sequence[float]) -> list
 
 def _ball(value: Fraction) -> arb:
     """A value; with its rounding, where it looks rounded."""
-    middle = arb(fmpq(value.numerator, value.denominator))
+    middle = rationals.ball(value)
     rounded = value.denominator.bit_length() >= PRECISION // 2
     return arb(middle.mid(), (abs(middle) * arb(2) ** (2 - PRECISION)).upper()) if rounded else middle
 

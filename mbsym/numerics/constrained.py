@@ -11,6 +11,9 @@ them rows are independent that are not on them.
     drift of velocities   max over rows of |g_i| / sum_k |J_ik| s'_k         s'_k: that of q'_k
 
 |J_ik| is the largest of the motion, the sum the largest of the rows of one constraint: both drifts are free of units.
+
+In declared variables y = (s, u) with s' = Y u + y0 rows are g = J u + j, ways that a position can go are Y z, and
+drifts of positions are measured by df/ds; coordinates and their velocities are the case Y = 1.
 """
 
 from __future__ import annotations
@@ -23,22 +26,28 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mbsym.algebra.program import Program
+from mbsym.algebra.derivative import jacobian
+from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
 from mbsym.mechanics.constraints.dependence import Dependent, counted_anew, dependent_sets
 from mbsym.mechanics.constraints.dynamics import (
     Chosen,
     ConstrainedDynamics,
     conditions,
+    conditions_in_states,
     constrained_dynamics,
     empty_rows,
+    state_dynamics,
 )
 from mbsym.mechanics.constraints.rows import Row, RowName
+from mbsym.mechanics.speed_programs import restoring
+from mbsym.mechanics.speeds import SpeedForm
 from mbsym.model.constraints import listed
+from mbsym.model.system import velocity_name
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.scenario import Scenario
-from mbsym.numerics.specialise import bound, substituted
+from mbsym.numerics.specialise import Specialised, bound, substituted
 
 if TYPE_CHECKING:
     from mbsym.numerics.dynamics import Dynamics
@@ -61,31 +70,72 @@ OBSTRUCTED = 1e-3
 #: How many times nearer to a singular position than the start states may be computed: S has lost six digits.
 NEAREST = 1e6
 
+#: Newton's steps to lengths of 1 after a position was moved by as much as ``AWAY``.
+RESTORED = 3
+
 #: A correction of this size, beside the coordinates', ends Newton's iteration; so many steps of it at most.
 SETTLED, STEPS = 1e-13, 40
 
 
 @dataclass(frozen=True)
 class Values:
-    """At one point: f (h,), g (r,), J (r, n)."""
+    """At one point: f (h,), g (r,), J (r, n), and df/ds (h, p) of positions: the first rows of J for Y = 1."""
 
     positions: Any
     velocities: Any
     partials: Any
+    gradients: Any
+
+
+class Flow:
+    """How positions s of a scenario in declared variables move: s' = Y u + y0, and s with lengths of 1."""
+
+    def __init__(
+        self, form: SpeedForm, program: Program, turned: Sequence[Node], numbers: Specialised, inputs: tuple[str, ...]
+    ) -> None:
+        self._shape = len(form.positions), len(form.speeds)
+        self._turned = arrays.kernel(Code(numbers, inputs, tuple(substituted(program, turned, numbers))))
+        moved = restoring(program, form.system)
+        nodes = [moved.get(x.name, program.zero) for x in form.positions]
+        #: (t, s, u) -> what leads s back to lengths of 1.
+        self.restoring = Code(numbers, inputs, tuple(substituted(program, nodes, numbers)))
+        self._restored = arrays.kernel(self.restoring)
+
+    def turned(self, t: float, state: Any) -> Any:
+        """Y (p, n)."""
+        return self._turned(np.concatenate(([t], state))).reshape(self._shape)
+
+    def displaced(self, t: float, state: Any, way: Any) -> Any:
+        """The state moved by Y way."""
+        found, p = np.array(state, dtype=float), self._shape[0]
+        found[:p] += self.turned(t, found) @ way
+        for _ in range(RESTORED):
+            found[:p] += self._restored(np.concatenate(([t], found)))
+        return found
 
 
 class Constraints:
-    """The rows of a scenario that say something, and the equations with those of them that are independent."""
+    """The rows of a scenario that say something, and the equations with those of them that are independent.
 
-    def __init__(self, scenario: Scenario, ring: Ring, apart: bool, masses: Code) -> None:
-        self._scenario, self._ring, self._apart = scenario, ring, apart
-        found = conditions(scenario.system, ring)
+    ``places`` are the positions p of a state, ``size`` its velocities n.
+    """
+
+    def __init__(
+        self, scenario: Scenario, ring: Ring, apart: bool, masses: Code, form: SpeedForm | None = None
+    ) -> None:
+        self._scenario, self._ring, self._apart, self._form = scenario, ring, apart, form
+        system = scenario.system
+        self.places, self.size = len(system.coordinates), len(system.velocities)
+        self.inputs = ("t", *system.coordinates, *system.velocities)
+        found = conditions(system, ring) if form is None else conditions_in_states(form)
+        self.flow = None if form is None else Flow(form, found.program, found.turned, bound(scenario), self.inputs)
+        self._at_rest, self._rest_program = found.at_rest, found.program
         self._listed(scenario, found.program, found.rows)
         # A row that seems to say nothing at some place is looked at in the ring, which is dearer.
         source = np.random.default_rng(3)
-        place = self.at(0.3, source.uniform(0.3, 0.9, 2 * len(scenario.system.coordinates)))
+        place = self.at(0.3, source.uniform(0.3, 0.9, self.places + self.size))
         nothing = np.max(np.abs(place.partials), axis=1) <= 1e-10 * self.slopes(np.abs(place.partials), 1.0)
-        empty = empty_rows(scenario.system, ring, [row for row, none in zip(found.rows, nothing, strict=True) if none])
+        empty = empty_rows(system, ring, [row for row, none in zip(found.rows, nothing, strict=True) if none], form)
         if empty:
             self._listed(scenario, found.program, [row for row in found.rows if row.name not in empty])
         self._masses = arrays.kernel(masses)
@@ -93,11 +143,11 @@ class Constraints:
     def _listed(self, scenario: Scenario, program: Program, rows: Sequence[Row]) -> None:
         self.names: tuple[RowName, ...] = tuple(row.name for row in rows)
         self.holonomic = sum(name.holonomic for name in self.names)
-        self.size = len(scenario.system.coordinates)
-        self.inputs = ("t", *scenario.system.coordinates, *scenario.system.velocities)
-        nodes = [row.position for row in rows if row.position is not None]
-        nodes += [row.velocity for row in rows]
-        nodes += [slope for row in rows for slope in row.partials]
+        positions = [row.position for row in rows if row.position is not None]
+        nodes = [*positions, *(row.velocity for row in rows), *(slope for row in rows for slope in row.partials)]
+        if self._form is not None:
+            names = [program.input(x.name) for x in self._form.positions]
+            nodes += [slope for row in jacobian(program, positions, names) for slope in row]
         numbers = bound(scenario)
         self.code = Code(numbers, self.inputs, tuple(substituted(program, nodes, numbers)))
         self._kernel = arrays.kernel(self.code)
@@ -114,9 +164,54 @@ class Constraints:
         return self._parted(self._kernel(np.vstack([times, np.asarray(states, dtype=float)])))
 
     def _parted(self, values: Any) -> Values:
-        h, r = self.holonomic, len(self.names)
-        shape = (r, self.size, *values.shape[1:])
-        return Values(values[:h], values[h : h + r], values[h + r :].reshape(shape))
+        h, r, n = self.holonomic, len(self.names), self.size
+        partials = values[h + r : h + r + r * n].reshape(r, n, *values.shape[1:])
+        gradients = partials[:h]
+        if self._form is not None:
+            gradients = values[h + r + r * n :].reshape(h, self.places, *values.shape[1:])
+        return Values(values[:h], values[h : h + r], partials, gradients)
+
+    # --- ways that a position can go ---
+
+    def displaced(self, t: float, state: Any, way: Any) -> Any:
+        """The state with its position moved by Y way (n,)."""
+        found = np.array(state, dtype=float)
+        if self.flow is not None:
+            return self.flow.displaced(t, found, way)
+        found[: self.places] += way
+        return found
+
+    def turned(self, t: float, state: Any, way: Any) -> Any:
+        """Y way (p,)."""
+        return way if self.flow is None else self.flow.turned(t, state) @ way
+
+    def towards(self, t: float, state: Any, goal: Any) -> Any:
+        """The way (n,) of least squares from the position of a state to that of another."""
+        way = np.asarray(goal, dtype=float)[: self.places] - state[: self.places]
+        return way if self.flow is None else np.linalg.lstsq(self.flow.turned(t, state), way, rcond=None)[0]
+
+    def extents(self, state: Any) -> Any:
+        """What ways are measured by (n,): 1 + |q|, and 1 for speeds that are no velocities of positions."""
+        found = np.ones(self.size)
+        for k, place in enumerate(self.own_places):
+            if place is not None:
+                found[k] += abs(state[place])
+        return found
+
+    @cached_property
+    def own_places(self) -> tuple[int | None, ...]:
+        """For every velocity the position that is its own, which no other moves; None where there is none."""
+        system = self._scenario.system
+        own = {velocity_name(name): place for place, name in enumerate(system.coordinates)}
+        return tuple(own.get(name) for name in system.velocities)
+
+    def at_rest(self, program: Specialised) -> Specialised:
+        """The program with velocities at which nothing moves but what is prescribed: 0, or the drifts s0 of speeds."""
+        system = self._scenario.system
+        values = substituted(self._rest_program, self._at_rest, program) if self._at_rest else []
+        values = values or [program.number(0)] * self.size
+        program.bound.update(zip(system.velocities, values, strict=True))
+        return program
 
     def slopes(self, partials: Any, sizes: Any) -> Any:
         """What rows are measured by: sum_k |J_ik| s_k, the largest of the rows that belong to one constraint.
@@ -202,7 +297,7 @@ class Constraints:
         count, n, source = len(self.names), self.size, np.random.default_rng(7)
         if not self.steady:
             return False
-        sizes, small = 1 + np.abs(state[:n]), AWAY / 10
+        sizes, small = self.extents(state), AWAY / 10
         rows = self.at(0.0, state).partials * sizes
         lengths = _positive(np.linalg.norm(rows, axis=1))
         left, values, right = np.linalg.svd(rows / lengths[:, None])
@@ -212,9 +307,7 @@ class Constraints:
         for _ in range(BESIDE):
             way = right[rank:].T @ source.normal(size=n - rank)
             step = small * sizes * way / np.max(np.abs(way))
-            ahead, behind = (
-                self.at(0.0, np.concatenate([state[:n] + sign * step, state[n:]])).partials for sign in (1, -1)
-            )
+            ahead, behind = (self.at(0.0, self.displaced(0.0, state, sign * step)).partials for sign in (1, -1))
             bent = (ahead - behind) @ step / lengths / (2 * small**2)
             if np.linalg.norm(left[:, rank:].T @ bent) > OBSTRUCTED:
                 return True
@@ -254,18 +347,17 @@ class Constraints:
     def _places(self, state: Any) -> list[Any]:
         """The initial position and some beside it to which the constraints let it move: on its way, if it has one."""
         source, n, found = np.random.default_rng(5), self.size, [state]
+        velocities = state[self.places :]
         weights = self.weights(0.0, state)
         rows = self.at(0.0, state).partials
         for _ in range(BESIDE):
-            sizes = AWAY * source.uniform(0.5, 1.0, n) * (1 + np.abs(state[:n]))
+            sizes = AWAY * source.uniform(0.5, 1.0, n) * self.extents(state)
             way = sizes * source.choice((-1, 1), n)
-            if self.holonomic and np.any(state[n:]):  # where branches meet the velocity tells which it is
-                way = state[n:] * np.min(sizes) / np.max(np.abs(state[n:])) * source.choice((-1, 1))
+            if self.holonomic and np.any(velocities):  # where branches meet the velocity tells which it is
+                way = velocities * np.min(sizes) / np.max(np.abs(velocities)) * source.choice((-1, 1))
             elif self.holonomic:  # else any way that all rows allow
                 way -= weights @ np.linalg.lstsq(rows @ weights, rows @ way, rcond=CERTAIN)[0]
-            moved = state.copy()
-            moved[:n] += way
-            place = self.led(0.0, moved)
+            place = self.led(0.0, self.displaced(0.0, state, way))
             if place is not None and self._orthogonalised(0.0, place)[1] > CERTAIN:
                 found.append(place)
         return found
@@ -279,14 +371,16 @@ class Constraints:
                 return None
             rows = values.partials[: self.holonomic] @ weights
             step = weights @ np.linalg.lstsq(rows, -values.positions, rcond=1e-10)[0] if self.holonomic else np.zeros(n)
-            found[:n] += step
-            if np.max(np.abs(step), initial=0.0) <= SETTLED * (1 + np.max(np.abs(found[:n]))):
+            found = self.displaced(t, found, step)
+            if np.max(np.abs(step), initial=0.0) <= SETTLED * (1 + np.max(np.abs(found[: self.places]))):
                 return found
         return None
 
     @cached_property
     def dynamics(self) -> ConstrainedDynamics:
         """The equations with all rows."""
+        if self._form is not None:
+            return state_dynamics(self._form, self.chosen, self._massless)
         return constrained_dynamics(self._scenario.system, self._ring, self.chosen, self._apart, self._massless)
 
     @property
@@ -335,10 +429,30 @@ class Constraints:
     def steady(self) -> bool:
         """Whether J q' = 0 on all of them: no row moves by itself, so that constraint forces do no work."""
         h, r = self.holonomic, len(self.names)
-        program = bound(self._scenario)
-        program.bound.update(dict.fromkeys(self._scenario.system.velocities, program.number(0)))
+        program = self.at_rest(bound(self._scenario))
         nodes = substituted(self.code.program, self.code.outputs[h : h + r], program)
         return all(map(program.vanishes, nodes))
+
+    @cached_property
+    def _tangent_rows(self) -> Any:
+        h, r = self.holonomic, len(self.names)
+        program, velocities = self.code.program, self.code.outputs[h : h + r]
+        rows = jacobian(program, velocities, [program.input(name) for name in self.inputs[1:]])
+        return arrays.kernel(Code(program, self.inputs, tuple(x for row in rows for x in row)))
+
+    def tangent(self, t: float, state: Any) -> Any:
+        """An orthonormal basis (p + n, k) of the changes of a state that keep f = 0 and g = 0, to first order.
+
+        Of dependent rows as many count as are independent on this branch.
+        """
+        width, r = self.places + self.size, len(self.names)
+        values = self.at(t, state)
+        above = np.hstack([values.gradients, np.zeros((self.holonomic, self.size))])
+        below = self._tangent_rows(np.concatenate(([t], state))).reshape(r, width)
+        rank = self.rank + len([i for i in self.kept if i < self.holonomic])
+        rows = np.vstack([above, below])
+        rows = rows / _positive(np.linalg.norm(rows, axis=1))[:, None]
+        return np.linalg.svd(rows)[2][rank:].T
 
     def told(self) -> str:
         """``coincide 1, rolling 2``."""
@@ -363,14 +477,14 @@ class Drift:
 
 
 def drift(constraints: Constraints, times: Any, states: Any, sizes: Any) -> Drift:
-    """The drift at states (2n, m); ``sizes`` (2n,) is what the coordinates and velocities are measured by."""
-    n, h = constraints.size, constraints.holonomic
+    """The drift at states (p + n, m); ``sizes`` (p + n,) is what positions and velocities are measured by."""
+    p = constraints.places
     values = constraints.along(times, states)
-    largest = np.max(np.abs(values.partials), axis=2)
-    scales = constraints.slopes(largest, sizes[:n]), constraints.slopes(largest, sizes[n:])
+    placed, largest = (np.max(np.abs(x), axis=2) for x in (values.gradients, values.partials))
+    scales = constraints.slopes(placed, sizes[:p]), constraints.slopes(largest, sizes[p:])
     names = constraints.names
     parts = [
-        np.abs(values.positions) / _positive(scales[0][:h])[:, None],
+        np.abs(values.positions) / _positive(scales[0])[:, None],
         np.abs(values.velocities) / _positive(scales[1])[:, None],
     ]
     worst = [names[int(np.argmax(np.max(part, axis=1)))] if len(part) else None for part in parts]

@@ -35,6 +35,7 @@ from mbsym.numerics.specialise import Specialised, bound, substituted
 
 if TYPE_CHECKING:
     from mbsym.mechanics.constraints.dynamics import ConstrainedDynamics
+    from mbsym.mechanics.speeds import SpeedForm
     from mbsym.numerics.constrained import Constraints
 
 
@@ -46,6 +47,9 @@ class Dynamics:
 
     #: Whether what is integrated are the variables that the description declares (``mbsym.numerics.states``).
     in_states = False
+
+    #: What these are; None of coordinates and their velocities.
+    form: SpeedForm | None = None
 
     def __init__(self, scenario: Scenario, ring: Ring | None = None, apart: bool = False) -> None:
         self.scenario = scenario
@@ -84,7 +88,7 @@ class Dynamics:
             return None
         from mbsym.numerics.constrained import Constraints
 
-        return Constraints(self.scenario, self.ring, self.apart, self.mass_matrix)
+        return Constraints(self.scenario, self.ring, self.apart, self.mass_matrix, self.form)
 
     @property
     def _solved(self) -> ForwardDynamics | ConstrainedDynamics:
@@ -109,13 +113,13 @@ class Dynamics:
         if self.constraints is None:
             return None
         found = self.constraints.dynamics
-        fresh, pivots = self._specialised, found.pivots[self.size :]
+        fresh, pivots = self._specialised, found.pivots[self.constraints.size :]
         nodes = [*found.position_correction, *found.velocity_correction, *pivots]
         made = substituted(found.program, nodes, fresh)
         nearness = fresh.zero
-        for size, pivot in zip(self.constraints.nearest, made[2 * self.size :], strict=True):
+        for size, pivot in zip(self.constraints.nearest, made[self.dimension :], strict=True):
             nearness = nearness + fresh.number(size) * fresh.reciprocal(pivot)
-        return self._code([*made[: 2 * self.size], nearness])
+        return self._code([*made[: self.dimension], nearness])
 
     @cached_property
     def multipliers(self) -> Code:
@@ -237,8 +241,7 @@ class Dynamics:
     def constraint_power(self) -> Code:
         """(t, q, q') -> -lambda_i j_i: what constraints that move add to dh/dt, row by row."""
         assert self.constraints is not None
-        rows, still = self.constraints.dynamics, bound(self.scenario)
-        still.bound.update(dict.fromkeys(self.system.velocities, still.number(0)))
+        rows, still = self.constraints.dynamics, self.constraints.at_rest(bound(self.scenario))
         moving = substituted(rows.program, [row.velocity for row in rows.rows], still)
         fresh = self._specialised
         powers = zip(self.multipliers.outputs, substituted(still, moving, fresh), strict=True)
@@ -287,6 +290,7 @@ class Frozen(Dynamics):
             self.__dict__["_programs"] = whole._programs
         self.__dict__["constraints"] = whole.constraints
         if whole.in_states:
+            self.form = whole.form
             self.__dict__["correction"], self.__dict__["pivots"] = whole.correction, whole.pivots
 
     @property

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,7 +16,9 @@ from mbsym.model.quantities import integral_unit
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.kernels.llvm import kernels
-from mbsym.problems.integrals import Integral, identifiers
+
+if TYPE_CHECKING:
+    from mbsym.problems.integrals import Integral
 
 
 @dataclass(frozen=True)
@@ -39,6 +41,10 @@ def invariants(dynamics: Dynamics, integrals: Sequence[Integral], known: Sequenc
 
     ``known`` are column names that are taken.
     """
+    if not integrals:
+        return ()
+    from mbsym.problems.integrals import identifiers
+
     program = dynamics.right_hand_side.program
     system, ring = dynamics.system, dynamics.ring
     declared = [*system.parameter_names, *(item.name for item in system.prescribed), *dynamics.inputs, "pi"]

@@ -95,8 +95,7 @@ def inverse_dynamics(
     ``overrides`` replace numbers of parameters.  Raises NotLinear; ValueError where the system has no inputs, or the
     motion or an input is not finite; ``mbsym.numerics.scenario.Incomplete`` where a number is missing.
     """
-    if system.variables:
-        raise ValueError("inverse dynamics knows no speeds yet")
+    system = system.without_speeds if system.variables else system  # a motion is one of coordinates
     if not system.inputs:
         raise ValueError("the description has no inputs")
     if system.constraints:

@@ -4,8 +4,9 @@
     B u + J^T lambda = r,   r = M q'' - f(q, q', t, 0)
 
 Positions follow by Newton's method from those at the time before (at t = 0 from the initial ones), so that a loop stays
-in its assembly; velocities and accelerations are linear.  Then u and lambda are solved for in the sense of least
-squares with M^-1 as weights (kinetic ones: the same in all units), lambda being left out first.
+in its assembly; velocities and accelerations are linear.  Positions that constraints in velocities alone lead (where a
+wheel rolls to) are integrated from the initial ones,  q' = -J^+ g.  Then u and lambda are solved for in the sense of
+least squares with M^-1 as weights (kinetic ones: the same in all units), lambda being left out first.
 """
 
 from __future__ import annotations
@@ -45,7 +46,7 @@ def inverse_constrained(
     """
     given = scenario(system, overrides, state=False)
     rows = _Rows(system, given)
-    states = rows.followed(_given(system, given, motion, times), times)
+    states = rows.followed(_Given(system, given, motion), times)
     needed, columns, masses = _equations(system, given, states, times)
     _, _, _, partials = rows.at(times, states)
     n, k, m = len(system.coordinates), len(system.input_names), len(times)
@@ -98,22 +99,30 @@ def _beside(ties: Any) -> Any:
     return left[:, int(np.sum(sizes > OFF)) :].T
 
 
-def _given(system: System, given: Scenario, motion: Mapping[str, Expression], times: Array) -> dict[str, Any]:
-    """(q, q', q'') at the times of the coordinates whose motion is given."""
-    program = bound(given)
-    rates = {item.name: item.rate for item in system.prescribed}
-    names = [*system.parameter_names, *rates, "t", "pi"]
-    lower = Lowering(program, {name: program.input(name) for name in names})
-    found = {}
-    for name, place in motion.items():
-        speed = rate_of(place, rates)
-        nodes = tuple(lower(x) for x in (place, speed, rate_of(speed, rates)))
-        values = np.broadcast_to(kernel(Code(program, ("t",), nodes))(np.array([times])), (3, len(times)))
-        if not np.isfinite(values).all():
-            first = times[~np.isfinite(values).all(axis=0)][0]
-            raise ValueError(f"at t = {first:.9g} the motion of {name} is infinite or no number")
-        found[name] = values
-    return found
+class _Given:
+    """(q, q', q'') of the coordinates whose motion is given, at any times."""
+
+    def __init__(self, system: System, given: Scenario, motion: Mapping[str, Expression]) -> None:
+        program = bound(given)
+        rates = {item.name: item.rate for item in system.prescribed}
+        names = [*system.parameter_names, *rates, "t", "pi"]
+        lower = Lowering(program, {name: program.input(name) for name in names})
+        self._kernels = {}
+        for name, place in motion.items():
+            speed = rate_of(place, rates)
+            nodes = tuple(lower(x) for x in (place, speed, rate_of(speed, rates)))
+            self._kernels[name] = kernel(Code(program, ("t",), nodes))
+
+    def __call__(self, times: Array) -> dict[str, Any]:
+        """By name, shape (3, m).  Raises ValueError."""
+        found = {}
+        for name, own in self._kernels.items():
+            values = np.broadcast_to(own(np.array([times])), (3, len(times)))
+            if not np.isfinite(values).all():
+                first = times[~np.isfinite(values).all(axis=0)][0]
+                raise ValueError(f"at t = {first:.9g} the motion of {name} is infinite or no number")
+            found[name] = values
+        return found
 
 
 class _Rows:
@@ -139,18 +148,19 @@ class _Rows:
         partials = values[h + 2 * r :].reshape(r, self.n, -1)
         return values[:h], values[h : h + r], values[h + r : h + 2 * r], partials
 
-    def followed(self, known: Mapping[str, Any], times: Array) -> Any:
+    def followed(self, given: _Given, times: Array) -> Any:
         """q, q', q'' (3n, m) with those that follow.  Raises ValueError."""
-        n, names = self.n, self.system.coordinates
+        n, names, known = self.n, self.system.coordinates, given(times)
         states = np.zeros((3 * n, len(times)))
         for place, name in enumerate(names):
             if name in known:
                 states[place::n] = known[name]
         open_ = [place for place, name in enumerate(names) if name not in known]
         q = np.array([float(x) for x in self.given.positions])
+        rolled = self._rolled(given, times, states[:, 0:1], q, open_) if open_ else None
         for m, t in enumerate(times):
             one = states[:, m : m + 1]
-            one[open_, 0] = q[open_]
+            one[open_, 0] = q[open_] if rolled is None else rolled[:, m]
             self._placed(t, one, open_)
             _, g, _, partials = self.at(t, one)
             one[[n + k for k in open_], 0] = self._solved(partials[:, :, 0], g[:, 0], open_, t)
@@ -161,12 +171,36 @@ class _Rows:
             q = one[:n, 0]
         return states
 
+    def _rolled(self, given: _Given, times: Array, first: Any, q: Any, open_: list[int]) -> Any | None:
+        """Open positions (k, m) by the velocities that the rows leave them; None where rows on positions suffice."""
+        from scipy.integrate import solve_ivp
+
+        n, names = self.n, self.system.coordinates
+        start = first.copy()
+        start[open_, 0] = q[open_]
+        if np.linalg.matrix_rank(self.at(times[0], start)[3][: self.holonomic, open_, 0], tol=OFF) == len(open_):
+            return None
+        self._placed(times[0], start, open_)
+
+        def rates(t: float, x: Any) -> Any:
+            one = np.zeros((3 * n, 1))
+            for name, values in given(np.array([t])).items():
+                one[names.index(name) :: n, 0] = values[:, 0]
+            one[open_, 0] = x
+            _, g, _, partials = self.at(t, one)
+            return self._solved(partials[:, :, 0], g[:, 0], open_, t)
+
+        if len(times) < 2:
+            return start[open_]
+        done = solve_ivp(rates, (times[0], times[-1]), start[open_, 0], "DOP853", times, rtol=1e-12, atol=1e-13)
+        if not done.success:
+            raise ValueError(f"at t = {done.t[-1] if done.t.size else times[0]:.9g} the motion cannot be followed")
+        return done.y
+
     def _placed(self, t: float, one: Any, open_: list[int]) -> None:
-        """Positions follow from rows that have a position; velocity constraints alone leave them open."""
+        """Positions are led to the rows that have a position."""
         h = self.holonomic
-        if open_:
-            self._solved(self.at(t, one)[3][:h, :, 0], np.zeros(h), open_, t)
-        for _ in range(STEPS if open_ else 0):
+        for _ in range(STEPS if open_ and h else 0):
             f, _, _, partials = self.at(t, one)
             step = self._solved(partials[:h, :, 0], f[:, 0], open_, t, partly=True)
             one[open_, 0] += step

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,12 +11,15 @@ from mbsym.numerics.methods.interface import Piece
 from mbsym.numerics.methods.nested import Nested
 
 
-def states_on(pieces: Sequence[Piece], times: Sequence[Any]) -> Any:
-    """The states (2n, m) of each piece at its own times, a piece after the other; not all have any."""
-    curves = [piece.curve for piece in pieces]
+def states_on(pieces: Sequence[Callable[[Any], Any]], times: Sequence[Any]) -> Any:
+    """The states (2n, m) of each piece at its own times, a piece after the other; not all have any.
+
+    Times of pieces of a compiled method have to lie within them.
+    """
+    curves = [piece.curve for piece in pieces if isinstance(piece, Piece)]
     steps = [curve for curve in curves if isinstance(curve, Nested)]
-    if len(steps) < len(curves) or len({step.terms.shape for step in steps}) > 1:
-        return np.hstack([piece(own) for piece, own in zip(pieces, times, strict=True) if len(own)])
+    if len(steps) < len(pieces) or len({step.terms.shape for step in steps}) > 1:
+        return np.hstack([piece(np.asarray(own)) for piece, own in zip(pieces, times, strict=True) if len(own)])
     counts = [len(own) for own in times]
     start, length, reached = (
         np.repeat([getattr(step, name) for step in steps], counts) for name in ("start", "length", "reached")

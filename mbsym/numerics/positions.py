@@ -21,20 +21,15 @@ from mbsym.expressions.tree import ZERO, names
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import KINDS
 from mbsym.mechanics.programs import scene_without_accelerations
-from mbsym.mechanics.variables import expressions, program_environment, ring_of
+from mbsym.mechanics.variables import program_environment, ring_of
 from mbsym.model.constraints import Coincide, Distance
 from mbsym.model.system import INERTIAL, Body, System
 from mbsym.model.system import Point as PointOfBody
+from mbsym.numerics.carriers import COMPACT, STILL, frames
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.kernels.llvm import kernels
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.specialise import bound, substituted
-
-#: A frame further out is taken as long as the system, its origin included, looks at most so much larger in it.
-COMPACT = 2.0
-
-#: What moves less than this part of the whole does not move.
-STILL = 1e-9
 
 #: A picture shows so much motion that the longest path is so many times as long as the picture's diagonal; more would
 #: fill it.  Of the axes of one body the slowest counts.
@@ -151,21 +146,6 @@ def positions(scenario: Scenario, times: Any, states: Any) -> Positions | None:
         found = [item for item in found if 0 < item.size < np.inf]
         least = min(map(_extent, found), default=0.0)
     return next((item for item in found if _extent(item) <= COMPACT * least), None)
-
-
-def frames(system: System) -> list[str]:
-    """The inertial frame, and further in those that carry everything and that no coordinate moves."""
-    moving = {*system.coordinates, *system.velocities}
-    found = [INERTIAL]
-    while True:
-        carried = [body for body in system.bodies if body.attached_to == found[-1]]
-        if len(carried) != 1 or carried[0].mass != ZERO or carried[0].inertia is not None:
-            return found
-        (body,) = carried
-        alone = not any(other.attached_to == body.name for other in system.bodies)
-        if alone or any(moving & names(x) for x in expressions((body.rotation, body.connection_point))):
-            return found
-        found.append(body.name)
 
 
 def _points(system: System, frame: str) -> list[Point]:

@@ -11,8 +11,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
-from flint import arb, ctx, fmpq
+from flint import arb, ctx
 
+from mbsym.algebra import rationals
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.failures import Failure, NotRational, NoValue, SingularPoint
 from mbsym.algebra.point import Balls, Rationals
@@ -327,13 +328,13 @@ def exact(expression: Expression, known: Mapping[str, Fraction]) -> Fraction:
     used = names(expression)
     if "pi" not in used:
         try:
-            values = {name: fmpq(known[name].numerator, known[name].denominator) for name in used}
+            values = {name: rationals.exact(known[name]) for name in used}
             found = Lowering(Rationals({}, {}), values)(expression)
-            return _within_range(Fraction(int(found.p), int(found.q)))
+            return _within_range(rationals.fraction(found))
         except (NotRational, NoValue):
             pass
     with ctx.workprec(PRECISION + 64):
-        balls = {name: arb(fmpq(known[name].numerator, known[name].denominator)) for name in used - {"pi"}}
+        balls = {name: rationals.ball(known[name]) for name in used - {"pi"}}
         value = Lowering(Balls(balls), {**balls, "pi": arb.pi()})(expression)
         if not value.is_finite():
             raise SingularPoint("it is infinite or not real")

@@ -10,8 +10,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
-from flint import arb, ctx, fmpq
+from flint import arb, ctx
 
+from mbsym.algebra import rationals
 from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.point import Balls
 from mbsym.algebra.program import Node, Program
@@ -30,7 +31,7 @@ class Specialised(Program):
         value = Fraction(value)
         if max(value.numerator.bit_length(), value.denominator.bit_length()) > 2 * PRECISION:
             with ctx.workprec(PRECISION):
-                value = rounded(arb(fmpq(value.numerator, value.denominator)))
+                value = rounded(rationals.ball(value))
         return super().number(value)
 
     def input(self, name: str) -> Node:
@@ -61,15 +62,15 @@ class Specialised(Program):
 
     def _sin_cos_number(self, radians: Fraction, turns: Fraction) -> tuple[Node, Node]:
         with ctx.workprec(PRECISION + 64):
-            angle = arb(fmpq(radians.numerator, radians.denominator))
-            angle += arb.pi() * arb(fmpq(turns.numerator, turns.denominator))
+            angle = rationals.ball(radians)
+            angle += arb.pi() * rationals.ball(turns)
             sine, cosine = angle.sin_cos()
             return self.number(rounded(sine)), self.number(rounded(cosine))
 
     @staticmethod
     def _turned(turns: Fraction) -> Fraction:
         with ctx.workprec(PRECISION + 64):
-            return rounded(arb.pi() * arb(fmpq(turns.numerator, turns.denominator)))
+            return rounded(arb.pi() * rationals.ball(turns))
 
     def square_root(self, x: Node) -> Node:
         found = super().square_root(x)

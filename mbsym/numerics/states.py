@@ -77,6 +77,7 @@ class StateDynamics(Dynamics):
     """The codes of a scenario in states; all take (t, s, u)."""
 
     in_states = True
+    form: SpeedForm
 
     def __init__(self, scenario: Scenario, ring: Ring | None = None) -> None:
         self.described = described(scenario.system)
@@ -98,7 +99,11 @@ class StateDynamics(Dynamics):
 
     @cached_property
     def _accelerated(self) -> tuple[Sequence[Node], Sequence[Node]]:
-        """u' and the pivots of M.  Raises SingularPoint."""
+        """u' and the pivots of M, and of J M^-1 J^T with constraints.  Raises SingularPoint."""
+        if self.constraints is not None:
+            found = self.constraints.dynamics
+            both = (substituted(found.program, x, self._specialised) for x in (found.accelerations, found.pivots))
+            return next(both), next(both)
         mass, forcing, _ = self._in_program
         return solve(self._specialised, mass, forcing)
 
@@ -109,10 +114,12 @@ class StateDynamics(Dynamics):
 
     @cached_property
     def correction(self) -> Code | None:
-        """(t, s, u) -> what leads a state back to lengths of 1 and right angles; None where there are none.
+        """(t, s, u) -> what leads a state back to lengths of 1, right angles and constraints; None without any.
 
-        A last output is 0: nothing is singular there.
+        A last output is 0, where nothing is singular.
         """
+        if self.constraints is not None:
+            return super().correction
         fresh, moved = self._specialised, restoring(self._specialised, self.described)
         if not moved:
             return None

@@ -8,10 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from math import pi
+from math import hypot, pi
 from typing import Any
-
-import numpy as np
 
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.program import Node
@@ -22,14 +20,14 @@ from mbsym.mechanics.variables import angles_of, program_environment, ring_of
 from mbsym.model.constraints import is_holonomic
 from mbsym.model.quantities import length_unit, time_unit, unit_of
 from mbsym.model.system import System
-from mbsym.numerics.positions import COMPACT, frames
+from mbsym.numerics.carriers import COMPACT, frames
 from mbsym.numerics.scenario import Scenario, exact
 from mbsym.numerics.specialise import bound
 from mbsym.picture import acting, loops
 from mbsym.picture.looks import ellipsoid, shapes
 from mbsym.picture.placing import Places, Triple
 from mbsym.picture.program import flattened
-from mbsym.picture.room import Room, first_look, samples
+from mbsym.picture.room import Room, State, first_look, samples
 from mbsym.picture.start import Start, start
 from mbsym.picture.values import (
     Arrow,
@@ -128,25 +126,24 @@ class _Made:
             own = ellipsoid(body, self.scenario.parameters)
             size = 0.0 if own is None or not own.true_size else max(own.half_axes)
             for shape in shapes(body, self.scenario.parameters):
-                size = max(size, float(np.linalg.norm(shape.at)) + float(np.linalg.norm(shape.size)))
+                size = max(size, hypot(*shape.at) + hypot(*shape.size))
             points += [self.at(places.origins[name]), self.at(self.centres[name])]
             reach += [size if body.shapes else 0.0, size]
         axes = [self.at(row) for name in places.carried for row in places.axes[name]]
         up = None if self.up is None else self.at(self.up)
-        anywhere = self.program.evaluate(samples(self.known, self.scenario, 1.0))
-        inputs = samples(self.known, self.scenario)
-        values = self.program.evaluate(self._closed(inputs) if self.rows else inputs)
+        anywhere = [self.program.at(state) for state in samples(self.known, self.scenario, 1.0)]
+        states = samples(self.known, self.scenario)
+        values = [self.program.at(state) for state in (self._closed(states) if self.rows else states)]
         return Room.of(values, points, reach, first_look(anywhere, points[: 2 * len(places.carried)], axes, up))
 
-    def _closed(self, inputs: dict[str, Any]) -> dict[str, Any]:
+    def _closed(self, states: Sequence[State]) -> list[State]:
         """Those of the positions near which the loops are closed, the start first."""
         closure = self._closure()
-        found = [{name: float(values[0]) for name, values in inputs.items()}]
-        for k in range(1, LOOPS + 1):
-            state = {name: float(values[k]) for name, values in inputs.items()}
+        found = [states[0]]
+        for state in states[1 : LOOPS + 1]:
             there, good = loops.closed(self.program, closure, state, ())
             found += [there] if good else []
-        return {name: np.array([one[name] for one in found]) for name in inputs}
+        return found
 
     def _closure(self) -> Closure:
         slopes = tuple(tuple(self._value[x.number] for x in row) for row in self.slopes)

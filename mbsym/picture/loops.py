@@ -3,18 +3,15 @@
     f(q, t) = 0,     df/dq
 
 A step that keeps the moved coordinate is the shortest solution of J dq = -f (Newton's method on rows that may be
-dependent); ``closed`` takes such steps over NumPy, a page does the same in its own language.
+dependent); ``closed`` takes such steps, a page does the same in its own language.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-import numpy as np
-
 from mbsym.algebra.derivative import jacobian
 from mbsym.algebra.program import Node
-from mbsym.mechanics.constraints.rows import constraint_rows
 from mbsym.mechanics.kinematics import Scene
 from mbsym.picture.program import PoseProgram
 from mbsym.picture.values import Closure
@@ -31,6 +28,8 @@ RANK = 1e-9
 
 def rows(scene: Scene[Node]) -> tuple[list[Node], list[list[Node]], list[str]]:
     """f, its derivatives by the coordinates, and the names of the rows; rows that are zero at sight left out."""
+    from mbsym.mechanics.constraints.rows import constraint_rows  # most systems have none
+
     found: list[tuple[str, Node]] = [
         (row.name.label, row.position)
         for row in constraint_rows(scene)
@@ -46,7 +45,7 @@ def rows(scene: Scene[Node]) -> tuple[list[Node], list[list[Node]], list[str]]:
 
 def gaps(program: PoseProgram, closure: Closure, state: Mapping[str, float]) -> list[float]:
     """|f| of every row as a part of what the coordinates do to it: closed where it is below the tolerance."""
-    values = program.evaluate(state)
+    values = program.at(state)
     sizes = [1 + abs(float(state[name])) for name in closure.coordinates]
     found = []
     for row, slopes in zip(closure.rows, closure.slopes, strict=True):
@@ -59,12 +58,14 @@ def closed(
     program: PoseProgram, closure: Closure, state: Mapping[str, float], held: Sequence[str]
 ) -> tuple[dict[str, float], bool]:
     """The state led to the constraints with the coordinates ``held``, and whether it keeps them then."""
+    import numpy as np
+
     there = dict(state)
     free = [k for k, name in enumerate(closure.coordinates) if name not in held]
     for _ in range(STEPS):
         if max(gaps(program, closure, there)) < 1e-3 * closure.tolerance:
             break
-        values = program.evaluate(there)
+        values = program.at(there)
         f = np.array([float(values[k]) for k in closure.rows])
         slopes = np.array([[float(values[row[k]]) for k in free] for row in closure.slopes])
         if not (np.all(np.isfinite(f)) and np.all(np.isfinite(slopes))) or not free:

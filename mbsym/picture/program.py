@@ -10,39 +10,40 @@ Constants are the doubles nearest to the exact numbers; the order of operations 
 
 from __future__ import annotations
 
+import math
+import operator
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from mbsym.algebra.failures import NoClosedForm
-from mbsym.algebra.lookup import looked_up
 from mbsym.algebra.program import Node, Program
 from mbsym.expressions.table import Curve, Tabulated
 
 _SHORT = {"add": "+", "subtract": "-", "multiply": "*", "divide": "/", "negative": "neg"}
 
-_TWO: Mapping[str, Callable[[Any, Any], Any]] = {
-    "+": np.add,
-    "-": np.subtract,
-    "*": np.multiply,
-    "/": np.divide,
+#: By operation, how NumPy calls it, and what it does with a number.
+_TWO: Mapping[str, tuple[str, Callable[[float, float], float]]] = {
+    "+": ("add", operator.add),
+    "-": ("subtract", operator.sub),
+    "*": ("multiply", operator.mul),
+    "/": ("divide", operator.truediv),
 }
-_ONE: Mapping[str, Callable[[Any], Any]] = {
-    "neg": np.negative,
-    "sqrt": np.sqrt,
-    "sin": np.sin,
-    "cos": np.cos,
-    "exp": np.exp,
-    "log": np.log,
-    "atan": np.arctan,
-    "sinh": np.sinh,
-    "cosh": np.cosh,
-    "tanh": np.tanh,
-    "abs": np.abs,
-    "sign": np.sign,
+_ONE: Mapping[str, tuple[str, Callable[[float], float]]] = {
+    "neg": ("negative", operator.neg),
+    "sqrt": ("sqrt", math.sqrt),
+    "sin": ("sin", math.sin),
+    "cos": ("cos", math.cos),
+    "exp": ("exp", math.exp),
+    "log": ("log", math.log),
+    "atan": ("arctan", math.atan),
+    "sinh": ("sinh", math.sinh),
+    "cosh": ("cosh", math.cosh),
+    "tanh": ("tanh", math.tanh),
+    "abs": ("abs", abs),
+    "sign": ("sign", lambda x: x if math.isnan(x) else float((x > 0) - (x < 0))),
 }
+_NUMBERS: Mapping[str, Callable[..., float]] = {name: does for name, (_, does) in (*_TWO.items(), *_ONE.items())}
 
 #: All operations but tables: who interprets programs must know these.
 OPERATIONS = (*_TWO, *_ONE)
@@ -62,18 +63,46 @@ class PoseProgram:
 
         Raises KeyError for an input that is not ``given``.
         """
+        import numpy as np
+
+        from mbsym.algebra.lookup import looked_up
+
         values: list[Any] = [np.asarray(given[name], dtype=float) for name in self.inputs]
         values += [np.float64(x) for x in self.constants]
         with np.errstate(all="ignore"):
             for operation, *operands in self.steps:
                 arguments = [values[k] for k in operands]
-                if operation in _TWO:
-                    values.append(_TWO[operation](*arguments))
-                elif operation in _ONE:
-                    values.append(_ONE[operation](*arguments))
+                if operation in _NUMBERS:
+                    name, _ = _TWO[operation] if operation in _TWO else _ONE[operation]
+                    values.append(getattr(np, name)(*arguments))
                 else:
-                    values.append(looked_up(self.tables[int(operation.removeprefix("table "))], *arguments))
+                    values.append(looked_up(self._table(operation), *arguments))
         return values
+
+    def at(self, given: Mapping[str, float]) -> list[float]:
+        """Every value at one place, without NumPy; what has no value is inf or nan.
+
+        Raises KeyError for an input that is not ``given``.
+        """
+        values = [*(float(given[name]) for name in self.inputs), *self.constants]
+        for operation, *operands in self.steps:
+            arguments = [values[k] for k in operands]
+            try:
+                does = _NUMBERS.get(operation)
+                values.append(self._looked_up(operation, arguments[0]) if does is None else does(*arguments))
+            except OverflowError:
+                values.append(math.inf)
+            except (ValueError, ZeroDivisionError):
+                values.append(math.nan)
+        return values
+
+    def _table(self, operation: str) -> Curve:
+        return self.tables[int(operation.removeprefix("table "))]
+
+    def _looked_up(self, operation: str, x: float) -> float:
+        from mbsym.algebra.lookup import looked_up
+
+        return float(looked_up(self._table(operation), x))
 
 
 def flattened(program: Program, outputs: Sequence[Node], order: Sequence[str]) -> tuple[PoseProgram, dict[int, int]]:

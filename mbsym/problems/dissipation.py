@@ -332,7 +332,39 @@ class Balance:
         timely = {item.name for item in system.prescribed} | {"t"}
         if self.energy is None:
             return any(timely & names(expression) for expression in expressions(system))
-        return any(self.scene.ring.depends_on(self._lagrangian, name) for name in timely)
+        return any(self.scene.ring.depends_on(self._lagrangian, name) for name in timely) and not self._only_a_gauge
+
+    @cached_property
+    def _only_a_gauge(self) -> bool:
+        """Whether the time stands in L as a total derivative alone: the equations do not know it, and have an energy.
+
+        In a frame with a constant acceleration a, L = T_rel + U - m a x + d/dt (...).  With D what t and prescribed
+        quantities change, D L = d/dt phi(q, t) exactly if it is c_i(q, t) q'_i + c_0(q, t) with dc_i/dq_j = dc_j/dq_i
+        and D c_i = dc_0/dq_i.  Nothing is claimed where a coordinate is cyclic: its momentum may know the time.
+        """
+        ring, system = self.scene.ring, self.scene.system
+        if turning(self.scene) or self.ignorable:
+            return False
+
+        def changed(x: Polynomial) -> Polynomial:
+            total = ring.derivative(x, "t")
+            for item in system.prescribed:
+                total = total + ring.times(ring.derivative(x, item.name), self.scene.lower(item.rate))
+            return self._put(ring.reduce(total))
+
+        try:
+            left = changed(self._lagrangian)
+            slopes = {name: ring.velocity_derivative(left, name) for name in system.coordinates}
+            if any(ring.dependencies(x, system.velocities) for x in slopes.values()):
+                return False
+            still = {ring.index("velocity", name): ring.zero for name in system.coordinates}
+            rest = ring.substitute(left, still)
+            return all(
+                ring.is_zero(ring.derivative(slopes[a], b) - ring.derivative(slopes[b], a)) is True
+                for a, b in combinations(system.coordinates, 2)
+            ) and all(ring.is_zero(changed(x) - ring.derivative(rest, name)) is True for name, x in slopes.items())
+        except Failure:
+            return False
 
     @property
     def _turns_freely(self) -> bool:

@@ -16,6 +16,7 @@ from typing import Any
 
 from flint import arb, ctx, fmpq, fmpq_mat
 
+from mbsym.algebra import rationals
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import Failure, message_of
@@ -190,7 +191,7 @@ def _not_positive(scene: Scene[Polynomial], linear: LinearModel, mass: GivenMatr
         block = [known[i][j] for i in range(order) for j in range(order)]
         if any(x is None for x in block):
             break
-        minor = fmpq_mat(order, order, [fmpq(x.numerator, x.denominator) for x in block if x is not None]).det()
+        minor = fmpq_mat(order, order, [rationals.exact(x) for x in block if x is not None]).det()
         if minor <= 0:
             at = " at the given values" if scene.system.parameters else ""
             message = f"M is not positive definite{at}: its leading minor of order {order} is {minor}"

@@ -6,7 +6,8 @@ Found are
 * the generalised energy  H = T_2 - T_0 - U,  with  dH/dt = sum q'_i E_i  if L does not contain the time and the other
   loads do no work;
 * where these forces are the gradient of a function W(q) that has a closed form, T_2 - T_0 - U - W; of one coordinate
-  every force that depends on it alone is: m(x) x'' + m'(x) x'^2/2 = Q(x) has an energy;
+  every force that depends on it alone is: m(x) x'' + m'(x) x'^2/2 = Q(x) has an energy; so have, with T_2 - W, the
+  motions in a frame whose acceleration is constant, whatever T_0 and U hold of the time;
 * a cyclic momentum  p_i = dT/dq'_i,  with  dp_i/dt = E_i,  for every coordinate that L and Q_i do not contain;
 * components of the linear and angular momentum in inertial axes that are conserved but are no combination of the
   above: candidates are tried at exact rational states, and proved through multipliers, dI/dt = sum mu_i E_i with
@@ -32,6 +33,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import partial
 from typing import Any
 
@@ -176,12 +178,18 @@ def _generalised_energy(scene: Scene, energy: Energy, equations: Equations) -> I
     if ring.is_zero(power):
         yield Integral(ENERGY, ENERGY, "time", Formula(ring, integral), Certainty.PROVED)
         return
-    work = _work(scene, power)
-    if work is None:
-        return
-    integral = ring.reduce(integral - work)
-    if ring.is_zero(total_rate(scene, integral) - multiplied):
-        yield Integral(WITH_FORCES, WITH_FORCES, "time", Formula(ring, integral), Certainty.PROVED)
+    squares = [[ring.velocity_derivative(x, name) for name in names] for x in momenta]
+    half = ring.number(Fraction(1, 2))
+    quadratic = ring.times(half, ring.dot(speeds, [ring.dot(row, speeds) for row in squares]))
+    for whole, rate in ((integral, power), (quadratic, None)):
+        own = ring.reduce(total_rate(scene, whole) - multiplied) if rate is None else rate
+        work = _work(scene, own)
+        if work is None:
+            continue
+        integral = ring.reduce(whole - work)
+        if ring.is_zero(total_rate(scene, integral) - multiplied):
+            yield Integral(WITH_FORCES, WITH_FORCES, "time", Formula(ring, integral), Certainty.PROVED)
+            return
 
 
 def _work(scene: Scene, power: Polynomial) -> Polynomial | None:

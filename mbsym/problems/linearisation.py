@@ -82,11 +82,12 @@ class Varying:
     among: tuple[str, ...]
 
     @property
-    def named(self) -> str:
+    def named(self) -> Message:
         """``K[theta, theta] = m*l*g*cos(chi)``, without the value where that is long."""
         name = f"{self.matrix}[{self.row}, {self.column}]"
-        short = self.value.terms <= SHORT
-        return f"{name} = {self.value}" if short else name
+        if self.value.terms > SHORT:
+            return Message("[[entry]]", entry=name)
+        return Message("[[entry]] = [[value]]", entry=name, value=self.value)
 
 
 @dataclass(frozen=True, repr=False)

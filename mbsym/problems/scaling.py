@@ -34,6 +34,7 @@ from typing import Any
 
 from flint import fmpq, fmpq_mat
 
+from mbsym.algebra import rationals
 from mbsym.algebra.generators import occurring
 from mbsym.algebra.matrices import Operators, added, null_vectors, reduced_rows
 from mbsym.algebra.ring import Polynomial, Ring
@@ -217,7 +218,7 @@ class _Equations:
         matrix = fmpq_mat(len(self.rows), len(unknowns))
         for i, row in enumerate(self.rows):
             for key, value in row.items():
-                matrix[i, place[key]] = fmpq(value.numerator, value.denominator)
+                matrix[i, place[key]] = rationals.exact(value)
         return unknowns, null_vectors(Operators(fmpq(0), fmpq(1)), reduced_rows(matrix), len(unknowns))
 
 

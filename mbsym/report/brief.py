@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from itertools import groupby
 from typing import TYPE_CHECKING
 
+from mbsym.expressions.message import worded
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL, SINGULAR, UNDECIDED, Check
-from mbsym.report.content import Inline, Phrase, Said, Words, joined
+from mbsym.report.content import Inline, Phrase, Said, joined
 from mbsym.report.language import Language
 from mbsym.report.plain_writer import Writer
 from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line
@@ -42,7 +43,7 @@ def brief(analysis: Analysis, seconds: float) -> Brief:
     return Brief(
         problems=ranges(number for number, stage in stages.items() if stage.failure is None) or write.said(NONE),
         missing="; ".join(
-            f"{ranges(number for number, _ in group)}: {write.inline(Words(reason))}"
+            f"{ranges(number for number, _ in group)}: {write.inline(worded(reason))}"
             for reason, group in groupby(failures, key=lambda item: item[1])
         ),
         self_check=write.inline(self_check(analysis.checks)),
@@ -69,12 +70,12 @@ def self_check(checks: Sequence[Check]) -> Inline:
     if not outcomes:
         return Said("nothing to check")
     if FAILED in outcomes:
-        failed = joined((Words(check.name) for check in checks if check.failed), ", ")
-        return Phrase((Words(FAILED), ": ", failed))
+        failed = joined((worded(check.name) for check in checks if check.failed), ", ")
+        return Phrase((worded(FAILED), ": ", failed))
     if set(outcomes) == {EXACT}:
         return Said("all exact")
     words = [word for word in (EXACT, NUMERICAL, UNDECIDED, SINGULAR) if word in outcomes]
-    return joined((Phrase((f"{outcomes.count(word)} ", Words(word))) for word in words), ", ")
+    return joined((Phrase((f"{outcomes.count(word)} ", worded(word))) for word in words), ", ")
 
 
 def worst(checks: Sequence[Check]) -> str:
@@ -84,5 +85,5 @@ def worst(checks: Sequence[Check]) -> str:
 
 
 def _claims(words: Sequence[str]) -> Inline:
-    counts = [Phrase((f"{words.count(word)} ", Words(word))) for word in (HELD, REFUTED, OPEN) if word in words]
+    counts = [Phrase((f"{words.count(word)} ", worded(word))) for word in (HELD, REFUTED, OPEN) if word in words]
     return joined(counts, ", ") if counts else Said("no claims")

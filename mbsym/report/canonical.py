@@ -64,7 +64,7 @@ def forms_of(analysis: Analysis, problems: Sequence[int]) -> Forms:
     return Forms(**{name: stage.value for name, stage in stages.items()}, failures=tuple(failures))
 
 
-TITLES = {"routh": "Routh's form", "hamilton": "Hamilton's form", "brackets": "Poisson brackets"}
+TITLES = {"routh": "Routh's form", "hamilton": "Hamilton's form", "brackets": "Poisson brackets of the first integrals"}
 
 
 # --- results.json -----------------------------------------------------------------------------------------------------

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import TypeGuard
 
 from mbsym.algebra.factors import rational_ratio
@@ -153,10 +153,13 @@ class CaseStatement:
     otherwise: bool = False
 
 
-def cases(ring: Ring, found: Sequence[Case], told: Labels) -> list[CaseStatement]:
-    """The cases that can occur: none after one that always holds.  ``told``: what labels mean beside them."""
+def cases(ring: Ring, found: Sequence[Case], told: Labels, uncovered: bool = False) -> list[CaseStatement]:
+    """The cases that can occur, what an earlier one says left out of each.  ``told``: what labels mean beside them.
+
+    ``uncovered``: parameters are known at which none of them holds; that these are undecided is the last.
+    """
     certain = next((k for k, case in enumerate(found) if case.always), len(found))
-    return [
+    possible = (
         CaseStatement(
             tuple(statements(ring, case.all_of, told=told)),
             ()
@@ -169,7 +172,60 @@ def cases(ring: Ring, found: Sequence[Case], told: Labels) -> list[CaseStatement
         )
         for k, case in enumerate(found[: certain + 1])
         if not case.never
-    ]
+    )
+    listed = list(_without_repeats(possible))
+    if uncovered and listed:
+        nothing = Message("None of the theorems that were tried decides there.")
+        listed.append(CaseStatement((), (), Word.UNDECIDED, (), nothing, otherwise=True))
+    return listed
+
+
+def _without_repeats(found: Iterable[CaseStatement]) -> Iterator[CaseStatement]:
+    """Cases read in order: without those, and those alternatives, that cannot hold where no earlier case does."""
+    before: list[tuple[list[Statement], list[Statement]]] = []
+    sufficed: list[Statement] = []
+    for case in found:
+        every, some = _once(case.all_of), _once(case.any_of)
+        some = [x for x in some if x.relation == "!=" or not any(_says(y, x, "!=") for y in some)]
+        strict = [x for x in (*every, *(some if len(some) == 1 else ())) if x.relation in ("<", ">")]
+        every = [x for x in every if not any(_follows(x, other) for other in strict)]
+        open_ = [x for x in some if not any(_says(x, other) for other in sufficed)]
+        again = any(_alike(every, a) and _alike(open_, b) for a, b in before) and bool(every or some)
+        if again or (some and not open_) or any(_says(x, other) for x in every for other in sufficed):
+            continue
+        yield replace(case, all_of=tuple(every), any_of=tuple(open_))
+        before.append((every, open_))
+        if len(every) + len(open_) == 1 or not every:  # where one of these holds, this case or one before applies
+            sufficed += [*every, *open_]
+
+
+def _once(items: Iterable[Statement]) -> list[Statement]:
+    found: list[Statement] = []
+    for one in items:
+        found += [] if any(_says(one, other) for other in found) else [one]
+    return found
+
+
+def _alike(some: Sequence[Statement], others: Sequence[Statement]) -> bool:
+    """Whether they are the same, in any order."""
+    return len(some) == len(others) and all(any(_says(x, y) for y in others) for x in some)
+
+
+def _says(one: Statement, other: Statement, relation: str = "") -> bool:
+    """Whether it is the other one; with ``relation``: whether it is that between the other's polynomial and 0."""
+    if one.formula is None or other.formula is None:
+        return False
+    ratio = rational_ratio(one.formula.polynomial, other.formula.polynomial)
+    if ratio is None or relation:
+        return ratio is not None and one.relation == relation
+    return one.relation == (other.relation if ratio > 0 else OPPOSITE.get(other.relation, other.relation))
+
+
+def _follows(one: Statement, other: Statement) -> bool:
+    """Whether it says only that something is not 0 of which the other has a multiple on one side of 0."""
+    if one.relation != "!=" or one.formula is None or other.formula is None:
+        return False
+    return bool(divmod(other.formula.polynomial, one.formula.polynomial)[1].is_zero())
 
 
 @dataclass(frozen=True)

@@ -9,18 +9,21 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
-from mbsym.expressions.message import Message
+from mbsym.expressions.message import Said
 from mbsym.expressions.rates import without_velocity
 from mbsym.expressions.tree import Expression
 from mbsym.formulas.formula import Column, Formula, Matrix
 from mbsym.formulas.told import Told
 from mbsym.report.words.passages import Passage
+
+if TYPE_CHECKING:
+    from mbsym.picture.sketch import Sketch
 
 # --- mathematics ------------------------------------------------------------------------------------------------------
 
@@ -204,32 +207,9 @@ Math = (
 # --- text -------------------------------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class Said:
-    """A sentence by its English text, which finds its translation.
-
-    ``$...$`` is notation in the common part of TeX, ``[[name]]`` a gap, outside of mathematics or inside; ``gaps``
-    says what stands there.
-    """
-
-    text: str
-    gaps: Mapping[str, Inline | Sequence[Inline]] = field(default_factory=dict)
-
-
 def say(text: str, **gaps: Inline | Sequence[Inline]) -> Said:
     """``Said`` with its gaps by name."""
     return Said(text, gaps)
-
-
-@dataclass(frozen=True)
-class Words:
-    """A word or sentences of a result in English, of which the translation is looked for.
-
-    ``variable``: the letter of characteristic polynomials, which the words call lambda.
-    """
-
-    text: str
-    variable: str = ""
 
 
 @dataclass(frozen=True)
@@ -255,6 +235,13 @@ class Link:
 
     text: Inline
     to: str
+
+
+@dataclass(frozen=True)
+class Numbered:
+    """Where the formula with the label ``key`` stands: its number on paper, a link on a screen; a terminal has none."""
+
+    key: str
 
 
 @dataclass(frozen=True)
@@ -295,8 +282,12 @@ class Citation:
 
 #: What stands in the gaps of a sentence, where it is made piece by piece.
 Gaps = dict[str, "Inline | Sequence[Inline]"]
-#: What stands in a line; a ``str`` is as it is in every language: a name of a body, a number, punctuation.
-Inline = Said | Words | Strong | Graded | Link | Phrase | Emphasis | Verbatim | Unit | Citation | Math | str
+#: What stands in a line; a ``str`` that is no message is the same in every language: a name, punctuation.
+Inline = Said | Strong | Graded | Link | Numbered | Phrase | Emphasis | Verbatim | Unit | Citation | Math | str
+
+
+#: What the keys of conditions begin with: there are references to these.
+CONDITION = "condition:"
 
 
 # --- blocks -----------------------------------------------------------------------------------------------------------
@@ -445,6 +436,14 @@ class Beside:
 
 
 @dataclass(frozen=True)
+class Drawing:
+    """The drawing of a system, and what is said below it; a terminal is without it."""
+
+    drawn: Sketch
+    caption: tuple[Said, ...]
+
+
+@dataclass(frozen=True)
 class Folded:
     """What a screen unfolds on request; paper is without it."""
 
@@ -487,6 +486,7 @@ Block = (
     | Facts
     | Cited
     | Beside
+    | Drawing
     | Folded
     | Intermediates
     | Steps
@@ -498,25 +498,20 @@ def paragraph(*parts: Inline) -> Paragraph:
     return Paragraph(parts)
 
 
-def worded(text: str) -> Inline:
-    """Words of ours, which are messages, in every language; any other text as it is."""
-    return Words(text) if isinstance(text, Message) else text
-
-
 def facts(pairs: Iterable[tuple[str, str]]) -> Iterator[Facts]:
     """What was found, each with its name; a ``warning`` stands out."""
-    items = ((Graded(Words(name), "open") if name == "warning" else worded(name), (worded(x),)) for name, x in pairs)
+    items = ((Graded(name, "open") if name == "warning" else name, (text,)) for name, text in pairs)
     yield Facts(tuple(Fact(*item) for item in items))
 
 
 def column(title: str, right: bool = False, fold: bool = False) -> TableColumn:
     """A column of an aligned table."""
-    return TableColumn(worded(title), right=right, fold=fold)
+    return TableColumn(title, right=right, fold=fold)
 
 
 def aligned(columns: Iterable[TableColumn], rows: Iterable[Sequence[Inline]]) -> Table:
     """A table whose columns stand under one another."""
-    listed = tuple(tuple((worded(x) if isinstance(x, str) else x,) for x in row) for row in rows)
+    listed = tuple(tuple((cell,) for cell in row) for row in rows)
     return Table(None, tuple(columns), listed, aligned=True)
 
 
@@ -556,10 +551,3 @@ def speed(name: str) -> Name:
 def speeds(names: Iterable[str]) -> Listed:
     """Variables of velocity side by side."""
     return Listed(tuple(map(speed, names)))
-
-
-def pieces(text: str) -> Iterator[tuple[bool, str]]:
-    """The parts of a message: (whether it is notation, the part)."""
-    for k, piece in enumerate(text.split("$")):
-        if piece:
-            yield k % 2 == 1, piece

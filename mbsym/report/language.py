@@ -1,14 +1,10 @@
-"""The language of reports: sentences of templates, and the words of results, in another language.
-
-Messages are looked up by their English text (``mbsym.report.messages``), and what stands in their gaps ``[[name]]`` is
-filled in afterwards; what is not listed stays English.
-"""
+"""The language of reports: messages are looked up by their English text; what is not listed stays English."""
 
 from __future__ import annotations
 
-from enum import Enum
+from enum import StrEnum
 
-from mbsym.expressions.message import Counted, Message, filled
+from mbsym.expressions.message import Counted, Message, Said, filled
 from mbsym.report.messages import messages, plurals
 
 #: What may follow ``--language``, and what it is called.
@@ -26,24 +22,22 @@ class Language:
         self._messages = {} if self.name == "en" else messages(self.name)
         self._forms, self._form = ({}, int) if self.name == "en" else plurals(self.name)
 
-    def sentence(self, english: str, **values: object) -> str:
-        """A sentence of the templates, in TeX, with its values filled in."""
-        text = self._known(english, "template")
-        for name, value in values.items():
-            text = text.replace(f"[[{name}]]", str(value))
-        return text
+    def sentence(self, english: str, context: str = "") -> str:
+        """The text of a message with its gaps; English where there is no other."""
+        return self._messages.get((context, english)) or self._messages.get(("", english), english)
+
+    def text_of(self, said: Said, context: str = "") -> str:
+        """The text of a sentence with its gaps; of numbers of things the form that goes with the number."""
+        if isinstance(said, Counted) and said.one in self._forms:
+            return f"[[number]] {self._forms[said.one][self._form(said.number)]}"
+        return self.sentence(said.text, context)
 
     def say(self, english: str, context: str = "") -> str:
-        """A word, a clause or the sentences of a result, as plain text; English where there is no other."""
-        if isinstance(english, Counted) and english.one in self._forms:
-            return f"{english.number} {self._forms[english.one][self._form(english.number)]}"
+        """A message, a word of ours as plain text, with what stands in its gaps."""
         if not isinstance(english, Message):
-            return self._known(str(english), context)
-        return filled(self._known(english.text, context), lambda name: self._gap(english.gaps[name]))
+            return self.sentence(str(english), context)
+        return filled(self.text_of(english, context), lambda name: self._gap(english.gaps[name]))
 
-    def _gap(self, value: str) -> str:
+    def _gap(self, value: object) -> str:
         """A message and a word of ours in the language; a name, a number, a formula as it is."""
-        return self.say(value) if isinstance(value, Message | Enum) else value
-
-    def _known(self, english: str, context: str) -> str:
-        return self._messages.get((context, english)) or self._messages.get(("", english), english)
+        return self.say(value) if isinstance(value, Message | StrEnum) else str(value)

@@ -14,9 +14,10 @@ from typing import Any
 import numpy as np
 
 from mbsym.algebra.failures import Failure
-from mbsym.model.system import Body, Rotation, Shape
+from mbsym.model.system import Body, Shape
 from mbsym.numerics.body_motion import BodyMotions
 from mbsym.numerics.scenario import Scenario, exact
+from mbsym.picture.looks import turned
 
 #: Straight pieces of a circle.
 PIECES = 32
@@ -68,21 +69,9 @@ def body_lines(body: Body, values: Mapping[str, Fraction]) -> tuple[Any, ...]:
 
 def _placed(shape: Shape, values: Mapping[str, Fraction]) -> list[Any]:
     at = np.array([float(exact(x, values)) for x in shape.at])
-    turn = turned(shape.rotation, values)
+    turn = np.array(turned(shape.rotation, values))
     size = [float(exact(x, values)) for x in shape.size]
-    return [line @ turn.T + at for line in shape_lines(shape.kind, size)]
-
-
-def turned(rotation: Rotation, values: Mapping[str, Fraction]) -> Any:
-    """The matrix that turns components along the shape's axes into those along the body's."""
-    whole = np.eye(3)
-    for axis, angle in rotation.turns():
-        c, s = np.cos(float(exact(angle, values))), np.sin(float(exact(angle, values)))
-        i, j = axis % 3, (axis + 1) % 3
-        turn = np.eye(3)
-        turn[i, i], turn[i, j], turn[j, i], turn[j, j] = c, -s, s, c
-        whole = whole @ turn
-    return whole
+    return [line @ turn + at for line in shape_lines(shape.kind, size)]
 
 
 def shape_lines(kind: str, size: list[float]) -> list[Any]:

@@ -6,17 +6,19 @@ import re
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from enum import StrEnum
 from functools import singledispatchmethod
 from textwrap import wrap
 from typing import Any, NamedTuple
 
+from mbsym.expressions.message import GAP, Message, Said, pieces, plain_notation
 from mbsym.expressions.safe import UNBROKEN
 from mbsym.expressions.tree import text
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.python import readable_name
 from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.report import content
-from mbsym.report.content import Inline, Said, say
+from mbsym.report.content import Inline, say
 from mbsym.report.language import Language
 
 _DOTS = ("", "'", "''")
@@ -79,10 +81,9 @@ class Writer:
             yield from self.pieces(value.text)
         elif isinstance(value, Said):
             parts = (
-                _notation(x, self._power) if inside else x.replace("---", "\u2014")
-                for inside, x in content.pieces(self.language.sentence(value.text))
+                plain_notation(x, self._power) if inside else x for inside, x in pieces(self.language.text_of(value))
             )
-            for k, text in enumerate(re.split(r"\[\[(\w+)\]\]", "".join(parts))):
+            for k, text in enumerate(GAP.split("".join(parts))):
                 if k % 2 == 0:
                     yield text, text
                     continue
@@ -107,7 +108,7 @@ class Writer:
 
     @inline.register
     def _(self, value: str) -> str:
-        return value
+        return self.language.say(value) if isinstance(value, StrEnum) else value
 
     @inline.register
     def _(self, value: int) -> str:
@@ -131,7 +132,8 @@ class Writer:
     def _counted(self, size: Said, file: str) -> str:
         return f"[{self.said(size)}{f': {file}' if file else ''}]"
 
-    @inline.register
+    @inline.register(Said)
+    @inline.register(Message)
     def _(self, value: Said) -> str:
         return self.said(value)
 
@@ -144,9 +146,8 @@ class Writer:
         return "".join(text for text, _ in self.pieces(value))
 
     @inline.register
-    def _(self, value: content.Words) -> str:
-        said = self.language.say(value.text)
-        return re.sub(r"\blambda\b", value.variable, said) if value.variable else said
+    def _(self, value: content.Numbered) -> str:
+        return ""
 
     @inline.register(content.Strong)
     @inline.register(content.Graded)
@@ -184,7 +185,7 @@ class Writer:
 
     @inline.register
     def _(self, value: content.Notation) -> str:
-        return _notation(value.tex, self._power).strip()
+        return plain_notation(value.tex, self._power).strip()
 
     @inline.register
     def _(self, value: content.Power) -> str:
@@ -403,6 +404,11 @@ class Writer:
         return self.document(value.blocks)
 
     @block.register
+    def _(self, value: content.Drawing) -> Iterator[Line]:
+        """Nothing: there are only letters here."""
+        yield from ()
+
+    @block.register
     def _(self, value: content.Folded) -> Iterator[Line]:
         """Nothing: it is said in front of it, in fewer words."""
         yield from ()
@@ -414,7 +420,7 @@ class Writer:
             yield self._line(self._counted(say("[[count]] definitions", count=str(count)), self.file), indent=2)
             return
         for passage in value.passages:
-            yield self._line(content.Words(passage.words), f" {passage.coordinate}".rstrip(), ":")
+            yield self._line(passage.words, f" {passage.coordinate}".rstrip(), ":")
             for item in passage.definitions:
                 yield self._line(item.name, f"{UNBROKEN}={UNBROKEN}", item.formula, indent=2)
 
@@ -469,31 +475,3 @@ def _is_sum(text: str) -> bool:
         if depth == 0 and letter in "+-":
             return True
     return False
-
-
-_ACCENTS = {"ddot": "''", "dot": "'", "bar": "bar"}
-#: What is read in notation, and what stands for it, one after the other.
-_NOTATION = (
-    (r"\\varphi", r"\\phi"),
-    (r"\\([{}])", lambda m: "\x01" if m[1] == "{" else "\x02"),
-    (r" ?\\cdot ?", "."),
-    (r" ?\\times ?", "\u00d7"),
-    (r"\\(?:[,;!] ?|quad|penalty\d+)", " "),
-    (r"\\(?:mathrm|text) ?", ""),
-    (r"\\(ddot|dot|bar) ?(?:\{\\?(\w+)\}|\\?(\w+))", lambda m: (m[2] or m[3]) + _ACCENTS[m[1]]),
-    (r"\\partial ?", "d"),
-    (r"\\frac(\d)(\d)", r"\1/\2"),
-    (r"\\frac ?\{([^{}]*)\}\{([^{}]*)\}", r"\1/\2"),
-    (r"(?<![A-Za-z][A-Za-z])_\{?(?=\d)", ""),
-    (r"\\([A-Za-z]+)", r"\1"),
-    (r"[{}]", ""),
-    (r" {2,}", " "),
-)  # fmt: skip
-
-
-def _notation(tex: str, power: str) -> str:
-    """Notation without the signs that only TeX reads."""
-    tex = re.sub(r"\^\{?(\d+)\}?", lambda m: power + m[1], tex)
-    for pattern, plain in _NOTATION:
-        tex = re.sub(pattern, plain, tex)
-    return tex.replace("\x01", "{").replace("\x02", "}")

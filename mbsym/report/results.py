@@ -8,13 +8,14 @@ from functools import cached_property
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+from mbsym.expressions.message import worded
 from mbsym.formulas.latex import latex_names, latex_symbol
 from mbsym.model.system import INERTIAL
 from mbsym.report.canonical import forms_of
 from mbsym.report.canonical_denominators import Denominators, with_names
 from mbsym.report.compact import Compact, compact
 from mbsym.report.conditions import provided
-from mbsym.report.content import Block, Heading, Inline, Intermediates, Paragraph, Said, Words, paragraph, say
+from mbsym.report.content import Block, Heading, Inline, Intermediates, Paragraph, Said, paragraph, say
 from mbsym.report.sections import section_of
 
 if TYPE_CHECKING:
@@ -94,7 +95,7 @@ class Results:
         """What the verdicts of problem 6 presume, after a comma."""
         found = self.found.get(6)
         text = "" if found is None else provided(found.presumed, bool(self.system.inputs))
-        return (", ", Words(text)) if text else ()
+        return (", ", worded(text)) if text else ()
 
     def intermediates(self, number: int) -> Iterator[Block]:
         """The named quantities through which the formulas of a problem are told."""
@@ -112,8 +113,8 @@ class Results:
 
 def no_result(failure: NoResult) -> Paragraph:
     """Why there is none."""
-    hint = (" (", Words(failure.hint), ")") if failure.hint else ()
-    return Paragraph((Said("No result"), ": ", Words(failure.reason), *hint, "."), missing=True)
+    hint = (" (", worded(failure.hint), ")") if failure.hint else ()
+    return Paragraph((Said("No result"), ": ", worded(failure.reason), *hint, "."), missing=True)
 
 
 #: What stands beside the problems, by the names of its modules in ``sections``.

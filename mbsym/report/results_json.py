@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from msgspec import UNSET
 
+from mbsym.expressions.table import Table
 from mbsym.expressions.tree import text
 from mbsym.formulas.formula import Formula
 from mbsym.model.quantities import energy_unit, unit_of, units_by_name
@@ -60,6 +61,12 @@ def results_document(analysis: Analysis, problems: Sequence[int]) -> doc.Results
         coordinates=list(system.coordinates),
         prescribed={item.name: text(item.rate) for item in system.prescribed},
         parameters=_parameters(system),
+        relations={one.name: text(one.value) for one in system.relations} or UNSET,
+        assumptions=[
+            doc.Assumption(left=text(x.left), relation=x.relation, right=text(x.right)) for x in system.assumptions
+        ]
+        or UNSET,
+        tables=[_table(one) for one in system.tables] or UNSET,
         checks=[doc.SelfCheck(**vars(check)) for check in analysis.checks],
         units=units_by_name(system, [("energy", energy_unit(system))]) or UNSET,
         motion={one.coordinate: doc.Motion(value=text(one.value), rate=text(one.rate)) for one in system.motion}
@@ -127,6 +134,12 @@ def _state_space(found: StateSpace, write: Callable[[Formula], Written]) -> line
     return linearisation.StateSpace(states=list(found.states), **matrices)
 
 
+def _table(table: Table) -> doc.Table:
+    points = [[str(x), str(y)] for x, y in table.points]
+    held = table.held if table.jumps else UNSET
+    return doc.Table(name=table.name, points=points, between=table.between, outside=table.outside, held=held)
+
+
 def _initial(system: System) -> dict[str, doc.Initial]:
     """What the description says of the state at t = 0, and of where prescribed motions begin, by name."""
     given = [(one.coordinate, one.position, one.velocity) for one in system.initial]
@@ -171,6 +184,7 @@ def _claim(result: ClaimResult, system: System) -> Claim:
         kind=claim.kind,
         of=claim.of,
         entry=list(claim.entry),
+        role=claim.role or UNSET,
         place=line.place,
         title=line.title,
         word=line.word,

@@ -42,6 +42,7 @@ TITLES = {
     "nonlinear": "mbsym nonlinear --json",
     "orbit": "orbit.json of mbsym orbit",
     "oscillations": "What mbsym oscillations --json prints",
+    "regressor": "regressor.json of mbsym regressor",
     "results": "results.json of mbsym run",
     "simulation": "simulation.json of mbsym simulate",
     "sweep": "sweep.json of mbsym sweep",

@@ -6,7 +6,8 @@ Answers are JSON; one that refuses is {"error": code, "message": words} with a s
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Callable, Mapping
+import json
+from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
 from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass
 from functools import lru_cache
@@ -15,18 +16,19 @@ from pathlib import Path
 from typing import Any
 
 from starlette.applications import Starlette
-from starlette.requests import Request
+from starlette.requests import ClientDisconnect, Request
 from starlette.responses import JSONResponse, Response, StreamingResponse
 from starlette.routing import Route
 
+from mbsym.algebra.failures import LOG
 from mbsym.serving import looking
-from mbsym.serving.answers import Work, posted, refused, safely
 from mbsym.serving.events import Events, encoded
-from mbsym.serving.guard import Guard
+from mbsym.serving.guard import Guard, TooLarge, TooSlow
 from mbsym.serving.jobs import Jobs
 from mbsym.serving.requests import Wrong, flag, listed, mapping, text_of, whole
-from mbsym.serving.storage import Conflict, Storage, Unreadable
+from mbsym.serving.storage import Conflict, Storage, Unreadable, Unwritable
 from mbsym.source.examples import example_text, example_titles
+from mbsym.source.starter import JOINTS
 
 #: Seconds between two looks whether somebody else wrote the file.
 WATCHING = 0.5
@@ -180,6 +182,7 @@ class Editor:
             "formats": [{"name": name, "title": FORMATS[name].title} for name in FORMATS],
             "problems": _problems(),
             "examples": example_titles(),
+            "joints": [{"name": name, "title": title} for name, (_, _, title) in JOINTS.items() if name != "fixed"],
         }
 
     async def digest(self, request: Request) -> Response:
@@ -199,16 +202,23 @@ class Editor:
         await asyncio.to_thread(self.storage.keep, text_of(body))
         return {}
 
-    async def example(self, body: Mapping[str, Any], _: Request) -> Any:
-        name, path = body.get("name"), self.storage.path
-        if name is None:
+    async def begin(self, body: Mapping[str, Any], _: Request) -> Any:
+        """A first text: of one body on a ``joint``, of an ``example`` (None: nothing), or as ``pasted``."""
+        path = self.storage.path
+        if "joint" in body:
+            text = await asyncio.to_thread(looking.one_body, path.stem, text_of(body, "joint"))
+        elif "pasted" in body:
+            text = await asyncio.to_thread(looking.pasted, text_of(body, "pasted"))
+        elif body.get("example") is None:
             text = looking.empty(path.name, path.stem)
+            return {"text": text, "format": looking.spelling(text, path.name)}
         else:
+            name = str(body["example"])
             try:
-                text = await asyncio.to_thread(example_text, str(name))
+                text = await asyncio.to_thread(example_text, name)
             except KeyError as error:
-                raise Wrong(f"there is no example called {str(name)[:80]!r}") from error
-        return {"text": text, "format": looking.spelling(text, "new.yaml" if name else path.name)}
+                raise Wrong(f"there is no example called {name[:80]!r}") from error
+        return {"text": text, "format": looking.spelling(text, "new.yaml")}
 
     # --- the text -----------------------------------------------------------------------------------------------------
 
@@ -335,7 +345,7 @@ class Editor:
             "cancel": self.cancel,
             "save": self.save,
             "journal": self.journal,
-            "example": self.example,
+            "begin": self.begin,
             "export": self.export,
         }
         posts |= {kind: self._job(kind) for kind in ("derive", "simulate", "equilibria", "modes", "map")}
@@ -388,3 +398,52 @@ def _whole_complaint(words: str) -> dict[str, Any]:
     """About the text as a whole."""
     place = {"from": 0, "to": 0, "line": 1, "column": 1}
     return {"severity": "error", "code": "no-picture", "message": words, "hint": None, **place}
+
+
+#: A route's part that takes an object and answers one.
+Work = Callable[[Mapping[str, Any], Request], Awaitable[Any]]
+
+Handler = Callable[[Request], Awaitable[Response]]
+
+
+def refused(status: int, code: str, words: str, headers: Mapping[str, str] | None = None) -> Response:
+    return JSONResponse({"error": code, "message": words}, status, headers)
+
+
+def posted(work: Work) -> Handler:
+    """A route that takes an object and answers one."""
+
+    async def handle(request: Request) -> Response:
+        try:
+            body = json.loads(await request.body())
+        except (ValueError, RecursionError):
+            return refused(400, "json", "JSON is wanted")
+        if not isinstance(body, dict):
+            return refused(400, "json", "an object is wanted")
+        found = await work(body, request)
+        return found if isinstance(found, Response) else JSONResponse(found)
+
+    return safely(handle)
+
+
+def safely(work: Handler) -> Handler:
+    """What is foreseen is answered with words."""
+
+    async def handle(request: Request) -> Response:
+        try:
+            return await work(request)
+        except ClientDisconnect:
+            return Response(status_code=400)
+        except TooLarge as error:
+            return refused(413, "too-large", str(error))
+        except TooSlow as error:
+            return refused(408, "too-slow", str(error), {"connection": "close"})
+        except Wrong as error:
+            return refused(400, "request", str(error))
+        except (Unwritable, Unreadable) as error:
+            return refused(422, "unwritable" if isinstance(error, Unwritable) else "unreadable", str(error))
+        except Exception as error:  # a defect costs one answer
+            LOG.exception("a request failed")
+            return refused(500, "internal-error", f"internal error: {type(error).__name__}: {error}")
+
+    return handle

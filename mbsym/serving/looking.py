@@ -13,8 +13,10 @@ from typing import TYPE_CHECKING, Any
 from mbsym.editing import explanation, suggestions
 from mbsym.editing.document import look
 from mbsym.expressions.place import Complaint, Complaints, Span
+from mbsym.serving.requests import Wrong
 from mbsym.source import read, to_text, to_yaml
 from mbsym.source.recognition import is_text, says_so
+from mbsym.source.starter import NewBody, starter
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
@@ -33,10 +35,37 @@ def spelling(text: str, name: str) -> str:
 
 def empty(name: str, stem: str) -> str:
     """The description that a new file begins with."""
-    called = re.sub(r"[^A-Za-z0-9 ._-]", " ", stem).strip() or "mechanism"
+    called = _called(stem)
     if name.lower().endswith(".txt"):
         return f"Mechanical system: {called}\n"
     return f"mbsym: 1\nname: {called}\nbodies: []\n"
+
+
+def _called(stem: str) -> str:
+    return re.sub(r"[^A-Za-z0-9 ._-]", " ", stem).strip() or "mechanism"
+
+
+def one_body(stem: str, joint: str) -> str:
+    """The description of one body on a joint of ``starter.JOINTS``."""
+    try:
+        return starter(_called(stem).capitalize(), [NewBody("body", None, joint)])
+    except ValueError as error:
+        raise Wrong(str(error)) from error
+
+
+def pasted(text: str) -> str:
+    """A description as it is; a robot (URDF, MJCF) as the description that it becomes, with symbols."""
+    if not text.lstrip().startswith("<"):
+        if not says_so(text):
+            raise Wrong("it begins neither with  mbsym: 1  or  Mechanical system: NAME  nor with  <")
+        return text
+    from mbsym.source.robots import convert
+
+    complaints = Complaints()
+    made = convert(text, complaints, symbols=True)
+    if made is None:
+        raise Wrong("; ".join(one.message for one in complaints.sorted()))
+    return str(made.yaml)
 
 
 def understood(text: str, name: str, folder: Path | None) -> tuple[System | None, list[Complaint]]:

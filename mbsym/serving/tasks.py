@@ -176,7 +176,7 @@ def _hover(task: Task, system: System) -> Iterator[Message]:
 
 def _simulate(task: Task, system: System) -> Iterator[Message]:
     from mbsym.picture import picture
-    from mbsym.picture.motion import motion, motion_json
+    from mbsym.report.viewer.motion import motion, motion_json
     from mbsym.simulation import Request
     from mbsym.simulation.request import read_values
 
@@ -195,7 +195,7 @@ def _simulate(task: Task, system: System) -> Iterator[Message]:
 
 
 def _equilibria(task: Task, system: System) -> Iterator[Message]:
-    from mbsym.picture.resting import at_rest, at_rest_json
+    from mbsym.report.viewer.resting import at_rest, at_rest_json
 
     yield {"kind": "progress", "words": "relative equilibria are looked for"}
     yield {"kind": "equilibria", "value": at_rest_json(at_rest(system, _numbers(task)))}
@@ -203,36 +203,17 @@ def _equilibria(task: Task, system: System) -> Iterator[Message]:
 
 def _modes(task: Task, system: System) -> Iterator[Message]:
     from mbsym.analysis import Analysis
-    from mbsym.picture.modes import modes, modes_json
-
-    yield {"kind": "modes", "value": modes_json(modes(Analysis(_with_values(system, _numbers(task)), (4, 5, 6))))}
-
-
-def _with_values(system: System, values: Mapping[str, Fraction]) -> System:
-    """The system with other values of its parameters."""
-    from dataclasses import replace
-
     from mbsym.expressions.tree import number
+    from mbsym.model.system import with_values
+    from mbsym.numerics.scenario import contradictions_of
+    from mbsym.report.viewer.modes import modes, modes_json
 
-    unknown = [name for name in values if name not in system.parameter_names]
-    if unknown:
-        raise Refused(f"there is no parameter called {', '.join(unknown)}")
-    tied = [item.name for item in system.relations if item.name in values]
-    if tied:
-        raise Refused(f"a relation gives {', '.join(tied)}")
-    against = [one.name for one in system.parameters if not _keeps_sign(values.get(one.name), one.sign)]
-    if against:
-        raise Refused(f"against the declared sign: {', '.join(against)}")
-    listed = tuple(
-        replace(one, value=number(values[one.name])) if one.name in values else one for one in system.parameters
-    )
-    return replace(system, parameters=listed)
-
-
-def _keeps_sign(value: Fraction | None, sign: str) -> bool:
-    keeps = {"positive": lambda x: x > 0, "nonnegative": lambda x: x >= 0, "nonzero": lambda x: x != 0}
-    keeps |= {"negative": lambda x: x < 0, "nonpositive": lambda x: x <= 0}
-    return value is None or sign not in keeps or bool(keeps[sign](value))
+    values = {name: number(value) for name, value in _numbers(task).items()}
+    wrong = [f"there is no parameter called {name}" for name in values if name not in system.parameter_names]
+    wrong = wrong or [one.text for one in contradictions_of(system, values)]
+    if wrong:
+        raise Refused("; ".join(wrong))
+    yield {"kind": "modes", "value": modes_json(modes(Analysis(with_values(system, values), (4, 5, 6))))}
 
 
 def _numbers(task: Task) -> dict[str, Fraction]:

@@ -21,11 +21,8 @@ from mbsym.numerics.planning.planning import FREE, Pins, planned
 from mbsym.numerics.scenario import Scenario
 from mbsym.simulation.request import COORDINATES, Request, wrong_with
 from mbsym.simulation.result import Simulation
-from mbsym.simulation.run import Stage, simulate
+from mbsym.simulation.run import PLANNING, Stage, simulate
 from mbsym.simulation.sampling import sample_times
-
-#: What is being done, for whoever watches.
-PLANNING = "planning"
 
 #: A run that its estimate finds too coarse is repeated with so much finer a setting, so many times at most.
 FINER, REPEATS = {"tolerance": 0.1, "step": 0.5}, 2

@@ -9,8 +9,8 @@ from math import log, pi
 from typing import Any
 
 import numpy as np
-from flint import arb, fmpq
 
+from mbsym.algebra import rationals
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.expressions.tree import Expression, number
 from mbsym.model.system import System, velocity_name
@@ -84,10 +84,10 @@ def measured(
 
 def _start(own: Scenario, found: Averaged) -> Mapping[str, Expression]:
     """Q' = q' + M^-1 a at the beginning: the same momenta."""
-    values: dict[str, Any] = {name: arb(fmpq(x.numerator, x.denominator)) for name, x in own.parameters.items()}
+    values: dict[str, Any] = {name: rationals.ball(x) for name, x in own.parameters.items()}
     places = dict(zip(own.system.coordinates, own.positions, strict=True))
     places |= {name: initial for name, (initial, _) in own.prescribed.items()}
-    values |= {name: arb(fmpq(x.numerator, x.denominator)) for name, x in places.items()}
+    values |= {name: rationals.ball(x) for name, x in places.items()}
     start = {}
     for name, velocity, swing in zip(own.system.coordinates, own.velocities, found.swings, strict=True):
         shift = float(swing.ring.evaluate(swing.polynomial, values).mid())

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from flint import fmpq
 
+from mbsym.algebra import rationals
 from mbsym.algebra.quotients import Series
 from mbsym.analysis.expanding import Expansion
 from mbsym.expressions.tree import Expression, number
@@ -112,22 +113,19 @@ class _Numbers:
         self.found, self.eps = found, eps
         field = found.manifold.field.field
         self.places = [found.names.index(name) for name in found.manifold.slow]
-        self.known = [
-            fmpq(parameters[name].numerator, parameters[name].denominator) if name in field.parameters else None
-            for name in found.names
-        ]
+        self.known = [rationals.exact(parameters[name]) if name in field.parameters else None for name in found.names]
 
     def on_manifold(self, s: Sequence[Fraction]) -> list[Fraction]:
         """h(s, eps), exactly."""
         at = [fmpq(0) if x is None else x for x in self.known]
         for place, x in zip(self.places, s, strict=True):
-            at[place] = fmpq(x.numerator, x.denominator)
+            at[place] = rationals.exact(x)
         total = []
         for one in self.found.manifold.functions:
             value = fmpq(0)
             for k, c in one.coefficients.items():
-                value += c.top(*at) / c.bottom(*at) * fmpq(self.eps.numerator, self.eps.denominator) ** k
-            total.append(Fraction(int(value.p), int(value.q)))
+                value += c.top(*at) / c.bottom(*at) * rationals.exact(self.eps) ** k
+            total.append(rationals.fraction(value))
         return total
 
     def flow(self) -> Flow:
@@ -144,7 +142,7 @@ class _Numbers:
     def _polynomial(self, p: Any, factor: Fraction) -> Evaluated:
         exponents, numbers = [], []
         for monomial, c in p.to_dict().items():
-            value = c * fmpq(factor.numerator, factor.denominator)
+            value = c * rationals.exact(factor)
             for x, e in zip(self.known, monomial, strict=True):
                 value = value * x ** int(e) if x is not None and e else value
             exponents.append([int(monomial[place]) for place in self.places])

@@ -14,6 +14,7 @@ from typing import Any
 
 from flint import arb, arb_series, ctx, fmpq
 
+from mbsym.algebra import rationals
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.tower import Element
@@ -143,9 +144,9 @@ class Numeric:
 
     def __init__(self, told: Oscillating, values: Mapping[str, Fraction], eps: Fraction) -> None:
         self.found, tower = told.found, told.found.tower
-        balls = {name: arb(fmpq(x.numerator, x.denominator)) for name, x in values.items()}
+        balls = {name: rationals.ball(x) for name, x in values.items()}
         self._values = {name: balls.get(name, arb(0)) for name in tower.parameters}
-        self.eps = arb(fmpq(eps.numerator, eps.denominator))
+        self.eps = rationals.ball(eps)
         with ctx.workprec(BITS):
             speed = sum((self._of(x) * self.eps ** (k + 1) for k, x in enumerate(self.found.corrections)), arb(1))
             speed = speed * self._of(self.found.frequency)
@@ -233,7 +234,7 @@ def _integrated(
             for value, e in zip(values, monomial, strict=False):
                 if e:
                     assert value is not None
-                    c = c * fmpq(value.numerator, value.denominator) ** int(e)
+                    c = c * rationals.exact(value) ** int(e)
             exponents = dict(zip(field.variables, monomial[len(values) :], strict=True))
             key = tuple(int(exponents[name]) for name in names)
             terms[key] = terms.get(key, 0) + c

@@ -16,8 +16,7 @@ from dataclasses import replace
 from math import inf
 from typing import TYPE_CHECKING, Any
 
-from mbsym.analysis import Analysis, Unavailable
-from mbsym.model.states import InStates, in_states
+from mbsym.model.states import InStates, described, in_states
 from mbsym.numerics import simulate as integration
 from mbsym.numerics.accuracy import ErrorEstimate, Lacking, NoEstimate, contradicted, estimated
 from mbsym.numerics.columns import columns
@@ -44,6 +43,7 @@ from mbsym.simulation.watching import Watching
 
 if TYPE_CHECKING:
     from mbsym.algebra.ring import Ring
+    from mbsym.analysis import Analysis
     from mbsym.model.system import System
     from mbsym.numerics.closing import Closed
     from mbsym.numerics.constrained import Drift
@@ -56,6 +56,7 @@ LEAST, AT_MOST = 5.0, 4.0
 
 #: What ``simulate`` is doing, for whoever watches.
 COMPILING, INTEGRATING, ESTIMATING, CERTIFYING = "compiling", "integrating", "estimating", "certifying"
+PLANNING = "planning"
 
 #: Is told what is being done, for as long as it takes.
 Stage = Callable[[str], AbstractContextManager[object]]
@@ -83,13 +84,15 @@ def simulate(
         refuse_in_states(scenario.system, request)
     elif scenario.system.speeds:  # what is integrated are coordinates and their derivatives
         scenario = replace(scenario, system=scenario.system.without_speeds)
+    in_declared = declared and bool(scenario.declared)  # what is given in these is fitted in these
+    scenario = scenario_in_states(scenario) if in_declared else scenario
     closed = _closed(scenario, request)
     scenario = scenario if closed is None else closed.scenario
     with stage(COMPILING):
-        analysis = Analysis(scenario.system, (7,)) if request.invariants else None
+        analysis = _analysis(scenario) if request.invariants else None
         integrals, missing = _integrals(analysis, scenario)
         ring = analysis.ring if analysis is not None and not missing else None
-        if declared:
+        if declared and not in_declared:
             scenario = scenario_in_states(scenario)
         dynamics = _dynamics(scenario, ring, request)
         if request.certify is not None:
@@ -134,12 +137,12 @@ def simulate(
 
 def runs_in_states(system: System, request: Request) -> bool:
     """Whether a run integrates the variables that a description declares."""
-    return bool(system.speeds) and not system.constraints and request.variables == DECLARED
+    return bool(system.speeds) and request.variables == DECLARED
 
 
 def integrated_system(system: System, variables: str = DECLARED) -> System:
     """The system with the variables of a run in the place of coordinates and velocities.  Raises Failure."""
-    if not system.speeds or system.constraints or variables != DECLARED:
+    if not system.speeds or variables != DECLARED:
         return system
     return in_states(system, *state_names(system))
 
@@ -211,15 +214,23 @@ def _trajectory(
     return integration.simulate(dynamics, method, chosen.setting, chosen.times, request.arithmetic, watch, before)
 
 
+def _analysis(scenario: Scenario) -> Analysis:
+    from mbsym.analysis import Analysis  # few runs ask for it
+
+    return Analysis(described(scenario.system), (7,))
+
+
 def _integrals(analysis: Analysis | None, scenario: Scenario) -> tuple[tuple[Any, ...], str]:
     """The first integrals of problem 7 but for the energy, those found besides at these numbers; why there are none."""
     if analysis is None:
         return (), ""
+    from mbsym.analysis import Unavailable
     from mbsym.analysis.found import found_integrals
     from mbsym.problems.integrals import ENERGY
 
     try:
         known = tuple(item for item in analysis.integrals if item.kind != ENERGY)
-        return (*known, *found_integrals(analysis, scenario.parameters)), ""
+        found = (*known, *found_integrals(analysis, scenario.parameters))
+        return found, "" if found else "none is known beside the energy, which is watched in every run"
     except Unavailable as reason:
         return (), str(reason)

@@ -57,7 +57,7 @@ def draft_bodies(node: Node | None, reading: Reading) -> list[Draft]:
         reading.error("too-large", message, node.span)
         raise TooManyComplaints  # without them every name would be unknown
     if not items and isinstance(node, Sequence):
-        reading.error("missing-value", "there are no bodies", node.span, "each has a name and a mass")
+        reading.error("no-bodies", "there are no bodies", node.span, "each has a name and a mass")
     drafts = [_draft(number, item, reading) for number, item in enumerate(items, start=1)]
     _check_repeated(drafts, reading)
     for draft in drafts:

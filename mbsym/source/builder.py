@@ -14,7 +14,7 @@ from mbsym.expressions.place import Complaints
 from mbsym.model.admissibility import known_values
 from mbsym.model.constraints import Constraint
 from mbsym.model.driven import with_held
-from mbsym.model.system import INERTIAL, System
+from mbsym.model.system import INERTIAL, Body, System
 from mbsym.source.bodies import draft_bodies, read_body, read_body_name
 from mbsym.source.checks import check_body, check_system, in_formulas
 from mbsym.source.claims import read_abbreviations, read_claims
@@ -37,7 +37,7 @@ from mbsym.source.settings import (
     read_relations,
 )
 from mbsym.source.small import read_small
-from mbsym.source.speeds import check_speeds, declare_speeds, read_speeds, vectors_in_angles
+from mbsym.source.speeds import check_speeds, constraint_in_angles, declare_speeds, read_speeds, vectors_in_angles
 from mbsym.source.symbols import read_symbols
 from mbsym.source.tables import read_tables
 
@@ -79,7 +79,7 @@ def build(node: Node, complaints: Complaints, editor: bool = False, folder: Path
     ]
     loads = read_loads(fields.get("loads"), [body.name for body in bodies], reading)
     loads = tuple(vectors_in_angles(load, bodies) for load in loads)
-    constraints, dependent = _constraints(fields, [body.name for body in bodies], reading)
+    constraints, dependent = _constraints(fields, bodies, reading)
     matrices = None if linear is None else read_linear(*linear, len(inputs), reading)
     parameters += declared_by_use(reading)
     notation = read_notation(fields.get("notation"), reading)
@@ -136,14 +136,18 @@ def build(node: Node, complaints: Complaints, editor: bool = False, folder: Path
     return None if complaints.error_count else system
 
 
-def _constraints(fields: Fields, bodies: list[str], reading: Reading) -> tuple[tuple[Constraint, ...], tuple[str, ...]]:
+def _constraints(
+    fields: Fields, bodies: list[Body], reading: Reading
+) -> tuple[tuple[Constraint, ...], tuple[str, ...]]:
     """The constraints and the dependent coordinates; few descriptions have any."""
     node, dependent = fields.get("constraints"), fields.get("dependent")
     if node is None and dependent is None:
         return (), ()
     from mbsym.source.constraints import read_constraints
 
-    found = read_constraints(node, bodies, reading)
+    found = tuple(
+        constraint_in_angles(one, bodies) for one in read_constraints(node, [x.name for x in bodies], reading)
+    )
     if "speed" in reading.scope.kinds.values():
         named = _coordinates(fields, "dependent", "a dependent coordinate or speed", reading, ("coordinate", "speed"))
     else:

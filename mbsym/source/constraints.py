@@ -56,7 +56,7 @@ def _distance(item: Item, made: Distance) -> bool:
 
 
 def _relation(item: Item, made: Relation) -> bool:
-    if not set(item.reading.scope.of_kind("coordinate")) & (names(made.left) | names(made.right)):
+    if not set(item.reading.scope.of_kind("coordinate", "unit vector")) & (names(made.left) | names(made.right)):
         message = "this relation holds no coordinate"
         hint = "relations between constants: 'relations'"
         item.reading.error("idle-constraint", message, item.value.span, hint)

@@ -13,7 +13,7 @@ from mbsym.source.reading import Reading
 from mbsym.source.scope import Allowed
 
 #: A system has at most so many inputs, and so many outputs: each is a column of B, or a row of C.
-MAX_INPUTS = 100
+MAX_INPUTS = 200
 
 OUTPUT = Allowed("an output", ("coordinate", "velocity", "prescribed", "parameter", "input"))
 

@@ -463,6 +463,9 @@ AXIS = {
     ),
 }
 
+#: What tells where bodies are.
+_PLACED = ("coordinate", "unit vector", "prescribed", "parameter", "time")
+
 CONSTRAINTS: dict[str, Kind] = {
     "coincide": Kind(
         "two points {body, point} that are one: a cut joint, planar or spatial", _POINTS, ways=(Way(Coincide),)
@@ -489,10 +492,10 @@ CONSTRAINTS: dict[str, Kind] = {
     "relation": Kind(
         "an equation between coordinates (and t): x - r*phi = 0",
         Equation(
-            Allowed("a relation between coordinates", ("coordinate", "prescribed", "parameter", "time")),
+            Allowed("a relation between coordinates", _PLACED),
             "x - r*phi = 0",
         ),
-        ways=(Way(Relation),),
+        ways=(Way(Relation, parts=lambda made: (made.left, made.right)),),
     ),
     "rolling": Kind(
         "the material points of two bodies at their contact have the same velocity",
@@ -500,8 +503,9 @@ CONSTRAINTS: dict[str, Kind] = {
             {
                 "body": Key("the body that rolls", _ON, required=True),
                 "point": Key(
-                    "the contact: radius vector from the connection point of the body; may hold coordinates",
-                    ThreeOf(Allowed("a point of contact", ("coordinate", "prescribed", "parameter", "time"))),
+                    "the contact: radius vector from the connection point of the body; may hold coordinates and "
+                    "components of unit vectors",
+                    ThreeOf(Allowed("a point of contact", _PLACED)),
                     required=True,
                 ),
                 "axes": Key(
@@ -512,7 +516,13 @@ CONSTRAINTS: dict[str, Kind] = {
                 "on": Key("the body that it rolls on; 0 or ground for the inertial frame", _ON, required=True),
             }
         ),
-        ways=(Way(Rolling, ("body", "point", "axes", "on")),),
+        ways=(
+            Way(
+                Rolling,
+                ("body", "point", "axes", "on"),
+                parts=lambda made: (made.body, made.contact, made.axes, made.on),
+            ),
+        ),
     ),
     "velocity": Kind(
         "an equation that is linear in velocities: x_dot*sin(theta) - y_dot*cos(theta) = 0",

@@ -14,7 +14,7 @@ from mbsym.expressions.angles import angle_name
 from mbsym.expressions.table import HOLD, LINEAR, Table
 from mbsym.expressions.tree import ZERO, Expression, Name, Number, substitute, text
 from mbsym.model.claims import CLAIMS, INITIAL_STATE, Claim, index_names
-from mbsym.model.constraints import Axis, Constraint
+from mbsym.model.constraints import Axis, Constraint, as_written
 from mbsym.model.inputs import Input
 from mbsym.model.linear import LinearModel
 from mbsym.model.loads import Load
@@ -193,7 +193,7 @@ def load_shape(load: Load) -> tuple[str, Shape]:
 
 def constraint_shape(constraint: Constraint) -> tuple[str, Shape]:
     """The kind of a constraint and its data."""
-    return _of_kind(constraint, CONSTRAINTS)
+    return _of_kind(as_written(constraint), CONSTRAINTS)
 
 
 def _of_kind(made: object, kinds: Mapping[str, Kind]) -> tuple[str, Shape]:

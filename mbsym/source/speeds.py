@@ -23,6 +23,7 @@ from mbsym.expressions.tree import (
     negative,
     substitute,
 )
+from mbsym.model.constraints import Constraint, Relation, Rolling, as_written
 from mbsym.model.loads import ForceFunction, Load
 from mbsym.model.speeds import OMEGA, QUATERNION, Quaternion, Speed, UnitVector
 from mbsym.model.substitution import folded
@@ -230,17 +231,40 @@ def vectors_in_angles(load: Load, bodies: Sequence[Body]) -> Load:
     """A force function of unit vectors with these as functions of the angles beside: e = C_a3 C_a2 C_a1 e_axis."""
     if not isinstance(load, ForceFunction):
         return load
-    held, images = names(load.expression), dict[str, Expression]()
+    images = _in_angles(names(load.expression), bodies)
+    if not images:
+        return load
+    return replace(load, expression=folded(load.expression, images), in_vectors=load.expression)
+
+
+def constraint_in_angles(constraint: Constraint, bodies: Sequence[Body]) -> Constraint:
+    """The same of a relation and of a point of contact."""
+    if isinstance(constraint, Relation):
+        written: tuple[Expression, ...] = (constraint.left, constraint.right)
+    elif isinstance(constraint, Rolling):
+        written = constraint.contact
+    else:
+        return constraint
+    images = _in_angles({name for x in written for name in names(x)}, bodies)
+    if not images:
+        return constraint
+    made = [folded(x, images) for x in written]
+    if isinstance(constraint, Relation):
+        return replace(constraint, left=made[0], right=made[1], in_vectors=written)
+    return replace(constraint, contact=(made[0], made[1], made[2]), in_vectors=written)
+
+
+def _in_angles(held: Collection[str], bodies: Sequence[Body]) -> dict[str, Expression]:
+    """The unit vectors that are ``held`` by their components, as functions of angles."""
+    images = dict[str, Expression]()
     for body in bodies:
         for vector in body.orientation:
-            if isinstance(vector, UnitVector) and held & {*vector.components}:
+            if isinstance(vector, UnitVector) and {*vector.components} & {*held}:
                 columns: list[Expression] = [ONE if axis == vector.axis else ZERO for axis in (1, 2, 3)]
                 for axis, angle in body.rotation.turns():
                     columns = _turned(columns, axis, angle)
                 images |= dict(zip(vector.components, columns, strict=True))
-    if not images:
-        return load
-    return replace(load, expression=folded(load.expression, images), in_vectors=load.expression)
+    return images
 
 
 def _turned(v: Sequence[Expression], axis: int, angle: Expression) -> list[Expression]:
@@ -287,7 +311,7 @@ def _uses(system: System, body: Body) -> list[tuple[str, str]]:
     """Names in other places than the angles of a body's joint, with these places."""
     loads = (replace(x, expression=x.written) if isinstance(x, ForceFunction) else x for x in system.loads)
     found = [(name, _FORCE if load.bodies else _LOAD) for load in loads for name in _held(load)]
-    found += [(name, "a constraint") for one in system.constraints for name in _held(one)]
+    found += [(name, "a constraint") for one in system.constraints for name in _held(as_written(one))]
     found += [(name, "its connection point") for x in body.connection_point for name in names(x)]
     for other in system.bodies:
         if other is not body:

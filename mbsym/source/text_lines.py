@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterator
+from itertools import islice
 
 from mbsym.expressions.parser import in_latin
 from mbsym.expressions.place import Span
@@ -73,10 +74,11 @@ def label_of(line: Scalar) -> tuple[Scalar | None, Scalar]:
     return line.part(0, match.start()), line.part(match.end(), len(line.text))
 
 
-def spoken(line: Scalar, known: Iterable[str]) -> tuple[Scalar, str, Scalar] | None:
+def spoken(line: Scalar, known: Collection[str]) -> tuple[Scalar, str, Scalar] | None:
     """A line that begins with a label, whether a colon follows or nothing does, as in a form: with the longest."""
-    ends = [match.end() for match in re.finditer(r"\S+", line.text)]
-    for end in reversed(ends):
+    most = max(len(label.split()) for label in (*known, *SPELLINGS))
+    words = re.finditer(r"\S+", line.text)
+    for end in reversed([match.end() for match in islice(words, most + 1)]):  # a colon may stand alone
         word = word_of(line.text[:end].rstrip(":= \t"))
         if word in known:
             return line.part(0, end), word, line.part(end, len(line.text))

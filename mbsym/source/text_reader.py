@@ -8,7 +8,7 @@ in any case.  Vectors stand in ``( )``, ``{ }`` or ``[ ]``; records are ``positi
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass, field
 
 from mbsym.expressions.parser import ascii_safe
@@ -103,7 +103,7 @@ class TextReader:
             if label is not None and word_of(label.text) == "number of bodies" and value.text != str(count):
                 self.error("body-count", f"{count} bodies are described", value.span)
 
-    def labelled(self, line: Scalar, known: Iterable[str], what: str) -> tuple[Scalar, str, Scalar] | None:
+    def labelled(self, line: Scalar, known: Collection[str], what: str) -> tuple[Scalar, str, Scalar] | None:
         """A label out of a known set (or taken for what it resembles): its scalar, its normal form, the value."""
         label, value = label_of(line)
         word = word_of(label.text if label is not None else line.text)

@@ -94,11 +94,11 @@ def _ranked(given: Scenario, watch: Watch) -> Ranked:
 
 
 def answer(asked: Asked, request: Request, found: Measured | Ranked) -> Answer:
-    from mbsym.report.content import Graded, paragraph, worded
+    from mbsym.report.content import Graded, paragraph
 
     if isinstance(found, Ranked):
         said = [one.sentence for one in found.rankings] or [Message("no body is oriented by three turns.")]
-        brief = [paragraph(worded(text)) for text in said]
+        brief = [paragraph(text) for text in said]
         return Answer((*brief, *_sequences(found.rankings)), brief=brief)
     from mbsym.numerics.extremes.extremes_told import sentences
     from mbsym.report.figures.extremes_figure import extremes_figure
@@ -107,18 +107,18 @@ def answer(asked: Asked, request: Request, found: Measured | Ranked) -> Answer:
     measured = found.extremes
     files: dict[str, str | bytes] = {"extremes.csv": extremes_csv(measured), "extremes.json": extremes_json(measured)}
     files |= extremes_figure(measured, ("svg", "png"))
-    brief = [paragraph("- ", worded(text)) for text in sentences(measured, asked.file)]
+    brief = [paragraph("- ", text) for text in sentences(measured, asked.file)]
     left = (Message("left out: [[what]]", what=text) for text in measured.left_out)
-    brief += [paragraph("- ", Graded(worded(text), "open")) for text in left]
+    brief += [paragraph("- ", Graded(text, "open")) for text in left]
     return Answer((*brief, *_tables(measured)), files, found.notes, brief=brief)
 
 
 def _tables(found: Extremes) -> Iterator[Block]:
-    from mbsym.report.content import paragraph, worded
+    from mbsym.report.content import paragraph
     from mbsym.report.runs.extremes_tables import tables
 
     text = "fewest digits kept along each ladder, float64 / float32; * lost by the formula, not by the question"
-    yield paragraph(worded(Message(text)))
+    yield paragraph(Message(text))
     for columns, rows in tables(found):
         yield digits(columns, rows)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from mbsym.expressions.message import Counted, Message
-from mbsym.report.content import Block, Subheading, Words, paragraph, worded
+from mbsym.report.content import Block, Subheading, paragraph
 from mbsym.studies.study import Answer, Asked, Document, Refusal, Single, Study, Watch, failed
 
 if TYPE_CHECKING:
@@ -63,9 +63,9 @@ def _lines(found: Found) -> Iterator[Block]:
     if found.analysis.system.linear is None:
         sections.insert(0, (Message("equations of motion"), _said(found.groups)))
     for title, lines in sections:
-        yield Subheading((Words(title),))
+        yield Subheading((title,))
         for text in lines:
-            yield paragraph("  ", worded(text))
+            yield paragraph("  ", text)
 
 
 def _said(found: Groups, effects: bool = True) -> Iterator[str]:

@@ -23,10 +23,10 @@ class Request:
     """Find the inputs of FILE with which its coordinates move as given.
 
     A motion is a formula in t and the parameters for every coordinate; its derivatives are exact.  With constraints it
-    is enough to give that of some from which the others follow, near the initial position.  The equations are
-    solved for the inputs, which must enter linearly, at every time: where there are more equations than inputs in the
-    sense of least squares, and what is left of the equations is told; where there are fewer, the smallest inputs are
-    taken, and that is told.
+    is enough to give that of some from which the others follow, near the initial position; where wheels roll to is
+    integrated from there.  The equations are solved for the inputs, which must enter linearly, at every time: where
+    there are more equations than inputs in the sense of least squares, and what is left of the equations is told; where
+    there are fewer, the smallest inputs are taken, and that is told.
 
     Written are inputs.csv (t, inputs, coordinates, velocities, accelerations, what is left of each equation) and
     inputs.svg, inputs.png.  Exit codes: 0 done, 1 there are none or it was not written, 2 something is missing or

@@ -6,9 +6,10 @@ from collections.abc import Collection, Iterator
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
+from mbsym.studies.closing import closed_motion, not_closed
 from mbsym.studies.described import public
 from mbsym.studies.request import Number, Values, Whole, duration
-from mbsym.studies.study import Answer, Asked, Exit, Study, Unfit, Watch, no_program
+from mbsym.studies.study import Answer, Asked, Exit, Refusal, Study, Unfit, Watch, no_program
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
@@ -20,7 +21,8 @@ class Request:
     """Measure the Lyapunov exponents of FILE's motion over the time T.
 
     Exponents of a finite time, with the statistical uncertainty of their means; no number proves a motion chaotic or
-    regular.  Where all are asked for their sum is checked against the mean divergence of the equations.
+    regular.  Where all are asked for their sum is checked against the mean divergence of the equations.  With
+    constraints the initial state is led to them, and there are as many exponents as dimensions of what they allow.
 
     Written are lyapunov.csv (the exponents up to each time), lyapunov.svg/.png and lyapunov.json.  Exit codes: 0 done,
     1 not written, 2 something is missing or wrong, 3 ended early, 130 interrupted.
@@ -70,7 +72,12 @@ def lyapunov(asked: Asked, request: Request, watch: Watch) -> Exponents:
     def at(t: float) -> None:
         watch("", t, request.time)
 
-    return lyapunov_exponents(asked.motion, request.time, request.every, request.count, request.tolerance, at)
+    given, _ = closed_motion(asked.motion)
+    return lyapunov_exponents(given, request.time, request.every, request.count, request.tolerance, at)
+
+
+def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+    return not_closed(error, asked.system) or no_program(error, asked, request)
 
 
 def answer(asked: Asked, request: Request, found: Exponents) -> Answer:
@@ -80,11 +87,11 @@ def answer(asked: Asked, request: Request, found: Exponents) -> Answer:
     files: dict[str, str | bytes] = {"lyapunov.csv": lyapunov_csv(found)}
     files |= lyapunov_figure(asked.system, found, ("svg", "png")) if len(found.times) > 1 else {}
     files["lyapunov.json"] = lyapunov_json(asked.system, found)
-    lines = facts(sentences(found))
+    lines, notes = facts(sentences(found)), closed_motion(asked.motion)[1]
     if found.ended is None:
-        return Answer(lines, files)
+        return Answer(lines, files, notes)
     code = Exit.INTERRUPTED if found.ended.kind == "interrupted" else Exit.BROKEN_DOWN
-    return Answer(lines, files, (f"ended early: {found.ended}",), code)
+    return Answer(lines, files, (*notes, f"ended early: {found.ended}"), code)
 
 
-STUDY = Study("lyapunov", Request, lyapunov.derive, answer, no_program, unfit)
+STUDY = Study("lyapunov", Request, lyapunov.derive, answer, refusal, unfit, constraints=True)

@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
+from mbsym.studies.closing import closed_motion, not_closed
 from mbsym.studies.described import public
 from mbsym.studies.request import Named, Number, Values, Word
 from mbsym.studies.study import Answer, Asked, Refusal, Study, Unfit, Watch, no_program, refused
@@ -30,8 +31,10 @@ class Request:
     and the period where the equations know the time (T must then be a period of theirs).
 
     Told are the state, the period, how well the motion closes by the method that found it and by another one, and the
-    Floquet multipliers with those that are 1 for a reason.  Numbers, no proofs.  Written are orbit.csv (one period) and
-    orbit.json.  Exit codes: 0 found, 1 not found or not written, 2 something is missing or wrong, 130 interrupted.
+    Floquet multipliers with those that are 1 for a reason.  With constraints states are led to them, and multipliers
+    are those of changes that they allow.  Numbers, no proofs.  Written are orbit.csv (one period) and orbit.json.
+
+    Exit codes: 0 found, 1 not found or not written, 2 something is missing or wrong, 130 interrupted.
 
     \b
     Examples:
@@ -73,14 +76,18 @@ def orbit(asked: Asked, request: Request, watch: Watch) -> PeriodicMotion:
         watch(f"step {step}, {size:.1e} left over")
 
     watch("compiling")
-    return find_orbit(asked.motion, request.period, request.keep, request.turns, at)
+    return find_orbit(closed_motion(asked.motion)[0], request.period, request.keep, request.turns, at)
 
 
 def answer(asked: Asked, request: Request, found: PeriodicMotion) -> Answer:
     from mbsym.report.content import facts
     from mbsym.report.runs.orbit_files import orbit_csv, orbit_json, sentences
 
-    return Answer(facts(sentences(found)), {"orbit.csv": orbit_csv(found), "orbit.json": orbit_json(found)})
+    return Answer(
+        facts(sentences(found)),
+        {"orbit.csv": orbit_csv(found), "orbit.json": orbit_json(found)},
+        closed_motion(asked.motion)[1],
+    )
 
 
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
@@ -88,7 +95,7 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
 
     if isinstance(error, NotFound):
         return refused("no periodic motion was found", error)
-    return no_program(error, asked, request)
+    return not_closed(error, asked.system) or no_program(error, asked, request)
 
 
-STUDY = Study("orbit", Request, orbit.derive, answer, refusal, unfit)
+STUDY = Study("orbit", Request, orbit.derive, answer, refusal, unfit, constraints=True)

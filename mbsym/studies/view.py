@@ -10,7 +10,7 @@ from mbsym.studies.request import Flag, Number, Settings, Value
 from mbsym.studies.study import Answer, Asked, Document, Refusal, Single, Study, Watch, line, no_program
 
 if TYPE_CHECKING:
-    from mbsym.picture.page import Page
+    from mbsym.report.viewer.page import Page
 
 MODES = "Show the linear modes about the given motion, with its verdict."
 EQUILIBRIA = "List the relative equilibria to click through, with their verdicts."
@@ -43,7 +43,7 @@ class Request:
 
 
 def derive(asked: Asked, request: Request, watch: Watch) -> Page:
-    from mbsym.picture.page import viewed
+    from mbsym.report.viewer.page import viewed
     from mbsym.simulation.request import read_values
 
     def at(t: float) -> None:

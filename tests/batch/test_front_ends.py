@@ -125,6 +125,12 @@ def test_claims_fail_only_where_they_have_to_hold() -> None:
     assert levels["claim-refuted"] == "warning"
 
 
+def test_an_outcome_that_is_the_word_itself_is_said_once() -> None:
+    claims = (ClaimRow("", "a", "undecided", "undecided: no motion"), ClaimRow("", "b", "refuted", "does not hold"))
+    text = junit(summary(row(Outcome.DERIVED, claims=claims)))
+    assert re.findall(r'<skipped message="([^"]*)"', text) == ["undecided: no motion", "refuted: does not hold"]
+
+
 def test_findings_have_the_places_of_the_complaints() -> None:
     found = findings(EVERY)
     (unknown,) = [finding for finding in found if finding.code == "unknown-name"]
@@ -188,7 +194,7 @@ def test_the_command_writes_them(tmp_path: Path) -> None:
     keeps_to_junit(suites)
     assert {suite.get("name", "").rpartition("/")[2] for suite in suites} == {"simple-pendulum.yaml", "wrong.yaml"}
     (run,) = json.loads((out / "mbsym.sarif").read_text(encoding="utf-8"))["runs"]
-    assert {result["ruleId"] for result in run["results"]} == {"missing-value"}
+    assert {result["ruleId"] for result in run["results"]} == {"no-bodies"}
     page = _Page()
     page.feed((out / "index.html").read_text(encoding="utf-8"))
     assert all((out / link).exists() for link in page.links)

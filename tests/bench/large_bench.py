@@ -1,4 +1,4 @@
-"""Sections ``robots`` and ``chains`` of the benchmark: `mbsym run`, all reports, as whole processes; what large costs.
+"""Sections ``robots``, ``chains`` and ``waiting`` of the benchmark, as whole processes: what large costs, and small.
 
 Nothing heavy is imported here: a child's peak memory counts from the moment it is forked.
 """
@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import chains
-from run import ROOT, Child, mbsym_command, number, ratio, run_child, say
+from run import ROOT, Child, in_turn, mbsym_command, number, ratio, run_child, say, summary
 
 sys.path.insert(0, str(ROOT / "tests" / "robots"))
 from robots import QUICK, ROBOTS
@@ -105,4 +105,38 @@ def show_chains(results: list[Record], table: Callable[..., None]) -> None:
     table("mbsym run on spatial chains; seconds grow as joints**p", ["joints", "run, s", "MB", "p"], rows)
 
 
-SECTIONS = {"robots": (robots, show_robots), "chains": (chains_, show_chains)}
+#: What somebody waits for, and what part of `import sympy` in processor time it is to be at most.
+SIMULATE = ["simulate", "systems/double-pendulum.yaml", "--time", "10", "--force", "--quiet"]
+WAITING = {
+    "--help": (["--help"], 0.1),
+    "check, satellite": (["check", "systems/satellite.yaml"], 0.15),
+    "simulate to csv, double pendulum, 10 s": ([*SIMULATE, "--format", "csv"], 1.5),
+    "simulate with figures, double pendulum, 10 s": (SIMULATE, 3.5),
+}
+
+
+def waiting(options: argparse.Namespace) -> dict[str, Record]:
+    """Short commands in turn with `import sympy`; machine code is kept from the warm-up, as from any run before."""
+    with tempfile.TemporaryDirectory() as folder:
+        commands = {"import sympy": ([sys.executable, "-c", "import sympy"], False)}
+        for name, (command, _) in WAITING.items():
+            out = ["--out", f"{folder}/out"] if command[0] == "simulate" else []
+            commands[name] = ([*mbsym_command(), *command, *out], False)
+        return {name: summary(done) for name, done in in_turn(commands, options.runs, options.timeout, {}).items()}
+
+
+def show_waiting(results: dict[str, Record], table: Callable[..., None]) -> None:
+    measured = {name: found.get("process", {}).get("cpu_seconds") for name, found in results.items()}
+    rows = [
+        [
+            name,
+            number(seconds),
+            number(ratio(seconds, measured["import sympy"])),
+            number(WAITING.get(name, ("", None))[1]),
+        ]
+        for name, seconds in measured.items()
+    ]
+    table("short commands, processor time of whole processes", ["command", "s", "of import sympy", "target"], rows)
+
+
+SECTIONS = {"robots": (robots, show_robots), "chains": (chains_, show_chains), "waiting": (waiting, show_waiting)}

@@ -5,9 +5,9 @@
 Each problem at the loosest tolerance of dop853 (decades) with which the error at the end is within the target.  Seconds
 are processor time of the run alone, median of some, and of everything before it: reading, equations, machine code.
 Published times are from other machines, and at errors that their authors did not all state: they show orders of
-magnitude, nothing else.  ``--large`` adds forty four-bars, whose machine code takes a dozen seconds; nobody's time at a
-stated error was found for them.  Then what equations and machine code take: a chain of ten pendulums (PyDy's issue 536:
-3906 s), and the operations of the bicycle's nonlinear right-hand side.
+magnitude, nothing else.  ``--large`` adds forty four-bars, whose machine code takes some seconds the first time;
+nobody's time at a stated error was found for them.  Then what equations and machine code take: a chain of ten pendulums
+(PyDy's issue 536: 3906 s), and the operations of the bicycle's nonlinear right-hand side.
 """
 
 from __future__ import annotations

@@ -35,7 +35,7 @@ import peer_arm  # noqa: E402  (imports sympy only where it derives)
 import peer_satellite  # noqa: E402
 
 SATELLITE = "systems/satellite.yaml"
-ALL = ("satellite", "arm", "robots", "chains", "forward", "simulation", "growth")
+ALL = ("waiting", "satellite", "arm", "robots", "chains", "forward", "simulation", "growth")
 KINDS = ("principal", "full")
 ROAD_TITLES = {
     "library": "LagrangesMethod, Linearizer",
@@ -320,7 +320,7 @@ def measure_command(path: str, arm: str | None = None) -> list[str]:
 #: What a run stands on, each with what comes before: nothing that is written can be quicker.
 FLOORS = {
     "Python starts": "pass",
-    "imports": "import mbsym_cli.process, mbsym_cli.reports, mbsym_cli.show, mbsym.analysis, mbsym.source.document, "
+    "imports": "import mbsym_cli.process, mbsym_cli.reports, mbsym.analysis, mbsym.source.document, "
     "mbsym.report.latex.report, mbsym.report.html.report, mbsym.report.wolfram_report, "
     "mbsym.report.code.python_module, mbsym.report.code.c_source, mbsym.report.results_json",
     "everything derived and checked": "import os, pathlib\n"

@@ -71,3 +71,42 @@ def test_unknown_names_are_settled_where_they_stand_and_a_deleted_file_is_writte
         window.page.get_by_role("button", name="Save it again", exact=True).click()
         window.told("saved")
         assert yaml.safe_load(path.read_bytes())["parameters"] == {"M": "real"}
+
+
+def test_an_empty_page_offers_three_ways_to_begin_and_nothing_red(
+    tmp_path: Path, opened: Callable[..., Window]
+) -> None:
+    path = tmp_path / "new.yaml"
+    with serving(path) as address:
+        window = opened(address, path)
+        cards = window.page.locator("#picture .beginnings")
+        assert cards.locator("h3").all_text_contents() == ["From a joint", "From an example", "From a text"]
+        assert "mistake" not in window.page.locator("body").inner_text()
+        cards.get_by_role("button", name="hinge").click()
+        window.told("one body on a hinge joint is here")
+        assert window.complaints == []
+        assert set(window.bodies) == {"body"}
+        assert yaml.safe_load(window.text)["parameters"]["m1"]["sign"] == "positive"
+        assert cards.count() == 0
+        window.page.get_by_role("button", name="Undo", exact=True).click()
+        cards.wait_for()
+        window.settled()
+        cards.locator("textarea").fill("no description")
+        cards.get_by_role("button", name="Take it").click()
+        window.page.locator("#said").filter(has_text="it begins neither with").wait_for()
+        robot = '<robot name="arm"><link name="base"/><link name="arm"><inertial><mass value="1"/><inertia ixx="1" '
+        robot += 'iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link><joint name="j" type="continuous">'
+        robot += '<parent link="base"/><child link="arm"/><axis xyz="0 0 1"/></joint></robot>'
+        cards.locator("textarea").fill(robot)
+        cards.get_by_role("button", name="Take it").click()
+        window.told("what was pasted is here")
+        assert window.complaints == []
+        assert "arm" in window.bodies
+
+
+def test_an_empty_list_of_bodies_beside_other_mistakes_is_one(tmp_path: Path, opened: Callable[..., Window]) -> None:
+    path = tmp_path / "wrong.yaml"
+    path.write_text("mbsym: 1\nname: wrong\nbodies: []\nparameter: {m: positive}\n", encoding="utf-8")
+    with serving(path) as address:
+        window = opened(address, path)
+        assert any("there are no bodies" in words for words in window.complaints)

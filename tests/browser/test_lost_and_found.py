@@ -176,7 +176,7 @@ def test_new_begins_from_an_example_and_one_undo_goes_back(served: tuple[str, Pa
     window = opened(address, path)
     window.page.locator("#do-new").click()
     window.page.get_by_label("Begin from").select_option(value="gyrostat")
-    window.in_dialog_take()
+    window.page.get_by_role("button", name="Begin with it").click()
     window.told("gyrostat is here")
     assert window.complaints == []
     assert window.bodies != {}

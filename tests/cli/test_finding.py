@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -10,11 +11,12 @@ import pytest
 from click.testing import CliRunner
 from conftest import SHIPPED
 
-from mbsym import load
+from mbsym import load, loads
 from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.verdict import undecided
 from mbsym.problems.stability.word import Word
 from mbsym.report.sections.summary import _part
+from mbsym.report.targets import TARGETS
 from mbsym_cli.main import main
 
 PENDULUM = (SHIPPED / "simple-pendulum.yaml").read_text(encoding="utf-8")
@@ -74,6 +76,39 @@ def test_conditions_stand_beside_the_verdict_that_depends_on_them(tmp_path: Path
     assert (
         f"unstable (Kelvin-Chetaev), decided exactly; largest real part of an eigenvalue: {root:.4g}" in lines[at - 1]
     )
+
+
+OPEN = """
+mbsym: 1
+name: Two coupled particles
+parameters: {k: real}
+bodies:
+  - {name: p0, attached to: 0, mass: 1, connection point: [x, 0, 0], coordinates: [x]}
+  - {name: p1, attached to: 0, mass: 1, connection point: [y, 1, 0], coordinates: [y]}
+loads:
+  - potential: "k*y**2 + x**4"
+  - generalized force: {x: "k*y_dot", y: "-k*x_dot"}
+motion: {x: 0, y: 0}
+"""
+
+
+def test_where_no_case_holds_it_is_undecided_in_all_media(tmp_path: Path) -> None:
+    """x'' - k y' + 4 x^3 = 0, y'' + k x' + 2 k y = 0: lambda^2 (lambda^2 + k (k + 2)), a real root if k (k + 2) < 0.
+
+    Elsewhere two roots are zero, and no theorem of the first approximation is about that: k = 1 is such a place.  Of
+    the bead on a hoop nothing is left but the border, which is not told as a region.
+    """
+    lines = told(tmp_path, OPEN)
+    at = lines.index("Stability  depends on the parameters")
+    expected = ["unstable (Lyapunov's first method) if k (k + 2) < 0", "otherwise undecided"]
+    assert lines[at + 1 : at + 3] == expected
+    analysis = loads(OPEN)
+    assert "Otherwise \\textbf{undecided}:" in TARGETS["latex"].render(analysis, (6,))
+    assert 'Otherwise <strong class="open">undecided</strong>:' in TARGETS["html"].render(analysis, (6,))
+    (part,) = json.loads(TARGETS["json"].render(analysis, (6,)))["stability"]["subsystems"]
+    assert [(x["verdict"], x["otherwise"]) for x in part["cases"]] == [("unstable", False), ("undecided", True)]
+    bead = load(SHIPPED / "bead-on-hoop.yaml").stability.subsystems[0]
+    assert not bead.theory.uncovered
 
 
 def test_each_group_of_coordinates_has_its_cases_in_order(tmp_path: Path) -> None:

@@ -110,6 +110,13 @@ def test_a_value_that_was_refused_is_not_missing_as_well(tmp_path: Path) -> None
     assert "2 errors" in done.stderr
 
 
+def test_an_input_is_not_set_but_given(tmp_path: Path) -> None:
+    driven = DAMPED.replace("loads:", "inputs: {F: a force}\nloads:\n  - generalized force: {x: F}")
+    done = mbsym("simulate", described(tmp_path, driven), "--time", 1, "--set", "F=0")
+    assert heads(done) == ["--set: error[misplaced-name]: 'F' is an input and has no value to set"]
+    assert "--input F=..." in done.stderr
+
+
 def test_a_relation_that_is_broken_by_a_setting_is_said_of_the_setting(tmp_path: Path) -> None:
     path = described(tmp_path, DAMPED)
     done = mbsym("simulate", path, "--time", 1, "--set", "e=5", "--set", "c=-1", "--out", tmp_path / "out")

@@ -39,7 +39,7 @@ from mbsym.numerics.scenario import Incomplete, scenario
 from mbsym.numerics.simulate import simulate
 from mbsym.report.figures.drawing import thinned
 from mbsym.report.figures.figures import CORNER, _curve, figures
-from mbsym.report.runs.trajectory_csv import trajectory_csv
+from mbsym.report.runs.trajectory_csv import trajectory_parts
 from mbsym.source import load
 from mbsym_cli import files
 from mbsym_cli.files import MANIFEST
@@ -161,7 +161,7 @@ def test_table_figures_and_summary(tmp_path: Path) -> None:
 def test_the_numbers_read_back_exactly() -> None:
     dynamics = dynamics_of(SPHERICAL)
     found = simulate(dynamics, METHODS["dop853"], Setting(tolerance=1e-8), np.linspace(0, 1, 7))
-    rows = [line.split(",") for line in trajectory_csv(found, {"double": 2 * found.times}).splitlines()]
+    rows = [line.split(",") for line in "".join(trajectory_parts(found, {"double": 2 * found.times})).splitlines()]
     assert rows[0] == [*columns(dynamics.system), "double"]
     back = np.array(rows[1:], dtype=float).T
     assert np.array_equal(back[1:5], found.states)

@@ -306,3 +306,66 @@ def test_a_description_with_errors_is_code_2(tmp_path: Path) -> None:
     bad = tmp_path / "bad.yaml"
     bad.write_text("mbsym: 1\nname: nothing\n", encoding="utf-8")
     assert command("diff", bad, SHIPPED / "ziegler.yaml", "--check").exit_code == 2
+
+
+WHOLE = """
+mbsym: 1
+name: pushed
+parameters: {m: positive, l: positive, g: positive, c: positive, k: positive}
+tables: {push: {points: [[0, 1], [1, 5/2]]}}
+bodies: [{name: rod, attached to: 0, rotation: {axes: [3], angles: [theta]}, mass centre: [0, -l, 0], mass: m}]
+loads: [{uniform gravity: {acceleration: g, direction: [0, -1, 0]}}, {generalized force: {theta: c*push(t)}}]
+relations: {k: g*c}
+assumptions: [l < 2]
+claims: [{claim: condition, that: k < m, as: sufficient, place: (1)}]
+"""
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "path"),
+    [
+        ("5/2", "7/2", ("tables", "push", "points")),
+        ("g*c", "g*c**2", ("relations", "k")),
+        ("l < 2", "l < 3", ("assumptions", "1", "right")),
+        ("l < 2", "l > 2", ("assumptions", "1", "relation")),
+        ("as: sufficient", "as: necessary", ("claims", "(1), condition k < m", "role")),
+    ],
+)
+def test_what_a_description_says_is_part_of_what_is_compared(before: str, after: str, path: tuple[str, ...]) -> None:
+    # No formula of these results changes, but what they are about does: it is not the same.
+    found = diff(results(WHOLE), results(WHOLE.replace(before, after)))
+    assert not found.same
+    assert all(change.path[: len(path)] == path for change in found.changes)
+
+
+def test_an_assumption_that_is_written_otherwise_is_no_change() -> None:
+    assert diff(results(WHOLE), results(WHOLE.replace("l < 2", "l < 4/2"))).same
+
+
+TABULATED = """
+mbsym: 1
+name: pushed
+parameters: {PARAMETERS}
+tables: {push: {points: [[0, 1], [1, 5/2], [2, 3]], SHAPE}}
+bodies: [{name: car, attached to: 0, mass: m, connection point: [x, 0, 0], coordinates: [x]}]
+loads: [{generalised force: {x: k*push(FIRST) + m*l*x}}]
+motion: {x: 0}
+"""
+
+
+@pytest.mark.parametrize("shape", ["between: cubic, outside: extrapolate", "outside: zero", "outside: hold"])
+def test_formulas_with_tables_are_compared_like_others(shape: str) -> None:
+    def of(parameters: str, first: str) -> dict[str, Any]:
+        text = TABULATED.replace("SHAPE", shape).replace("PARAMETERS", parameters).replace("FIRST", first)
+        return results(text)
+
+    one = of("m: positive, k: positive, l: positive", "m*x + l")
+    # The same in another order of declaration: sums and products are printed in another order.
+    found = diff(one, of("l: positive, m: positive, k: positive", "l + x*m"))
+    assert [(change.path, change.kind) for change in found.changes] == [(("parameters",), Kind.ORDER)]
+    assert ("equations", "forcing", "x") in found.restated
+    # Elsewhere in the table: k (push(m x + 2 l) - push(m x + l)) is not zero.
+    forced = [
+        x for x in diff(one, of("m: positive, k: positive, l: positive", "m*x + 2*l")).changes if "forcing" in x.path
+    ]
+    assert [change.kind for change in forced] == [Kind.FORMULA]

@@ -20,6 +20,7 @@ from mbsym.problems.checks import EXACT
 from mbsym.report import results_json
 from mbsym.report.code import python_module
 from mbsym.report.schemas import schema
+from mbsym.report.targets import TARGETS
 
 POLE = Path(__file__).parents[2] / "systems" / "cart-pole.yaml"
 
@@ -246,3 +247,35 @@ def test_where_there_is_no_first_order_form_the_reason_is_told() -> None:
     assert str(analysis.linearisation.B[0, 0]) in ("k*(t + 1)", "k*t + k")  # type: ignore[index]
     with pytest.raises(Failure, match="B of the first-order form varies with t"):
         _ = analysis.state_space
+
+
+def test_a_table_that_jumps_is_called_by_another_name_where_formulas_hold_it_without_its_jumps() -> None:
+    # push is 1 + 3/2 t on [0, 1] and 0 outside: the force of the description.  The equations hold it with its ends
+    # outside, less steps; whoever evaluates them with push itself for that takes the ends away twice.
+    analysis = mbsym.loads("""
+mbsym: 1
+name: pushed
+tables: {push: {points: [[0, 1], [1, 5/2]], outside: zero}}
+bodies: [{name: car, attached to: 0, mass: 2, connection point: [x, 0, 0], coordinates: [x]}]
+loads: [{generalized force: {x: push(t)}}]
+""")
+    found = results_json.results(analysis, [3])
+    (table,) = found["tables"]
+    assert table == {
+        "name": "push", "points": [["0", "1"], ["1", "5/2"]], "between": "linear", "outside": "zero",
+        "held": "push_held",
+    }  # fmt: skip
+    forcing, wolfram = found["equations"]["forcing"][0], analysis.equations.forcing[0].wolfram()
+    symbolic = str(analysis.equations.forcing[0].to_sympy())
+    names = {"push_held": lambda t: 1 + 1.5 * min(max(t, 0), 1), "sign": lambda x: (x > 0) - (x < 0)}
+    for t, force in ((-1, 0), (0.5, 1.75), (2, 0)):
+        assert eval(forcing, names | {"t": t}) == force
+        assert eval(symbolic, names | {"t": t}) == force
+    assert "table$push$held[t]" in wolfram
+    assert "table$push[t]" not in wolfram
+    report = TARGETS["latex"].render(analysis, [3])
+    assert r"\operatorname{push\_held}(t)" in report
+    assert r"In formulas \texttt{push\_held} is this table with its end values outside" in report
+    notebook = TARGETS["wolfram"].render(analysis, [3])
+    assert "table$push$held[x_] := Piecewise[{{(1), x < 0}, {(1) + (3/2)*(x - (0)), x <= 1}}, (5/2)];" in notebook
+    assert "table$push[x_] := Piecewise[{{0, x < 0}, {(1) + (3/2)*(x - (0)), x <= 1}}, 0];" in notebook

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from scipy.integrate import solve_ivp
 
 import mbsym
 from mbsym.expressions.parser import parse_expression
@@ -84,10 +85,12 @@ def test_a_wheel_with_one_input_more_than_freedoms() -> None:
     assert not found.unique
 
 
-def test_velocity_constraints_leave_positions_open() -> None:
+def test_where_a_wheel_rolls_to_follows_from_its_initial_position() -> None:
+    """x = r t^2 with r = 1/2, whether it is given or not."""
     text = WHEEL.replace("KIND", "velocity")
-    with pytest.raises(ValueError, match="the motion of x does not follow"):
-        found_for(text, phi="t**2")
+    alone = found_for(text, phi="t**2")
+    assert alone["x"] == pytest.approx(alone.times**2 / 2, abs=1e-11)
+    assert 2 * alone["u"] + alone["v"] == pytest.approx(np.full(41, 14.0), abs=1e-9)
     both = found_for(text, phi="t**2", x="t**2/2")
     assert 2 * both["u"] + both["v"] == pytest.approx(np.full(41, 14.0), abs=1e-10)
 
@@ -127,3 +130,42 @@ def test_python_takes_the_motion_of_some(tmp_path: Path) -> None:
     assert found["u"] == pytest.approx([0.0, 19.62 * np.sin(1.0)], abs=1e-12)
     with pytest.raises(ValueError, match="no motion is given for x"):
         mbsym.inverse_dynamics(str(file), {}, [0.0, 1.0])
+
+
+CAR = """
+mbsym: 1
+name: A car with a light trailer
+parameters: {m: {value: 2, sign: positive}, J: {value: 0.5, sign: positive}, a: {value: 0.3, sign: positive},
+             d: {value: 0.7, sign: positive}}
+inputs: {F: {meaning: drive}, T: {meaning: turning moment}}
+bodies:
+  - {name: car, attached to: 0, connection point: [x, y, 0], rotation: {axes: [3], angles: [th]},
+     mass centre: [a, 0, 0], mass: m, inertia about: mass centre, inertia: [J/2, J/2, J], coordinates: [x, y, th]}
+  - {name: trailer, attached to: car, rotation: {axes: [3], angles: [ps]}, mass: 0}
+loads:
+  - force: {body: car, point: [0, 0, 0], components: [F, 0, 0], axes: car}
+  - torque: {body: car, components: [0, 0, T], axes: car}
+constraints:
+  - velocity: x_dot*sin(th) - y_dot*cos(th) = 0
+  - velocity: -x_dot*sin(th + ps) + y_dot*cos(th + ps) - d*(th_dot + ps_dot) = 0
+initial: {x: 0, y: 1, th: 0, ps: 0.4}
+"""
+
+
+@pytest.mark.parametrize("speeds", ["", "speeds: {om: omega3}, "])
+def test_where_wheels_roll_to_follows_by_integration(speeds: str) -> None:
+    """Round a circle of radius R = 2 at the rate w = 1/2: y = 1 + R (1 - cos w t), F = -m a w^2, T = m a R w^2,
+
+    and the trailer turns by  ps' = -w - (R w/d) sin ps,  integrated here by another program.
+    """
+    car = mbsym.loads(CAR.replace("mass: m, ", f"mass: m, {speeds}"), ())
+    found = mbsym.inverse_dynamics(car, {"x": "2*sin(t/2)", "th": "t/2"}, np.linspace(0, 2, 101))
+    assert found.exact
+    assert found.unique
+    assert found["F"] == pytest.approx(np.full(101, -2 * 0.3 / 4), abs=1e-10)
+    assert found["T"] == pytest.approx(np.full(101, 2 * 0.3 * 2 / 4), abs=1e-10)
+    assert found["y"] == pytest.approx(1 + 2 * (1 - np.cos(found.times / 2)), abs=1e-10)
+    turned = solve_ivp(
+        lambda t, ps: -0.5 - np.sin(ps) / 0.7, (0, 2), [0.4], "Radau", found.times, rtol=1e-11, atol=1e-12
+    )
+    assert found["ps"] == pytest.approx(turned.y[0], abs=1e-8)

@@ -19,7 +19,7 @@ from mbsym.algebra.plane.elements import Element, ElementMatrix, ElementPolynomi
 from mbsym.algebra.plane.numbers import number, roots_between
 from mbsym.algebra.plane.point_field import PointField, SimpleField
 from mbsym.algebra.roots import RootCount, counted, counted_real
-from mbsym.maps.on_curves import ExactVerdicts, verdict_on
+from mbsym.maps.on_curves import ExactVerdicts
 from mbsym.maps.verdicts import Border, Judged
 from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.reasons import Because
@@ -47,7 +47,7 @@ def at(curves: list[Any], near: tuple[float, float], judged: Any, box: Box | Non
     """The verdict at the corner of some curves nearest to a place."""
     found = decompose(curves, box or Box(-4, 4, -4, 4))
     corners = sorted(found.corners, key=lambda c: sum(abs(a - b) for a, b in zip(c.point.floats(), near, strict=True)))
-    return verdict_on(judged, corners[0].point)
+    return ExactVerdicts(judged)(corners[0].point)
 
 
 def gyroscopic() -> Any:
@@ -65,7 +65,7 @@ def test_the_border_of_gyroscopic_stabilisation_has_jordan_blocks() -> None:
         assert judged.verdict.word is Word.UNDECIDED
         assert judged.verdict.because(Because.JORDAN_BLOCK)
         assert (judged.right, judged.degree, judged.null) == (0, 2, 0)
-    words = {verdict_on(gyroscopic(), PointLike(*region.sample)).verdict.word for region in found.regions}
+    words = {ExactVerdicts(gyroscopic())(PointLike(*region.sample)).verdict.word for region in found.regions}
     assert words == {Word.GYROSCOPIC, Word.UNSTABLE}
 
 
@@ -186,7 +186,7 @@ def test_fields_of_high_degree_are_refused() -> None:
     found = decompose([X**50 - 2, Y**2 - X], Box(1, 2, 0, 2))
     corner = next(c for c in found.corners if c.kind == "crossing")
     with pytest.raises(TooLargeError, match="degree 50"):
-        verdict_on(gyroscopic(), corner.point)
+        ExactVerdicts(gyroscopic())(corner.point)
     assert corner.point.sign(Y**2 - X) == 0
 
 

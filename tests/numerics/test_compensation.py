@@ -309,8 +309,8 @@ def test_what_is_measured_decides(monkeypatch: pytest.MonkeyPatch) -> None:
     assert compensated_code(given, code, range(3, 6)) is None
 
 
-def test_slopes_backwards_are_derivatives() -> None:
-    """The sweep that finds what is sensitive, against differences of the program."""
+def test_slopes_backwards_are_derivatives(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The sweep that finds what is sensitive, against differences of the program; one sweep serves all outputs."""
     from mbsym.algebra.program import Program
 
     program = Program()
@@ -334,8 +334,13 @@ def test_slopes_backwards_are_derivatives() -> None:
             }[operation]()  # fmt: skip
         return known
 
-    slopes = module._slopes(program, program.live([out]), values(0.3, 0.9), out.number)
+    looked_at, partials = [], module._partials
+    monkeypatch.setattr(module, "_partials", lambda *given: looked_at.append(1) or partials(*given))
+    live, wanted = program.live([out]), [out.number, s.number]  # one output stands within the other
+    slopes = dict(module._slopes(program, live, values(0.3, 0.9), wanted))
+    assert len(looked_at) == len(live)
     h = 1e-6
     for node, (da, db) in ((x, (h, 0)), (y, (0, h))):
-        up, down = values(0.3 + da, 0.9 + db)[out.number], values(0.3 - da, 0.9 - db)[out.number]
-        assert slopes[node.number] == pytest.approx((up - down) / (2 * h), rel=1e-7)
+        up, down = values(0.3 + da, 0.9 + db), values(0.3 - da, 0.9 - db)
+        expected = [(up[k] - down[k]) / (2 * h) for k in wanted]
+        assert slopes[node.number] == pytest.approx(expected, rel=1e-7)

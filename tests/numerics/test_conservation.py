@@ -302,3 +302,10 @@ def test_a_push_between_two_rows_is_seen(start: float, end: float) -> None:
     assert pushed.conservation.standing is Standing.CHANGING
     still = mbsym.simulate(mbsym.loads(text.replace("FORCE", "0")), 20)
     assert still.conservation.standing is Standing.PROVED
+
+
+def test_where_there_is_nothing_to_watch_that_is_said() -> None:
+    # Henon and Heiles: no integral beside the energy is known of it; the heavy top has momenta.
+    for name, none in (("henon-heiles", True), ("heavy-top", False)):
+        run = mbsym.simulate(SHIPPED / f"{name}.yaml", 0.1, samples=3, estimate=False, invariants=True)
+        assert ("none is known beside the energy" in run.no_invariants) is none is (not run.invariants)

@@ -295,3 +295,28 @@ def test_a_rest_is_not_likened_to_a_chaotic_motion() -> None:
     found = exponents(dynamics(pushed("theta - theta**3", "0")), 60, 1.0)
     assert found.values[0] == pytest.approx(1, abs=1e-2)
     assert dict(sentences(found))["motion"].startswith("the motion is a rest")
+
+
+DRIVEN = """
+mbsym: 1
+name: Driven
+prescribed: {phi: {rate: 1.2}}
+bodies: [{name: p, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}]
+loads: [{generalized force: {x: -x - 0.2*x_dot + 0.3*FORCE}}]
+initial: {x: {position: 0.5, velocity: 0}}
+"""
+
+
+def test_a_period_that_is_none_of_the_equations_is_refused() -> None:
+    # x'' + 0.2 x' + x = 0.3 cos 1.2 t: some x returns after any T, but repeats then only if the force does.  The one
+    # periodic motion has the period 2 pi/1.2 and the amplitude 0.3/sqrt((1 - 1.44)^2 + 0.24^2).
+    driven = DRIVEN.replace("FORCE", "cos(phi)")
+    period = 2 * np.pi / 1.2
+    for wrong in (5.2, period / 2, 5.2359):
+        with pytest.raises(NotFound, match=r"do not repeat after .* they do after 5\.2359877559829[89]"):
+            orbit(driven, wrong)
+    for right in (period, 2 * period):
+        x, rate = orbit(driven, right).state
+        assert np.hypot(x, rate / 1.2) == pytest.approx(0.3 / np.hypot(1 - 1.44, 0.24), rel=1e-9)
+    with pytest.raises(NotFound, match="no period of theirs is known"):
+        orbit(DRIVEN.replace("FORCE", "exp(-t) + 0*phi"), 5)

@@ -15,10 +15,10 @@ from mbsym.algebra.failures import Failure
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.linearised import LinearisedDynamics
 from mbsym.numerics.scenario import Incomplete, scenario
-from mbsym.picture.modes import Modes, modes, modes_json
-from mbsym.picture.motion import motion, motion_json
-from mbsym.picture.resting import at_rest, at_rest_json
 from mbsym.problems.stability.word import Word
+from mbsym.report.viewer.modes import Modes, modes, modes_json
+from mbsym.report.viewer.motion import motion, motion_json
+from mbsym.report.viewer.resting import at_rest, at_rest_json
 from mbsym.simulation import Request
 
 SYSTEMS = Path(__file__).parents[2] / "systems"
@@ -63,7 +63,7 @@ def test_modes_are_eigenvectors_of_the_differentiated_program(name: str) -> None
 
 
 def test_a_flipped_gyroscopic_term_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    from mbsym.picture import modes as module
+    from mbsym.report.viewer import modes as module
 
     right = module.matrices_at
 

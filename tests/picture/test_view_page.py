@@ -18,7 +18,7 @@ from click.testing import CliRunner, Result
 
 import mbsym
 from mbsym.picture import as_json, picture
-from mbsym.picture.page import viewed
+from mbsym.report.viewer.page import viewed
 from mbsym_cli.main import main
 
 SYSTEMS = Path(__file__).parents[2] / "systems"
@@ -126,7 +126,7 @@ relations: {k: 2*s}
 motion: {x: 0}
 values: {s: 2, k: 4}
 """
-    from mbsym.picture.page import modes_part
+    from mbsym.report.viewer.page import modes_part
     from mbsym.simulation.request import read_values
 
     system = mbsym.loads(text).system

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.analysis.constrained import programs_of
 from mbsym.analysis.pipeline import Analysis
 from mbsym.formulas.formula import Matrix, column
+from mbsym.mechanics.constraints.ranks import eliminated
 from mbsym.mechanics.constraints.states import Manifold
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.variables import ring_environment, ring_of
@@ -391,6 +393,40 @@ def test_loops_apart_are_solved_apart(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(analysis_module, "eliminated", counted)
     ring = ring_of(system)
     assert faults(Scene(system, ring, ring_environment(system, ring), ring)) == ()
+
+
+def test_rows_with_few_entries_are_eliminated_in_few_products() -> None:
+    """n loops that do not touch one another, x_k + 2 y_k = 0, 3 x_k + 4 y_k = 5 z_k: as many products each, however
+    many there are.
+
+    By hand: 3 quotients make the first row's pivot 1 (all 3 n columns are divided), its 2 entries go off the second;
+    then 3 n quotients more, whose 2 entries go off the first.
+    """
+    products = 0
+
+    class Counted(Fraction):
+        def __mul__(self, other: Any) -> Counted:
+            nonlocal products
+            products += 1
+            return Counted(Fraction(self) * Fraction(other))
+
+        def __sub__(self, other: Any) -> Counted:
+            return Counted(Fraction(self) - Fraction(other))
+
+        def __truediv__(self, other: Any) -> Counted:
+            return Counted(Fraction(self) / Fraction(other))
+
+    for loops in (1, 8):
+        products = 0
+        rows = [[Counted(0)] * 3 * loops for _ in range(2 * loops)]
+        for k in range(loops):
+            rows[2 * k][3 * k : 3 * k + 2] = [Counted(1), Counted(2)]
+            rows[2 * k + 1][3 * k : 3 * k + 3] = [Counted(3), Counted(4), Counted(-5)]
+        done = eliminated(rows, range(3 * loops))
+        assert products == 4 * loops
+        assert done.columns == tuple(column for k in range(loops) for column in (3 * k, 3 * k + 1))
+        assert done.rows[2 * loops - 2][3 * loops - 3 :] == (1, 0, -5)  # x = 5 z, y = -5/2 z
+        assert done.rows[2 * loops - 1][3 * loops - 3 :] == (0, 1, Fraction(5, 2))
 
 
 # --- what does not know constraints says so ---

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import mbsym
-from mbsym.analysis.regular import regular_at_zero
+from mbsym.analysis.approximation import regular_at_zero
 from mbsym.analysis.stages import Unavailable
 from mbsym.model.system import System
 

@@ -348,10 +348,17 @@ def test_planted_mistakes_are_found() -> None:
     assert "control" in told(replace(right, control=(replace(control, rank=replace(control.rank, full=False)),)))
 
 
-def test_it_is_refused_where_it_is_not_known() -> None:
-    for name in ("rolling-disc", "gyrostat-poisson", "four-bar"):
-        with pytest.raises(Unavailable):
+def test_it_is_refused_where_there_is_no_motion() -> None:
+    for name in ("gyrostat-poisson", "four-bar"):
+        with pytest.raises(Unavailable, match="no unperturbed motion"):
             _ = mbsym.load(SHIPPED / f"{name}.yaml").stabilisation
+
+
+def test_theorems_about_energy_are_not_told_of_constraints_in_velocities() -> None:
+    """Chaplygin's sleigh keeps its energy, and its turning decays or grows with v: its D is no dissipation."""
+    found = mbsym.load(SHIPPED / "chaplygin-sleigh.yaml").stabilisation
+    assert found.nonholonomic
+    assert (found.gyroscopic, found.energy, found.dissipation) == ((), (), ())
 
 
 def test_roots_of_parameters_are_no_mistake() -> None:

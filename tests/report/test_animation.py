@@ -20,13 +20,14 @@ from conftest import SHIPPED, TESTS, browsed, needs_chromium
 from PIL import Image
 
 import mbsym
-from mbsym.picture.motion import motion_of
+from mbsym.picture.looking import projection
 from mbsym.report.code.parsing import unreadable
-from mbsym.report.figures.animation import Animation, animation, projection, view
+from mbsym.report.figures.animation import Animation, animation, view
 from mbsym.report.figures.animation_gif import MOST, TALL, WIDE, animation_gif
 from mbsym.report.figures.animation_page import animation_page, run_sentences
 from mbsym.report.figures.figures import figures
 from mbsym.report.targets import TARGETS
+from mbsym.report.viewer.motion import motion_of
 from mbsym.simulation import Simulation
 
 
@@ -93,7 +94,7 @@ def test_ellipsoids_have_the_inertia_of_their_bodies() -> None:
 @pytest.mark.parametrize("name", ["double-pendulum", "satellite", "tethered-satellites"])
 def test_the_eye_has_right_handed_axes(name: str) -> None:
     up, azimuth, elevation = view(scene(name, 4.0).positions)
-    look = projection(up, azimuth, elevation)
+    look = np.array(projection(up, azimuth, elevation))
     assert np.allclose(look @ look.T, np.eye(3))
     assert np.linalg.det(look) == pytest.approx(1)
     if scene(name, 4.0).positions.plane is not None:

@@ -253,7 +253,7 @@ def test_casadi(name: str, tmp_path: Path) -> None:
     model, at, u = module(text_of(name, "casadi"), tmp_path), point_of(name), SYSTEMS[name]
     functions = model.functions()
     driven = (list(u),) if u else ()
-    found = {key: np.array(function(at.t, list(at.x), list(at.p), *driven)) for key, function in functions.items()}
+    found = {key: np.array(functions[key](at.t, list(at.x), list(at.p), *driven)) for key in expected(name)}
     assert differences(found, expected(name)) == []
     n, still = len(at.x) // 2, ([0.0],) if u else ()
     led = np.array(model.consistent(at.t, list(at.x), list(at.p), *driven), float).ravel()
@@ -362,7 +362,7 @@ def test_a_corrupted_file_is_found(seed: int, tmp_path: Path) -> None:
         functions = module(broken, tmp_path).functions()
     except (NameError, TypeError, ValueError):
         return  # Python refuses it
-    found = {key: np.array(function(at.t, list(at.x), list(at.p))) for key, function in functions.items()}
+    found = {key: np.array(functions[key](at.t, list(at.x), list(at.p))) for key in expected("four-bar")}
     assert differences(found, expected("four-bar"))
     lost = {**expected("four-bar"), "multipliers": -expected("four-bar")["multipliers"]}
     assert differences(lost, expected("four-bar")) == ["multipliers"]

@@ -12,11 +12,13 @@ from conftest import SHIPPED, derived
 import mbsym
 from mbsym.algebra.program import Program
 from mbsym.expressions import tree
+from mbsym.expressions.message import Message, worded
 from mbsym.formulas.formula import Column, Formula, Matrix
 from mbsym.formulas.latex import latex_names
 from mbsym.formulas.mathml import mathml_names
+from mbsym.problems.stability.word import Word
 from mbsym.report import content, plain_writer
-from mbsym.report.content import Name, Notation, Relation, Said, Strong, Symbol, Words, paragraph, say
+from mbsym.report.content import Name, Notation, Relation, Said, Strong, Symbol, paragraph, say
 from mbsym.report.html import writer as html
 from mbsym.report.language import Language
 from mbsym.report.latex import writer as latex
@@ -69,10 +71,27 @@ def test_notation_and_gaps_are_the_same_in_all_media(analysis: mbsym.Analysis) -
     assert in_latex(analysis).said(said) == r"$L$ does not contain $\theta$: cyclic."
     assert in_html(analysis).said(said) == ("<math><mi>L</mi></math> does not contain <math><mi>θ</mi></math>: cyclic.")
     assert plain_writer.Writer().said(said) == "L does not contain theta: cyclic."
-    outside = say("with [[value]] and [[words]]", value=Relation(Symbol("T"), "=", energy), words=Words("stable"))
+    outside = say("with [[value]] and [[words]]", value=Relation(Symbol("T"), "=", energy), words=worded("stable"))
     assert in_latex(analysis).said(outside).startswith("with $T = ")
     assert "<math><mi>T</mi><mo>=</mo>" in in_html(analysis).said(outside)
     assert plain_writer.Writer().said(outside) == f"with T = {energy} and stable"
+
+
+def test_a_reason_is_a_sentence_with_typed_gaps(analysis: mbsym.Analysis) -> None:
+    """A reason with notation and a formula is set as mathematics in every medium; its English is plain text."""
+    mass = Formula(analysis.ring, analysis.ring.generator("parameter", "m") ** 2)
+    reason = Message(
+        "$K > 0$ and $D \\geq 0$, as [[value]] and $[[value]]^3$ are: 50 % [[word]]", value=mass, word=Word.STABLE
+    )
+    assert reason == "K > 0 and D >= 0, as m**2 and m**2^3 are: 50 % stable"
+    assert isinstance(reason, Said)
+    assert in_latex(analysis).inline(reason) == r"$K > 0$ and $D \geq 0$, as $m^{2}$ and $m^{2}^3$ are: 50 \% stable"
+    assert "<mi>K</mi><mo>&gt;</mo><mn>0</mn>" in in_html(analysis).inline(reason)
+    assert "as <math><msup><mi>m</mi>" in in_html(analysis).inline(reason)
+    assert plain_writer.Writer().inline(reason).startswith("K > 0 and D >= 0, as m**2")
+    other = Message("[[word]]", word=Word.STABLE)
+    for medium in (in_latex, in_html):
+        assert medium(analysis, "es").inline(other) == medium(analysis, "es").inline(Word.STABLE) == "estable"
 
 
 def test_what_a_description_says_is_escaped(analysis: mbsym.Analysis) -> None:
@@ -155,8 +174,10 @@ def test_matrices_stand_side_by_side_where_they_fit(analysis: mbsym.Analysis) ->
 
 
 def test_notes_bars_and_script_letters(analysis: mbsym.Analysis) -> None:
-    line = content.Display(Relation(Symbol("M", look="bar"), "=", 0), "", (Words("stable"),))
-    assert in_latex(analysis).block(line) == r"\longformula{\bar{M} = 0 \quad\penalty0 \text{(stable)}}"
+    line = content.Display(Relation(Symbol("M", look="bar"), "=", 0), "", (worded("stable"),))
+    assert in_latex(analysis).block(line) == (
+        r"\longformula[mbsym:pendulum:eq:1]{\bar{M} = 0 \quad\penalty0 \text{(stable)}}"  # every number has a label
+    )
     assert "\u00af" in in_html(analysis).block(line)
     assert in_html(analysis).block(line).endswith('<p class="note soft">(stable)</p>')
     assert in_latex(analysis).math(Symbol("A", look="script")) == r"\mathcal{A}"
@@ -195,7 +216,7 @@ def test_facts_links_and_grades(analysis: mbsym.Analysis) -> None:
 
 def test_a_table_without_a_title_has_headings_and_falls_into_paragraphs(analysis: mbsym.Analysis) -> None:
     columns = tuple(content.TableColumn(Said(x), 3.0) for x in ("place", "claim", "outcome"))
-    table = content.Table(None, columns, (((), ("a_b",), (Words("differs"), ": ", "2")), (("p",), ("c",), ("d",))))
+    table = content.Table(None, columns, (((), ("a_b",), (worded("differs"), ": ", "2")), (("p",), ("c",), ("d",))))
     assert "place & claim & outcome\\\\\\hline\\endhead\n & a\\_b & differs: 2\\\\\n" in in_latex(analysis).block(table)
     assert in_latex(analysis, form=Form.APPENDIX).block(table) == "a\\_b: differs: 2.\n\np, c: d.\n"
     assert "<h3>" not in in_html(analysis).block(table)
@@ -209,7 +230,7 @@ def test_definitions_names_beside_and_literature(analysis: mbsym.Analysis) -> No
     written = in_latex(analysis).block(beside)
     assert r"with: $\displaystyle \mathtt{theta\_} = 1$; $\displaystyle c_{1} = 2$." in written
     assert "verbatim" in in_html(analysis).block(beside)
-    cited = content.Cited(Said("On the theorems"), ((Words("Routh"), ("routh", "lyapunov")),))
+    cited = content.Cited(Said("On the theorems"), ((worded("Routh"), ("routh", "lyapunov")),))
     assert in_latex(analysis).block(cited) == "On the theorems: Routh~\\cite{routh,lyapunov}.\n"
     assert not in_latex(analysis, form=Form.APPENDIX).block(cited)
     at = Relation(content.Text(Said("at"), " "), content.Power(Name("theta"), 2), ":", 1)

@@ -84,7 +84,7 @@ def test_a_shape_at_a_wrong_place_is_caught(mistake: str, run: Simulation, monke
     """Planted: the shape's rotation the other way round, and its place taken from the mass centre."""
     if mistake == "turned back":
         right = module.turned
-        monkeypatch.setattr(module, "turned", lambda *given: right(*given).T)
+        monkeypatch.setattr(module, "turned", lambda *given: np.array(right(*given)).T)
     else:
         place = module._placed
         monkeypatch.setattr(
@@ -99,7 +99,7 @@ def test_turns_of_shapes_are_those_of_scipy() -> None:
     assert system is not None
     rotation: Rotation = system.bodies[1].shapes[1].rotation
     wanted = Turned.from_euler("ZXY", [0.5, -1 / 3, np.pi / 5]).as_matrix()
-    assert np.allclose(module.turned(rotation, {"pi": Fraction(0)}), wanted, atol=1e-14)
+    assert np.allclose(np.array(module.turned(rotation, {"pi": Fraction(0)})).T, wanted, atol=1e-14)
 
 
 @pytest.mark.parametrize(

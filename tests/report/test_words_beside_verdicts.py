@@ -8,6 +8,7 @@ v by a spring through a resisting medium stays behind by c v/k: it cannot move w
 
 from __future__ import annotations
 
+import pickle
 from fractions import Fraction
 from pathlib import Path
 
@@ -17,11 +18,12 @@ from terminal import told
 
 import mbsym
 from mbsym.algebra.failures import Failure
-from mbsym.problems.stability.reasons import Because
+from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.report.content import Display, Phrase, Subheading
 from mbsym.report.plain_writer import Writer
 from mbsym.report.results import results
 from mbsym.report.sections import equilibrium, stability
+from mbsym.report.targets import TARGETS
 from mbsym_cli.main import main
 
 SYSTEMS = Path(__file__).parents[2] / "systems"
@@ -116,6 +118,20 @@ def test_what_problem_7_lists_is_not_told_to_be_no_function_of_it() -> None:
 def test_of_a_motion_that_cannot_be_nothing_else_is_said(stage: str) -> None:
     with pytest.raises(Failure, match="the given motion does not exist: -c\\*v = 0 is impossible"):
         getattr(mbsym.loads(DRAGGED), stage)
+
+
+def test_formulas_in_reasons_are_set_as_formulas() -> None:
+    """-c*v is Python's; a report multiplies without a sign, and a reason that crosses processes keeps its English."""
+    analysis = mbsym.loads(DRAGGED)
+    assert "$-c v = 0$" in " ".join(TARGETS["latex"].render(analysis, (4, 5)).split())
+    assert "-c*v" not in TARGETS["html"].render(analysis, (4, 5))
+    with pytest.raises(Failure) as caught:
+        analysis.stabilisation  # noqa: B018
+    again = pickle.loads(pickle.dumps(caught.value.reason))
+    assert again == caught.value.reason
+    reason = Reason(Because.POLE, (analysis.equilibrium.conditions[0],))
+    assert pickle.loads(pickle.dumps(reason)).data == ("-c*v",)
+    assert hash(reason) == hash(pickle.loads(pickle.dumps(reason)))
 
 
 FREE = """

@@ -4,14 +4,17 @@ M, f        the oracle's residual is M q'' - f: at q'' = 0 and at unit vectors, 
 q''         M^-1 f in balls
 Jacobian    central differences of that with a step of 1e-20, whose error is below 1e-30
 energies    the closed formulas of problem 2;  integrals: those of problem 7
-places      the oracle's, which turns vectors by Rodrigues' formula
+places      the oracle's, which turns vectors by Rodrigues' formula; poses and Jacobians of bodies too, these by its
+            velocities at q' = e_i less those at q' = 0
+tau         the oracle's residual at q'' = (1, 2, ...);  q'' under tau = (1, 2, ...): M^-1 (f + tau)
+c, g        its residuals at q'' = 0 without loads, and what fields of gravity alone change in these
 """
 
 from __future__ import annotations
 
 import random
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -22,7 +25,8 @@ from flint import arb, arb_mat, fmpq
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.point import Balls
 from mbsym.analysis import Analysis
-from mbsym.mechanics.oracle import Oracle, State
+from mbsym.mechanics.oracle import Oracle, Placement, State
+from mbsym.model.loads import NewtonianGravity, UniformGravity
 from mbsym.model.system import acceleration_name
 
 BITS = 240
@@ -121,9 +125,44 @@ class _Truth:
                 [_floats(part.a for part in oracle.moving.mass_centre(b)) for b in self.system.bodies]
             ),
         }
+        found |= self.named(values, mass, force)
         if not analysis.integrals:
             del found["integrals"]
         return found
+
+    def named(self, values: Mapping[str, arb], mass: arb_mat, force: arb_mat) -> dict[str, Any]:
+        """What robotics calls by name."""
+        n, system = self.n, self.system
+        some = range(1, n + 1)
+        fields = tuple(one for one in system.loads if isinstance(one, UniformGravity | NewtonianGravity))
+        parts = []
+        for loads in ((), fields):
+            other = _Truth.__new__(_Truth)
+            other.system, other.n = replace(system, loads=loads), n
+            parts.append(other.residuals(values, [0] * n))
+        placed = [self.moving(values, ())] + [self.moving(values, (i,)) for i in range(n)]
+        poses, slopes = [], []
+        for body in system.bodies:
+            origin, axes = placed[0].origin[body.name], placed[0].axes[body.name]
+            rows = [_floats([*(x.a for x in axes[i]), origin[i].a]) for i in range(3)]
+            poses.append(np.vstack([*rows, [0, 0, 0, 1]]))
+            rates = [[x.b for x in one.origin[body.name]] + list(one.spin(body.name)[0]) for one in placed]
+            slopes.append(_floats(rates[i + 1][k] - rates[0][k] for k in range(6) for i in range(n)).reshape(6, n))
+        return {
+            "inverse_dynamics": _floats(self.residuals(values, list(some))),
+            "forward_dynamics": _floats(mass.solve(force + arb_mat(n, 1, [arb(k) for k in some])).entries()),
+            "coriolis": _floats(parts[0]),
+            "gravity": _floats(b - a for a, b in zip(*parts, strict=True)),
+            "frame_poses": np.array(poses),
+            "frame_jacobians": np.array(slopes),
+        }
+
+    def moving(self, values: Mapping[str, arb], fast: Sequence[int]) -> Placement:
+        """Where the bodies are, velocities being zero but for some that are one."""
+        rates = {name: arb(int(i in fast)) for i, name in enumerate(self.system.velocities)}
+        still = {acceleration_name(name): arb(0) for name in self.system.coordinates}
+        whole = {**values, **rates, **still}
+        return Oracle(self.system, State(Balls(whole), whole)).moving
 
 
 def _gyrostatic(analysis: Analysis) -> Any:

@@ -123,29 +123,39 @@ def loaded(path: Path) -> ModuleType:
 def worst_difference(text: str, converted: Converted, module: ModuleType, states: int = 3, seed: int = 20) -> float:
     """The largest relative difference of M, of M a + h at random accelerations, of h, and of the gravity terms.
 
-    h = C q' + g; each of the four is measured against its own largest entry, over all states.
+    h = C q' + g; each of the four is measured against its own largest entry, over all states.  To Pinocchio joints that
+    mimic others are coordinates of their own: with v = G q' its matrix is reduced to G^T M G, its forces to G^T f.
     """
     model = peer(text, converted.floating)
+    followers = mimics(text)
     data = model.createData()
     source = random.Random(seed)
     base = ["root_joint"] if converted.floating else []
-    places = [k for name in [*base, *converted.joints] for k in _velocities(model, name)]
+    columns = [k for name in [*base, *converted.joints] for k in _velocities(model, name)]
+    spread = np.zeros((model.nv, len(columns)))
+    spread[columns, range(len(columns))] = 1
+    for name, (leader, multiplier, _) in followers.items():
+        if leader in converted.joints:
+            spread[_velocities(model, name)] = multiplier * spread[_velocities(model, leader)]
     worst = 0.0
     for _ in range(states):
         q = _random(source, converted.coordinates, math.pi)
         v, a = _random(source, len(q), 1.0), _random(source, len(q), 1.0)
-        there, speed, rate = pinocchio.neutral(model), np.zeros(model.nv), np.zeros(model.nv)
-        speed[places], rate[places] = v, a
+        there = pinocchio.neutral(model)
+        speed, rate = spread @ v, spread @ a
         _place(model, there, base, q[: 6 * len(base)])
         for name, value in zip(converted.joints, q[6 * len(base) :], strict=True):
             _place(model, there, [name], [value])
+        known = dict(zip(converted.joints, q[6 * len(base) :], strict=True))
+        for name, (leader, multiplier, offset) in followers.items():
+            _place(model, there, [name], [multiplier * known.get(leader, 0.0) + offset])
         mass = np.array(pinocchio.crba(model, data, there))
         mass = np.triu(mass) + np.triu(mass, 1).T
         theirs = (
-            mass[np.ix_(places, places)],
-            pinocchio.rnea(model, data, there, speed, rate)[places],
-            pinocchio.rnea(model, data, there, speed, np.zeros(model.nv))[places],
-            pinocchio.computeGeneralizedGravity(model, data, there)[places],
+            spread.T @ mass @ spread,
+            spread.T @ pinocchio.rnea(model, data, there, speed, rate),
+            spread.T @ pinocchio.rnea(model, data, there, speed, np.zeros(model.nv)),
+            spread.T @ pinocchio.computeGeneralizedGravity(model, data, there),
         )
         own = np.array(module.mass_matrix(q, module.DEFAULTS))
         bias, rest = (
@@ -155,6 +165,64 @@ def worst_difference(text: str, converted: Converted, module: ModuleType, states
         for first, second in zip((own, own @ a + bias, bias, rest), theirs, strict=True):
             worst = max(worst, float(np.abs(first - second).max() / (np.abs(second).max() or 1.0)))
     return worst
+
+
+def regressor_rank(text: str, converted: Converted, states: int = 40) -> int:
+    """The rank of Pinocchio's regressor of all standard parameters, stacked at random states; columns of length one."""
+    model = peer(text, converted.floating)
+    data, source = model.createData(), np.random.default_rng(5)
+    rows = []
+    for _ in range(states):
+        there = pinocchio.neutral(model)
+        for name, value in zip(converted.joints, source.normal(size=len(converted.joints)), strict=True):
+            _place(model, there, [name], [value])
+        v, a = source.normal(size=(2, model.nv))
+        own = [k for name in converted.joints for k in _velocities(model, name)]
+        still = np.setdiff1d(range(model.nv), own)
+        v[still] = a[still] = 0
+        rows.append(pinocchio.computeJointTorqueRegressor(model, data, there, v, a)[own])
+    stacked = np.vstack(rows)
+    lengths = np.linalg.norm(stacked, axis=0)
+    return int(np.linalg.matrix_rank(stacked[:, lengths > 1e-9] / lengths[lengths > 1e-9], rtol=1e-9))
+
+
+def worst_frame(text: str, converted: Converted, module: ModuleType) -> tuple[float, int]:
+    """The largest difference of poses and Jacobians at a random state, and of how many frames."""
+    model = peer(text, converted.floating)
+    data, q = model.createData(), np.random.default_rng(6).normal(size=len(converted.joints))
+    there = pinocchio.neutral(model)
+    for name, value in zip(converted.joints, q, strict=True):
+        _place(model, there, [name], [value])
+    columns = [k for name in converted.joints for k in _velocities(model, name)]
+    pinocchio.computeJointJacobians(model, data, there)
+    pinocchio.framesForwardKinematics(model, data, there)
+    worst, known = 0.0, [name for name in module.FRAMES if model.existFrame(name)]
+    for name in known:
+        number = model.getFrameId(name)
+        pose = module.frame_pose(name, q, module.DEFAULTS) - data.oMf[number].homogeneous
+        theirs = pinocchio.getFrameJacobian(model, data, number, pinocchio.LOCAL_WORLD_ALIGNED)[:, columns]
+        slopes = module.frame_jacobian(name, q, module.DEFAULTS) - theirs
+        worst = max(worst, float(np.abs(pose).max()), float(np.abs(slopes).max()))
+    return worst, len(known)
+
+
+def mimics(text: str) -> dict[str, tuple[str, float, float]]:
+    """Joint: leader, multiplier and offset, chains of them followed to their first joint."""
+    root = ElementTree.fromstring(text)
+    told = {
+        joint.attrib["name"]: (one.attrib["joint"], float(one.get("multiplier", 1)), float(one.get("offset", 0)))
+        for joint in root.iter("joint")
+        for one in joint.iter("mimic")
+        if joint.get("type") != "fixed"
+    }
+    found = {}
+    for name, (leader, multiplier, offset) in told.items():
+        while leader in told:
+            leader, factor, further = told[leader]
+            offset += multiplier * further
+            multiplier *= factor
+        found[name] = leader, multiplier, offset
+    return found
 
 
 def _random(source: random.Random, count: int, bound: float) -> Any:

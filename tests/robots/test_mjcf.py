@@ -120,5 +120,6 @@ def test_shapes_limits_and_what_is_left_out_are_kept() -> None:
         "capsule", "box", "sphere", "cylinder", "ellipsoid",
     ]  # fmt: skip
     assert [one.coordinate for one in system.limits] == ["q1", "q3"]
-    assert {one.split(" (")[0] for one in made.left_out} == {"actuator", "sensor", "contact"}
+    assert {one.split(" (")[0] for one in made.left_out} == {"sensor", "contact"}
+    assert system.input_names == ("tau_pan",)
     assert made.joints == ("pan", "lift", "slide", "yaw", "pitch")

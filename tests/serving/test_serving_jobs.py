@@ -172,7 +172,7 @@ def test_what_a_section_says_is_the_reports() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "word"), [({"m": "-1"}, "sign"), ({"n": "1"}, "no parameter"), ({"m": "1/0"}, "rational")]
+    ("given", "word"), [({"m": "-1"}, "declared positive"), ({"n": "1"}, "no parameter"), ({"m": "1/0"}, "rational")]
 )
 def test_values_that_a_description_does_not_allow_are_refused(given: dict[str, str], word: str) -> None:
     (only,) = of("modes", set=given)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import math
 from pathlib import Path
 
@@ -12,7 +13,9 @@ from click.testing import CliRunner
 import mbsym
 from mbsym.expressions.place import Complaints
 from mbsym.expressions.tree import text as written
+from mbsym.model.constraints import Coincide, Relation
 from mbsym.problems.claims import DIFFERS, EXACT
+from mbsym.report.targets import TARGETS
 from mbsym.source import read, to_text
 from mbsym.source.robots import Converted, convert, is_robot
 from mbsym.source.robots.elements import MAX_DEPTH
@@ -316,7 +319,7 @@ def test_what_is_misspelt_in_mjcf_is_complained_about_with_a_guess(
 
 def test_what_looks_like_nothing_known_is_left_out_by_name() -> None:
     """It may be of a later MuJoCo; the same names in sections that are not read are nobody's business."""
-    after = '<equality><joint joint1="a" polycoef="1"/></equality><sensor><geom obj="b"/></sensor>'
+    after = '<tendon><joint joint1="a" polycoef="1"/></tendon><sensor><geom obj="b"/></sensor>'
     made = converted(mujoco("", '<body name="b"><joint quux="1"/><geom size="0.5" density="6"/></body>', after))
     assert "unknown attribute 'quux' of <joint>" in made.left_out
     assert not any("polycoef" in one or "obj" in one for one in made.left_out)
@@ -450,7 +453,7 @@ def test_angles_that_are_read_as_parts_of_pi_are_told_in_one_line(tmp_path: Path
     assert all(f"{angle} as {part}" in " ".join(head.split()) for angle, part in zip(angles, parts, strict=True))
 
 
-@pytest.mark.parametrize("tag", ["replicate", "frame"])
+@pytest.mark.parametrize("tag", ["replicate", "attach"])
 def test_what_stands_for_other_elements_is_refused_with_what_to_do(tag: str) -> None:
     complaints = Complaints()
     inside = f'<{tag}><body name="b"><geom size="1" mass="1"/></body></{tag}>'
@@ -458,3 +461,223 @@ def test_what_stands_for_other_elements_is_refused_with_what_to_do(tag: str) -> 
     (found,) = complaints.errors
     assert found.message.startswith(f"<{tag}> is not read: ")
     assert "mj_saveLastXML" in found.hint
+
+
+# --- torques, rotors, joints that follow others, the ground ---
+
+
+def outcomes(yaml: str, *claims: str) -> list[object]:
+    return [one.outcome for one in mbsym.loads(yaml + "claims:\n" + "".join(f"  - {one}\n" for one in claims)).claims]
+
+
+def test_every_joint_that_something_can_drive_has_its_torque_as_an_input() -> None:
+    """The pendulum by hand: (J + m l^2) q'' + b q' + m g l sin q = tau, J + m l^2 = 0.1 + 2/4, m g l = 9.81.
+
+    Its axes are turned about the vertical, which gravity does not feel.
+    """
+    made = converted(PENDULUM.replace('upper="2.5"', 'upper="2.5" effort="40"').replace("pivot&#10;x: y", "x-dot"))
+    system, _ = read(made.yaml, "p.yaml")
+    assert system is not None
+    (one,) = system.inputs
+    assert (one.name, one.meaning) == ("tau_x_dot_joint", "torque in joint x-dot, at most 40 N*m")
+    claim = "{{claim: equation of motion, of: q1, equals: 0.6*q1_ddot + 0.7*q1_dot + 9.81*sin(q1) {} tau_x_dot_joint}}"
+    assert outcomes(made.yaml, claim.format("-"), claim.format("+")) == [EXACT, DIFFERS]
+    assert "inputs:" not in converted(PENDULUM, inputs=False).yaml
+
+
+def test_an_actuator_of_mjcf_drives_its_joint_and_others_stay_passive() -> None:
+    body = '<body name="a"><joint name="j"/><joint name="k" axis="1 0 0"/><geom size="1"/></body>'
+    actuators = '<actuator><position joint="k"/><motor joint="k" gear="9"/><motor site="s"/></actuator>'
+    made = converted(mujoco("", body, actuators))
+    system, _ = read(made.yaml, "p.yaml")
+    assert system is not None
+    assert system.input_names == ("tau_k",)
+    assert {"law of an actuator (position)", "actuator of no joint (motor)"} <= set(made.left_out)
+
+
+def test_armature_is_a_term_of_the_mass_matrix_and_weighs_nothing() -> None:
+    """2 T = (1/2^2 + 0.3) q1'^2 + ... for a point of mass 1 at the distance 1/2; U does not hold 0.3."""
+    body = (
+        '<body name="a"><joint name="j" axis="0 1 0" armature="0.3"/><inertial mass="1" pos="0 0 -0.5"/>'
+        '<body name="b"><joint name="s" type="slide" axis="0 0 1" armature="0.7"/>'
+        '<inertial mass="2" pos="0 0 0"/></body></body>'
+    )
+    made = converted(mujoco("", body))
+    energy = "0.125*q1_dot**2 + q2**2*q1_dot**2 + q2_dot**2"
+    assert outcomes(
+        made.yaml,
+        f"{{claim: kinetic energy, equals: {energy} + 0.15*q1_dot**2 + 0.35*q2_dot**2}}",
+        f"{{claim: kinetic energy, equals: {energy}}}",
+        "{claim: force function, equals: 9.81*(0.5*cos(q1) - 2*q2*cos(q1))}",
+    ) == [EXACT, DIFFERS, EXACT]
+    assert not any("armature" in one for one in made.left_out)
+
+
+#: Two fingers on rails; the second one mimics the first, and a third one the second.
+GRIPPER = """<robot name="gripper"><link name="world"/><link name="palm"/>
+<link name="f1"><inertial><mass value="1"/></inertial></link>
+<link name="f2"><inertial><mass value="2"/></inertial></link>
+<link name="f3"><inertial><origin xyz="0 0 0.5"/><mass value="3"/></inertial></link>
+<joint name="p" type="fixed"><parent link="world"/><child link="palm"/><origin xyz="0 0 1"/></joint>
+<joint name="j1" type="prismatic"><parent link="palm"/><child link="f1"/><axis xyz="1 0 0"/>
+  <limit lower="0" upper="0.1" effort="0" velocity="0"/></joint>
+<joint name="j2" type="prismatic"><parent link="palm"/><child link="f2"/><axis xyz="0 1 0"/>
+  <dynamics damping="5"/><mimic joint="j1" multiplier="-0.5" offset="0.25"/></joint>
+<joint name="j3" type="revolute"><parent link="palm"/><child link="f3"/><axis xyz="0 1 0"/>
+  <mimic joint="j2" multiplier="4"/></joint></robot>"""
+
+
+def test_joints_that_mimic_others_follow_them() -> None:
+    """q_2 = 1/4 - q/2 and q_3 = 4 q_2 = 1 - 2 q: 2 T = (1 + 2/4 + 3 (0.5*2)^2) q'^2 = 4.5 q'^2, R = 5 (q'/2)^2/2."""
+    made = converted(GRIPPER)
+    system, complaints = read(made.yaml, "p.yaml")
+    assert system is not None, [one.message for one in complaints]
+    assert (system.coordinates, made.joints, system.input_names) == (("q1",), ("j1",), ("tau_j1",))
+    assert (
+        outcomes(
+            made.yaml,
+            "{claim: kinetic energy, equals: 2.25*q1_dot**2}",
+            "{claim: position, of: f2, component: 2, equals: 0.25 - q1/2}",
+            "{claim: equation of motion, of: q1,"
+            " equals: 4.5*q1_ddot + 1.25*q1_dot + 3*9.81*0.5*2*sin(1 - 2*q1) - tau_j1}",
+        )
+        == [EXACT] * 3
+    )
+    assert not any("mimic" in one for one in made.left_out)
+    limited = GRIPPER.replace('<dynamics damping="5"/>', '<dynamics damping="5"/><limit lower="0" upper="1"/>')
+    assert "limits of a joint that mimics another" in converted(limited).left_out
+
+
+def test_a_joint_that_only_leads_has_a_coordinate_and_one_that_follows_nothing_that_moves_is_at_its_offset() -> None:
+    """The first finger without mass: 2 T = 3.5 q'^2.  A follower of the fixed joint stands at 1 + 2*0 all the time."""
+    light = GRIPPER.replace('<inertial><mass value="1"/></inertial>', "")
+    assert outcomes(converted(light).yaml, "{claim: kinetic energy, equals: 1.75*q1_dot**2}") == [EXACT]
+    fixed = GRIPPER.replace('<mimic joint="j2" multiplier="4"/>', '<mimic joint="p" multiplier="2" offset="1"/>')
+    assert outcomes(converted(fixed).yaml, "{claim: position, of: f3, component: 1, equals: 0.5*sin(1)}") == [EXACT]
+    assert "angles: [1]" in converted(fixed).yaml
+
+
+@pytest.mark.parametrize(("leader", "code"), [("nobody", "unknown-name"), ("j2", "no-tree"), ("j3", "no-tree")])
+def test_what_mimics_nothing_or_itself_is_complained_about(leader: str, code: str) -> None:
+    text = GRIPPER.replace('<mimic joint="j1"', f'<mimic joint="{leader}"')
+    assert {found for found, _ in complaints_of(text)} == {code}
+
+
+def test_the_link_world_is_the_ground() -> None:
+    system, _ = read(converted(GRIPPER).yaml, "p.yaml")
+    assert system is not None
+    assert [(body.name, body.attached_to) for body in system.bodies][:1] == [("palm", "0")]
+    floating, _ = read(converted(GRIPPER, floating=True).yaml, "p.yaml")
+    assert floating is not None
+    assert "world" in [body.name for body in floating.bodies]
+
+
+def test_what_is_left_out_stands_in_the_description_that_every_report_begins_with() -> None:
+    """The description is a part of reports; here they are asked in every form that has words."""
+    analysis = mbsym.loads(converted(PENDULUM).yaml, problems=(1,))
+    said = "Of the robot's file is left out: contact (<collision>); dry friction of a joint."
+    assert analysis.system.description == said
+    (header,) = TARGETS["c"].companions
+    for target in (*(TARGETS[form] for form in ("latex", "html", "json", "python", "wolfram")), header):
+        text = " ".join(html.unescape(str(target.render(analysis, (1,)))).split())
+        assert "dry friction of a joint" in text, target.name
+
+
+def test_a_joint_with_ref_has_it_as_its_coordinate_where_it_is_straight() -> None:
+    """A point of mass 1 at the distance 1/2, turned by q1 - pi/6 out of the vertical; the slide is at q2 - 0.25."""
+    body = (
+        '<body name="a"><joint name="j" axis="0 1 0" ref="30"/><inertial mass="1" pos="0 0 -0.5"/>'
+        '<body name="b"><joint name="s" type="slide" axis="1 0 0" ref="0.25"/>'
+        '<inertial mass="2" pos="0 0 0"/></body></body>'
+    )
+    assert outcomes(
+        converted(mujoco("", body)).yaml,
+        "{claim: position, of: a, component: 3, equals: -cos(q1 - pi/6)/2}",
+        "{claim: position, of: b, component: 1, equals: (q2 - 0.25)*cos(q1 - pi/6)}",
+    ) == [EXACT, EXACT]
+
+
+def test_the_total_mass_may_be_set() -> None:
+    """Masses 1 and 3 become 2 and 6, and moments twice as large; with pi in them the sum stays a formula."""
+    two = '<body name="a"><joint/><inertial mass="1" pos="0 0 0" diaginertia="0.2 0.2 0.2"/></body>' + (
+        '<body name="b"><joint/><inertial mass="3" pos="0 0 0"/></body>'
+    )
+    text = mujoco('<compiler settotalmass="8"/>', two)
+    system, _ = read(converted(text).yaml, "x.yaml")
+    assert system is not None
+    assert [eval(written(body.mass)) for body in system.bodies] == [2, 6]
+    assert system.bodies[0].inertia is not None
+    assert eval(written(system.bodies[0].inertia.tensor[0][0])) == pytest.approx(0.4)
+    assert masses(mujoco('<compiler settotalmass="8"/>', BALL)) != masses(mujoco("", BALL))
+    assert not any("settotalmass" in one for one in converted(text).left_out)
+
+
+#: A frame turned by a right angle about z and moved along x; in it a body, and in that a frame with a geom and a site.
+FRAMES = """<frame name="mount" pos="1 0 0" euler="0 0 90"><body name="b" pos="0 0 2"><joint name="h" axis="0 1 0"/>
+<frame pos="0 0 -1"><geom name="g" type="sphere" size="0.1" mass="5"/><site name="tip" pos="0 0 -1"/>
+<body name="c"><joint name="s" type="slide" axis="0 0 1"/><inertial mass="3" pos="0 0 0"/></body>
+</frame></body></frame>"""
+
+
+def test_what_stands_in_frames_is_placed_relative_to_them() -> None:
+    """Turned by q1 about its axis 2, which is -x of space, the geom is at (1, 0, 2) + 1*(0, -sin q1, -cos q1)."""
+    made = converted(mujoco("", FRAMES))
+    assert (
+        outcomes(
+            made.yaml,
+            "{claim: position, of: frame, component: 2, equals: -sin(q1)}",
+            "{claim: position, of: frame, component: 1, equals: 1}",
+            "{claim: position, of: tip, component: 3, equals: 2 - 2*cos(q1)}",
+            "{claim: position, of: c, component: 2, equals: (q2 - 1)*sin(q1)}",
+        )
+        == [EXACT] * 4
+    )
+    inside = FRAMES.replace("<site", '<joint name="x"/><site')
+    assert complaints_of(mujoco("", inside))[0][0] == "unsupported"
+
+
+def test_joints_and_points_that_are_tied_are_constraints() -> None:
+    """y - pi/6 = 1/2 + 2 (x - 1/4)^2 between the joints; (0, 0, -1) of body a is 1.5 above body b, hung at 2.5."""
+    bodies = (
+        '<body name="a"><joint name="y" axis="0 1 0" ref="30"/><inertial mass="1" pos="0 0 -1"/></body>'
+        '<body name="b" pos="0 0 -2.5"><joint name="x" type="slide" axis="1 0 0" ref="0.25"/>'
+        '<inertial mass="1" pos="0 0 0"/></body>'
+    )
+    after = (
+        '<equality><joint joint1="y" joint2="x" polycoef="0.5 0 2"/><connect body1="a" body2="b" anchor="0 0 -1"/>'
+        '<connect body1="a" anchor="0 0 -1" active="false"/><weld body1="a"/></equality>'
+    )
+    made = converted(mujoco("", bodies, after))
+    system, complaints = read(made.yaml, "p.yaml")
+    assert system is not None, [one.message for one in complaints]
+    relation, coincide = system.constraints
+    assert isinstance(relation, Relation)
+    assert isinstance(coincide, Coincide)
+    assert (written(relation.left), written(relation.right)) == ("q1 - pi/6", "0.5 + 2*(q2 - 0.25)**2")
+    assert [written(x) for x in coincide.second.position] == ["0", "0", "1.5"]
+    assert {"inactive constraint (<connect>)", "constraint (<weld> in <equality>)"} <= set(made.left_out)
+    assert any("softness" in one for one in made.left_out)
+    assert complaints_of(mujoco("", bodies, '<equality><joint joint1="z"/></equality>'))[0][0] == "unknown-name"
+
+
+def test_files_beside_are_included_and_no_others(tmp_path: Path) -> None:
+    (tmp_path / "parts").mkdir()
+    inside = '<mujocoinclude><body name="b"><joint/><geom size="0.5" density="6"/></body></mujocoinclude>'
+    (tmp_path / "parts" / "b.xml").write_text(inside, encoding="utf-8")
+    file = tmp_path / "r.xml"
+    text = '<mujoco>\n<worldbody><include file="{}"/></worldbody></mujoco>'
+    file.write_text(text.format("parts/b.xml"), encoding="utf-8")
+    done = CliRunner().invoke(main, ["convert", str(file)])
+    assert done.exit_code == 0, done.output
+    assert "pi*1" in done.stdout
+    (tmp_path / "parts" / "b.xml").write_text(inside.replace("density", "densty"), encoding="utf-8")
+    done = CliRunner().invoke(main, ["convert", str(file)])
+    assert done.exit_code == 2
+    assert "r.xml:2:" in done.stderr
+    secret = tmp_path.parent / f"{tmp_path.name}.xml"
+    secret.write_text(inside, encoding="utf-8")
+    for name in (f"../{secret.name}", str(secret), "missing.xml"):
+        file.write_text(text.format(name), encoding="utf-8")
+        done = CliRunner().invoke(main, ["convert", str(file)])
+        assert done.exit_code == 2
+        assert "<include> is not read" in done.stderr

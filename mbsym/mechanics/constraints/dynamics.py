@@ -23,6 +23,9 @@ So it is done, too, where M is singular at single positions of the open tree in 
 Rows that follow from others make S singular: which of them are used is chosen locally (``dependence``), so that the
 pivots of S vanish only where all rows lose their rank, as those of a four-bar do whose links are in line.
 
+In speeds u with q' = Y(q) u + y0 it is the same with u' for q'', and a way back dq = Y du of positions; coordinates
+are the case Y = 1.  Components of quaternions and unit vectors are led back to their lengths along with it.
+
 Source: Featherstone, Rigid Body Dynamics Algorithms (2008), chapter 8; Hairer & Wanner, Solving Ordinary Differential
 Equations II, VII.1 (index 1), VII.2 (projection).
 """
@@ -30,11 +33,14 @@ Equations II, VII.1 (index 1), VII.2 (projection).
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from random import Random
 
 from flint import fmpq, fmpq_mat
 
+from mbsym.algebra.derivative import jacobian
+from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Failure, SingularPoint
 from mbsym.algebra.point import Rationals
 from mbsym.algebra.program import Node, Program
@@ -44,9 +50,12 @@ from mbsym.mechanics.bias_forces import bias_forces, forcing
 from mbsym.mechanics.composite import mass_matrix
 from mbsym.mechanics.constraints.dependence import Compliance, Dependent, measured
 from mbsym.mechanics.constraints.rows import Row, RowName, constraint_rows, kept_rows
+from mbsym.mechanics.constraints.speed_rows import speed_rows, state_rows
 from mbsym.mechanics.factorisation import Elimination
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.programs import scene_without_accelerations
+from mbsym.mechanics.speed_programs import restoring, speed_program
+from mbsym.mechanics.speeds import SpeedForm
 from mbsym.mechanics.states import SEED, drawn
 from mbsym.mechanics.variables import program_environment, ring_environment
 from mbsym.model.system import Body, System
@@ -59,11 +68,11 @@ Kept = tuple[int, int]
 
 @dataclass(frozen=True)
 class ConstrainedDynamics:
-    """Nodes of ``program`` for n coordinates and m rows, the holonomic ones first.
+    """Nodes of ``program`` for n velocities and m rows, the holonomic ones first.
 
     ``accelerations`` (n), ``multipliers`` (m; generalised forces are J^T lambda, and only these are unique where rows
     follow from others), ``pivots`` of M (n) and of S (as many as its rank, ``owners`` says of which rows each may be),
-    ``position_correction`` and ``velocity_correction`` (n each).
+    ``position_correction`` of every position and ``velocity_correction`` (n).
     """
 
     program: Program
@@ -81,11 +90,14 @@ class ConstrainedDynamics:
 class Conditions:
     """All rows that say something, as nodes of ``program``: those that are dependent among them are still there.
 
-    ``holonomic`` rows come first.
+    Holonomic ones come first.  In declared variables ``turned`` is Y of s' = Y u + y0, row by row, and ``at_rest`` s0:
+    the speeds at which nothing moves but what is prescribed.
     """
 
     program: Program
     rows: tuple[Row, ...]
+    turned: tuple[Node, ...] = ()
+    at_rest: tuple[Node, ...] = ()
 
     @property
     def names(self) -> tuple[RowName, ...]:
@@ -101,11 +113,27 @@ def conditions(system: System, ring: Ring) -> Conditions:
     return Conditions(program, holonomic_first(rows))
 
 
-def empty_rows(system: System, ring: Ring, rows: Sequence[Row]) -> frozenset[RowName]:
+def conditions_in_states(form: SpeedForm) -> Conditions:
+    """The same in the declared positions and speeds."""
+    found = speed_program(form)
+    program, carry = found.program, Carrier(form.ring, found.program, found.environment)
+    rows = [row for row in state_rows(form, found) if not row.is_trivial(program)]
+    turned = jacobian(program, found.rates, [program.input(u.name) for u in form.speeds])
+    at_rest = tuple(carry(x) for x in form.drifts)
+    return Conditions(program, holonomic_first(rows), tuple(x for row in turned for x in row), at_rest)
+
+
+def empty_rows(system: System, ring: Ring, rows: Sequence[Row], form: SpeedForm | None = None) -> frozenset[RowName]:
     """Which of these rows say 0 = 0 whatever the motion, as the ring decides; none where it cannot."""
     if not rows:
         return frozenset()
     try:
+        if form is not None:
+            exact = speed_rows(form, form.scene(), [row.name for row in rows])
+            parts = {
+                row.name: [row.position or ring.zero, row.velocity, row.acceleration, *row.partials] for row in exact
+            }
+            return frozenset(name for name, own in parts.items() if all(form.vanishes(x) is True for x in own))
         scene = Scene(system, ring, ring_environment(system, ring), ring)
         return frozenset(row.name for row in constraint_rows(scene, kept_rows(rows)) if row.is_trivial(ring))
     except Failure:
@@ -139,10 +167,8 @@ def constrained_dynamics(
     loads do.
     """
     if not massless:
-        try:
+        with suppress(SingularPoint):  # a pivot of M is zero
             return _constrained_dynamics(system, ring, chosen, apart, False)
-        except SingularPoint:
-            pass  # a pivot of M is zero
     return _constrained_dynamics(system, ring, chosen, apart, True)
 
 
@@ -154,12 +180,51 @@ def _constrained_dynamics(
     scene = scene_without_accelerations(system, ring, program, inputs)
     frames = articulation(scene, apart)
     rows = holonomic_first(constraint_rows(scene, chosen.rows))
-    partials = [row.partials for row in rows]
-    holonomic = sum(row.position is not None for row in rows)
     masses: Sequence[Sequence[Node]] = mass_matrix(frames)
     forces: Sequence[Node] = forcing(frames, bias_forces(frames))
-    if massless or _held_by_rows(scene, program, masses, partials):
+    if massless or _held_by_rows(scene, program, masses, [row.partials for row in rows]):
         masses, forces = _added(scene, rows, masses, forces)
+    return _solved(program, inputs, rows, masses, forces, chosen)
+
+
+def state_dynamics(form: SpeedForm, chosen: Chosen, massless: bool = False) -> ConstrainedDynamics:
+    """The same in the declared positions and speeds: accelerations are u'."""
+    if not massless:
+        with suppress(SingularPoint):
+            return _state_dynamics(form, chosen, False)
+    return _state_dynamics(form, chosen, True)
+
+
+def _state_dynamics(form: SpeedForm, chosen: Chosen, massless: bool) -> ConstrainedDynamics:
+    tree = speed_program(form)
+    program, names = tree.program, [x.name for x in form.positions]
+    rows = holonomic_first(state_rows(form, tree, chosen.rows))
+    masses: Sequence[Sequence[Node]] = tree.mass_matrix
+    forces: Sequence[Node] = tree.forcing
+    if massless:
+        masses, forces = _added(tree.scene, rows, masses, forces)
+    found = _solved(program, tree.environment, rows, masses, forces, chosen)
+    moved = restoring(program, form.system)
+    placed = [
+        program.dot(row, found.position_correction) + moved.get(name, program.zero)
+        for name, row in zip(
+            names, jacobian(program, tree.rates, [program.input(u.name) for u in form.speeds]), strict=True
+        )
+    ]
+    return replace(found, position_correction=tuple(placed))
+
+
+def _solved(
+    program: Program,
+    inputs: Mapping[str, Node],
+    rows: tuple[Row, ...],
+    masses: Sequence[Sequence[Node]],
+    forces: Sequence[Node],
+    chosen: Chosen,
+) -> ConstrainedDynamics:
+    """The equations of M, f and the rows, over the velocities of M."""
+    partials = [row.partials for row in rows]
+    holonomic = sum(row.position is not None for row in rows)
     tree = Elimination(program, masses, [forces, *partials])
     free, *weighted = tree.forward
 

@@ -41,10 +41,8 @@ def eliminated(rows: Sequence[Sequence[Any]], order: Sequence[int], tiny: arb | 
     """
     left = [list(row) for row in rows]
     pivots: list[tuple[int, int]] = []
-    exact = True
+    free, exact = list(order), True
     for i in range(len(left)):
-        taken = {column for _, column in pivots}
-        free = [column for column in order if column not in taken]
         nonzero = [
             column
             for column in free
@@ -59,12 +57,15 @@ def eliminated(rows: Sequence[Sequence[Any]], order: Sequence[int], tiny: arb | 
         factor = left[i][column]
         left[i] = [x / factor for x in left[i]]
         left[i][column] = factor / factor if not isinstance(factor, arb) else arb(1)
+        own = [(place, y) for place, y in enumerate(left[i]) if not _is_exact_zero(y)]  # mechanisms have few in a row
         for k, row in enumerate(left):
             scale = row[column]
             if k != i and not _is_exact_zero(scale):
-                left[k] = [x - scale * y for x, y in zip(row, left[i], strict=True)]
-                left[k][column] = scale - scale if not isinstance(scale, arb) else arb(0)
+                for place, y in own:
+                    row[place] -= scale * y
+                row[column] = scale - scale if not isinstance(scale, arb) else arb(0)
         pivots.append((i, column))
+        free.remove(column)
     return Eliminated(tuple(pivots), tuple(map(tuple, left)), exact)
 
 
@@ -75,7 +76,3 @@ def is_certain(x: Any) -> bool:
 
 def _is_exact_zero(x: Any) -> bool:
     return bool(x.is_zero()) if isinstance(x, arb) else bool(x == 0)
-
-
-def may_be_zero(x: Any) -> bool:
-    return not is_certain(x)

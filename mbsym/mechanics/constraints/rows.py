@@ -108,17 +108,28 @@ def constraint_rows(scene: Scene, kept: Sequence[tuple[int, int]] | None = None)
             _forms(scene, constraint, along_coordinate(scene, name), name) if name in moved else None
             for name in scene.system.coordinates
         ]
+        labels = row_names(number, constraint)
         for k in wanted:
-            label = RowName(
-                number, k + 1 if len(forms) > 1 else 0, kind_name(constraint), is_holonomic(constraint), constraint.span
-            )
             partials = tuple(
                 scene.algebra.zero if slope is None else scene.algebra.reduce(slope[k].velocity) for slope in slopes
             )
             reduce, form = scene.algebra.reduce, forms[k]
             position = None if form.position is None else reduce(form.position)
-            rows.append(Row(label, position, reduce(form.velocity), reduce(form.acceleration), partials))
+            rows.append(Row(labels[k], position, reduce(form.velocity), reduce(form.acceleration), partials))
     return tuple(rows)
+
+
+def row_names(number: int, constraint: Constraint) -> tuple[RowName, ...]:
+    """The names of all rows of the constraint of this number."""
+    match constraint:
+        case Coincide() | Rolling():
+            components: Sequence[int] = (1, 2, 3)
+        case Parallel():
+            components = (1, 2)
+        case _:
+            components = (0,)
+    kind, holonomic = kind_name(constraint), is_holonomic(constraint)
+    return tuple(RowName(number, k, kind, holonomic, constraint.span) for k in components)
 
 
 def _moved_by(scene: Scene, constraint: Constraint) -> set[str]:

@@ -1,72 +1,84 @@
-"""The rows of constraints in speeds u and positions s, over the ring.
+"""The rows of constraints in speeds u and positions s, over any scalar.
 
     position      f(s, t)                                       of a holonomic constraint, else None
     velocity      g = J u + j                     = df/dt       where there is an f
-    acceleration  dg/dt = J u' + gamma,           gamma = dg/dt at u' = 0
+    acceleration  gamma = dg/dt at u' = 0,        dg/dt = J u' + gamma
+    partials      J, the derivatives of g by the speeds
 
 Positions come from the geometry of the scene, rates from the derivation of the variables (e' = e x omega for unit
 vectors); a material point has the velocity V + omega x c, V and omega in speeds: no angle is differentiated where none
-is a variable.  J is read off g, which is linear in u.  Rows are those of ``rows``, in the same axes.
+is a variable.  J is read off g, which is linear in u.  Rows are those of ``rows``, in the same axes.  Rates and
+derivatives are those of polynomials over the ring, and of nodes over a program, where nothing is expanded.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 
-from mbsym.algebra.ring import Polynomial
+from mbsym.algebra.base import Scalar
+from mbsym.algebra.derivative import directional, jacobian
+from mbsym.algebra.program import Node
 from mbsym.algebra.vectors import Vector
-from mbsym.mechanics.constraints.rows import RowName, difference, normals
+from mbsym.mechanics.constraints.rows import Row, RowName, difference, normals, row_names
 from mbsym.mechanics.constraints.seen import common_frame
 from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.speed_programs import SpeedProgram
 from mbsym.mechanics.speeds import SpeedForm
-from mbsym.model.constraints import Coincide, Constraint, Distance, Parallel, Relation, Rolling, Velocity
+from mbsym.model.constraints import Coincide, Constraint, Distance, Parallel, Relation, Rolling, Velocity, as_written
 from mbsym.model.system import INERTIAL, Point
 
 
-@dataclass(frozen=True, slots=True)
-class SpeedRow:
-    """One scalar constraint: f, g, J by the speeds in their order, gamma."""
-
-    name: RowName
-    position: Polynomial | None
-    velocity: Polynomial
-    partials: tuple[Polynomial, ...]
-    gamma: Polynomial
+def speed_rows(form: SpeedForm, scene: Scene, names: Sequence[RowName]) -> tuple[Row, ...]:
+    """The rows of these names over the ring; ``scene`` is that of the form, with bodies.  Raises NoClosedForm."""
+    ring = form.ring
+    return _rows(scene, names, form.drift, lambda g: tuple(ring.derivative(g, u.name) for u in form.speeds))
 
 
-def speed_rows(form: SpeedForm, scene: Scene, names: Sequence[RowName]) -> tuple[SpeedRow, ...]:
-    """The rows of these names; ``scene`` is that of the form, with bodies.  Raises NoClosedForm."""
-    ring, found = form.ring, []
+def state_rows(form: SpeedForm, found: SpeedProgram, kept: Sequence[tuple[int, int]] | None = None) -> tuple[Row, ...]:
+    """All rows, or those that are ``kept``, by (constraint, component), as nodes of the program."""
+    program, scene, prescribed = found.program, found.scene, form.system.prescribed
+    moving = [program.input(name) for name in (*(x.name for x in form.positions), *(x.name for x in prescribed), "t")]
+    ways: list[Node] = [*found.rates, *(scene.lower(x.rate) for x in prescribed), program.one]
+    speeds = [program.input(u.name) for u in form.speeds]
+    names = [one for k, x in enumerate(form.system.constraints) for one in row_names(k, x)]
+    names = [one for one in names if kept is None or (one.constraint, one.component) in kept]
+    return _rows(
+        scene,
+        names,
+        lambda x: directional(program, [x], moving, ways)[0],
+        lambda g: jacobian(program, [g], speeds)[0],
+    )
+
+
+def _rows(
+    scene: Scene,
+    names: Sequence[RowName],
+    rate: Callable[[Scalar], Scalar],
+    slopes: Callable[[Scalar], tuple[Scalar, ...]],
+) -> tuple[Row, ...]:
+    """``rate`` is d/dt at u' = 0, ``slopes`` are the derivatives by the speeds."""
+    reduce, found = scene.algebra.reduce, []
     for number in dict.fromkeys(name.constraint for name in names):
-        constraint = form.system.constraints[number]
+        constraint = as_written(scene.system.constraints[number])
         holonomic = _positions(scene, constraint)
-        velocities = _velocities(scene, constraint) if holonomic is None else [form.rate(f) for f in holonomic]
+        velocities = _velocities(scene, constraint) if holonomic is None else [rate(f) for f in holonomic]
         for name in (one for one in names if one.constraint == number):
             k = max(name.component - 1, 0)
-            g = ring.reduce(velocities[k])
-            found.append(
-                SpeedRow(
-                    name,
-                    None if holonomic is None else ring.reduce(holonomic[k]),
-                    g,
-                    tuple(ring.derivative(g, u.name) for u in form.speeds),
-                    form.drift(g),
-                )
-            )
+            g = reduce(velocities[k])
+            found.append(Row(name, None if holonomic is None else reduce(holonomic[k]), g, rate(g), slopes(g)))
     return tuple(found)
 
 
-def _positions(scene: Scene, constraint: Constraint) -> list[Polynomial] | None:
+def _positions(scene: Scene, constraint: Constraint) -> list[Scalar] | None:
     """f of every row; None of a constraint that is given by velocities."""
-    ring = scene.ring
+    algebra = scene.algebra
     match constraint:
         case Coincide(first, second):
             return list(_pair(scene, first, second))
         case Distance(first, second, length):
             apart, long = _pair(scene, first, second), scene.lower(length)
-            return [ring.times(ring.number(Fraction(1, 2)), apart.dot(apart) - ring.times(long, long))]
+            return [algebra.times(algebra.number(Fraction(1, 2)), apart.dot(apart) - algebra.times(long, long))]
         case Parallel(first, second):
             frame = common_frame(scene, (first.body, second.body))
             other = scene.to_axes(scene.vector(second.direction, second.body), frame)
@@ -84,7 +96,7 @@ def _pair(scene: Scene, first: Point, second: Point) -> Vector:
     return a - b
 
 
-def _velocities(scene: Scene, constraint: Constraint) -> list[Polynomial]:
+def _velocities(scene: Scene, constraint: Constraint) -> list[Scalar]:
     """g of every row of a constraint that is given by velocities."""
     if isinstance(constraint, Velocity):
         return [scene.lower(difference(constraint.left, constraint.right))]

@@ -80,6 +80,7 @@ class Manifold:
         self.ring = ring
         self.found = found
         self.program = found.tree.program
+        self._known_slopes: dict[tuple[str, ...], tuple[tuple[Node, ...], ...]] = {}
 
     @cached_property
     def _positions(self) -> list[Node]:
@@ -227,8 +228,8 @@ class Manifold:
                 values[suffix(name)] = arb(fmpq(source.randint(-40, 40) or 1, source.randint(1, 24)))
         done = self._pivots(begin, Balls(dict(begin)))
         step = {k: arb(source.choice((-1, 1)) * source.randint(50, 100)) / 100 for k in range(len(names))}
+        free = [k for k in range(len(names)) if k not in done.columns]
         for i, column in done.pivots:
-            free = (k for k in range(len(names)) if k not in done.columns)
             step[column] = -sum((done.rows[i][k] * step[k] for k in free), arb(0))
         largest = max(float(abs(x).upper()) for x in step.values())
         for k, name in enumerate(names):
@@ -367,8 +368,11 @@ class Manifold:
         return changed if all(x == 0 for x in left) and not vanished else None
 
     def _slopes(self, names: Sequence[str]) -> tuple[tuple[Node, ...], ...]:
-        inputs = [self.found.environment[name] for name in names]
-        return jacobian(self.program, self._positions, inputs)
+        known = self._known_slopes.get(tuple(names))
+        if known is None:
+            inputs = [self.found.environment[name] for name in names]
+            known = self._known_slopes[tuple(names)] = jacobian(self.program, self._positions, inputs)
+        return known
 
     # --- velocities and accelerations, by linear equations ---
 

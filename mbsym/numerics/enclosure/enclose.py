@@ -16,8 +16,9 @@ from functools import cached_property
 from math import inf, log2
 from time import perf_counter
 
-from flint import arb, ctx, fmpq
+from flint import arb, ctx
 
+from mbsym.algebra import rationals
 from mbsym.numerics.enclosure.field import Field, upper
 from mbsym.numerics.enclosure.segment import CannotStep, Segment, advanced, bundle
 from mbsym.numerics.kernels.interface import Code
@@ -198,7 +199,7 @@ def _late(taken: float, allowed: float, part: float) -> bool:
 
 
 def _ball(value: Fraction | arb) -> arb:
-    return value if isinstance(value, arb) else arb(fmpq(value.numerator, value.denominator))
+    return value if isinstance(value, arb) else rationals.ball(value)
 
 
 def _radius(value: arb) -> float:

@@ -14,6 +14,7 @@ its last coefficients are that small (``resolved``); where they are not, the cal
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -32,7 +33,11 @@ MOST_STEPS = 100
 
 _PLACES = -np.cos(np.pi * np.arange(NODES) / (NODES - 1))
 _PLACES[NODES // 2] = 0.0
-_TO_SERIES = np.linalg.inv(np.polynomial.chebyshev.chebvander(_PLACES, NODES - 1)).T
+
+
+@cache
+def _to_series() -> Any:
+    return np.linalg.inv(np.polynomial.chebyshev.chebvander(_PLACES, NODES - 1)).T
 
 
 @dataclass(frozen=True)
@@ -52,7 +57,7 @@ def nodes(start: float, end: float) -> Any:
 
 def series(values: Any) -> Any:
     """c_k of the functions whose values at the nodes are given, shape (..., NODES)."""
-    return values @ _TO_SERIES
+    return values @ _to_series()
 
 
 def free_of_zeros(found: Any) -> Any:

@@ -21,8 +21,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from flint import arb, ctx, fmpq, fmpq_mat
+from flint import arb, ctx, fmpq_mat
 
+from mbsym.algebra import rationals
 from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.matrices import components, determinant
 from mbsym.algebra.rationals import ball
@@ -187,7 +188,7 @@ def _independent(angles: Sequence[Any], coordinates: Sequence[str]) -> int:
         return 0
     rows = [dict(form.coefficients) for form in forms if form is not None]
     numbers = [[row.get(name, Fraction(0)) for name in coordinates] for row in rows]
-    matrix = fmpq_mat(len(rows), len(coordinates), [fmpq(x.numerator, x.denominator) for row in numbers for x in row])
+    matrix = fmpq_mat(len(rows), len(coordinates), [rationals.exact(x) for row in numbers for x in row])
     return int(matrix.rank())
 
 

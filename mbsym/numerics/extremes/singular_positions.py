@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 from flint import fmpq, fmpq_mat
 
+from mbsym.algebra import rationals
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.point import Rationals
 from mbsym.mechanics.variables import angle_denominators
@@ -295,7 +296,7 @@ class Search:
             value = Fraction(x).limit_denominator(SHORT)
             if abs(x - value) > NEAR * (1 + abs(x)):
                 return None
-            values[name] = fmpq(value.numerator, value.denominator)
+            values[name] = rationals.exact(value)
             labels[name], exact[name] = str(value), value
         # An angle itself is irrational: only its sine and cosine may be asked for.
         values |= dict.fromkeys(basic, _Irrational()) | {"pi": _Irrational()}

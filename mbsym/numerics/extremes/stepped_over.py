@@ -16,6 +16,7 @@ import numpy as np
 
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.extremes.singular_positions import Search
+from mbsym.numerics.methods.kept import compiled_kernel
 
 #: How near the curve comes, and the part of its usual size to which the least singular value has fallen beside it.
 WITHIN, FALLEN = 2e-3, 0.5
@@ -28,7 +29,8 @@ def stepped_over(dynamics: Dynamics, times: Any, states: Any, known: Sequence[fl
     """The times at which a run, with rows as dense as its steps, went over a singular position.
 
     ``states`` (2n, m) at ``times``; ``known`` are times of those over which the motion was carried.  Times are good to
-    the distance of rows where the constraints move by themselves: positions are sought with the time held.
+    the distance of rows where the constraints move by themselves: positions are sought with the time held.  In declared
+    variables the least singular value itself has to fall to ``WITHIN`` on the curve.
     """
     constraints = dynamics.constraints
     if constraints is None or not constraints.kept or len(times) < 4:
@@ -36,8 +38,9 @@ def stepped_over(dynamics: Dynamics, times: Any, states: Any, known: Sequence[fl
     states = np.asarray(states, dtype=float)
     n = constraints.size
     sizes = np.max(np.abs(states[:n]), axis=1)
-    search = Search(dynamics.scenario, constraints, np.where(sizes > 0, sizes, 1.0))
-    least = _least(constraints, search, times, states)
+    search = None if dynamics.in_states else Search(dynamics.scenario, constraints, np.where(sizes > 0, sizes, 1.0))
+    scales = np.ones(n) if search is None else search.scales
+    least = _least(constraints, scales, times, states)
     usual = float(np.median(least))
     inner = (
         np.flatnonzero((least[1:-1] <= least[:-2]) & (least[1:-1] <= least[2:]) & (least[1:-1] < FALLEN * usual)) + 1
@@ -47,18 +50,38 @@ def stepped_over(dynamics: Dynamics, times: Any, states: Any, known: Sequence[fl
         span = slice(max(0, k - 1), min(len(times), k + 2))
         if any(times[span][0] <= one <= times[span][-1] for one in known):
             continue
-        time = _met(search, times[span], states[:, span], times[k])
+        if search is None:
+            time = _fallen(dynamics, times[span], states[:, span], WITHIN * usual)
+        else:
+            time = _met(search, times[span], states[:, span], times[k])
         if time is not None:
             found.append(time)
     return tuple(sorted(found))
 
 
-def _least(constraints: Any, search: Search, times: Any, states: Any) -> Any:
+def _least(constraints: Any, scales: Any, times: Any, states: Any) -> Any:
     """Of all rows, each of length 1, the singular value that falls to zero where their rank does, at every time."""
-    rows = constraints.along(times, states).partials * search.scales[None, :, None]
+    rows = constraints.along(times, states).partials * scales[None, :, None]
     lengths = np.linalg.norm(rows, axis=1)
     rows = rows / np.maximum(np.max(lengths, axis=1), 1e-300)[:, None, None]
     return np.linalg.svd(np.moveaxis(rows, 2, 0), compute_uv=False)[:, constraints.rank - 1]
+
+
+def _fallen(dynamics: Dynamics, times: Any, states: Any, least: float) -> float | None:
+    """When the least singular value falls to ``least`` on the curve through states and their rates; None if never."""
+    from scipy.interpolate import CubicHermiteSpline
+
+    assert dynamics.constraints is not None
+    rates = compiled_kernel(dynamics, "right_hand_side")(np.vstack([times, states]))
+    at = np.linspace(times[0], times[-1], FINE)
+    found = _least(
+        dynamics.constraints,
+        np.ones(dynamics.constraints.size),
+        at,
+        CubicHermiteSpline(times, states, rates, axis=1)(at),
+    )
+    best = int(np.argmin(found))
+    return float(at[best]) if found[best] <= least else None
 
 
 def _met(search: Search, times: Any, states: Any, middle: float) -> float | None:

@@ -23,13 +23,14 @@ from fractions import Fraction
 from functools import cache
 from typing import Any
 
+import llvmlite
 import llvmlite.binding as llvm
 import numpy as np
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.program import PRODUCT_ROUNDING, ROUNDINGS
 from mbsym.expressions.table import Tabulated
-from mbsym.numerics.kernels import lookup, sine_cosine
+from mbsym.numerics.kernels import lookup, sine_cosine, stored
 from mbsym.numerics.kernels.cells import address_of
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64, Code, Kernel
 from mbsym.numerics.kernels.sine_cosine import splat, vector
@@ -117,7 +118,8 @@ def available(scalar: str) -> bool:
 
 
 #: Longer programs are split into functions of ``PART`` operations, for which compilers take more than linear time, and
-#: are not searched for operations that could be done side by side, which takes longest and gains some percent.
+#: are not searched for operations that could be done side by side, which takes longest and gains some percent; nor is
+#: there anything that higher levels of optimisation would find in them in twice the time.
 LONG, PART = 4_000, 500
 
 
@@ -394,7 +396,7 @@ class _Form:
         one, before = self.scalar.type, "poison"
         single = local if self.lanes == 1 else f"{local}.s"
         known = single if one == "double" else f"{local}.d"
-        yield f"  {known} = load double, ptr inttoptr (i64 {address} to ptr)"
+        yield f"  {known} = load double, ptr {_IN_MEMORY} (i64 {address} to ptr)"
         if one != "double":
             change = "fpext" if self.scalar.name == EXTENDED else "fptrunc"
             yield f"  {single} = {change} double {known} to {one}"
@@ -630,6 +632,13 @@ ATTRIBUTES = (
 )
 
 
+#: To be counted up when ``Library`` does something else with a text than before.
+_PASSES = "1"
+
+#: How a text says an address in the memory of this process.
+_IN_MEMORY = "inttoptr"
+
+
 @cache
 def _started() -> None:
     llvm.initialize_native_target()
@@ -640,23 +649,31 @@ def _started() -> None:
 
 
 class Library:
-    """Compiled functions by name; their machine code lives as long as this object."""
+    """Compiled functions by name; their machine code lives as long as this object, and is kept for other processes."""
 
     def __init__(self, text: str, level: int = 2, thorough: bool = True) -> None:
         _started()
-        target = llvm.Target.from_default_triple()
-        machine = target.create_target_machine(
-            cpu=llvm.get_host_cpu_name(), features=llvm.get_host_cpu_features().flatten(), opt=level, jit=True
-        )
-        module = llvm.parse_assembly(text)
+        target, cpu = llvm.Target.from_default_triple(), llvm.get_host_cpu_name()
+        features = llvm.get_host_cpu_features().flatten()
+        machine = target.create_target_machine(cpu=cpu, features=features, opt=level, jit=True)
+        versions = (_PASSES, llvmlite.__version__, *map(str, llvm.llvm_version_info))
+        key = stored.key_of([*versions, machine.triple, cpu, features, str(level), str(thorough), text])
+        lasting = _IN_MEMORY not in text  # addresses are this process's own
+        code = stored.found(key) if lasting else None
+        module = llvm.parse_assembly(text if code is None else "")
         module.triple = machine.triple
         module.data_layout = str(machine.target_data)
-        module.verify()
-        options = llvm.create_pipeline_tuning_options(speed_level=level)
-        options.slp_vectorization = thorough
-        builder = llvm.create_pass_builder(machine, options)
-        builder.getModulePassManager().run(module, builder)
+        if code is None:
+            module.verify()
+            options = llvm.create_pipeline_tuning_options(speed_level=level)
+            options.slp_vectorization = thorough
+            builder = llvm.create_pass_builder(machine, options)
+            builder.getModulePassManager().run(module, builder)
         self._engine = llvm.create_mcjit_compiler(module, machine)
+        if code is not None:
+            self._engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+        elif lasting:
+            self._engine.set_object_cache(lambda _, made: stored.keep(key, made))
         self._engine.finalize_object()
 
     def function(self, name: str, *arguments: Any, result: Any = None) -> Callable[..., Any]:
@@ -672,8 +689,8 @@ def compiled(codes: Mapping[str, Code], scalar: str = FLOAT64, more: str = "", m
         parts.append(function_text(name, code, chosen))
         if many:
             parts.append(many_text(name, code, chosen))
-    longest = max((len(code.program.live(code.outputs)) for code in codes.values()), default=0)
-    return Library("\n".join([*parts, more, ATTRIBUTES]), thorough=longest <= LONG)
+    short = max((len(code.program.live(code.outputs)) for code in codes.values()), default=0) <= LONG
+    return Library("\n".join([*parts, more, ATTRIBUTES]), level=2 if short else 1, thorough=short)
 
 
 def kernel(code: Code, scalar: str = FLOAT64) -> Kernel:

@@ -11,8 +11,9 @@ from fractions import Fraction
 from functools import partial
 from typing import Any
 
-from flint import arb, ctx, fmpq
+from flint import arb, ctx
 
+from mbsym.algebra import rationals
 from mbsym.algebra.point import Balls
 from mbsym.numerics.kernels.interface import Code
 
@@ -43,7 +44,7 @@ def written(
             match instruction.operation, operands:
                 case "constant", _:
                     assert isinstance(instruction.payload, Fraction)
-                    scope[local] = arb(fmpq(instruction.payload.numerator, instruction.payload.denominator))
+                    scope[local] = rationals.ball(instruction.payload)
                     continue
                 case "input", _:
                     text = f"x[{slots[str(instruction.payload)]}]"

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from flint import arb, ctx, fmpq
+from flint import arb, ctx
 
+from mbsym.algebra import rationals
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.point import Balls
@@ -154,7 +155,7 @@ def relative_size(numbers: Scenario | None, load: NewtonianGravity) -> float | N
     state = dict(zip((*system.coordinates, *system.velocities), numbers.state, strict=True))
     values = {**numbers.parameters, **state, **{name: initial for name, (initial, _) in numbers.prescribed.items()}}
     with ctx.workprec(PRECISION):
-        environment = {name: arb(fmpq(x.numerator, x.denominator)) for name, x in values.items()}
+        environment = {name: rationals.ball(x) for name, x in values.items()}
         environment |= {"t": arb(0), "pi": arb.pi()}
         for name in system.coordinates:
             environment[acceleration_name(name)] = arb(0)

@@ -18,7 +18,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.polynomial import chebyshev
 
 from mbsym.numerics.methods.interface import Breakdown, Run
 
@@ -130,6 +129,7 @@ class _Fitted:
     """The polynomials of q that fit q and q' in least squares; called, (q, q') at times."""
 
     def __init__(self, times: Any, positions: Any, velocities: Any) -> None:
+        chebyshev = np.polynomial.chebyshev  # loaded here: few motions come so far
         self._middle, self._half = (times[0] + times[-1]) / 2, (times[-1] - times[0]) / 2
         share = (times - self._middle) / self._half
         values = chebyshev.chebvander(share, DEGREE)
@@ -143,6 +143,7 @@ class _Fitted:
         self.misfit = float(np.max(apart / (1e-300 + np.max(np.abs(data), axis=0) + self._half)))
 
     def __call__(self, times: Any) -> Any:
+        chebyshev = np.polynomial.chebyshev
         share = (np.asarray(times, dtype=float) - self._middle) / self._half
         places = chebyshev.chebval(share, self._parts)
         rates = chebyshev.chebval(share, chebyshev.chebder(self._parts)) / self._half

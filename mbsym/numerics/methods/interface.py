@@ -120,7 +120,7 @@ class Piece:
         """The states (2n, m) at m times, or (2n,) at one.  Raises ValueError where one is beyond the ends."""
         at = np.asarray(times)
         slack = 1e-12 * (abs(self.start) + abs(self.end))
-        if np.any(at < self.start - slack) or np.any(at > self.end + slack):
+        if at.size and not (self.start - slack <= at.min() and at.max() <= self.end + slack):
             raise ValueError(f"a time beyond the piece from {self.start:.9g} to {self.end:.9g}")
         return self.curve(at) if at.ndim else self.curve(at[None])[:, 0]
 

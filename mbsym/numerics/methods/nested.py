@@ -30,8 +30,10 @@ class Nested:
         rest = 1 - share
         total = np.zeros((len(self.before), len(share)), dtype)
         for place in reversed(range(len(self.terms))):
-            total = (self.terms[place] + total) * (share if place % 2 == 0 else rest)
-        return np.where(times == self.reached, self.arrived, self.before + total)
+            total += self.terms[place]
+            total *= share if place % 2 == 0 else rest
+        total += self.before
+        return np.where(times == self.reached, self.arrived, total)
 
 
 def hermite(length: Any, change: Any, before: Any, after: Any) -> Any:

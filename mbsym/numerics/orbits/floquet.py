@@ -138,7 +138,7 @@ def jacobian_on_motion(dynamics: Dynamics) -> tuple[Code, bool]:
         raise NotPeriodic("the description has no unperturbed motion (motion:)")
     n, rhs, jacobian = dynamics.size, dynamics.right_hand_side, dynamics.jacobian
     if dynamics.switches.outputs:
-        raise NotPeriodic("the equations hold sign, abs or step, whose derivatives jump")
+        raise NotPeriodic("the equations hold sign, abs or step, or a table with kinks, whose derivatives jump")
     fresh = bound(dynamics.scenario)
     time = fresh.input("t")
     for place, (name, velocity) in enumerate(zip(dynamics.system.coordinates, dynamics.system.velocities, strict=True)):
@@ -175,12 +175,12 @@ def common_frequency(code: Code) -> Fraction:
     slopes: dict[int, Fraction] = {}
     frequencies: dict[int, frozenset[Fraction]] = {}
     for number in program.live(code.outputs):
-        operation, operands, _ = program.instructions[number]
+        operation, operands, payload = program.instructions[number]
         slope = [slopes[operand] for operand in operands]
         known = frozenset().union(*(frequencies[operand] for operand in operands)) if operands else frozenset()
         match operation:
             case "input" | "constant":
-                found = Fraction(int(operation == "input"))
+                found = Fraction(int(payload == "t"))
             case "add":
                 found = slope[0] + slope[1]
             case "subtract":

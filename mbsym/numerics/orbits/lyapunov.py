@@ -7,6 +7,9 @@ chaotic is proved by none of them.  The uncertainty is that of the mean of block
 Student's distribution, and how far the mean of that half is from that of the whole time (the directions need a while to
 turn where they grow most); it knows nothing of what comes later.  The sum of all exponents is checked against the mean
 divergence of the equations, which is integrated without any Q or R (Liouville).
+
+With constraints there are as many exponents as dimensions of what they allow: 2n less the independent rows on positions
+and on velocities.  Changes keep the constraints, and the divergence is tr(P J), P the projection on such changes.
 """
 
 from __future__ import annotations
@@ -19,7 +22,6 @@ from typing import Any
 
 import numpy as np
 
-from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import Breakdown
 from mbsym.numerics.methods.kept import compiled_kernel
@@ -30,6 +32,9 @@ BLOCKS, STUDENT = 16, 2.131
 
 #: So many intervals at least.
 LEAST_INTERVALS = 64
+
+#: A state on constraints that is led back rests where it has not moved by more than this part.
+RESTS = 1e-12
 
 #: Points of Gauss and Legendre for about every step, for the mean divergence.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(5)
@@ -104,19 +109,22 @@ def exponents(
 
     ``every``: how often the columns are made orthogonal again.  A motion that breaks down, or Ctrl-C, ends it early.
     """
-    refuse_constraints(dynamics.system, "Lyapunov exponents")
-    flow = Flow(dynamics, tolerance, count)
+    constraints = dynamics.constraints
+    state = np.array([float(x) for x in dynamics.scenario.state])
+    basis = np.eye(len(state)) if constraints is None else constraints.tangent(0.0, state)
+    most = basis.shape[1]
+    flow = Flow(dynamics, tolerance, most if count is None else min(count, most))
     intervals = max(LEAST_INTERVALS, int(np.ceil(time / every)))
     ends = np.linspace(0.0, time, intervals + 1)
-    state = np.array([float(x) for x in dynamics.scenario.state])
-    tangents = _directions(flow.size, flow.columns)
+    tangents = basis @ _directions(most, flow.columns)
     growth, divergences, ended, resting, first = [], [], None, True, state
     try:
         for start, end in pairwise(ends):
             before = state
             state, tangents = flow.passage(state, float(start), float(end), tangents)
             tangents, triangle = np.linalg.qr(tangents)
-            resting = resting and bool(np.all(state == first))
+            near = 0.0 if constraints is None else RESTS
+            resting = resting and bool(np.all(np.abs(state - first) <= near * (1 + np.abs(first))))
             growth.append(np.log(np.abs(np.diag(triangle))))
             divergences.append((before, float(start), float(end)))
             watch(float(end))
@@ -132,7 +140,7 @@ def exponents(
     values = history[-1]
     panels = max(1, flow.run.work.steps // len(rates))
     divergence = _mean_divergence(dynamics, divergences, panels, tolerance)
-    error = abs(float(np.sum(values)) - divergence) if flow.columns == flow.size else float("nan")
+    error = abs(float(np.sum(values)) - divergence) if flow.columns == most else float("nan")
     doubt, linear = _uncertainty(rates, times), dynamics.linear
     return Exponents(values, doubt, times, history, divergence, error, float(times[-1]), ended, linear, resting)
 
@@ -164,10 +172,16 @@ def _mean_divergence(dynamics: Dynamics, starts: Any, panels: int, tolerance: fl
     plain, jacobian, size = Flow(dynamics, tolerance, 0), compiled_kernel(dynamics, "jacobian"), 2 * dynamics.size
     middles = (np.arange(panels)[:, None] + (1 + _NODES) / 2).reshape(-1) / panels
     weights = np.tile(_WEIGHTS / 2, panels) / panels
-    total = 0.0
+    constraints, total = dynamics.constraints, 0.0
     for state, start, end in starts:
         times = start + (end - start) * middles
         states = plain.along(state, start, times)
         rows = jacobian(np.vstack([times, states]))
-        total += (end - start) * float(weights @ rows[:: size + 1].sum(axis=0))
+        if constraints is None:
+            traces = rows[:: size + 1].sum(axis=0)
+        else:
+            bases = [constraints.tangent(t, x) for t, x in zip(times, states.T, strict=True)]
+            whole = rows.reshape(size, size, -1)
+            traces = np.array([np.sum(b * (whole[:, :, k] @ b)) for k, b in enumerate(bases)])
+        total += (end - start) * float(weights @ traces)
     return total / float(starts[-1][2])

@@ -23,13 +23,13 @@ from typing import Any
 import numpy as np
 
 from mbsym.expressions.message import Counted, Message
-from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.kernels.llvm import available
 from mbsym.numerics.methods.interface import Breakdown, Setting, Unusable
 from mbsym.numerics.methods.kept import compiled_kernel
 from mbsym.numerics.methods.table import METHODS
+from mbsym.numerics.orbits.floquet import NotPeriodic, common_frequency
 from mbsym.numerics.orbits.flow import Flow
 
 #: Newton's steps at most, and how small what is left over must be, as part of the state's size.
@@ -52,6 +52,9 @@ RANK = 1e-9
 
 #: A vector is an eigenvector for 1 if Phi moves it by less, as part of |Phi| and its own length.
 FIXED = 1e-7
+
+#: The equations are the same a period later if their right-hand sides differ by less, at so many times.
+REPEATED, SAMPLES = 1e-8, 25
 
 
 class NotFound(Exception):
@@ -118,8 +121,9 @@ def autonomous(dynamics: Dynamics) -> bool:
 
 
 def conserves_energy(dynamics: Dynamics) -> bool:
-    """Whether dh/dt vanishes as a program at these numbers."""
-    return not dynamics.energy_power.outputs
+    """Whether dh/dt vanishes as a program at these numbers, and constraints, if any, do not move by themselves."""
+    unmoved = dynamics.constraints is None or dynamics.constraints.steady
+    return unmoved and not dynamics.energy_power.outputs
 
 
 def cyclic_coordinates(dynamics: Dynamics) -> tuple[str, ...]:
@@ -136,13 +140,14 @@ def periodic_orbit(
 
     Raises NotFound where Newton's method does not converge, or converges to rest (period and state say so).
     """
-    refuse_constraints(dynamics.system, "periodic motions")
     flow = Flow(dynamics, tolerance)
     known_time = not autonomous(dynamics)
     free_period = not (known_time or guess.keep_period)
     names = (*dynamics.system.coordinates, *dynamics.system.velocities)
     turns = np.array([2 * np.pi * guess.turns.get(name, 0) for name in names])
     rates, energy = compiled_kernel(dynamics, "right_hand_side"), _Energy(dynamics)
+    if known_time:
+        _require_repetition(dynamics, rates, guess)
     search = _Search(flow, turns, energy, energy(guess.state) if guess.keep_energy else None)
     here = search.at(np.array(guess.state, float), float(guess.period))
     if here is None:
@@ -169,6 +174,31 @@ def periodic_orbit(
             left=f"{left:.1e}",
         )
     )
+
+
+def _require_repetition(dynamics: Dynamics, rates: Any, guess: Guess) -> None:
+    """Raises NotFound where f(t + T, x) is not f(t, x): a motion that comes back after T goes on otherwise then."""
+    shift = np.cos(np.arange(1.0, 1 + len(guess.state)))
+    for state in (np.asarray(guess.state, float) + size * shift for size in (0.0, 0.1, -0.3)):
+        for t in np.linspace(0.0, guess.period, SAMPLES):
+            now, then = (rates(np.concatenate(([at], state))) for at in (t, t + guess.period))
+            if np.any(np.abs(then - now) > REPEATED * (1 + np.abs(now))):  # never where one of them is no number
+                raise NotFound(_unrepeated(dynamics, f"{guess.period:.15g}"))
+
+
+def _unrepeated(dynamics: Dynamics, period: str) -> Message:
+    """With what they do repeat after, where that is seen."""
+    try:
+        own = 2 * np.pi / float(common_frequency(dynamics.right_hand_side))
+    except NotPeriodic:
+        text = "the equations do not repeat after [[period]], and no period of theirs is known"
+        return Message(text, period=period)
+    text = (
+        "the equations do not repeat after [[period]]: they do after [[own]] and its multiples, one of "
+        "which the period "
+        "has to be"
+    )
+    return Message(text, period=period, own=f"{own:.15g}")
 
 
 def _vanishing(period: float, turns: Any) -> Message:
@@ -199,6 +229,7 @@ class _Search:
 
     def at(self, state: Any, period: float) -> _Place | None:
         """None where the motion breaks down."""
+        state = self.flow.led(state)
         try:
             end, phi = self.flow.passage(state, 0.0, period)
         except Breakdown:
@@ -217,17 +248,26 @@ class _Search:
 
         Off the orbit the singular values that vanish on it are about what is left over: below that they mean nothing.
         """
-        size = self.flow.size
+        size, basis = self.flow.size, self.flow.tangent(here.state)
         matrix, right = here.phi - np.eye(size), -here.rest
         if self.wanted is not None:
             matrix = np.vstack([matrix, self.energy.gradient(here.state)])
         scale = 1 + np.abs(here.state)
+        if basis is not None:  # changes that constraints allow, in lengths of their own
+            matrix, scale = matrix @ basis, np.ones(basis.shape[1])
+            forward = None if forward is None else np.append(forward[:size] @ basis, 0.0)
         if forward is not None:
             column = np.zeros((len(matrix), 1))
             column[:size, 0] = ahead
             matrix = np.vstack([np.hstack([matrix, column]), forward])
             right, scale = np.append(right, 0.0), np.append(scale, here.period)
-        return lambda damping: _least_squares(matrix, right, scale, damping * here.size)
+
+        def found(damping: float) -> Any:
+            step = _least_squares(matrix, right, scale, damping * here.size)
+            width = size if basis is None else basis.shape[1]
+            return step if basis is None else np.concatenate([basis @ step[:width], step[width:]])
+
+        return found
 
     def towards(self, here: _Place, step: Callable[[float], Any]) -> _Place | None:
         """The next place: the first that halves what is left over, else the best; None where nothing is better."""
@@ -296,9 +336,12 @@ def _orbit(dynamics: Dynamics, flow: Flow, found: _Place, turns: Any, steps: int
         )
     _, phi = flow.passage(state, 0.0, period)
     _, other = Flow(dynamics, 1e-10).passage(state, 0.0, period)
+    basis = flow.tangent(state)
+    basis = np.eye(len(state)) if basis is None else basis
+    phi, other = (basis.T @ one @ basis for one in (phi, other))
     multipliers = _sorted(np.linalg.eigvals(phi))
     uncertainty = _distance(multipliers, _sorted(np.linalg.eigvals(other)))
-    reasons, count = _trivial(dynamics, state, phi, free)
+    reasons, count = _trivial(dynamics, state, phi, free, basis)
     verified, verifier = _verified(dynamics, state, period, turns)
     names = (*dynamics.system.coordinates, *dynamics.system.velocities)
     energy = _Energy(dynamics)(state)
@@ -312,7 +355,7 @@ def _orbit(dynamics: Dynamics, flow: Flow, found: _Place, turns: Any, steps: int
         verified,
         verifier,
         steps,
-        phi,
+        basis @ phi @ basis.T,
         multipliers,
         uncertainty,
         count,
@@ -338,8 +381,10 @@ def _distance(a: Any, b: Any) -> float:
     return float(worst)
 
 
-def _trivial(dynamics: Dynamics, state: Any, phi: Any, free: bool) -> tuple[tuple[Trivial, ...], int]:
+def _trivial(dynamics: Dynamics, state: Any, phi: Any, free: bool, basis: Any) -> tuple[tuple[Trivial, ...], int]:
     """The reasons for multipliers 1 that hold at this Phi, and for how many of them they stand.
+
+    Phi and its vectors are told in ``basis``, of the changes that constraints allow, or all.
 
     Right eigenvectors span V, left ones W; where W vanishes on V, 1 has at least the multiplicity dim V + dim W.
     """
@@ -366,8 +411,10 @@ def _trivial(dynamics: Dynamics, state: Any, phi: Any, free: bool) -> tuple[tupl
         )
     size = float(np.linalg.norm(phi))
     for reason, vector, is_right in candidates:
+        across = float(np.linalg.norm(vector - basis @ (basis.T @ vector)))
+        vector = basis.T @ vector
         length = float(np.linalg.norm(vector))
-        if length < 1e-12:
+        if length < 1e-12 or (is_right and across > 1e-9 * length):  # or no change that is allowed
             continue
         image = phi @ vector if is_right else vector @ phi
         moved = float(np.linalg.norm(image - vector)) / (length * size)

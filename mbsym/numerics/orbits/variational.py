@@ -70,7 +70,7 @@ class Variational(Dynamics):
     def __init__(self, base: Dynamics, directions: Sequence[Direction]) -> None:
         if base.switches.outputs:
             raise NoClosedForm(
-                "the variational equations of rates that jump (sign, abs, step): they miss what the jumps do"
+                "the variational equations of rates with switches (sign, abs, kinks of tables): they miss what these do"
             )
         further = [value for direction in directions for value in direction.initial]
         super().__init__(extended(base.scenario, further), base.ring)
@@ -78,6 +78,11 @@ class Variational(Dynamics):
         self.states = (*self.system.coordinates, *self.system.velocities)
         self.inputs = ("t", *self.states, *(f"{name}~{k}" for k in range(len(directions)) for name in self.states))
         self.size = len(self.system.coordinates) * (1 + len(self.directions))
+        # Its flow leaves constraints alone: states and columns are led back where a passage ends (``flow``).
+        self.__dict__["constraints"] = None
+        if base.constraints is not None:
+            pivots = base.pivots
+            self.__dict__["pivots"] = Code(pivots.program, self.inputs, pivots.outputs)
 
     @cached_property
     def _specialised(self) -> Specialised:
@@ -116,7 +121,7 @@ class Variational(Dynamics):
 def require_smooth(dynamics: Dynamics) -> None:
     """Raises NoClosedForm where signs, moduli or steps are in the rates."""
     if dynamics.switches.outputs:
-        raise NoClosedForm("derivatives of rates with switches (sign, abs, step): they miss what the jumps do")
+        raise NoClosedForm("derivatives of rates with switches (sign, abs, kinks of tables): they miss what these do")
 
 
 def _applied(program: Program, matrix: Sequence[Sequence[Node]], vector: Sequence[Node]) -> tuple[Node, ...]:

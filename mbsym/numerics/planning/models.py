@@ -19,7 +19,6 @@ from mbsym.mechanics.variables import expressions
 from mbsym.model.loads import EXACT, GRAVITY_ORDERS
 from mbsym.model.system import System
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.ledger.described import relative_size
 from mbsym.numerics.linearised import LinearisedDynamics
 from mbsym.numerics.scenario import Scenario, changed, exact
 
@@ -79,6 +78,8 @@ def orders(scenario: Scenario) -> tuple[int | str | None, ...]:
     found = scenario.system.newtonian_fields
     if not found:
         return (None,)
+    from mbsym.numerics.ledger.described import relative_size  # what the ledger needs, few scenes do
+
     sizes = [relative_size(scenario, load) for load in found if load.order == EXACT]
     expandable = all(size is not None and size < 1 for size in sizes)
     return GRAVITY_ORDERS if expandable else (EXACT,)

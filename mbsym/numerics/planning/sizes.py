@@ -6,6 +6,9 @@ own.  It is measured by what the scene would move it: the velocity that carries 
 
     v_i = sqrt(2 T / M_ii),      q_i = v_i tau,      tau the shortest ratio of a coordinate's range to its speed.
 
+Of a system in declared variables v_i are speeds, q_i the positions of which one of them is the velocity; components of
+quaternions and unit vectors have the size 1.
+
 A small size alone is no rest: the nutation of a fast top is a millionth of what its spin could do.  What two runs agree
 on is motion, what is rounding in them is another in each.
 """
@@ -18,6 +21,8 @@ from typing import Any
 import numpy as np
 
 from mbsym.algebra.failures import Failure
+from mbsym.model.states import described
+from mbsym.model.system import velocity_name
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import Code
@@ -70,22 +75,30 @@ def scaled_by_another(dynamics: Dynamics, times: Any, states: Any, usual: Any) -
 
 
 def usual_sizes(dynamics: Dynamics, times: Any, states: Any, kinetic: float) -> Any:
-    """What the scene would move each coordinate and each velocity by, shape (2n,); 0 where that is not known."""
-    n = dynamics.size
-    if dynamics.in_states or n > MOST_SCALED or not kinetic > 0 or not np.isfinite(kinetic):
+    """What the scene would move each position and each velocity by, shape (2n,); 0 where that is not known."""
+    p, n = dynamics.size, dynamics.dimension - dynamics.size
+    if n > MOST_SCALED or not kinetic > 0 or not np.isfinite(kinetic):
         return np.zeros(dynamics.dimension)
     chosen = np.linspace(0, len(times) - 1, min(16, len(times))).astype(int)
     states = np.asarray(states, dtype=float)
+    name_of = {velocity_name(name): place for place, name in enumerate(dynamics.system.coordinates)}
     whole = dynamics.mass_matrix
     diagonal = Code(whole.program, whole.inputs, whole.outputs[:: n + 1])
     masses = np.max(np.abs(arrays.kernel(diagonal)(np.vstack([times, states])[:, chosen])), axis=1)
     with np.errstate(all="ignore"):
         speeds = np.where(masses > 0, np.sqrt(2 * kinetic / masses), 0.0)
-        own = np.max(np.abs(states[n:]), axis=1)
-        spans = np.ptp(states[:n], axis=1) / own
-    moving = (own > RESTS * speeds) & np.isfinite(spans)
+        own = np.max(np.abs(states[p:]), axis=1)
+        places = [name_of.get(name) for name in dynamics.system.velocities]
+        pairs = [(place, k) for k, place in enumerate(places) if place is not None]
+        spans = np.array([np.ptp(states[place]) / own[k] for place, k in pairs])
+    moving = np.isfinite(spans) & np.array([own[k] > RESTS * speeds[k] for _, k in pairs], dtype=bool)
     shortest = float(np.min(spans[moving])) if np.any(moving) else 0.0
-    usual = np.concatenate([speeds * shortest, speeds])
+    usual = np.concatenate([np.zeros(p), speeds])
+    for place, k in pairs:
+        usual[place] = speeds[k] * shortest
+    for body in described(dynamics.system).bodies if dynamics.in_states else ():
+        for name in (name for one in body.orientation for name in one.components):
+            usual[dynamics.system.coordinates.index(name)] = 1.0
     return np.where(np.isfinite(usual), usual, 0.0)
 
 

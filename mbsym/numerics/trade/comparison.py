@@ -14,19 +14,22 @@ then says how far two solutions can be apart, not how wrong either of them is.
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import Any, Protocol
 
 import numpy as np
 
 from mbsym.numerics.methods.interface import Breakdown
+from mbsym.numerics.pieces import states_on
 from mbsym.numerics.planning.prices import FOLLOWED
 from mbsym.numerics.planning.sizes import RESTS, scaled
 
 #: Places inside an overlap of two steps, as parts of it; its end is looked at, too.
-SHARES = np.array([0.17, 0.38, 0.61, 0.83])
+SHARES = (0.17, 0.38, 0.61, 0.83)
 
 #: Overlaps that are followed one by one, and places in the rest of the interval.
 MOST = FOLLOWED
@@ -155,9 +158,7 @@ def compared(
     followed = True
     places = _places(first, second, end, rows, most)
     for block in _blocks(places):
-        times, one, other = (
-            np.concatenate(parts, axis=-1) for parts in zip(*(place[:3] for place in block), strict=True)
-        )
+        times, one, other = _evaluated(block)
         seen.add(times, rows.instead(times, one), other)
         followed = followed and block[-1][3]
         watch(float(times[-1]))
@@ -197,9 +198,14 @@ class _Rows:
         chosen = np.unique(np.linspace(0, len(times) - 1, min(len(times), MOST)).astype(int))
         return cls(times[chosen], states[:, chosen])
 
-    def among(self, after: float, until: float) -> Any:
+    @cached_property
+    def _listed(self) -> list[float]:
+        listed: list[float] = self.times.tolist()
+        return listed
+
+    def among(self, after: float, until: float) -> list[float]:
         """Times of rows in (after, until]."""
-        return self.times[slice(*np.searchsorted(self.times, (after, until), side="right"))]
+        return self._listed[bisect_right(self._listed, after) : bisect_right(self._listed, until)]
 
     def instead(self, times: Any, states: Any) -> Any:
         """The states of rows in place of others at the same times."""
@@ -210,15 +216,14 @@ class _Rows:
 
 
 def _places(first: Solution, second: Solution, end: float, rows: _Rows, most: int) -> Iterator[_Place]:
-    """(times, states of the first, of the second, whether steps were followed), in order from 0 to the end."""
+    """In order from 0 to the end."""
     now = 0.0
     one, other = _step(first, second=False), _step(second, second=True)
     for _ in range(most):
         until = min(float(one.end), float(other.end), end)
-        times = np.append(now + SHARES * (until - now), until)
+        times = [*(now + share * (until - now) for share in SHARES), until]
         some = rows.among(now, until)
-        times = np.union1d(times, some) if len(some) else times
-        yield times, one(times), other(times), True
+        yield sorted({*times, *some}) if some else times, one, other, True
         if until >= end:
             return
         now = until
@@ -230,12 +235,23 @@ def _places(first: Solution, second: Solution, end: float, rows: _Rows, most: in
     for after, until in pairwise(ahead):
         count = max(16, int(most * len(SHARES) * (until - after) / (end - now)))
         inside = uneven(after, until, count)
-        times = np.union1d(np.append(inside[(inside > after) & (inside < until)], until), rows.among(after, until))
-        for some in np.array_split(times, min(OFTEN, len(times))):  # whoever watches may have seen enough
-            yield some, _at(first, one, some, second=False), _at(second, other, some, second=True), False
+        every = np.union1d(np.append(inside[(inside > after) & (inside < until)], until), rows.among(after, until))
+        for part in np.array_split(every, min(OFTEN, len(every))):  # whoever watches may have seen enough
+            yield part, _at(first, one, part, second=False), _at(second, other, part, second=True), False
 
 
+#: (times, the first, the second, whether steps are followed): then the two are the steps there, else their states.
 _Place = tuple[Any, Any, Any, bool]
+
+
+def _evaluated(block: Sequence[_Place]) -> tuple[Any, Any, Any]:
+    """(times, states of the first, of the second) of all places of a block, those on steps in one go."""
+    steps, found = [place for place in block if place[3]], [place[:3] for place in block if not place[3]]
+    if steps:
+        own, first, second, _ = zip(*steps, strict=True)
+        found.insert(0, (np.concatenate(own), states_on(first, own), states_on(second, own)))
+    times, one, other = (np.concatenate(parts, axis=-1) for parts in zip(*found, strict=True))
+    return times, one, other
 
 
 def _blocks(places: Iterator[_Place]) -> Iterator[list[_Place]]:

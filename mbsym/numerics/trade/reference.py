@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from flint import arb, ctx, fmpq
 
+from mbsym.algebra import rationals
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.precise import precise
 from mbsym.numerics.methods.interface import BLOW_UP, STEP_LIMIT, Breakdown
@@ -56,7 +57,7 @@ class Extrapolation:
     def __init__(self, dynamics: Dynamics, tolerance: float, columns: int, limit: float) -> None:
         self.f = precise(dynamics.right_hand_side, BITS)
         self.time = 0.0
-        self.state = [arb(fmpq(x.numerator, x.denominator)) for x in dynamics.scenario.state]
+        self.state = [rationals.ball(x) for x in dynamics.scenario.state]
         self.tolerance = tolerance
         self.columns = columns
         self.dynamics, self.limit, self.evaluations = dynamics, limit, 0

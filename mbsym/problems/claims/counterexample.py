@@ -23,6 +23,7 @@ from typing import Any
 
 from flint import arb, ctx, fmpq, fmpq_mat, fmpq_poly
 
+from mbsym.algebra import rationals
 from mbsym.algebra.base import Algebra, Lowering
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, SingularPoint
@@ -125,7 +126,7 @@ def completed(
     for one in system.assumptions:
         if not holds(lower(one.left) - lower(one.right), one.relation):
             raise SingularPoint("an assumption does not hold")
-    exact = {name: Fraction(int(x.p), int(x.q)) for name, x in values.items() if isinstance(x, fmpq)} | dict(free)
+    exact = {name: rationals.fraction(x) for name, x in values.items() if isinstance(x, fmpq)} | dict(free)
     if not all(_is_body(body, exact) for body in system.bodies):
         raise SingularPoint("no body has this inertia")
     return values
@@ -234,7 +235,7 @@ class Trials:
 
     def _parameters(self, trial: Trial) -> dict[str, Fraction]:
         parameters = {name: trial.values[name] for name in self.system.parameter_names}
-        return {name: Fraction(int(x.p), int(x.q)) for name, x in parameters.items()}
+        return {name: rationals.fraction(x) for name, x in parameters.items()}
 
     def counterexample(
         self,
@@ -302,7 +303,7 @@ class Trials:
             )
             for degree, name in names[:SOLVED_FOR]:
                 for number, trial in enumerate(islice(self, BORDER_POINTS)):
-                    values = {other: Fraction(int(y.p), int(y.q)) for other, y in trial.values.items() if other in free}
+                    values = {other: rationals.fraction(y) for other, y in trial.values.items() if other in free}
                     yield from self._zeros_along(values, factor, name, degree)
                     for other in sorted({*values} - {name})[: 0 if number else SOLVED_FOR]:
                         yield from self._zeros_along(values | {other: Fraction(0)}, factor, name, degree)
@@ -320,7 +321,7 @@ class Trials:
             return
         for root in roots:
             try:
-                found = self._made_of(dict(free) | {name: Fraction(int(root.p), int(root.q))})
+                found = self._made_of(dict(free) | {name: rationals.fraction(root)})
             except (*NOT_THERE, KeyError):
                 continue
             if found is not None:

@@ -17,6 +17,7 @@ from typing import Any
 
 from flint import arb, fmpq, fmpq_poly
 
+from mbsym.algebra import rationals
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message
@@ -179,7 +180,7 @@ def _start(system: System) -> dict[str, fmpq]:
         value = None if one.value is None else rational(one.value)
         plain = Fraction(-1 if one.sign in ("negative", "nonpositive") else 1)
         value = plain if value is None else value
-        found[one.name] = fmpq(value.numerator, value.denominator)
+        found[one.name] = rationals.exact(value)
     return found
 
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import random
 from collections.abc import Mapping, Sequence
-from fractions import Fraction
 from itertools import product as combinations_of
 from typing import Any
 
 from flint import arb, ctx, fmpq
 
+from mbsym.algebra import rationals
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message
@@ -165,7 +165,7 @@ def _is_allowed(system: System, values: Mapping[str, fmpq]) -> bool:
     """Whether the assumptions hold at the point: sqrt((a - b)**2) is b - a under a < b."""
     if not system.assumptions:
         return True
-    known = {name: Fraction(int(x.p), int(x.q)) for name, x in values.items()}
+    known = {name: rationals.fraction(x) for name, x in values.items()}
     for one in system.relations:
         value = number_of(one.value, known)
         if value is None:

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from flint import ctx, fmpq, fmpq_mat
+from flint import ctx, fmpq_mat
 
+from mbsym.algebra import rationals
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import Constrained, Failure, NoClosedForm
@@ -377,7 +378,7 @@ class _Analysis:
         satisfied = rank in ranks
         if relation is not None:
             numbers = Rationals({}, {})
-            values = {name: fmpq(x.numerator, x.denominator) for name, x in known.items()}
+            values = {name: rationals.exact(x) for name, x in known.items()}
             satisfied = Carrier(self.ring, numbers, values)(relation) == 0
         freedom = self.n - min(ranks) if ranks else None
         return Demanded(count, relations, satisfied, freedom)

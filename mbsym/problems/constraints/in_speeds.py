@@ -27,7 +27,8 @@ from mbsym.formulas.formula import Formula, Matrix, column
 from mbsym.mechanics.constraints.embedding import Embedding, Pivots, basis_vector, choose, embedded, projected
 from mbsym.mechanics.constraints.programs import ConstrainedPrograms
 from mbsym.mechanics.constraints.ranks import eliminated
-from mbsym.mechanics.constraints.speed_rows import SpeedRow, speed_rows
+from mbsym.mechanics.constraints.rows import Row
+from mbsym.mechanics.constraints.speed_rows import speed_rows
 from mbsym.mechanics.constraints.states import PRECISION, Manifold
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.oracle import Oracle
@@ -51,7 +52,7 @@ def constraints_in_speeds(
     rows = speed_rows(form, scene, tied.names)
     pivots = _pivots(form, rows, tied, programs)
     still = {u.index: ring.zero for u in form.speeds}
-    sides = [(ring.substitute(row.velocity, still), row.gamma) for row in rows]
+    sides = [(ring.substitute(row.velocity, still), row.acceleration) for row in rows]
     try:
         found = embedded(ring, [row.partials for row in rows], sides, pivots)
     except NoClosedForm:
@@ -61,7 +62,7 @@ def constraints_in_speeds(
         position=tuple(None if row.position is None else Formula(ring, row.position) for row in rows),
         velocity=column(ring, [row.velocity for row in rows]),
         jacobian=Matrix.of(ring, [list(row.partials) for row in rows]),
-        acceleration=column(ring, [row.gamma for row in rows]),
+        acceleration=column(ring, [row.acceleration for row in rows]),
         coordinates=names,
         dependent=tuple(names[k] for k in pivots.columns),
         pivots=pivots,
@@ -100,7 +101,7 @@ def wanted_speeds(form: SpeedForm) -> list[int]:
     return [k for k, u in enumerate(form.speeds) if u.name in named]
 
 
-def _pivots(form: SpeedForm, rows: Sequence[SpeedRow], tied: Constraints, programs: ConstrainedPrograms) -> Pivots:
+def _pivots(form: SpeedForm, rows: Sequence[Row], tied: Constraints, programs: ConstrainedPrograms) -> Pivots:
     """Which speeds depend on the others; kept velocities of plain coordinates rather than declared speeds."""
     required, rank = wanted_speeds(form), tied.velocity_rank
     if len(required) > rank:
@@ -132,7 +133,7 @@ def _pivots(form: SpeedForm, rows: Sequence[SpeedRow], tied: Constraints, progra
             raise Unsound([Fault("dependent-set", message, hint=hint)]) from reason
 
 
-def _at_points(form: SpeedForm, rows: Sequence[SpeedRow], programs: ConstrainedPrograms) -> list[list[list[Any]]]:
+def _at_points(form: SpeedForm, rows: Sequence[Row], programs: ConstrainedPrograms) -> list[list[list[Any]]]:
     """J in numbers at points of the manifold, those left out at which speeds do not determine velocities."""
     found: list[list[list[Any]]] = []
     for one in Manifold(form.system.without_speeds, form.ring, programs).states(4 * POINTS):

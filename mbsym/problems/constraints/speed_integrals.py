@@ -5,11 +5,17 @@ With D = det(V^T M V) an expression I(s, u, t) is an integral if
     D (dI/dt at u' = 0) + grad_u I . (V adj(V^T M V) V^T (f - M a0) + D a0)  =  0
 
 identically once the dependent speeds are expressed.  Tried are those of the system without constraints
-(``speed_integrals``): the energy, the momenta of coordinates, of the whole system and of speeds.
+(``speed_integrals``): the energy, the momenta of coordinates, of the whole system and of speeds.  Where multipliers mu
+are known with dI/dt = mu . (M u' - f) in the tree, constraint forces add mu . J^T lambda, and
+
+    J mu = 0    in every row on the constraints
+
+is enough, however long the equations are: mu = u - s0 of the energy, the velocities of a displacement of a momentum.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import suppress
 from functools import cached_property
 
@@ -22,7 +28,7 @@ from mbsym.problems.constraints.in_speeds import dependent_speeds
 from mbsym.problems.constraints.motion import Embedded
 from mbsym.problems.constraints.result import Constraints, Solved
 from mbsym.problems.energy import Energy
-from mbsym.problems.in_speeds.speed_integrals import GEOMETRIC, candidates, is_new
+from mbsym.problems.in_speeds.speed_integrals import GEOMETRIC, Field, candidates, is_new
 from mbsym.problems.in_speeds.speeds import SpeedEquations
 from mbsym.problems.integrals import ENERGY, Integral
 
@@ -71,21 +77,35 @@ class TiedField:
 
 
 def integrals(form: SpeedForm, scene: Scene, energy: Energy, equations: SpeedEquations) -> tuple[Integral, ...]:
-    """All first integrals of the kinds above, each proved; none where there is no short form without multipliers."""
+    """All first integrals of the kinds above, each proved; of long equations those whose multipliers are known."""
     tied, embedded = equations.constraints, equations.embedded
-    if tied is None or tied.solved is None or embedded is None:
+    if tied is None:
         return ()
-    if embedded.terms > MOST_TERMS or len(embedded.free) > MOST_SPEEDS:
-        return ()
-    field = TiedField(form, tied, tied.solved, embedded)
+    field, solved = None, tied.solved
+    if solved is not None and embedded is not None and embedded.terms <= MOST_TERMS:
+        field = TiedField(form, tied, solved, embedded) if len(embedded.free) <= MOST_SPEEDS else None
+    tree = Field(form, equations)
     found: list[Integral] = []
     known: list[Polynomial] = []
-    for integral, _ in candidates(form, scene, energy, equations):
+    for integral, multipliers in candidates(form, scene, energy, equations):
         x = integral.formula.polynomial
         with suppress(Failure):  # what is too long is not known to be conserved
-            on = field.on_constraints(x)
-            if field.keeps(x) and (integral.kind == GEOMETRIC or is_new(form, on, known)):
+            on = x if field is None else field.on_constraints(x)
+            proved = bool(multipliers) and _without_work(form, tied, multipliers) and tree.combines(x, multipliers)
+            kept = proved is True or (field is not None and field.keeps(x))
+            if kept and (integral.kind == GEOMETRIC or is_new(form, on, known)):
                 found.append(integral)
                 if integral.kind not in (ENERGY, GEOMETRIC):
                     known.append(on)
     return tuple(found)
+
+
+def _without_work(form: SpeedForm, tied: Constraints, multipliers: Sequence[Polynomial]) -> bool:
+    """Whether J mu = 0 in every row where the constraints hold: by itself, or because it is J u + j."""
+    ring = form.ring
+    for i in range(len(tied.names)):
+        g = tied.velocity[i].polynomial
+        along = ring.dot([x.polynomial for x in tied.jacobian.rows[i]], multipliers)
+        if not (form.vanishes(along) is True or form.vanishes(ring.reduce(along - g)) is True):
+            return False
+    return True

@@ -9,6 +9,7 @@ from typing import Any
 
 from flint import arb, fmpq, fmpq_poly
 
+from mbsym.algebra import rationals
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import Failure, NoClosedForm, NoValue, message_of
 from mbsym.algebra.generators import occurring
@@ -139,7 +140,7 @@ def in_ring(tower: Tower, ring: Ring, x: Element) -> Polynomial:
     def carried(polynomial: Any) -> Polynomial:
         total = ring.zero
         for monomial, coefficient in polynomial.terms():
-            term = ring.number(Fraction(int(coefficient.p), int(coefficient.q)))
+            term = ring.number(rationals.fraction(coefficient))
             for index, exponent in enumerate(monomial):
                 if exponent:
                     term = ring.times(term, generator(index) ** int(exponent))

@@ -22,8 +22,9 @@ from fractions import Fraction
 from itertools import product
 from typing import Any
 
-from flint import fmpq, fmpq_poly
+from flint import fmpq_poly
 
+from mbsym.algebra import rationals
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.problems.polynomial_integrals.darboux import (
     DarbouxSearch,
@@ -107,7 +108,7 @@ def at_value(usual: PolynomialIntegrals, general: DarbouxPolynomials, value: Fra
     Raises ZeroDivisionError where the field divides by zero, NoClosedForm where that takes too much.
     """
     name = usual.field.parameters[0]
-    number = fmpq(value.numerator, value.denominator)
+    number = rationals.exact(value)
     field = usual.field.at({name: number})
     images = [field.context.constant(number), *field.context.gens()]
     named = [(str(k), one.polynomial.compose(*images, ctx=field.context)) for k, one in enumerate(usual.generators)]
@@ -316,7 +317,7 @@ class _Drops:
         for factor, _ in fmpq_poly(_list(delta)).factor()[1]:
             if factor.degree() == 1:
                 root = -factor[0] / factor[1]
-                self.values[Fraction(int(root.p), int(root.q))] = None
+                self.values[rationals.fraction(root)] = None
 
 
 def _moves(delta: Any) -> bool:

@@ -10,6 +10,7 @@ from typing import Any
 
 from flint import fmpq, fmpq_mat, fmpq_poly
 
+from mbsym.algebra import rationals
 from mbsym.problems.polynomial_integrals.drops import Build
 from mbsym.problems.polynomial_integrals.levels import (
     Level,
@@ -178,7 +179,7 @@ class Excess:
         monomial there, or the matrix is too large.
         """
         usual = self.usual
-        number = fmpq(value.numerator, value.denominator)
+        number = rationals.exact(value)
         field = usual.field.at({usual.field.parameters[0]: number})
         weights = usual.grading.weights
         columns, multiples = list(monomials(weights, block.weight)), []

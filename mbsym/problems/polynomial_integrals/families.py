@@ -20,8 +20,9 @@ from itertools import combinations, product
 from math import comb, inf
 from typing import Any
 
-from flint import fmpq, fmpq_mpoly_ctx, nmod_mat
+from flint import fmpq_mpoly_ctx, nmod_mat
 
+from mbsym.algebra import rationals
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField, in_lowest_terms
@@ -239,7 +240,7 @@ class _Search:
             if c is None or max(abs(c.numerator), c.denominator) > 10**6:
                 return []
             powers = dict(zip(free, m, strict=True))
-            terms[tuple(powers.get(name, 0) for name in names)] = fmpq(c.numerator, c.denominator)
+            terms[tuple(powers.get(name, 0) for name in names)] = rationals.exact(c)
         return [f for f, _ in irreducible_factors(self.field.context.from_dict(terms))[1] if not f.is_constant()]
 
     def _add(self, family: Family, f: Any | None, signature: tuple[int, ...]) -> None:

@@ -14,8 +14,9 @@ from fractions import Fraction
 from itertools import product
 from typing import Any
 
-from flint import fmpq, fmpq_mpoly_ctx
+from flint import fmpq_mpoly_ctx
 
+from mbsym.algebra import rationals
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
@@ -96,7 +97,7 @@ def along_of(
 
 def _new_at_one(larger: PolynomialIntegrals, one: Special, down: _Down) -> Special:
     """What was found at a value, without what becomes a polynomial in the integrals in general where h is 1."""
-    value = one.field.context.constant(fmpq(one.value.numerator, one.value.denominator) if one.value is not None else 0)
+    value = one.field.context.constant(rationals.exact(one.value) if one.value is not None else 0)
     images = [value, *one.field.context.gens()]
     special = down.special(one)
     there = at_random(special.field, PRIMES[0], "values at one")

@@ -24,8 +24,9 @@ from math import gcd
 from random import Random
 from typing import Any
 
-from flint import fmpq, fmpq_mpoly_ctx, nmod_mat, nmod_poly
+from flint import fmpq_mpoly_ctx, nmod_mat, nmod_poly
 
+from mbsym.algebra import rationals
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.problems.polynomial_integrals.drops import Line, dropped, interpolated, others, rational, roots
@@ -183,7 +184,7 @@ class _Search:
 
     def at(self, value: Fraction) -> SpecialLevel | None:
         """What there is on one level beyond the integrals that hold everywhere; None where that takes too much."""
-        polynomial = self.top - fmpq(value.numerator, value.denominator) * self.bottom
+        polynomial = self.top - rationals.exact(value) * self.bottom
         zero = replace(self.one, polynomial=polynomial, weight=self.weight)
         try:
             found = on_level(self.usual, zero)

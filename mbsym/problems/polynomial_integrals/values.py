@@ -25,8 +25,9 @@ from fractions import Fraction
 from math import prod
 from typing import Any
 
-from flint import fmpq, fmpq_poly
+from flint import fmpq_poly
 
+from mbsym.algebra import rationals
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.problems.polynomial_integrals.drops import Line, dropped, others, rational, roots
@@ -90,14 +91,14 @@ class _Zeros:
             for factor, _ in p.factor()[1]:
                 if factor.degree() == 1:
                     root = -factor[0] / factor[1]
-                    self.values[Fraction(int(root.p), int(root.q))] = None
+                    self.values[rationals.fraction(root)] = None
                 elif factor.degree() > 1:
                     self._irrational(factor)
 
     def undefined(self, value: Fraction) -> bool:
         """Whether the field divides by zero there."""
         try:
-            self.field.at({self.field.parameters[0]: fmpq(value.numerator, value.denominator)})
+            self.field.at({self.field.parameters[0]: rationals.exact(value)})
         except ZeroDivisionError:
             return True
         return False
@@ -140,8 +141,8 @@ def _height(value: Fraction) -> int:
 
 def at_value(usual: PolynomialIntegrals, name: str, value: Fraction) -> Special | None:
     """What there is at a value beyond what there is in general; None where that is nothing."""
-    field = usual.field.at({name: fmpq(value.numerator, value.denominator)})
-    image = field.context.constant(fmpq(value.numerator, value.denominator))
+    field = usual.field.at({name: rationals.exact(value)})
+    image = field.context.constant(rationals.exact(value))
     images = [image, *field.context.gens()]
     known = [(str(k), one.polynomial.compose(*images, ctx=field.context)) for k, one in enumerate(usual.generators)]
     return special_of(usual, field, known, value)
@@ -174,7 +175,7 @@ def lifted_factor(factor: Any) -> fmpq_poly | None:
     numbers = [rational(int(factor[k]) * inverse % prime, prime) for k in range(factor.degree() + 1)]
     if any(x is None or max(abs(x.numerator), x.denominator) > 10**6 for x in numbers):
         return None
-    return fmpq_poly([fmpq(x.numerator, x.denominator) for x in numbers if x is not None])
+    return fmpq_poly([rationals.exact(x) for x in numbers if x is not None])
 
 
 def meets(p: fmpq_poly, low: Fraction, high: Fraction) -> bool:

@@ -10,8 +10,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from flint import arb, ctx, fmpq, fmpq_poly
+from flint import arb, ctx, fmpq_poly
 
+from mbsym.algebra import rationals
 from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.angles import LinearForm, linear_form
@@ -52,7 +53,7 @@ class Candidate:
                 exact[k] = fmpq_poly([value.leading_coefficient() if value else 0])
         with ctx.workprec(PRECISION):
             for name, form in self.forms.items():
-                turns, rest = (fmpq(x.numerator, x.denominator) for x in (form.turns, form.constant))
+                turns, rest = (rationals.exact(x) for x in (form.turns, form.constant))
                 balls[name] = arb(rest) + arb.pi() * turns
         return Place(found, balls, exact | dict(rates), fmpq_poly([0, 1]))
 

@@ -11,6 +11,7 @@ from typing import Any
 
 from flint import ctx, fmpq, fmpq_poly
 
+from mbsym.algebra import rationals
 from mbsym.algebra.failures import Failure, message_of
 from mbsym.algebra.polynomial_systems import (
     Limits,
@@ -134,7 +135,7 @@ class Listing(Conditions):
         if not periodic:
             residue = place.residue(ring.generator("coordinate", name))
             if residue is not None and residue.degree() <= 0:
-                exact = Fraction(int(residue[0].p), int(residue[0].q))
+                exact = rationals.fraction(residue[0])
                 text = str(exact)
                 return CoordinateValue(name, text if len(text) <= 14 else short(value), value, False, len(text) <= 14)
             return CoordinateValue(name, short(value), value, False, False)

@@ -4,29 +4,34 @@ from __future__ import annotations
 
 import random
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations
+from math import comb
 from typing import Any
 
-from flint import fmpq, fmpq_mat
+from flint import arb, arb_mat, ctx, fmpq, fmpq_mat
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.characteristic import determinant
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Failure, TooLargeError, message_of
 from mbsym.algebra.matrices import added, dot
-from mbsym.algebra.point import Rationals
+from mbsym.algebra.point import Balls, Rationals
+from mbsym.algebra.rationals import ball
+from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import Signs
 from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula, Matrix
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.states import SEED
+from mbsym.model.system import velocity_name
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.linearisation import Linearisation
 from mbsym.problems.stabilisation import gyroscopic, numbers
 from mbsym.problems.stabilisation.clearing import Cleared, Rows, cleared
-from mbsym.problems.stabilisation.drift import without_drift
-from mbsym.problems.stabilisation.hautus import annihilator, rank_of
+from mbsym.problems.stabilisation.hautus import MOST_BLOCKS, _open_factors, annihilator, rank_of
 from mbsym.problems.stabilisation.numbers import AtValues
 from mbsym.problems.stabilisation.result import (
     Control,
@@ -46,6 +51,8 @@ from mbsym.problems.stability.requirements import Definite, definiteness
 MOST_INPUTS, MOST_COORDINATES = 6, 12
 #: Damped coordinates whose principal minors are looked at.
 MOST_DAMPED = 4
+#: The precision of what is enclosed.
+BITS = 320
 #: Random points at which a rank is taken where formulas are too large.
 POINTS = 3
 
@@ -62,7 +69,9 @@ def stabilisation(scene: Scene[Any], linear: Linearisation, signs: Signs, values
     parts = [[linear.coordinates.index(name) for name in part.coordinates] for part in linear.subsystems]
     turning, damping, energies = [], [], []
     given = scene.system.linear
-    for at in () if given is not None and given.of_first_order else parts:  # x' = A x has no energy
+    nonholonomic = linear.constrained is not None and not linear.constrained.holonomic
+    # x' = A x has no energy, and of nonholonomic systems the matrices say nothing of it.
+    for at in () if nonholonomic or (given is not None and given.of_first_order) else parts:
         names = tuple(linear.coordinates[i] for i in at)
         mass, damped, gyro, stiff, circulatory = (_block(matrix, at) for matrix in linear.matrices)
         if not circulatory.is_zero:
@@ -81,8 +90,14 @@ def stabilisation(scene: Scene[Any], linear: Linearisation, signs: Signs, values
         energies.append(_energy(whole, names, damped, own))
         if not damped.is_zero:
             damping.append(_dissipation(whole, names, own, None if there is None else _damping(scene, damped, values)))
+    if there is None and values is not None and few and linear.B is not None:
+        there = enclosed_at(scene, linear, values)
     control, least, found, why = _controlled(scene, linear, signs, parts, there)
-    return Stabilisation(tuple(turning), tuple(damping), control, least, found, why, tuple(energies))
+    idle = () if linear.constrained is None else linear.constrained.idle
+    apart = tuple(name for name in idle if name not in linear.coordinates)
+    return Stabilisation(
+        tuple(turning), tuple(damping), control, least, found, why, tuple(energies), apart, nonholonomic
+    )
 
 
 def on_motion(scene: Scene[Any], equilibrium: Equilibrium, values: Mapping[str, Any]) -> bool:
@@ -97,14 +112,38 @@ def on_motion(scene: Scene[Any], equilibrium: Equilibrium, values: Mapping[str, 
 
 
 def at_values(scene: Scene[Any], linear: Linearisation, values: Mapping[str, Any]) -> AtValues | None:
-    """The matrices at rational values; None where a number is irrational, or M is singular there."""
+    """The matrices at rational values; None where a number is irrational, or z' is not determined there."""
     mass, damped, gyro, stiff, circulatory = (_numbers(scene, matrix, values) for matrix in linear.matrices)
-    if mass is None or damped is None or gyro is None or stiff is None or circulatory is None or mass.det() == 0:
+    if mass is None or damped is None or gyro is None or stiff is None or circulatory is None:
         return None
     inputs = None if linear.B is None else _numbers(scene, linear.B, values)
     if linear.B is not None and inputs is None:
         return None
-    return AtValues(mass, damped + gyro, stiff + circulatory, inputs)
+    found = AtValues(mass, damped + gyro, stiff + circulatory, inputs)
+    try:
+        found.state  # noqa: B018
+    except ZeroDivisionError:
+        return None
+    return found
+
+
+def enclosed_at(scene: Scene[Any], linear: Linearisation, values: Mapping[str, Any]) -> AtValues | None:
+    """The same at irrational values, in balls; None where one of them has no value, or z' is not determined there."""
+    with ctx.workprec(BITS):
+        numbers_of = {name: ball(x) if isinstance(x, Fraction) else x for name, x in values.items()}
+        balls = Balls({**numbers_of, "pi": arb.pi()})
+        carry = Carrier(scene.ring, balls, {**numbers_of, "pi": arb.pi()})
+        try:
+            mass, damped, gyro, stiff, circulatory, inputs = (
+                arb_mat(*matrix.shape, [carry(x) for row in matrix.polynomials for x in row])
+                for matrix in (*linear.matrices, linear.B)
+                if matrix is not None
+            )
+            found = AtValues(mass, damped + gyro, stiff + circulatory, inputs)
+            found.state  # noqa: B018
+        except (*NOT_THERE, ZeroDivisionError):
+            return None
+    return found
 
 
 def _numbers(scene: Scene[Any], matrix: Matrix, values: Mapping[str, Any]) -> Any | None:
@@ -265,9 +304,22 @@ def _controlled(
             Message("there are more than [[most]] coordinates", most=MOST_COORDINATES),
         )
     if there is None:
-        return control, least, None, "the description gives no rational values of all parameters"
-    found = numbers.feedback(there)
-    return (control, least, None, found) if isinstance(found, str) else (control, least, found, "")
+        return control, least, None, "the description gives no values of all parameters"
+    with ctx.workprec(BITS):
+        found, why = numbers.feedback(there), ""
+        if isinstance(found, str):  # parts that no force but an input couples to the others may be within reach
+            why = found
+            within = [at for at in parts if len(parts) > 1 and numbers.is_stabilisable(there.only(at))]
+            every = sorted(i for at in within for i in at)
+            if not every or len(every) == there.size:
+                return control, least, None, why
+            there = there.only(every)
+            found = numbers.feedback(there)
+    if isinstance(found, str):
+        return control, least, None, why
+    names = [linear.coordinates[i] for i in every]
+    states = (*names, *(velocity_name(names[i]) for i in there.moving))
+    return control, least, replace(found, states=states, of_part=why), ""
 
 
 def _control(whole: Cleared | None, linear: Linearisation, at: Sequence[int], there: AtValues | None) -> Control:
@@ -279,7 +331,8 @@ def _control(whole: Cleared | None, linear: Linearisation, at: Sequence[int], th
     if there is None:
         return Control(names, linear.inputs, rank)
     own = there.only(at)
-    return Control(names, linear.inputs, rank, numbers.is_controllable(own), numbers.is_stabilisable(own))
+    with ctx.workprec(BITS):
+        return Control(names, linear.inputs, rank, numbers.is_controllable(own), numbers.is_stabilisable(own))
 
 
 def _ranked(whole: Cleared, at: Sequence[int], columns: Sequence[int]) -> Rank:
@@ -307,7 +360,9 @@ def _at_random(whole: Cleared, mass: Rows, rates: Rows, places: Rows, inputs: Ro
             return fmpq_mat(len(rows), len(rows[0]), [fmpq(x(*point)) for row in rows for x in row])
 
         there = AtValues(at(mass), at(rates), at(places), at(inputs))
-        if there.mass.det() != 0 and numbers.is_controllable(there):
+        with suppress(ZeroDivisionError):
+            if not numbers.is_controllable(there):
+                continue
             return Rank(True, Certainty.PROVED, (), None, why)
     return Rank(False, Certainty.UNDECIDED, why_not=why)
 
@@ -328,3 +383,45 @@ def _least(whole: Cleared, linear: Linearisation) -> tuple[tuple[str, ...], ...]
         if any(rank.certainty is Certainty.UNDECIDED for rank in ranks.values()):
             return ()
     return ()
+
+
+def without_drift(rank: Rank, whole: Cleared, gyro: Rows, stiff: Rows, damping: Rows) -> Rank:
+    """``rank``, found off lambda = 0, with what uniform motions that are not felt change in it.
+
+    Where some are there for all parameters, lambda is a root; else all is said where the minors that exclude them do
+    not vanish.  Raises TooLargeError.
+    """
+    if not rank.full or rank.certainty is not Certainty.PROVED or whole.known.never_zero(determinant(stiff)):
+        return rank
+    damped = [j for j, row in enumerate(damping) if any(x != 0 for x in row)]
+    beside = [[*k, *(d[j] for j in damped)] for k, d in zip(stiff, damping, strict=True)]
+    both, unfelt = annihilator(beside, whole.known, len(stiff))
+    needed = [both]
+    if unfelt:
+        held, free = annihilator(stiff, whole.known, len(stiff))
+        found = _minor([[dot(u, [dot(row, v) for row in gyro]) for v in unfelt] for u in free], whole)
+        if found is None:
+            drift = (whole.formula(both * 0), whole.formula(both * 0 + 1))
+            turned = any(x != 0 for row in gyro for x in row)  # then w is needed, which a lower rank of K may deny
+            open_ = _open_factors(held, whole.known) if turned else []
+            return Rank(False, Certainty.PROVED, (drift,), Locus((), (), tuple(map(whole.formula, open_))))
+        needed.append(found)
+    if rank.locus is None:
+        return rank
+    locus = rank.locus
+    doubtful = {str(x): x for one in needed for x in map(whole.formula, _open_factors(one, whole.known))}
+    if all(x == 0 for row in gyro for x in row):  # then what Hautus' test loses at lambda = 0 is a drift
+        doubtful = {text: x for text, x in doubtful.items() if text not in map(str, locus.factors)}
+    factors = tuple(x for x in locus.factors if str(x) not in doubtful)
+    provided = {str(x): x for x in locus.provided} | doubtful
+    return Rank(True, rank.certainty, (), Locus(factors, locus.together, tuple(provided.values())), rank.why_not)
+
+
+def _minor(rows: Rows, whole: Cleared) -> Polynomial | None:
+    """A minor of full column rank, one that cannot vanish if there is one; None where all vanish identically."""
+    width = len(rows[0])
+    if comb(len(rows), width) > MOST_BLOCKS:
+        raise TooLargeError("too many minors")
+    minors = [determinant([rows[i] for i in at]) for at in combinations(range(len(rows)), width)]
+    left = [x for x in minors if x != 0]
+    return min(left, key=lambda x: (not whole.known.never_zero(x), len(x))) if left else None

@@ -112,13 +112,17 @@ class Control(Shown):
 
 @dataclass(frozen=True, repr=False)
 class Feedback(Shown):
-    """u = -gains (x, x') at the given values, found as an LQR in floating point, rationalised, and then proved.
+    """u = -gains z at the given values, found as an LQR in floating point, rationalised, and then proved.
 
-    ``characteristic`` is that of the closed loop, exactly, low to high powers; all its roots are to the left
-    (``verdict``: that of problem 6's exact judge on the closed loop).  ``lyapunov`` is a rational P > 0 with
-    P A + A^T P < 0, both proved; None where none was found.
+    ``states`` z are the coordinates and the velocities that are no functions of others.  ``characteristic`` is that of
+    the closed loop, exactly, low to high powers; all its roots are to the left (``verdict``: that of problem 6's exact
+    judge on the closed loop).  ``lyapunov`` is a rational P > 0 with P A + A^T P < 0, both proved; None where none was
+    found.  At irrational values, which are enclosed, there is no ``characteristic``, and P is the proof.
+    ``of_part`` says why not all coordinates are in z, if they are not: the closed loop is that of those in it.
     """
 
+    states: tuple[str, ...]
+    of_part: str
     gains: tuple[tuple[Fraction, ...], ...]
     characteristic: tuple[Fraction, ...]
     verdict: Verdict
@@ -146,7 +150,9 @@ class EnergyFunction(Shown):
 @dataclass(frozen=True, repr=False)
 class Stabilisation(Shown):
     """Problem 8.  ``control`` begins with the whole system; ``least`` are the smallest sets of inputs that suffice for
-    almost all parameters, () where none does or there are none; ``no_feedback`` says why there is no ``feedback``."""
+    almost all parameters, () where none does or there are none; ``no_feedback`` says why there is no ``feedback``.
+    ``left_out``: coordinates of which a constrained system's independent equations know nothing.  Of a ``nonholonomic``
+    one nothing is said of gyroscopic forces, energy and dissipation: D, G, K, N split two matrices, no more."""
 
     gyroscopic: tuple[Gyroscopic, ...]
     dissipation: tuple[Dissipation, ...]
@@ -155,6 +161,8 @@ class Stabilisation(Shown):
     feedback: Feedback | None
     no_feedback: str
     energy: tuple[EnergyFunction, ...]
+    left_out: tuple[str, ...] = ()
+    nonholonomic: bool = False
 
     @property
     def terms(self) -> int:

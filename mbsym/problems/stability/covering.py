@@ -91,6 +91,14 @@ def alone(cells: Sequence[Cell], signs: Signs) -> Verdict:
     return depends() if len({cell.verdict.word for cell in left}) > 1 and _all_stable(left) else _common(left, signs)
 
 
+def uncovered(cells: Sequence[Cell], signs: Signs) -> bool:
+    """Whether parameters are known, and all that are near them, at which none of the cases of one part holds."""
+    if signs.numbers or signs.normal is not None:  # witnesses mean nothing
+        return False
+    left = cells[-1].where.inner()
+    return any(left.holds(point) for point in signs.witnesses)
+
+
 def joined(
     parts: Sequence[Sequence[Cell]], signs: Signs, one_energy: bool, within: ParameterSet = EVERYTHING
 ) -> Verdict:

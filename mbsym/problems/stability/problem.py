@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from flint import arb, arb_mat, ctx, fmpq
 
+from mbsym.algebra import rationals
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.characteristic import Matrix as Polynomials
 from mbsym.algebra.elimination import Elimination, eliminate
@@ -673,11 +674,11 @@ def _parameter_values(scene: Scene, equilibrium: Equilibrium) -> dict[str, Any] 
 
 def _value_of(scene: Scene, x: Polynomial, given: Mapping[str, Any]) -> Any:
     """A formula in parameters, exactly where it is rational, else enclosed.  Raises Failure where one has no value."""
-    rationals = Rationals({}, {})
-    exact = {name: rationals.number(value) for name, value in given.items() if isinstance(value, Fraction)}
+    carried = Rationals({}, {})
+    exact = {name: carried.number(value) for name, value in given.items() if isinstance(value, Fraction)}
     try:
-        found = Carrier(scene.ring, rationals, exact)(x)
-        return Fraction(int(found.p), int(found.q))
+        found = Carrier(scene.ring, carried, exact)(x)
+        return rationals.fraction(found)
     except Failure:
         balls = {"pi": arb.pi()} | {name: arb(_number(value)) for name, value in given.items()}
         return Carrier(scene.ring, Balls(balls), balls)(x)
@@ -685,7 +686,7 @@ def _value_of(scene: Scene, x: Polynomial, given: Mapping[str, Any]) -> Any:
 
 def _number(value: Any) -> Any:
     """A rational number as it is, to be rounded at the precision in which it is used; an enclosure as it is."""
-    return fmpq(value.numerator, value.denominator) if isinstance(value, Fraction) else value
+    return rationals.exact(value) if isinstance(value, Fraction) else value
 
 
 def ring_numbers(ring: Ring, values: Mapping[str, Any]) -> dict[str, Any]:
@@ -702,9 +703,9 @@ def _motion_at(scene: Scene, equilibrium: Equilibrium, values: Mapping[str, Any]
         value = scene.ring.evaluate(condition.polynomial, numbers)
         if not value.contains(0):
             size = float(value.mid())
-            return undecided(Because.MOTION_NOT_THERE, str(condition), f"{size:.6g}")
+            return undecided(Because.MOTION_NOT_THERE, condition, f"{size:.6g}")
         if not value.is_zero():
-            return undecided(Because.MOTION_OPEN, str(condition))
+            return undecided(Because.MOTION_OPEN, condition)
     return None
 
 
@@ -741,7 +742,7 @@ def _point(
             whole = ring.indices[index] if isinstance(ring, ParameterRing) else index
             symbol = definition_in_parameters(scene, g.name) if named else scene.ring.context.gen(whole)
             exact = carry(symbol)
-            point[index] = Fraction(int(exact.p), int(exact.q))
+            point[index] = rationals.fraction(exact)
     except NOT_THERE:
         return None
     return point

@@ -90,6 +90,13 @@ class Reason:
     code: Because
     data: tuple[object, ...] = ()
 
+    def __reduce__(self) -> tuple[type[Reason], tuple[Because, tuple[object, ...]]]:
+        """Formulas as their text: they belong to the rings of one process."""
+        return Reason, (self.code, tuple(x if isinstance(x, int | str) else str(x) for x in self.data))
+
+    def __hash__(self) -> int:
+        return hash(self.rank)
+
     @property
     def rank(self) -> tuple[int, tuple[str, ...]]:
         """Where it stands among other reasons."""

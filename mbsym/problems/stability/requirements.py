@@ -26,13 +26,13 @@ REVERSED, OF_FACTOR, PART = "-([[label]])", "[[label]] of factor [[number]]", "[
 class Method(StrEnum):
     """What the conditions on the characteristic polynomial say together."""
 
-    EVEN = "all roots in lambda^2 real, negative and simple: coefficients and discriminants"
+    EVEN = "all squares of roots real, negative and simple: coefficients and discriminants"
     HURWITZ = "all roots to the left of the imaginary axis: Lienard-Chipart"
     NONE = "none"
 
 
 #: What the conditions on roots in lambda^2 say where zero roots are left out of them.
-EVEN_BUT_ZERO = "all roots in lambda^2 but the zero ones real, negative and simple: coefficients and discriminants"
+EVEN_BUT_ZERO = "all squares of roots but the zero ones real, negative and simple: coefficients and discriminants"
 #: What Hurwitz's conditions say where zero roots, or those of a turned steady spin as well, are left out of them.
 BUT_ZERO = "all roots but the zero ones to the left of the imaginary axis: Lienard-Chipart"
 BUT_TURNED = "all roots but the zero ones and those of a turned spin to the left of the imaginary axis: Lienard-Chipart"

@@ -33,14 +33,14 @@ def _integrals(*names: str) -> Message:
 _SENTENCES: dict[Because, str | Callable[..., Message]] = {
     Because.RIGHT_ROOTS: _to_the_right,
     Because.RIGHT_ROOT: "A root with positive real part.",
-    Because.REAL_ROOT: "K is not positive semidefinite: a real positive root lambda.",
+    Because.REAL_ROOT: "K is not positive semidefinite: a real positive root.",
     Because.RIGHT_BY_TRACE: (
         "Without dissipation the roots sum to zero, but they are not symmetric: some lie to the right."
     ),
     Because.DESTROYED: "Complete dissipation, and K is not positive definite.",
-    Because.ODD_DEGREE: "det K < 0: an odd degree of instability.",
-    Because.ODD_DEGREE_REMAINS: "det K < 0: an odd degree of instability, which gyroscopic forces cannot remove.",
-    Because.COMPLETE: "K > 0 and complete dissipation.",
+    Because.ODD_DEGREE: "$\\det K < 0$: an odd degree of instability.",
+    Because.ODD_DEGREE_REMAINS: "$\\det K < 0$: an odd degree of instability, which gyroscopic forces cannot remove.",
+    Because.COMPLETE: "$K > 0$ and complete dissipation.",
     Because.LEFT: "All roots have negative real parts.",
     Because.LEFT_BUT_CYCLIC: "All roots but the zero ones of the cyclic coordinates have negative real parts.",
     Because.TURNED_DECAYS: (
@@ -57,9 +57,9 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
         "the description gives has dimensions: a disturbed motion tends to a steady motion near by, and coordinates on "
         "which no equation depends may end elsewhere."
     ),
-    Because.MINIMUM: "K > 0: the (changed) potential energy has a strict minimum.",
+    Because.MINIMUM: "$K > 0$: the (changed) potential energy has a strict minimum.",
     Because.MINIMUM_AND_DISSIPATION: (
-        "K > 0 and D >= 0: the energy does not grow, and the (changed) potential energy has a strict minimum."
+        "$K > 0$ and $D \\geq 0$: the energy does not grow, and the (changed) potential energy has a strict minimum."
     ),
     Because.UNDAMPED_MOTION: "Motions of [[1]] stay undamped.",
     Because.INTEGRALS: _integrals,
@@ -101,7 +101,7 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
     Because.COINCIDENCE: (
         "Frequencies coincide (semisimple): a border of the region of gyroscopic stabilisation may be here."
     ),
-    Because.NO_ENERGY: "K > 0, but no energy integral of the nonlinear system is known.",
+    Because.NO_ENERGY: "$K > 0$, but no energy integral of the nonlinear system is known.",
     Because.IMAGINARY: "No root has a positive real part, but some are imaginary.",
     Because.IMAGINARY_SIMPLE: "All roots are imaginary and simple; the forces are not potential.",
     Because.IMAGINARY_BESIDES_TURNED: (

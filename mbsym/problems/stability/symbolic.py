@@ -52,7 +52,7 @@ from mbsym.algebra.matrices import added
 from mbsym.algebra.signs import MOST_TERMS, Condition, ContradictionError, Signs, conditions
 from mbsym.expressions.message import Message, joined
 from mbsym.problems.stability import nonholonomic
-from mbsym.problems.stability.covering import alone, cells_of
+from mbsym.problems.stability.covering import alone, cells_of, uncovered
 from mbsym.problems.stability.exact import PointVerdict, verdict_at
 from mbsym.problems.stability.linear_form import (
     CONSERVATIVE,
@@ -140,6 +140,7 @@ class Theory:
     at_point: PointVerdict | None = None
     reduced: Theory | None = None  # with cyclic coordinates ignored after Routh
     turned: bool = False  # the roots of a turned steady spin are left out of the requirements
+    uncovered: bool = False  # parameters are known, and all that are near them, at which none of the cases holds
 
     @property
     def wanted(self) -> str:
@@ -292,8 +293,8 @@ def _analyse(system: LinearSystem, signs: Signs, borders: bool) -> Theory:
     if mass.word is not Definite.POSITIVE:
         remarks.append("M is taken to be positive definite, as the matrix of a kinetic energy is.")
     if zero_power:
-        several = Message("lambda^[[count]] splits off: [[count]] zero roots.", count=zero_power)
-        remarks.append(several if zero_power > 1 else Message("lambda splits off: one zero root."))
+        several = Message("[[count]] zero roots split off.", count=zero_power)
+        remarks.append(several if zero_power > 1 else Message("One zero root splits off."))
     found = replace(
         start,
         removed=removed,
@@ -314,7 +315,8 @@ def _analyse(system: LinearSystem, signs: Signs, borders: bool) -> Theory:
         cases, reduced = _cases(system, found, known), None
     if system.exact and zero_power and not any(case.verdict.word.stable for case in cases):
         cases = _cases_of_linear(system, found, known) or cases
-    return replace(found, cases=cases, reduced=reduced, verdict=_first_certain(cases, known))
+    verdict, left = _first_certain(cases, known)
+    return replace(found, cases=cases, reduced=reduced, verdict=verdict, uncovered=left)
 
 
 def on_border(
@@ -470,9 +472,11 @@ def _requirements(
         requirements += _simple(system, factors, known, remarks)
     elif even and sum(len(f.coefficients) - 1 for f in factors) > 1:
         remarks.append(
-            "In a conservative system without gyroscopic forces the roots in lambda^2 are real and semisimple: "
-            "K > 0 is necessary and sufficient for the stability of the first approximation, a vanishing discriminant "
-            "(equal frequencies) does no harm."
+            Message(
+                "In a conservative system without gyroscopic forces the squares of the roots are real and semisimple: "
+                "$K > 0$ is necessary and sufficient for the stability of the first approximation, a vanishing "
+                "discriminant (equal frequencies) does no harm."
+            )
         )
     return tuple(requirements), remarks
 
@@ -782,18 +786,21 @@ def _conservative(minimum: frozenset[Fact]) -> Verdict:
     return concluded(minimum | {Fact.BOUNDED}, Reason(Because.NO_ENERGY), Reason(Because.HIGHER_ORDER))
 
 
-def _first_certain(cases: Sequence[Case], known: Signs) -> Verdict:
-    """The verdict of the first case, if it always holds; else what all cases have in common that can hold."""
+def _first_certain(cases: Sequence[Case], known: Signs) -> tuple[Verdict, bool]:
+    """The verdict of the first case, if it always holds; else what all cases have in common that can hold.
+
+    And whether parameters are known at which no case holds.
+    """
     possible = [case for case in cases if not case.never]
     if not possible:
-        return undecided(Because.BORDER)
+        return undecided(Because.BORDER), False
     if possible[0].always:
-        return possible[0].verdict
+        return possible[0].verdict, False
     cells = cells_of(possible)
     if cells is None:
         unwritten = any(r.unwritten for case in possible for r in (*case.all_of, *case.any_of))
-        return undecided(Because.CONDITIONS_UNWRITTEN) if unwritten else depends()
-    return alone(cells, known)
+        return undecided(Because.CONDITIONS_UNWRITTEN) if unwritten else depends(), False
+    return alone(cells, known), uncovered(cells, known)
 
 
 def _unstable(requirements: Sequence[Requirement], known: Signs) -> tuple[Case, ...]:

@@ -189,10 +189,6 @@ class Verdict:
         """Whether nothing is claimed because the mass matrix is singular here."""
         return Flaw.SINGULAR in self.flawed
 
-    def no_stronger_than(self, other: Verdict) -> bool:
-        """Whether everything that this says follows from the other: no further ground, every flaw."""
-        return {*self.laid} <= {*other.laid} and self.flawed >= other.flawed
-
 
 def undecided(code: Because, *data: object) -> Verdict:
     """No theorem applies, and why."""

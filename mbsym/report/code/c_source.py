@@ -28,6 +28,8 @@ from mbsym.report.code.functions import Function, Functions, prescribed_value
 from mbsym.report.code.identifiers import prefix_of
 from mbsym.report.code.lookups import c_definition, identifier
 from mbsym.report.code.model_code import programs_of, solved, undetermined
+from mbsym.report.code.named_dynamics import bodies as bodies_of
+from mbsym.report.code.named_dynamics import named_dynamics
 from mbsym.report.environment import rendered
 from mbsym.report.numbers import number
 
@@ -52,7 +54,7 @@ _WORDS = """
     j0 j1 jn y0 y1 yn main
     math_errhandling MATH_ERRNO MATH_ERREXCEPT FP_FAST_FMA FP_FAST_FMAF FP_FAST_FMAL FLT_EVAL_METHOD
     SNAN SNANF SNANL FP_LLOGB0 FP_LLOGBNAN X_TLOSS
-    t q qd qdd x xd p M f J i status slopes
+    t q qd qdd x xd p M f J i status slopes efforts pose
 """
 RESERVED = frozenset(_WORDS.split())
 #: What the file itself declares, with the prefix of the system in front; those in capitals are constants.
@@ -61,6 +63,7 @@ DECLARED = """
     right_hand_side jacobian input_names INPUTS H OK NOT_FINITE COORDINATES STATES PARAMETERS
     constraints constraint_velocity constraint_jacobian constraint_acceleration multipliers consistent reactions given
     CONSTRAINTS HOLONOMIC DEPENDENT NOT_CLOSED
+    inverse_dynamics forward_dynamics coriolis gravity frame_names frame_pose frame_jacobian FRAMES
     speed_state speed_state_names speed_right_hand_side speed_restore SPEED_STATES
 """
 
@@ -89,17 +92,17 @@ DIALECT = Dialect(
 )
 
 
-def render(analysis: Analysis, problems: Sequence[int]) -> str:
-    """The text of ``model.c``."""
-    return _rendered("model.c.j2", analysis, bodies=True)
+def render(analysis: Analysis, problems: Sequence[int], whole: bool = True) -> str:
+    """The text of ``model.c``; without what robotics calls by name where it is not to be ``whole``."""
+    return _rendered("model.c.j2", analysis, bodies=True, whole=whole)
 
 
-def header(analysis: Analysis, problems: Sequence[int]) -> str:
+def header(analysis: Analysis, problems: Sequence[int], whole: bool = True) -> str:
     """The text of ``model.h``."""
-    return _rendered("model.h.j2", analysis, bodies=False)
+    return _rendered("model.h.j2", analysis, bodies=False, whole=whole)
 
 
-def _rendered(template: str, analysis: Analysis, bodies: bool) -> str:
+def _rendered(template: str, analysis: Analysis, bodies: bool, whole: bool) -> str:
     system, (code, no_code) = analysis.system, programs_of(analysis)
     n = len(system.coordinates)
     prefix = prefix_of(system.name)
@@ -139,6 +142,7 @@ def _rendered(template: str, analysis: Analysis, bodies: bool) -> str:
         ]
         if bodies:
             functions["jacobian"] = writer.function(forward.program, [slopes[i][j] for i, j in entries])
+    named = named_dynamics(analysis) if code and whole else None
     return rendered(
         template,
         {},
@@ -164,11 +168,18 @@ def _rendered(template: str, analysis: Analysis, bodies: bool) -> str:
             "solved": forward is not None,
             "slopes": slopes is not None,
             "reactions": bool(known.reactions),
+            "inverse": bool(named and named.inverse),
+            "forward": bool(named and named.forward),
+            "coriolis": bool(named and named.coriolis),
+            "gravity": bool(named and named.gravity),
         },
         tied=tied,
-        speeds=_speeds(analysis, writer) if functions["accelerations"] or (forward and not tied) else None,
+        speeds=_speeds(analysis, writer) if functions["accelerations"] or forward else None,
         quaternions=any(isinstance(one, Quaternion) for body in system.bodies for one in body.orientation),
         functions=functions,
+        named=bodies_of(named, writer, comment) if named and bodies else None,
+        frames=[comment(one.name) for one in named.frames] if named else [],
+        without=wrap(comment(named.told_without), 110, break_long_words=False) if named else [],
         upper=upper,
         entries=entries,
         lookups=[c_definition(table) for table in writer.tables],

@@ -34,7 +34,7 @@ class Tied:
     """``rows`` are numbers of rows of ``code``, those on positions first, ``positions`` of them.
 
     ``rank`` of them are independent, ``position_rank`` of those on positions.  ``dynamics`` has its rows in the same
-    order; None for the reason ``no_dynamics``.
+    order; None for the reason ``no_dynamics``.  ``chosen`` is what it is made of.
     """
 
     code: ConstrainedPrograms
@@ -42,8 +42,9 @@ class Tied:
     positions: int
     rank: int
     position_rank: int
-    dynamics: ConstrainedDynamics | None
-    no_dynamics: str
+    chosen: Chosen
+    dynamics: ConstrainedDynamics | None = None
+    no_dynamics: str = ""
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -53,8 +54,7 @@ class Tied:
     @property
     def kept(self) -> tuple[tuple[int, int], ...]:
         """(constraint, component) of the rows."""
-        names = [self.code.names[i] for i in self.rows]
-        return tuple((name.constraint, name.component) for name in names)
+        return self.chosen.rows
 
     @property
     def phi(self) -> list[Node]:
@@ -98,9 +98,10 @@ def _tied(analysis: Analysis) -> Tied:
     order = sorted(range(len(code.names)), key=lambda i: code.position[i] is None)
     rows, sets = counted_anew(order, found.independent, found.dependent_sets, found.dependent_positions)
     positions = sum(code.position[i] is not None for i in rows)
-    tied = Tied(code, tuple(rows), positions, found.velocity_rank, found.position_rank, None, "")
+    chosen = Chosen(tuple((code.names[i].constraint, code.names[i].component) for i in rows), *sets)
+    tied = Tied(code, tuple(rows), positions, found.velocity_rank, found.position_rank, chosen)
     try:
-        return replace(tied, dynamics=constrained_dynamics(analysis.system, analysis.ring, Chosen(tied.kept, *sets)))
+        return replace(tied, dynamics=constrained_dynamics(analysis.system, analysis.ring, chosen))
     except Failure as reason:
         return replace(tied, no_dynamics=str(reason))
 

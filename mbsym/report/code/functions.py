@@ -12,7 +12,8 @@ from mbsym.expressions.tree import ZERO, Expression, Name, add, multiply
 from mbsym.formulas.names import injective
 from mbsym.formulas.straight_line import Dialect, Listing, listing
 from mbsym.mechanics.variables import program_environment
-from mbsym.model.system import Prescribed, System
+from mbsym.model.inputs import force_names
+from mbsym.model.system import Prescribed, System, acceleration_name
 from mbsym.report.code.lookups import identifiers
 
 
@@ -27,6 +28,8 @@ class Function:
     results: tuple[str, ...]
     time: bool = False
     inputs: tuple[tuple[int, str], ...] = ()
+    accelerations: tuple[tuple[int, str], ...] = ()
+    forces: tuple[tuple[int, str], ...] = ()
 
 
 def prescribed_value(item: Prescribed) -> Expression:
@@ -59,6 +62,7 @@ class Functions:
         self.tables: dict[Tabulated, None] = {}  # that are called
         names = [*system.coordinates, *system.velocities, *system.parameter_names]
         names += [*(item.name for item in system.prescribed), *system.input_names, *system.variables]
+        names += [*map(acceleration_name, system.coordinates), *force_names(system)]
         self.names = injective(names, propose, taken=self.reserved) | {"t": "t", "pi": pi}
 
     def function(self, program: Program, outputs: Iterable[Node]) -> Function:
@@ -79,6 +83,8 @@ class Functions:
             results=body.results,
             time="t" in used,
             inputs=self._unpacked(system.input_names, used),
+            accelerations=self._unpacked(tuple(map(acceleration_name, system.coordinates)), used),
+            forces=self._unpacked(force_names(system), used),
         )
 
     def expression(self, value: Expression) -> str:

@@ -9,7 +9,8 @@ energies, first integrals of problem 7, places of the bodies
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
@@ -19,6 +20,7 @@ from mbsym.algebra.derivative import jacobian
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.program import Node, Program
+from mbsym.formulas.names import injective
 from mbsym.mechanics.forward_dynamics import ForwardDynamics, forward_dynamics
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.programs import Programs, generalized_energy, momenta, scene_without_accelerations
@@ -26,6 +28,7 @@ from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import INERTIAL, acceleration_name
 from mbsym.problems.integrals import ENERGY, WITH_FORCES, Integral, identifiers, whole_momenta
 from mbsym.report.code import programs as open_trees
+from mbsym.report.code.named_dynamics import NamedDynamics, named_dynamics
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -75,13 +78,19 @@ class Integrals:
 
 @dataclass(frozen=True)
 class Part:
-    """A function of generated code: ``entries`` of an array of ``shape`` that need not be zero, by place."""
+    """A function of generated code: ``entries`` of an array of ``shape`` that need not be zero, by place.
+
+    ``argument``: what it takes besides the state: ``qdd``, accelerations, or ``tau``, generalised forces.  ``further``:
+    only languages have it whose functions are many.
+    """
 
     name: str
     words: str
     shape: tuple[int, ...]
     program: Program
     entries: Mapping[Place, Node]
+    argument: str = ""
+    further: bool = False
 
 
 #: Several files are written of one analysis, one after the other, from the same programs.
@@ -228,8 +237,9 @@ def _places(name: str, words: str, program: Program, rows: Sequence[Iterable[Nod
     return Part(name, words, (len(rows), 3), program, _nonzero(program, entries))
 
 
-def parts(analysis: Analysis, problems: Sequence[int]) -> tuple[tuple[Part, ...], tuple[str, ...]]:
-    """Everything that generated code computes, and what it lacks, as sentences."""
+def parts(analysis: Analysis, problems: Sequence[int], named: bool = True) -> tuple[tuple[Part, ...], tuple[str, ...]]:
+    """Everything that generated code computes (``named``: what robotics calls by name, too), and what it lacks, as
+    sentences."""
     code, no_code = programs_of(analysis)
     if code is None:
         return (), (f"There is no code for the equations of motion: {no_code}",)
@@ -279,7 +289,46 @@ def parts(analysis: Analysis, problems: Sequence[int]) -> tuple[tuple[Part, ...]
         words = "The first integrals in the order of INTEGRALS"
         made.append(Part("integrals", words, (len(values),), conserved.program, values))
     made.extend(places(analysis))
+    if named:
+        dynamics = named_dynamics(analysis)
+        made.extend(_named_parts(dynamics, n))
+        lacking += filter(None, [dynamics.told_without])
     return tuple(made), tuple(lacking)
+
+
+def _named_parts(found: NamedDynamics, n: int) -> Iterator[Part]:
+    """What robotics calls by name."""
+    balance = "M q'' + c + g = generalised forces of other loads"
+    for name, words, one, argument in (
+        ("coriolis", f"c of {balance}: C(q, q') q' where nothing moves as prescribed", found.coriolis, ""),
+        ("gravity", f"g of {balance}, of the fields of gravity", found.gravity, ""),
+        (
+            "inverse_dynamics",
+            "The generalised forces tau = M q'' - f that q'' needs besides the loads, inputs being zero",
+            found.inverse,
+            "qdd",
+        ),
+        ("forward_dynamics", "q'' = M^-1 (f + tau), inputs being zero", found.forward, "tau"),
+    ):
+        if one is not None:
+            column: dict[Place, Node] = {(i,): x for i, x in enumerate(one.nodes)}
+            nodes = _nonzero(one.program, column)
+            yield Part(name, words, (n,), one.program, nodes, argument, bool(argument))
+    called = injective([one.name for one in found.frames], lambda name: re.sub(r"\W", "_", name, flags=re.ASCII))
+    for frame in found.frames:
+        for stem, words, computed, shape in (
+            ("pose", "[[R, r], [0, 1]]: inertial axes from its own are R, its origin is r", frame.pose, (4, 4)),
+            (
+                "jacobian",
+                "J of (velocity of its origin, angular velocity) = J q', inertial axes",
+                frame.jacobian,
+                (6, n),
+            ),
+        ):
+            entries: dict[Place, Node] = {divmod(k, shape[1]): x for k, x in enumerate(computed.nodes)}
+            name = f"frame_{stem}_{called[frame.name]}"
+            nodes = _nonzero(computed.program, entries)
+            yield Part(name, f"Of {frame.name}, {words}", shape, computed.program, nodes, "", True)
 
 
 def undetermined(analysis: Analysis) -> str:

@@ -33,6 +33,7 @@ from mbsym.report.code.identifiers import prefix_of
 from mbsym.report.code.lookups import identifier, python_definition
 from mbsym.report.code.model_code import Solved, first_integrals, programs_of, solved, undetermined
 from mbsym.report.code.model_values import initial_values, ordered, parameters_of, starting
+from mbsym.report.code.named_dynamics import bodies, named_dynamics
 from mbsym.report.environment import rendered
 
 if TYPE_CHECKING:
@@ -47,7 +48,8 @@ RESERVED = {
     "Parameters", "INTEGRALS", "UNITS", "with_unit", "LINEAR",
     "polynomial_integrals", "invariant_sets", "normal_forms", "small_parameters", "missing", "name",
     "SPEEDS", "POSITIONS", "speed_state", "speed_rhs", "speed_restored",
-    "speed_simulate", "y", "right", "matrix",
+    "speed_simulate", "y", "right", "matrix", "FRAMES", "frame", "frame_pose", "frame_jacobian", "qdd", "tau",
+    "coriolis", "gravity", "inverse_dynamics", "forward_dynamics",
 }  # fmt: skip
 #: What a module of a constrained system calls something besides.
 TIED = frozenset({
@@ -90,7 +92,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
 
         tied, code, no_code = tied_code(analysis, writer)
     speeds = None
-    if system.speeds and not system.constraints:  # in speeds there is the open tree alone
+    if system.speeds and (tied or not system.constraints):
         from mbsym.report.code.speed_code import speed_code
 
         speeds = speed_code(analysis, writer)
@@ -99,6 +101,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         from mbsym.report.code.canonical_code import canonical_code
 
         forms = canonical_code(analysis, problems, writer)
+    named = named_dynamics(analysis) if code else None
     n = len(system.coordinates)
     upper = [(i, j) for i in range(n) for j in range(i, n)]
     known = solved(analysis)
@@ -121,7 +124,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         title=plain(system.name),
         description=fill(plain(system.description), 110),
         n=n,
-        defaults=[(item.name, _default(item.value)) for item in system.parameters],
+        defaults=[(item.name, default(item.value)) for item in system.parameters],
         meanings=[(item.name, plain(item.told)) for item in parameters if item.told],
         units=wrap(f"Units: {', '.join(told)}.", 110, break_long_words=False) if told else [],
         axes=[
@@ -148,6 +151,8 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
             for one in formula_functions(analysis, problems, writer)
         ],
         titles={number: PROBLEMS[number].title for number in problems},
+        named=named and bodies(named, writer, plain),
+        without=wrap(named.told_without, 110, break_long_words=False) if named else [],
         conserved=writer.function(conserved.program, conserved.nodes) if conserved.nodes else None,
         slopes=_slopes(writer, known),
         no_slopes=plain(known.no_slopes or known.no_forward),
@@ -199,7 +204,7 @@ def plain(words: str) -> str:
     return " ".join(words.replace("\\", "/").replace('"', "'").split())
 
 
-def _default(value: Expression | None) -> str:
+def default(value: Expression | None) -> str:
     """A number as Python reads it, or None: nothing is made up."""
     if value is None:
         return "None"

@@ -1,15 +1,19 @@
-"""What ``model.py`` and ``model.c`` hold of a system in speeds, from the straight-line program: y', y = (s, u)."""
+"""What ``model.py`` and ``model.c`` hold of a system in speeds, from the straight-line program: y', y = (s, u).
+
+With constraints u' is that of ``mbsym.mechanics.constraints.dynamics``, and states are led back to them as well.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from mbsym.algebra.failures import Failure
+from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.program import Node
 from mbsym.mechanics.factorisation import solve
-from mbsym.mechanics.speed_programs import restoring, speed_program
+from mbsym.mechanics.speed_programs import SpeedProgram, restoring, speed_program
+from mbsym.mechanics.speeds import SpeedForm
 from mbsym.report.code.functions import Function, Functions
 
 if TYPE_CHECKING:
@@ -20,12 +24,31 @@ if TYPE_CHECKING:
 Used = tuple[tuple[int, str], ...]
 
 
+def _solved(analysis: Analysis, form: SpeedForm, found: SpeedProgram) -> tuple[Sequence[Node], Mapping[str, Node]]:
+    """u', and by name what is added to states to lead them back.  Raises Failure."""
+    program = found.program
+    if not analysis.system.constraints:
+        return solve(program, found.mass_matrix, found.forcing)[0], restoring(program, analysis.system)
+    from mbsym.mechanics.constraints.dynamics import state_dynamics  # few systems have constraints
+    from mbsym.report.code.constrained_code import tied_of
+
+    tied = tied_of(analysis)
+    if isinstance(tied, str):
+        raise NoClosedForm(tied)
+    own = state_dynamics(form, tied.chosen)
+    nodes = [*own.accelerations, *own.position_correction, *own.velocity_correction]
+    made = own.program.evaluate(nodes, {name: program.input(name) for name in own.environment}, program)
+    n = len(form.speeds)
+    names = (*(x.name for x in form.positions), *(u.name for u in form.speeds))
+    return made[:n], dict(zip(names, made[n:], strict=True))
+
+
 @dataclass(frozen=True)
 class SpeedCode:
     """``state`` are the names of y; ``unpacked`` what the code calls them; the results of ``function`` are the upper
     half of M, f and s'; ``from_coordinates`` gives y from q and q'.  ``accelerated`` is y' = (s', u'), u' by
-    factorisation; ``restored`` is y with quaternions and unit vectors led back to their lengths, None where there are
-    none.  Of these two ``used`` are the states that occur, by place.
+    factorisation; ``restored`` is y with quaternions and unit vectors led back to their lengths, and to constraints;
+    None where there are none.  Of these two ``used`` are the states that occur, by place.
     """
 
     positions: tuple[str, ...]
@@ -48,14 +71,13 @@ def speed_code(analysis: Analysis, writer: Functions) -> SpeedCode | None:
     try:
         found = speed_program(form)
         start = form.state_in_coordinates(found.program)
-        accelerations, _ = solve(found.program, found.mass_matrix, found.forcing)
+        accelerations, moved = _solved(analysis, form, found)
     except Failure:
         return None
     n = len(form.speeds)
     upper = tuple((i, j) for i in range(n) for j in range(i, n))
     nodes = [*(found.mass_matrix[i][j] for i, j in upper), *found.forcing, *found.rates]
     state = [*(x.name for x in form.positions), *(u.name for u in form.speeds)]
-    moved = restoring(found.program, analysis.system)
     inputs = [found.program.input(name) for name in state]
     restored = [x + moved[name] if name in moved else x for name, x in zip(state, inputs, strict=True)]
     derived = [*found.rates, *accelerations]

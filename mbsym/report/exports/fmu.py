@@ -135,7 +135,7 @@ def render(analysis: Analysis, problems: Sequence[int], version: int) -> bytes:
 def sources(analysis: Analysis, version: int) -> dict[str, bytes]:
     """The files of an FMU but for its binary, by their paths in it."""
     system = analysis.system
-    code, header = c_source.render(analysis, ()), c_source.header(analysis, ())
+    code, header = c_source.render(analysis, (), whole=False), c_source.header(analysis, (), whole=False)
     prefix = c_source.prefix_of(system.name)
     reserved = c_source.RESERVED | c_source.declared(prefix) | frozenset(_WORDS.split())
     members = injective(system.parameter_names, c_source.proposed, taken=c_source.RESERVED | c_source.declared(prefix))

@@ -28,7 +28,8 @@ if TYPE_CHECKING:
 #: What exports call their functions and tables; no local name of theirs is one of these.
 _WORDS = """
     t x p result name given values missing unknown parameters initial_state mass_matrix forcing energy
-    generalized_energy accelerations right_hand_side jacobian integrals joints mass_centres
+    generalized_energy accelerations right_hand_side jacobian integrals joints mass_centres coriolis gravity
+    inverse_dynamics forward_dynamics qdd tau
 """
 COMMON = frozenset(_WORDS.split())
 #: What they call besides where there are constraints, or reactions are asked for.
@@ -53,13 +54,17 @@ class Language:
 
 @dataclass(frozen=True)
 class Written:
-    """A function: its body, and what stands where in its result; other places are zero."""
+    """A function: its body, and what stands where in its result; other places are zero.
+
+    ``argument``: ``, qdd`` or ``, tau`` where it takes that besides the state, and no inputs.
+    """
 
     name: str
     words: str
     shape: tuple[int, ...]
     body: Function
     entries: tuple[tuple[tuple[int, ...], str], ...]
+    argument: str = ""
 
     def rows(self, zero: str) -> list[list[str]]:
         """The result of a matrix, of a column in rows of one."""
@@ -81,7 +86,8 @@ def told_in(system: System) -> str:
 class Export:
     """``parameters`` in the order of the description; ``initial`` the texts of x(0), empty for a position not given.
 
-    ``ordered``: parameters such that relations come after what they need.
+    ``ordered``: parameters such that relations come after what they need.  ``further`` are functions with another
+    argument, and of single frames.
     """
 
     system: System
@@ -94,6 +100,7 @@ class Export:
     lacking: tuple[str, ...]
     names: dict[str, str] = field(compare=False)
     tables: tuple[Tabulated, ...] = ()
+    further: tuple[Written, ...] = ()
 
     @property
     def law(self) -> str:
@@ -117,7 +124,7 @@ class Export:
             "leads a state back, whose constraint_velocity"
             + (" and constraints tell" if self.has("constraints") else " tells")
             + " what is left. Where J M^-1 J^T is singular (links in line, dependent constraints) or M is, results are "
-            "not finite."
+            "not finite, or by rounding finite and worthless."
         )
         return wrap(words, 100, break_long_words=False)
 
@@ -168,21 +175,30 @@ class Export:
 
 
 def export(
-    analysis: Analysis, problems: Sequence[int], language: Language, shared: Collection[str] | None = None
+    analysis: Analysis,
+    problems: Sequence[int],
+    language: Language,
+    shared: Collection[str] | None = None,
+    further_too: bool = False,
 ) -> Export:
     """The system's code in a language.
 
     ``shared`` names functions that stand in one scope: there are only these, those of one program have one body in
-    common, and no local name is used twice.  Raises NoClosedForm for a number beyond the range of double.
+    common, and no local name is used twice.  ``further_too``: functions with another argument, too.
+
+    Raises NoClosedForm for a number beyond the range of double.
     """
     system = analysis.system
-    made, lacking = parts(analysis, problems)
+    made, lacking = parts(analysis, problems, shared is None)
     further = FURTHER if system.constraints or system.reactions else frozenset()
     writer = Functions(system, language.dialect, language.reserved | further, language.propose, PI)
     writer.names["t"] = language.time
     parameters = parameters_of(system, writer)
+    further_functions: list[Written] = []
     if shared is None:
-        functions = [one for part in made for one in _written(writer, [part])]
+        functions = [one for part in made if not part.further for one in _written(writer, [part])]
+        if further_too:
+            further_functions = [one for part in made if part.further for one in _written(writer, [part])]
     else:
         functions = list(_in_one_scope(writer, [part for part in made if part.name in shared]))
     return Export(
@@ -196,6 +212,7 @@ def export(
         lacking=(*lacking, *filter(None, [told_in(analysis.system)])),
         names=writer.names,
         tables=tuple(writer.tables),
+        further=tuple(further_functions),
     )
 
 
@@ -204,7 +221,14 @@ def _written(writer: Functions, made: Sequence[Part]) -> list[Written]:
     body = writer.function(made[0].program, [node for part in made for node in part.entries.values()])
     results = iter(body.results)
     return [
-        Written(part.name, part.words, part.shape, body, tuple((place, next(results)) for place in part.entries))
+        Written(
+            part.name,
+            part.words,
+            part.shape,
+            body,
+            tuple((place, next(results)) for place in part.entries),
+            f", {part.argument}" if part.argument else "",
+        )
         for part in made
     ]
 

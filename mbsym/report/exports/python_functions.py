@@ -39,7 +39,7 @@ def language(module: str, called: Callable[[str], str], tables: bool = False) ->
 
 def render(template: str, spoken: Language, analysis: Analysis, problems: Sequence[int]) -> str:
     """The module's text."""
-    model = export(analysis, problems, spoken)
+    model = export(analysis, problems, spoken, further_too=True)
     lookups = [python_definition(table, "jnp", typed=False) for table in model.tables]
     return rendered(template, {"plain": plain}, model=model, lookups=lookups)
 

@@ -23,6 +23,7 @@ from mbsym.numerics.between import accelerations
 from mbsym.numerics.body_motion import BodyMotions, body_motions
 from mbsym.numerics.positions import JOINT, ORIGIN, Positions, positions
 from mbsym.numerics.scenario import Scenario
+from mbsym.picture.looking import azimuth_of
 from mbsym.report.outlines import Outline, outlines
 from mbsym.simulation import Simulation
 
@@ -196,33 +197,3 @@ def view(found: Positions) -> tuple[Sequence[float], float, float]:
             up = tuple(np.eye(3)[1 if found.plane != 2 else 2])
         return up, azimuth_of(up, normal), 0.0
     return up, 35.0, 22.0
-
-
-def basis(up: Sequence[float]) -> tuple[Any, Any, Any]:
-    """(first, second, up): level directions from which azimuths count, right-handed."""
-    third = np.array(up) / np.linalg.norm(up)
-    least = int(np.argmin(np.abs(third)))
-    level = np.eye(3)[(int(np.argmax(np.abs(third))) + 1) % 3 if least == np.argmax(np.abs(third)) else least]
-    first = level - third * (level @ third)
-    first = first / np.linalg.norm(first)
-    return first, np.cross(third, first), third
-
-
-def azimuth_of(up: Sequence[float], towards: Any) -> float:
-    """The azimuth, in degrees, of an eye in the direction ``towards``."""
-    first, second, _ = basis(up)
-    return float(np.degrees(np.arctan2(towards @ second, towards @ first)))
-
-
-def projection(up: Sequence[float], azimuth: float, elevation: float) -> Any:
-    """Rows: to the right, upwards, towards the eye."""
-    first, second, third = basis(up)
-    a, e = np.radians(azimuth), np.radians(elevation)
-    level = np.cos(a) * first + np.sin(a) * second
-    return np.array(
-        [
-            -np.sin(a) * first + np.cos(a) * second,
-            -np.sin(e) * level + np.cos(e) * third,
-            np.cos(e) * level + np.sin(e) * third,
-        ]
-    )

@@ -9,7 +9,8 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from mbsym.model.quantities import time_unit, with_unit
-from mbsym.report.figures.animation import Animation, dots, moving_points, projection, view
+from mbsym.picture.looking import projection
+from mbsym.report.figures.animation import Animation, dots, moving_points, view
 
 #: Pixels of the picture, how many times larger it is drawn, most frames, and seconds of the loop.
 WIDE, TALL, FINER, MOST, SECONDS = 560, 420, 2, 120, 6.0
@@ -35,7 +36,7 @@ def animation_gif(found: Animation) -> bytes:
 class _Picture:
     def __init__(self, found: Animation) -> None:
         self.found = found
-        look = projection(*view(found.positions))
+        look = np.array(projection(*view(found.positions)))
         self.flat = np.einsum("ij,pjm->pim", look, found.positions.places)
         self.bodies = [(np.einsum("ij,pjm->pim", look, item.axes), look @ item.places) for item in found.ellipsoids]
         self.look = look

@@ -17,7 +17,8 @@ from mbsym import __version__
 from mbsym.expressions.counting import counted
 from mbsym.model.quantities import energy_unit, time_unit, unit_of, with_unit
 from mbsym.model.system import INERTIAL
-from mbsym.report.figures.animation import Animation, basis, dots, extent, moving_points, view
+from mbsym.picture.looking import basis
+from mbsym.report.figures.animation import Animation, dots, extent, moving_points, view
 from mbsym.report.html.environment import embedded, page
 from mbsym.report.runs.simulation_words import energy_lines, quality
 from mbsym.report.unit_text import pretty
@@ -93,7 +94,7 @@ def motion(found: Animation, sentences: tuple[str, ...]) -> Motion:
         "joints": joints,
         "centres": centres,
         "trails": moving_points(drawn),
-        "basis": [[float(x) for x in direction] for direction in basis(up)],
+        "basis": [list(direction) for direction in basis(up)],
         "azimuth": azimuth,
         "elevation": elevation,
         "middle": middle,

@@ -16,7 +16,6 @@ import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.backends.backend_pdf import FigureCanvasPdf
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.font_manager import fontManager
@@ -124,6 +123,8 @@ def saved(stem: str, figure: Figure, formats: Sequence[str]) -> dict[str, bytes]
             FigureCanvasSVG(figure).print_svg(stream, metadata={"Date": None, "Creator": "mbsym"})
             figure.set_dpi(RESOLUTION)
         elif kind == "pdf":
+            from matplotlib.backends.backend_pdf import FigureCanvasPdf  # few ask for it, all would wait
+
             nothing = dict.fromkeys(("CreationDate", "Producer"))
             FigureCanvasPdf(figure).print_pdf(stream, metadata=nothing | {"Creator": "mbsym"})
             figure.set_dpi(RESOLUTION)

@@ -8,6 +8,7 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from mbsym.expressions.message import Message
 from mbsym.formulas.latex import LatexNames
 from mbsym.model.quantities import time_unit, unit_of
 from mbsym.model.system import System
@@ -27,10 +28,11 @@ def oscillation_figures(
 ) -> dict[str, bytes]:
     """``oscillation`` (over time), ``oscillation-planes`` (rates over variables) and ``oscillation-angles``."""
     spoken = language or Language()
-    series, simulated = spoken.sentence(SERIES_LINE), spoken.sentence(MOTION_LINE)
-    title = spoken.sentence(FIGURE, system=system.name, order=told.order, small=told.small, value=f"{found.small:.4g}")
+    series, simulated = spoken.say(SERIES_LINE), spoken.say(MOTION_LINE)
+    values = {"order": told.order, "small": told.small, "value": f"{found.small:.4g}"}
+    title = spoken.say(Message(FIGURE, system=system.name, **values))
     if not found.angles and found.no_angles:
-        title += "\n" + spoken.sentence(NO_ANGLES, why=spoken.say(found.no_angles))
+        title += "\n" + spoken.say(Message(NO_ANGLES, why=found.no_angles))
     names = LatexNames(["t", *found.names, *found.angles])
 
     def label(name: str, rate: bool = False) -> str:

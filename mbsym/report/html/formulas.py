@@ -220,12 +220,3 @@ def polynomial_pieces(coefficients: Sequence[Formula], variable: str, length: Ca
 def is_readable(value: Formula) -> bool:
     """Whether anybody would read the polynomial."""
     return value.terms <= LONGEST and _size(value) < LONGEST_CONDITION
-
-
-def prose(words: str, variable: str = "λ") -> Markup:
-    """Words of the stability kernel, with lambda as the ``variable`` of the characteristic polynomial."""
-
-    def power_of(found: re.Match[str]) -> str:
-        return math(power(mi(variable), mn(found[2])) if found[2] else mi(variable))
-
-    return Markup(re.sub(r"\blambda(\^(\d+))?", power_of, str(escape(words))))

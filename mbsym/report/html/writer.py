@@ -2,31 +2,46 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from enum import StrEnum
 from functools import singledispatchmethod
 from typing import Any
 
 from markupsafe import Markup, escape
 
+from mbsym.expressions.message import GAP, Message, Said, pieces
 from mbsym.formulas.formula import Formula
-from mbsym.formulas.mathml import MathNames, bracketed, letter, mathml_names, mi, mn, mo, mtext, power, table
+from mbsym.formulas.mathml import (
+    MathNames,
+    bracketed,
+    letter,
+    mathml_names,
+    mathml_pieces,
+    mi,
+    mn,
+    mo,
+    mtext,
+    power,
+    table,
+)
 from mbsym.formulas.mathml import row as bracketed_row
 from mbsym.formulas.names import greek
 from mbsym.formulas.notation import notation
 from mbsym.formulas.straight_line import Dialect, listing
+from mbsym.formulas.told import Told
 from mbsym.report import content
-from mbsym.report.content import Inline, Math, Said, say
+from mbsym.report.content import CONDITION, Inline, Math, say
 from mbsym.report.html import formulas
 from mbsym.report.html.description import expression, point_of_table, speed_form
-from mbsym.report.html.formulas import RELATIONS
-from mbsym.report.html.told import told_passages
+from mbsym.report.html.drawing import svg
+from mbsym.report.html.formulas import RELATIONS, math
 from mbsym.report.language import Language
 from mbsym.report.latex.description import shown_points
 from mbsym.report.lengths import PAPER_PROGRAM, length, not_printed, program_not_printed
 from mbsym.report.plain_writer import Writer as PlainWriter
 from mbsym.report.unit_text import labelled
+from mbsym.report.words.passages import Passage
 
 _DOTS = ("", "\u02d9", "\u00a8")
 _PLAIN = PlainWriter()
@@ -55,17 +70,14 @@ class Writer:
 
     def said(self, sentence: Said) -> Markup:
         """A sentence in the language of the report, with its gaps filled."""
-        text = self.language.sentence(sentence.text)
         return Markup("").join(
             self._notation(piece, sentence) if inside else self._plain(piece, sentence)
-            for inside, piece in content.pieces(text)
+            for inside, piece in pieces(self.language.text_of(sentence))
         )
 
     def _plain(self, text: str, sentence: Said) -> Markup:
-        parts = re.split(r"\[\[(\w+)\]\]", text)
-        return Markup("").join(
-            self._gap(sentence.gaps[part]) if k % 2 else _untexed(part) for k, part in enumerate(parts)
-        )
+        parts = enumerate(GAP.split(text))
+        return Markup("").join(self._gap(sentence.gaps[part]) if k % 2 else escape(part) for k, part in parts)
 
     def _gap(self, value: Inline | Sequence[Inline]) -> Markup:
         if isinstance(value, Sequence) and not isinstance(value, str):
@@ -74,13 +86,13 @@ class Writer:
 
     def _notation(self, text: str, sentence: Said) -> Markup:
         """Notation with values in it: each stands in it as a letter first, which it then replaces."""
-        gaps = re.findall(r"\[\[(\w+)\]\]", text)
+        gaps = GAP.findall(text)
         for k, gap in enumerate(gaps):
             text = text.replace(f"[[{gap}]]", chr(_FIRST + k), 1)
         written = notation(text)
         for k, gap in enumerate(gaps):
             value = sentence.gaps[gap]
-            shown = mtext(value) if isinstance(value, str) else self.math(value)
+            shown = mtext(self.inline(value).unescape()) if isinstance(value, str) else self.math(value)
             written = written.replace(mi(chr(_FIRST + k)), shown)
         return formulas.math(written)
 
@@ -91,17 +103,12 @@ class Writer:
 
     @inline.register
     def _(self, value: str) -> Markup:
-        return escape(value)
+        return escape(self.language.say(value) if isinstance(value, StrEnum) else value)
 
-    @inline.register
+    @inline.register(Said)
+    @inline.register(Message)
     def _(self, value: Said) -> Markup:
         return self.said(value)
-
-    @inline.register
-    def _(self, value: content.Words) -> Markup:
-        said = self.language.say(value.text)
-        variable = letter(value.variable) if greek(value.variable) else value.variable
-        return formulas.prose(said, variable) if variable else escape(said)
 
     @inline.register
     def _(self, value: content.Strong) -> Markup:
@@ -116,6 +123,10 @@ class Writer:
     @inline.register
     def _(self, value: content.Link) -> Markup:
         return Markup('<a href="#{}">{}</a>').format(value.to, self.inline(value.text))
+
+    @inline.register
+    def _(self, value: content.Numbered) -> Markup:
+        return Markup('\u00a0<a class="there" href="#{}">\u2193</a>').format(_anchor(value.key))
 
     @inline.register
     def _(self, value: content.Phrase) -> Markup:
@@ -259,7 +270,10 @@ class Writer:
     @block.register
     def _(self, value: content.Display) -> Markup:
         notes = (Markup('\n<p class="note soft">({})</p>').format(self.inline(note)) for note in value.notes)
-        return Markup("").join((self._displayed(value.value), *notes))
+        shown = Markup("").join((self._displayed(value.value), *notes))
+        if not value.key.startswith(CONDITION):
+            return shown
+        return Markup('<div id="{}">{}</div>').format(_anchor(value.key), shown)
 
     def _displayed(self, shown: Math | tuple[Inline, ...]) -> Markup:
         match shown:
@@ -309,7 +323,7 @@ class Writer:
 
     def _beside(self, value: Inline) -> str:
         """A part of a displayed line: words stand in it as text."""
-        if isinstance(value, (str, Said, content.Words)):
+        if isinstance(value, (str, Said)):
             return mtext(self.inline(value).unescape())
         return self.math(value)
 
@@ -388,6 +402,13 @@ class Writer:
         return replace(self, names=self.names.beside(value.names)).document(value.blocks)
 
     @block.register
+    def _(self, value: content.Drawing) -> Markup:
+        said = Markup(" ").join(map(self.said, value.caption))
+        drawn = svg(value.drawn, self.said(Said("Drawing of the system")), self.inline)
+        caption = Markup("\n<figcaption>{}</figcaption>").format(said) if said else ""
+        return Markup('<figure class="drawing">\n{}{}\n</figure>').format(drawn, caption)
+
+    @block.register
     def _(self, value: content.Folded) -> Markup:
         return Markup("<details><summary>{}</summary>\n{}\n</details>").format(
             self.said(value.title), self.document(value.blocks)
@@ -395,7 +416,7 @@ class Writer:
 
     @block.register
     def _(self, value: content.Intermediates) -> Markup:
-        return told_passages(value.told, value.passages, lambda words: self.inline(content.Words(words)))
+        return told_passages(value.told, value.passages, self.inline)
 
     @block.register
     def _(self, value: content.Steps) -> Markup:
@@ -422,7 +443,22 @@ class Writer:
 _FIRST = 0xE000
 
 
-def _untexed(text: str) -> Markup:
-    """Text of a message without what only TeX reads."""
-    plain = text.replace("---", "\u2014").replace("--", "\u2013").replace("~", "\u00a0")
-    return escape(plain.replace("''", "\u201d").replace("``", "\u201c"))
+def _anchor(key: str) -> str:
+    return f"formula-{key.replace(':', '-')}"
+
+
+def told_passages(told: Told[Any], found: Iterable[Passage], say: Callable[[str], Markup] = escape) -> Markup:
+    """A phrase, then the definitions that it introduces, for every passage."""
+    names = mathml_names(told.ring)
+    return Markup("").join(_passage(passage, names, say) for passage in found)
+
+
+def _passage(passage: Passage, names: MathNames, say: Callable[[str], Markup]) -> Markup:
+    coordinate = Markup(" ") + math(str(names[passage.coordinate])) if passage.coordinate else Markup("")
+    written = "; ".join(_equation(str(names[item.name]), item.formula) for item in passage.definitions)
+    return Markup(f'<p>{say(passage.words)}{coordinate}:</p>\n<div class="formula told">{written}.</div>\n')
+
+
+def _equation(left: str, formula: Formula) -> str:
+    first, *rest = mathml_pieces(formula.ring, formula.polynomial)
+    return " ".join(f"<math>{piece}</math>" for piece in [left + mo("=") + first, *rest])

@@ -26,9 +26,23 @@ class Labels:
     def __init__(self, prefix: str) -> None:
         self.prefix = prefix
         self._taken: set[str] = set()
+        self._within, self._count = "", 0
 
     def equation(self, key: str) -> str:
-        return self._free(f"{self.prefix}eq:{key}")
+        return self._free(self.of(key))
+
+    def of(self, key: str) -> str:
+        """The label of the equation that has this key first."""
+        return f"{self.prefix}eq:{key}"
+
+    def begin(self, section: str) -> None:
+        """Equations without a key are counted from here."""
+        self._within, self._count = section, 0
+
+    def next(self) -> str:
+        """The label of an equation without a key."""
+        self._count += 1
+        return self.equation(f"{self._within}:{self._count}" if self._within else str(self._count))
 
     def section(self, key: str) -> str:
         return self._free(f"{self.prefix}sec:{key}" if key else f"{self.prefix}sec")

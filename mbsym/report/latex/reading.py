@@ -32,7 +32,7 @@ _WORDS = """textbf textit texttt emph textbackslash textless textgreater textbar
 _PICTURES = "node draw includegraphics parskip"
 _DOCUMENT = """documentclass usepackage IfFileExists parindent medmuskip setcounter newcommand renewcommand
     makeatletter makeatother parbox title author date maketitle contentsifneeded tableofcontents bibitem refname
-    longformula
+    longformula LARGE
     if ifnum expandafter csname endcsname edef pages newwrite tf immediate openout jobname relax else fi
     detokenize thepage ps let thispagestyle pagestyle"""
 
@@ -114,7 +114,7 @@ def _opener(token: str) -> str:
     return token.replace("\\end", "\\begin")
 
 
-_LABEL = re.compile(r"\\(label|ref|eqref)\{([^{}#]*)\}|%[^\n]*")
+_LABEL = re.compile(r"\\(?:(label|ref|eqref)\{([^{}#]*)\}|longformula\[([^\]]*)\])|%[^\n]*")
 
 
 def _labels(text: str) -> None:
@@ -122,10 +122,10 @@ def _labels(text: str) -> None:
     found: set[str] = set()
     wanted: dict[str, int] = {}  # with the place where it is referred to first
     for match in _LABEL.finditer(text):
-        if match[1] is None:
+        name, place = match[2] or match[3], match.start()
+        if name is None:
             continue
-        name, place = match[2], match.start()
-        if match[1] != "label":
+        if match[1] in ("ref", "eqref"):
             wanted.setdefault(name, place)
         elif name in found:
             raise SyntaxError(f"the label {name!r} is set a second time", ("", _line(text, place), 0, None))

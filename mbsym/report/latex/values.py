@@ -12,6 +12,7 @@ from weakref import WeakKeyDictionary
 from mbsym import __version__
 from mbsym.formulas.latex import latex_names
 from mbsym.formulas.tree import angles_or
+from mbsym.report.content import Said, Verbatim
 from mbsym.report.language import Language
 from mbsym.report.latex.diagram import diagram
 from mbsym.report.latex.form import Form, heading
@@ -61,7 +62,8 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
     cited = references(known.found.get(6), escaped(system.source)) if form is not Form.FRAGMENT else ()
     writer = Writer(names, tongue, labels, form, long, lambda value: once(measured_matrix, value))
     values = {
-        "tr": tongue.sentence,
+        "tr": lambda text, **gaps: writer.said(Said(text, gaps)),
+        "verbatim": Verbatim,
         # No filter: Jinja computes filters of constants when it compiles a template, and keeps what it compiled.
         "heading": lambda key, title: heading(labels, form, key, title),
         "wide": form is Form.REPORT,
@@ -73,7 +75,7 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "system": system,
         "contents": contents(known, writer.document),
         "problems": problems,
-        "diagram": lambda: diagram(system, names, escaped, tongue.sentence("inertial frame"), form.picture),
+        "diagram": lambda: diagram(system, names, escaped, tongue.say("inertial frame"), form.picture),
         "cyrillic": tongue.name == "ru" or is_cyrillic(system),
     }
     return {"tex": escaped}, values

@@ -13,19 +13,18 @@ RELATIONS = {"!=": r"\neq", ">=": r"\geq", "<=": r"\leq", "+-": r"\pm", ":": r"\
 _SPECIAL = {
     "\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#", "%": r"\%", "_": r"\_",
     "^": r"\^{}", "~": r"\~{}", "<": r"\textless{}", ">": r"\textgreater{}", "|": r"\textbar{}", '"': "''",
-    "\u2014": r"\textemdash{}",
 }  # fmt: skip
 
 
 def escaped(words: str) -> str:
     """Plain text; characters that plain pdflatex cannot set become question marks."""
     plain = "".join(_SPECIAL.get(c, c if _can_be_set(c) else "?") for c in " ".join(words.split()))
-    return plain.replace("--", "-{}-")
+    return plain.replace("--", "-{}-").replace("\u2014", "---").replace("\u2013", "--")
 
 
 def _can_be_set(character: str) -> bool:
     """Whether inputenc knows it for Latin or Cyrillic letters."""
-    return character < "\u0100" or "\u0410" <= character <= "\u044f" or character in "\u0401\u0451"
+    return character < "\u0100" or "\u0410" <= character <= "\u044f" or character in "\u0401\u0451\u2013\u2014"
 
 
 def broken(line: str) -> str:
@@ -48,12 +47,6 @@ def broken(line: str) -> str:
 def spared(text: str) -> str:
     """One empty line where there are several."""
     return re.sub(r"\n{3,}", "\n\n", text)
-
-
-def prose(words: str, variable: str = r"\lambda") -> str:
-    """Words of the stability kernel, with lambda as the ``variable`` of the characteristic polynomial."""
-    power = r"\blambda(\\\^\{\}(\d+))?"
-    return re.sub(power, lambda m: f"${variable}^{{{m[2]}}}$" if m[1] else f"${variable}$", escaped(words))
 
 
 def is_cyrillic(system: System) -> bool:

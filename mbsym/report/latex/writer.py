@@ -3,29 +3,36 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from enum import StrEnum
 from fractions import Fraction
 from functools import singledispatchmethod
 from typing import Any
 
+from mbsym.expressions.message import GAP, Message, Said, pieces
 from mbsym.expressions.tree import Expression
 from mbsym.formulas.formula import Formula
-from mbsym.formulas.latex import LatexNames, latex_matrix, latex_names, latex_symbol
+from mbsym.formulas.latex import LatexNames, latex_matrix, latex_names, latex_symbol, latex_text
 from mbsym.formulas.straight_line import Dialect, listing
+from mbsym.formulas.told import Told
 from mbsym.report import content
-from mbsym.report.content import Inline, Said
+from mbsym.report.content import Inline
 from mbsym.report.language import Language
 from mbsym.report.latex import formulas
 from mbsym.report.latex.description import breakable, call, expression, points, speed_form
 from mbsym.report.latex.displays import loosened
+from mbsym.report.latex.drawing import tikz
 from mbsym.report.latex.form import Form, heading, subheading
 from mbsym.report.latex.formulas import Measured, measured_matrix
 from mbsym.report.latex.labels import Labels
-from mbsym.report.latex.told import CLOSING, OPENING, PARAGRAPH, packed, paragraphs
-from mbsym.report.latex.words import RELATIONS, escaped, prose
+from mbsym.report.latex.words import RELATIONS, escaped
 from mbsym.report.lengths import PAPER_PROGRAM, length, not_printed, program_not_printed
 from mbsym.report.unit_text import bracketed
+from mbsym.report.words.passages import Passage
+
+#: A centimetre of a drawing on paper.
+DRAWN = 0.85
 
 _DOTS = ("", "dot", "ddot")
 _LOOKS = {"bar": "bar", "script": "mathcal"}
@@ -57,11 +64,12 @@ class Writer:
 
     def said(self, sentence: Said) -> str:
         """A sentence in the language of the report, with its gaps filled."""
-        text = self.language.sentence(sentence.text)
-        return "$".join(self._filled(piece, sentence, bool(k % 2)) for k, piece in enumerate(text.split("$")))
+        parts = pieces(self.language.text_of(sentence))
+        return "".join(f"${self._filled(x, sentence, True)}$" if k else self._filled(x, sentence) for k, x in parts)
 
-    def _filled(self, text: str, sentence: Said, inside: bool) -> str:
-        return re.sub(r"\[\[(\w+)\]\]", lambda m: self._gap(sentence.gaps[m[1]], inside), text)
+    def _filled(self, text: str, sentence: Said, inside: bool = False) -> str:
+        parts = enumerate(GAP.split(text))
+        return "".join(self._gap(sentence.gaps[x], inside) if k % 2 else x if inside else _spaced(x) for k, x in parts)
 
     def _gap(self, value: Inline | Sequence[Inline], inside: bool) -> str:
         if isinstance(value, Sequence) and not isinstance(value, str):
@@ -75,16 +83,16 @@ class Writer:
 
     @inline.register
     def _(self, value: str) -> str:
-        return escaped(value) if value.strip() == value else re.sub(r"\S.*\S|\S", lambda m: escaped(m[0]), value)
+        return _spaced(self.language.say(value) if isinstance(value, StrEnum) else value)
 
-    @inline.register
+    @inline.register(Said)
+    @inline.register(Message)
     def _(self, value: Said) -> str:
         return self.said(value)
 
     @inline.register
-    def _(self, value: content.Words) -> str:
-        said = self.language.say(value.text)
-        return prose(said, latex_symbol(value.variable).stem) if value.variable else escaped(said)
+    def _(self, value: content.Numbered) -> str:
+        return f"~\\eqref{{{self.labels.of(value.key)}}}"
 
     @inline.register
     def _(self, value: content.Phrase) -> str:
@@ -229,6 +237,7 @@ class Writer:
 
     @block.register
     def _(self, value: content.Heading) -> str:
+        self.labels.begin(value.key)
         return heading(self.labels, self.form, value.key, self.said(value.title)) + "\n"
 
     @block.register
@@ -359,12 +368,18 @@ class Writer:
         return replace(self, names=self.names.beside(value.names)).document(value.blocks)
 
     @block.register
+    def _(self, value: content.Drawing) -> str:
+        said = " ".join(map(self.said, value.caption))
+        caption = f"\\par\\smallskip\n{{\\small {said}\\par}}\n" if said else ""
+        return f"\\begin{{center}}\n{tikz(value.drawn, self.math, DRAWN)}\n{caption}\\end{{center}}\n"
+
+    @block.register
     def _(self, value: content.Folded) -> str:
         return ""
 
     @block.register
     def _(self, value: content.Intermediates) -> str:
-        return paragraphs(value.told, value.passages, lambda words: self.inline(content.Words(words))) + "\n"
+        return paragraphs(value.told, value.passages, self.inline) + "\n"
 
     @block.register
     def _(self, value: content.Steps) -> str:
@@ -383,13 +398,18 @@ class Writer:
 
     def _beside(self, value: Inline) -> str:
         """A part of a displayed line: words stand in it as text."""
-        if isinstance(value, (str, Said, content.Words)):
+        if isinstance(value, (str, Said)):
             return f"\\text{{{self.inline(value)}}}"
         return self.math(value)
 
     def _display(self, written: str, key: str = "") -> str:
-        label = f"[{self.labels.equation(key)}]" if key else ""
-        return f"\\longformula{label}{{{written}}}"
+        label = self.labels.equation(key) if key else self.labels.next()
+        return f"\\longformula[{label}]{{{written}}}"
+
+
+def _spaced(words: str) -> str:
+    """Plain text with the spaces around it."""
+    return re.sub(r"\S(?:.*\S)?", lambda m: escaped(m[0]), words, flags=re.DOTALL)
 
 
 def _component(symbol: content.Symbol, k: int) -> content.Symbol:
@@ -400,3 +420,32 @@ def _index(text: str) -> str:
     """12, ij; O1 as O with index 1; commas with room behind."""
     nested = re.sub(r"([A-Z])(\d+)", r"\1_{\2}", text)
     return nested.replace(",", ",\\,")
+
+
+#: How paragraphs of formulas are set: TeX breaks lines only where the formulas say so, before plus and minus.
+OPENING = "{\\raggedright\\binoppenalty=10000 \\relpenalty=10000 \\linepenalty=200 \\lineskiplimit=1pt \\lineskip=4pt\n"
+PARAGRAPH, CLOSING = "\\hangindent=1.2em \\hangafter=1 \\noindent ", "\\par\n"
+
+
+def paragraphs(told: Told[Any], found: Iterable[Passage], escaped: Callable[[str], str]) -> str:
+    """Every passage as a paragraph, in one group."""
+    names = latex_names(told.ring)
+    return OPENING + "".join(PARAGRAPH + _sentence(x, names, escaped) + CLOSING for x in found) + "}"
+
+
+def _sentence(passage: Passage, names: LatexNames, escaped: Callable[[str], str]) -> str:
+    coordinate = f" ${names[passage.coordinate]}$" if passage.coordinate else ""
+    formulas = [equation(str(names[item.name]), item.formula) for item in passage.definitions]
+    return f"{escaped(passage.words)}{coordinate}: " + ";\\quad ".join(formulas) + "."
+
+
+def equation(symbol: str, formula: Formula) -> str:
+    """``$symbol = formula$``, which may be broken."""
+    return f"$\\displaystyle {symbol} = {latex_text(formula.ring, formula.polynomial, breaks=True)}$"
+
+
+def packed(entries: Iterable[tuple[str, Formula]], symbol: str, key: str) -> str:
+    """Entries of a matrix, by their indices, side by side in one paragraph with one number, which ``key`` labels."""
+    written = ";\\quad ".join(equation(f"{symbol}_{{{index}}}", entry) for index, entry in entries)
+    number = f"\\refstepcounter{{equation}}\\label{{{key}}}%\n"
+    return f"{OPENING}{PARAGRAPH}{number}{written}.\\quad\\hfill\\hbox{{(\\theequation)}}{CLOSING}}}"

@@ -38,13 +38,8 @@ _VECTORS = (
 )
 
 
-def bodies_csv(found: BodyMotions, system: System | None = None) -> str:
-    """The file's text, with the units of ``system``."""
-    return "".join(bodies_parts([found], system))
-
-
 def bodies_parts(blocks: Iterable[BodyMotions], system: System | None = None) -> Iterator[str]:
-    """The same in parts, of rows that come block by block."""
+    """The file's text in parts, of rows that come block by block, with the units of ``system``."""
     begun = False
     for found in blocks:
         text = parts(*_table(found, system))

@@ -65,7 +65,10 @@ def sentences(found: InverseDynamics) -> Iterator[tuple[str, str]]:
     tied = "[[equations]] for [[inputs]] and the forces of constraints"
     yield Message("equations"), Message(tied if found.system.constraints else "[[equations]] for [[inputs]]", **both)
     for name, values in zip(found.names, found.inputs, strict=True):
-        yield name, Message("from [[least]] to [[most]]", least=f"{values.min():.6g}", most=f"{values.max():.6g}")
+        yield (
+            name,
+            Message("from [[least]] to [[most]]", least=f"{values.min() + 0.0:.6g}", most=f"{values.max() + 0.0:.6g}"),
+        )
     if not found.unique:
         lacking = found.times[found.rank < k]
         first, more = f"{lacking[0]:.6g}", len(lacking) - 1

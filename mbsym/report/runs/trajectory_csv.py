@@ -26,17 +26,13 @@ from mbsym.numerics.simulate import Trajectory
 BLOCK = 10_000
 
 
-def trajectory_csv(
-    found: Trajectory, more: Mapping[str, Any] | None = None, units: Mapping[str, str | None] | None = None
-) -> str:
-    """The file's text; ``more`` maps names of further columns to their values, of shape (m,), ``units`` to theirs."""
-    return "".join(trajectory_parts(found, more, units))
-
-
 def trajectory_parts(
     found: Trajectory, more: Mapping[str, Any] | None = None, units: Mapping[str, str | None] | None = None
 ) -> Iterator[str]:
-    """The same in parts, of which only one is held at a time."""
+    """The file's text in parts, of which only one is held at a time.
+
+    ``more`` maps names of further columns to their values, of shape (m,), ``units`` to theirs.
+    """
     further, natural = dict(more or {}), found.generalized_energy is found.energy
     known = column_units(found.system, natural) | dict(units or {})
     names = [marked(name, known.get(name)) for name in (*columns(found.system, natural), *further)]

@@ -7,6 +7,7 @@ from dataclasses import replace
 from itertools import combinations
 from typing import TYPE_CHECKING
 
+from mbsym.expressions.message import worded
 from mbsym.formulas.formula import Formula
 from mbsym.report.canonical import TITLES
 from mbsym.report.content import (
@@ -20,7 +21,6 @@ from mbsym.report.content import (
     Said,
     Subheading,
     Symbol,
-    Words,
     equalities,
     named,
     numbered,
@@ -104,7 +104,7 @@ def _of_hamilton(
 def _of_brackets(found: Brackets) -> Iterator[Block]:
     yield paragraph(Said("The first integrals of problem 7 in coordinates and momenta:"))
     for k, (name, value) in enumerate(zip(found.names, found.formulas, strict=True), start=1):
-        yield Display(Relation(Symbol("F", str(k)), "=", value), f"canonical:F:{k}", (Words(name),))
+        yield Display(Relation(Symbol("F", str(k)), "=", value), f"canonical:F:{k}", (worded(name),))
     if len(found.names) < 2:
         return
     if found.in_involution:

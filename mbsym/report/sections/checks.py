@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from mbsym.expressions.message import worded
 from mbsym.problems.checks import Check
-from mbsym.report.content import Block, Graded, Heading, Inline, Said, Table, TableColumn, Words, paragraph
+from mbsym.report.content import Block, Graded, Heading, Inline, Said, Table, TableColumn, paragraph
 from mbsym.report.words.verdicts import grade
 
 if TYPE_CHECKING:
@@ -28,10 +29,10 @@ def content(results: Results) -> Iterator[Block]:
             TableColumn(Said("second route"), 4.4),
             TableColumn(Said("agreement"), 3.4),
         ),
-        rows=tuple(((Words(one.name),), (Words(one.first),), (Words(one.second),), _outcome(one)) for one in checks),
+        rows=tuple(((worded(one.name),), (worded(one.first),), (worded(one.second),), _outcome(one)) for one in checks),
     )
 
 
 def _outcome(check: Check) -> tuple[Inline, ...]:
-    detail: tuple[Inline, ...] = (": ", Words(check.detail)) if check.detail else ()
-    return Graded(Words(check.outcome), grade(check.outcome)), *detail
+    detail: tuple[Inline, ...] = (": ", worded(check.detail)) if check.detail else ()
+    return Graded(worded(check.outcome), grade(check.outcome)), *detail

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from mbsym.expressions.message import worded
 from mbsym.model.system import System
 from mbsym.problems.integrals import ENERGY, Integral
-from mbsym.report.content import Block, Display, Folded, Heading, Notation, Relation, Said, Words, paragraph, say
+from mbsym.report.content import Block, Display, Folded, Heading, Notation, Relation, Said, paragraph, say
 from mbsym.report.documents import results as doc
 from mbsym.report.plain import Write
 
@@ -39,7 +40,7 @@ def content(results: Results) -> Iterator[Block]:
         return
     found: tuple[Integral, ...] = results.found[7]
     for number, item in enumerate(found, start=1):
-        yield paragraph(Words(item.name), " (", Words(item.status), "):")
+        yield paragraph(worded(item.name), " (", worded(item.status), "):")
         written = Display(Relation(item.formula, "=", _CONSTANT), f"integral:{number}")
         if item.kind == ENERGY and 2 in results.told and 3 in results.problems:
             yield Display(Relation(Notation("T_2 - T_0 - U"), "=", _CONSTANT), f"integral:{number}")

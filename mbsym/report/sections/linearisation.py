@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from msgspec import UNSET
 
+from mbsym.expressions.message import worded
 from mbsym.expressions.tree import text
 from mbsym.model.system import System
 from mbsym.problems.linearisation import Linearisation, Subsystem
@@ -22,7 +23,6 @@ from mbsym.report.content import (
     Said,
     SideBySide,
     Symbol,
-    Words,
     joined,
     named,
     paragraph,
@@ -126,7 +126,7 @@ def _first_order(results: Results, found: Linearisation) -> Iterator[Block]:
     form = known["first_order"]
     if form is None:
         if known["no_first_order"]:
-            yield paragraph(Said("There is no first-order form"), ": ", Words(known["no_first_order"]), ".")
+            yield paragraph(Said("There is no first-order form"), ": ", worded(known["no_first_order"]), ".")
         return
     if found.constrained is not None:
         state = speeds(form.states)

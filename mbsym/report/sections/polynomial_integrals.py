@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from mbsym.expressions.message import worded
 from mbsym.model.system import System
 from mbsym.problems.polynomial_integrals import Polynomials
-from mbsym.report.content import Block, Display, Heading, Inline, Notation, Relation, Said, Words, ragged, say
+from mbsym.report.content import Block, Display, Heading, Inline, Notation, Relation, Said, ragged, say
 from mbsym.report.documents import integrals
 from mbsym.report.documents.results import polynomial_integrals as doc
 from mbsym.report.plain import Write
@@ -78,7 +79,7 @@ def content(results: Results) -> Iterator[Block]:
     found = result.found
     yield from listed(found, result.variables, result.formulas)
     for level, formulas in zip(result.levels, result.on_levels, strict=True):
-        zero, name = level.level, Words(title(level.level))
+        zero, name = level.level, worded(title(level.level))
         for (weight, _), formula in zip(level.integrals, formulas, strict=True):
             yield ragged(say(LEVEL, weight=str(weight), own=str(zero.weight), name=name))
             yield _constant(formula)
@@ -94,7 +95,7 @@ def listed(found: PolynomialIntegrals, variables: Sequence[Inline], formulas: Se
         Said(UNIFORM if found.grading.homogeneous else NOT_UNIFORM),
     )
     for one, formula in zip(found.generators, formulas, strict=True):
-        yield ragged(say(LISTED, weight=str(one.weight), name=Words(title(one))))
+        yield ragged(say(LISTED, weight=str(one.weight), name=worded(title(one))))
         yield _constant(formula)
 
 

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import asdict
 
+from mbsym.expressions.message import worded
+from mbsym.expressions.rates import is_velocity
 from mbsym.model.system import System
 from mbsym.problems.stabilisation import Feedback, Locus, Rank, Stabilisation
 from mbsym.report.content import (
@@ -20,13 +22,16 @@ from mbsym.report.content import (
     Symbol,
     exact,
     joined,
+    named,
     paragraph,
     ragged,
+    say,
+    speeds,
 )
 from mbsym.report.documents.results import stabilisation as doc
 from mbsym.report.plain import Write
 from mbsym.report.sections.stability import verdict_data
-from mbsym.report.words.stabilisation_words import FEEDBACK, LYAPUNOV, sentences
+from mbsym.report.words.stabilisation_words import ENCLOSED, FEEDBACK, LYAPUNOV, OF_PART, STATES, sentences
 
 if TYPE_CHECKING:
     from mbsym.report.results import Results
@@ -90,6 +95,7 @@ def data(found: Stabilisation, system: System, write: Write) -> doc.Stabilisatio
         least_inputs=[list(one) for one in found.least],
         feedback=None if found.feedback is None else _feedback(found.feedback),
         no_feedback=found.no_feedback,
+        left_out=list(found.left_out),
     )
 
 
@@ -113,6 +119,8 @@ def _locus(found: Locus, write: Write) -> doc.Lost:
 
 def _feedback(found: Feedback) -> doc.Feedback:
     return doc.Feedback(
+        states=list(found.states),
+        of_part=found.of_part,
         gains=_numbers(found.gains),
         characteristic_polynomial=list(map(str, found.characteristic)),
         **asdict(verdict_data(found.verdict)),
@@ -140,10 +148,17 @@ def content(results: Results) -> Iterator[Block]:
     yield from map(ragged, sentences(found))
     if found.feedback is None:
         return
-    yield paragraph(Said(FEEDBACK))
+    states = found.feedback.states
+    if found.feedback.of_part:
+        places = named([name for name in states if not is_velocity(name)])
+        yield paragraph(say(OF_PART, why=worded(found.feedback.of_part), names=places))
+    yield paragraph(Said(FEEDBACK if found.feedback.characteristic else ENCLOSED))
+    if found.feedback.of_part or 2 * sum(map(is_velocity, states)) < len(states):
+        yield paragraph(Said(STATES, {"names": speeds(states)}))
     yield Display(Relation(Symbol("k"), "=", _rows(found.feedback.gains)), "feedback")
-    told = Said("Characteristic polynomial of the closed loop, coefficients from the constant one on:")
-    yield paragraph(told, " ", joined(map(exact, found.feedback.characteristic), ", "), ".")
+    if found.feedback.characteristic:
+        told = Said("Characteristic polynomial of the closed loop, coefficients from the constant one on:")
+        yield paragraph(told, " ", joined(map(exact, found.feedback.characteristic), ", "), ".")
     if found.feedback.lyapunov is not None:
         yield paragraph(Said(LYAPUNOV))
         yield Display(Relation(Symbol("P"), "=", _rows(found.feedback.lyapunov)), "lyapunov")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING
 from msgspec import UNSET, UnsetType
 from msgspec.structs import asdict
 
-from mbsym.expressions.message import Message
+from mbsym.expressions.message import Message, worded
 from mbsym.expressions.message import joined as sentences_of
 from mbsym.expressions.tree import names
 from mbsym.formulas.names import free_name
@@ -37,6 +38,7 @@ from mbsym.report.conditions import (
     statements,
 )
 from mbsym.report.content import (
+    CONDITION,
     Block,
     Cited,
     Definitions,
@@ -55,7 +57,6 @@ from mbsym.report.content import (
     Symbol,
     Text,
     Unit,
-    Words,
     named,
     paragraph,
     say,
@@ -122,7 +123,7 @@ def _subsystem(part: SubsystemStability, variable: str) -> doc.StabilitySubsyste
         method=part.theory.method.name.lower(),
         **asdict(verdict_data(part.theory.verdict)),
         conditions=[_condition_of(item) for item in listed],
-        cases=[_case(case, shown) for case in cases(part.ring, part.theory.cases, told)],
+        cases=[_case(case, shown) for case in cases(part.ring, part.theory.cases, told, part.theory.uncovered)],
     )
 
 
@@ -172,7 +173,7 @@ def content(results: Results) -> Iterator[Block]:
     yield from results.missing(6)
     if found is None:
         return
-    variable, presumed = results.variable, results.presumed
+    presumed = results.presumed
     for number, part in enumerate(found.subsystems, start=1):
         yield from _told(part, number, len(found.subsystems) > 1, results)
     if len(found.subsystems) > 1:
@@ -191,11 +192,11 @@ def content(results: Results) -> Iterator[Block]:
     if found.numerical is not None:
         yield paragraph(
             Said("At the given values of the parameters"),
-            Words(decided(found)),
+            worded(decided(found)),
             ": ",
             *verdict(found.numerical),
             ". ",
-            Words(found.numerical.explanation, variable),
+            worded(found.numerical.explanation),
         )
         for spectrum in found.spectra:
             roots = [part for root in numbers(spectrum) for part in (", ", *_root(root))][1:]
@@ -211,7 +212,7 @@ def content(results: Results) -> Iterator[Block]:
         text = "At the given values of the parameters nothing is said of stability: $[[names]]$ have none."
         yield paragraph(say(text, names=named(lacking)))
     theorems = [(name, keys_of(name)) for name in dict.fromkeys(theorems_named(found))]
-    cited = tuple((Words(name), keys) for name, keys in theorems if keys)
+    cited = tuple((worded(name), keys) for name, keys in theorems if keys)
     if cited:
         yield Cited(Said("On the theorems"), cited)
 
@@ -220,7 +221,7 @@ def _told(part: SubsystemStability, number: int, several: bool, results: Results
     """A subsystem: its characteristic polynomial, conditions, cases and verdict."""
     theory, variable = part.theory, results.variable
     title: tuple[Inline, ...] = (Said("Subsystem"), f" {number}: ") if several else ()
-    kind: Inline = Words(theory.kind)
+    kind: Inline = worded(theory.kind)
     if theory.kind.endswith(CONSERVATIVE) and not _conserved(results):
         kind = say("in first approximation [[kind]]", kind=kind)
     yield Subheading((*title, named(part.coordinates), " (", kind, ")"))
@@ -237,21 +238,21 @@ def _told(part: SubsystemStability, number: int, several: bool, results: Results
         for k, (powers, multiplicity) in enumerate(factors(part), start=1):
             factor = Polynomial(tuple(powers), variable, multiplicity)
             yield Display(Relation(k, ":", factor), f"factor:{number}:{k}")
-    seen, told = Shown(), label_meanings(part.ring, theory.requirements)
+    seen, told = _Keyed(number), label_meanings(part.ring, theory.requirements)
     wanted = list(statements(part.ring, theory.requirements, True, told))
     if theory.verdict.stable:  # this method leaves open what is decided otherwise
         wanted = [replace(x, place=Place.NECESSARY) if x.place is Place.METHOD else x for x in wanted]
     if wanted:
-        yield paragraph(Said("Conditions"), " (", Words(theory.wanted, variable), "):")
+        yield paragraph(Said("Conditions"), " (", worded(theory.wanted), "):")
         yield from _conditions(wanted, seen)
     first = True
-    for case in cases(part.ring, theory.cases, told):
+    for case in cases(part.ring, theory.cases, told, theory.uncovered):
         if case.all_of or case.any_of or case.otherwise:
-            yield from _case_told(case, first, seen, variable)
+            yield from _case_told(case, first, seen)
             first = False
     for remark in theory.remarks:
-        yield paragraph(Words(remark, variable))
-    yield paragraph(Said("Verdict"), *results.presumed, ": ", *_verdict_told(theory.verdict, variable))
+        yield paragraph(worded(remark))
+    yield paragraph(Said("Verdict"), *results.presumed, ": ", *_verdict_told(theory.verdict))
 
 
 def _conserved(results: Results) -> bool:
@@ -262,12 +263,12 @@ def _conserved(results: Results) -> bool:
     return found.exactly_linear or found.law is EnergyLaw.CONSERVED
 
 
-def _verdict_told(found: Verdict, variable: str) -> tuple[Inline, ...]:
+def _verdict_told(found: Verdict) -> tuple[Inline, ...]:
     if found.word is Word.DEPENDS:
         others = [sentence(one) for one in found.reasons if one.code is not Because.SEE_CASES]
-        said = (" ", Words(sentences_of(others), variable)) if others else ()
+        said = (" ", worded(sentences_of(others))) if others else ()
         return *concluded(found.word, ()), "; ", Said("see the cases."), *said
-    return *verdict(found), ". ", Words(found.explanation, variable)
+    return *verdict(found), ". ", worded(found.explanation)
 
 
 def _without_numbers(results: Results) -> list[str]:
@@ -279,7 +280,38 @@ def _without_numbers(results: Results) -> list[str]:
     return [name for name in lacking if name in used] if any(x.value is not None for x in system.parameters) else []
 
 
-def _case_told(case: CaseStatement, first: bool, seen: Shown, variable: str) -> Iterator[Block]:
+class _Keyed(Shown):
+    """What was shown, each under a key of its own."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__()
+        self._number, self._taken = number, Counter[str]()
+
+    def key(self, item: Statement) -> str:
+        """That of the formula which shows it first; nothing where a name is enough.  Once for each item, in order."""
+        if self.reference(item) is not None:
+            return ""
+        word = re.sub(r"[^A-Za-z0-9]+", "-", str(item.label)).strip("-")
+        self._taken[word] += 1
+        count = self._taken[word]
+        return f"{CONDITION}{self._number}:{word}" + (f":{count}" if count > 1 else "")
+
+
+def condition_keys(part: SubsystemStability, number: int) -> Iterator[tuple[Statement, str]]:
+    """The conditions of a subsystem that are shown by formulas, each with the key of its own."""
+    seen, told = _Keyed(number), label_meanings(part.ring, part.theory.requirements)
+    known = list(statements(part.ring, part.theory.requirements, True, told))
+    for case in cases(part.ring, part.theory.cases, told, part.theory.uncovered):
+        if case.all_of or case.any_of or case.otherwise:
+            known += [*case.all_of, *case.any_of]
+    for item in known:
+        key = seen.key(item)
+        if key and item.formula is not None:
+            yield item, key
+        seen.show(item)
+
+
+def _case_told(case: CaseStatement, first: bool, seen: _Keyed) -> Iterator[Block]:
     word = concluded(case.word, case.theorems)
     if case.otherwise:
         yield paragraph(Said("Otherwise"), " ", *word, ":")
@@ -292,36 +324,36 @@ def _case_told(case: CaseStatement, first: bool, seen: Shown, variable: str) -> 
     if case.all_of and case.any_of:
         yield paragraph(Said("and at least one of these holds" if len(case.any_of) > 1 else "and"), ":")
     yield from _conditions(case.any_of, seen)
-    yield paragraph(Words(case.explanation, variable))
+    yield paragraph(worded(case.explanation))
 
 
-def _conditions(items: Sequence[Statement], seen: Shown) -> Iterator[Block]:
+def _conditions(items: Sequence[Statement], seen: _Keyed) -> Iterator[Block]:
     """Conditions; of a polynomial that was shown before only its name."""
     for item in items:
         yield from _condition_told(item, seen)
         seen.show(item)
 
 
-def _condition_told(item: Statement, seen: Shown) -> Iterator[Block]:
-    reference, label = seen.reference(item), label_of(item.label)
-    remark: tuple[Inline, ...] = (Words(item.remark),) if item.remark else ()
-    note: tuple[Inline, ...] = (Words(item.note),) if item.note else ()
+def _condition_told(item: Statement, seen: _Keyed) -> Iterator[Block]:
+    reference, label, key = seen.reference(item), label_of(item.label), seen.key(item)
+    remark: tuple[Inline, ...] = (worded(item.remark),) if item.remark else ()
+    note: tuple[Inline, ...] = (worded(item.note),) if item.note else ()
     if reference is not None:
         own: tuple[Math | str, ...] = () if reference.under == reference.label else (label_of(reference.label), ":")
         yield Display(Relation(*own, label_of(reference.under), reference.relation, 0))
     elif item.formula is None:
         never = item.never is not None and item.never.terms < SHORT
-        yield Display(Relation(label, *(("=", item.never) if never else ()), item.relation, 0), notes=note)
+        yield Display(Relation(label, *(("=", item.never) if never else ()), item.relation, 0), key, note)
     elif item.told is not None:
         text = "written out [[terms]] terms, of degree [[degree]]; in full in results.json"
         long = say(text, terms=str(item.formula.terms), degree=str(item.formula.degree))
-        yield Display(Relation(label, ":", item.told.formula, item.relation, 0), notes=(long, *remark))
+        yield Display(Relation(label, ":", item.told.formula, item.relation, 0), key, (long, *remark))
         letters = seen.unshown(item.told)
         if letters:
             yield Definitions(Said("with"), tuple(Relation(letter, "=", value) for letter, value in letters))
     else:
         shown = Readable(item.formula, not item.note)
-        yield Display(Relation(label, ":", shown, item.relation, 0), notes=note or remark)
+        yield Display(Relation(label, ":", shown, item.relation, 0), key, note or remark)
 
 
 def label_of(label: str) -> Math:
@@ -331,12 +363,12 @@ def label_of(label: str) -> Math:
     if made == REVERSED:
         return Relation("-", label_of(gaps["label"]))
     if made == PART:
-        whole, part = label_of(gaps["label"]), (", ", Words(gaps["part"]))
+        whole, part = label_of(gaps["label"]), (", ", worded(gaps["part"]))
         return Text(*whole.parts, *part) if isinstance(whole, Text) else Relation(whole, Text(*part))
     of_factor = made == OF_FACTOR
     match = re.fullmatch(r"([av])(\d+)", gaps["label"] if of_factor else label)
     if match is None:
-        return Text(Words(label))
+        return Text(worded(label))
     return Symbol(match[1], match[2], f"({gaps['number']})" if of_factor else "")
 
 

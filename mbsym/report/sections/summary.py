@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
 
 from mbsym.algebra.factors import rational_ratio
+from mbsym.expressions.message import worded
 from mbsym.formulas.formula import Formula
 from mbsym.model.quantities import rate_unit
-from mbsym.model.system import System
+from mbsym.model.system import INERTIAL, System
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.stability import Stability, SubsystemStability
 from mbsym.problems.stability.spectrum import numbers
@@ -19,19 +21,23 @@ from mbsym.report.brief import ranges, self_check, worst
 from mbsym.report.conditions import OPPOSITE, CaseStatement, Statement, cases, label_meanings
 from mbsym.report.content import (
     Block,
+    Drawing,
+    Emphasis,
     Fact,
     Facts,
     Graded,
     Heading,
     Inline,
     Link,
+    Listed,
     Math,
     Name,
+    Number,
+    Numbered,
     Phrase,
     Relation,
     Said,
     Unit,
-    Words,
     joined,
     named,
     say,
@@ -39,22 +45,59 @@ from mbsym.report.content import (
 from mbsym.report.sections.canonical import TITLES
 from mbsym.report.sections.equations import is_short, short_equations
 from mbsym.report.sections.equilibrium import exists_if
+from mbsym.report.sections.stability import condition_keys
 from mbsym.report.sections.system import unperturbed_motion
 from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line, titles
 from mbsym.report.words.verdicts import decided, grade, verdict, where
 
 if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
     from mbsym.problems.constraints import Constraints
     from mbsym.report.results import Results
 
 #: More conditions of a case, cases of a subsystem, coordinates of a motion are left to the problems.
 MOST_CONDITIONS, MOST_CASES, MOST_COORDINATES = 4, 4, 8
 
+#: Nor is a position told by more coordinates.
+MOST_DRAWN = 6
+
+#: Conditions, each with the key of the formula that shows it.
+Keys = Sequence[tuple[Statement, str]]
+
+_DRAWN: WeakKeyDictionary[Analysis, tuple[Drawing, ...]] = WeakKeyDictionary()
+
 
 def content(results: Results) -> Iterator[Block]:
     """What reports say."""
     yield Heading("summary", Said("What was found"))
+    yield from drawing(results.analysis)
     yield finding(results)
+
+
+def drawing(analysis: Analysis) -> tuple[Drawing, ...]:
+    """The system as it is drawn, if anything can be, and in which position; made once for all media."""
+    if analysis not in _DRAWN:
+        _DRAWN[analysis] = tuple(_drawing(analysis.system))
+    return _DRAWN[analysis]
+
+
+def _drawing(system: System) -> Iterator[Drawing]:
+    from mbsym.picture.sketch import sketch  # what tells the finding alone has no use for it
+
+    found = sketch(system)
+    if found is None:
+        return
+    said = []
+    if 0 < len(found.at) <= MOST_DRAWN:
+        shown = tuple(Relation(Name(name), "=", Number(f"{value:.3g}")) for name, value in found.at)
+        said.append(say("Drawn at $[[values]]$.", values=Listed(shown)))
+    if found.frame != INERTIAL:
+        said.append(say("Seen in the axes of [[frame]].", frame=Emphasis(found.frame)))
+    if found.ellipsoids:
+        said.append(Said("Ellipsoids: homogeneous, with the mass and the inertia of the body."))
+    if found.unknown:
+        said.append(say("Not to scale: no value is given for $[[names]]$.", names=named(found.unknown)))
+    yield Drawing(found, tuple(said))
 
 
 def finding(results: Results) -> Facts:
@@ -77,7 +120,7 @@ def _facts(results: Results) -> Iterator[Fact]:
         yield Fact(Said("Stability"), tuple(_stability(found[6], results)))
     if 7 in found:
         none = (Said("none in closed form of the kinds that are looked for"),)
-        integrals = tuple(Phrase((Words(one.name), " (", Words(one.status), ")")) for one in found[7])
+        integrals = tuple(Phrase((worded(one.name), " (", worded(one.status), ")")) for one in found[7])
         yield Fact(Said("First integrals"), integrals or none)
     if results.analysis.claims:
         yield Fact(Said("Claims"), tuple(_claims(results)))
@@ -125,9 +168,9 @@ def _motion(found: Equilibrium, system: System) -> Iterator[Inline]:
 def _at_values(found: Stability, system: System) -> Inline:
     """The verdict at the given values; of an unstable motion how fast the fastest solution grows."""
     assert found.numerical is not None
-    said = (*verdict(found.numerical, "verdict-at-values"), Words(decided(found)))
+    said = (*verdict(found.numerical, "verdict-at-values"), worded(decided(found)))
     if found.numerical.word is Word.UNDECIDED and found.numerical.explanation:
-        said = (*said, ": ", Words(found.numerical.explanation))
+        said = (*said, ": ", worded(found.numerical.explanation))
     growth = max((root.real for part in found.spectra for root in numbers(part)), default=0.0)
     if found.numerical.word is Word.UNSTABLE and growth > 0:
         unit = rate_unit(system)
@@ -142,10 +185,10 @@ def _stability(found: Stability, results: Results) -> Iterator[Inline]:
     if presumed:
         yield Phrase((*presumed[1:], ":"))
     if not several:
-        yield from _part(found.subsystems[0], "verdict")
+        yield from _part(found.subsystems[0], 1, "verdict")
         return
     yield Phrase((Said("the whole system"), ": ", *verdict(found.verdict, "verdict")))
-    word, told = found.verdict.word, [list(_part(part, "")) for part in found.subsystems]
+    word, told = found.verdict.word, [list(_part(part, k, "")) for k, part in enumerate(found.subsystems, start=1)]
     alike = all(part.theory.verdict.word is word for part in found.subsystems)
     if alike and (word.stable or word is Word.UNSTABLE) and all(len(lines) == 1 for lines in told):
         return
@@ -155,36 +198,28 @@ def _stability(found: Stability, results: Results) -> Iterator[Inline]:
     yield Phrase(("(", Said("of each group of coordinates while the others keep to the unperturbed motion"), ")"))
 
 
-def _part(part: SubsystemStability, key: str) -> Iterator[Inline]:
+def _part(part: SubsystemStability, number: int, key: str) -> Iterator[Inline]:
     """The verdict on a subsystem, or which verdict follows where: the first case that applies is the one."""
-    known = cases(part.ring, part.theory.cases, label_meanings(part.ring, part.theory.requirements))
+    theory = part.theory
+    known = cases(part.ring, theory.cases, label_meanings(part.ring, theory.requirements), theory.uncovered)
     known = [one for one in known if one.all_of or one.any_of or one.otherwise]
-    word = part.theory.verdict.word
+    word = theory.verdict.word
     if all(one.word is word is Word.UNDECIDED for one in known):
         known = []
     if word not in (Word.DEPENDS, Word.UNDECIDED) or key or not known:
-        yield Phrase(verdict(part.theory.verdict, key))
+        yield Phrase(verdict(theory.verdict, key))
     if word.asymptotic or word is Word.UNSTABLE:
         return
     if word is Word.UNSTABLE_BUT_BORDERS and any(one.word is not Word.UNSTABLE for one in known):
         return  # the conditions of the others hold nowhere inside
+    keys = list(condition_keys(part, number))
     seen: list[Formula] = []
-    before: list[tuple[list[Relation], list[Relation]]] = []
-    sufficed: list[list[Relation]] = []
-    for case in known[:MOST_CASES]:
+    last: list[Relation] = []
+    for k, case in enumerate(known[:MOST_CASES]):
         every, either = _conditions(case, seen)
-        if (every or either) and (every, either) in before:
-            continue  # the one before applies
-        if not every and (further := [one for one in either if all(one not in sole for sole in sufficed)]) != either:
-            if not further:
-                continue
-            either = further
-        last = before[-1][0] if before else []
-        told_where = _where(case, every, either, last) if every or either else _counted(case)
-        yield Phrase((*((Said("otherwise"), " ") if before else ()), told_where))
-        before.append((every, either))
-        if len(every) + len(either) == 1 or not every:  # where one of these holds, this case or one before applies
-            sufficed.append([*every, *either])
+        told_where = _where(case, every, either, last, keys) if every or either else _counted(case)
+        yield Phrase((*((Said("otherwise"), " ") if k else ()), told_where))
+        last = every
     if len(known) > MOST_CASES:
         yield Link(say("further cases: [[count]]", count=str(len(known) - MOST_CASES)), "problem-6")
 
@@ -197,27 +232,8 @@ def _conditions(case: CaseStatement, seen: list[Formula]) -> tuple[list[Relation
     wanted = [*case.all_of, *case.any_of]
     if len(wanted) > MOST_CONDITIONS or not all(one.formula is not None and is_short(one.formula) for one in wanted):
         return [], []
-    either = _once(_relation(one, seen) for one in case.any_of)
-    every = _once(_relation(one, seen) for one in case.all_of)
-    unequal = [one.parts[0] for one in either if one.parts[1] == "!="]
-    either = [one for one in either if one.parts[1] == "!=" or one.parts[0] not in unequal]  # p < 0 or p != 0
-    strict = [one for one in [*every, *(either if len(either) == 1 else [])] if one.parts[1] in ("<", ">")]
-    return [one for one in every if not any(_follows(one, other) for other in strict)], either
-
-
-def _follows(one: Relation, other: Relation) -> bool:
-    """Whether it says only that something is not 0 of which the other has a multiple on one side of 0."""
-    left, right = one.parts[0], other.parts[0]
-    if one.parts[1] != "!=" or not (isinstance(left, Formula) and isinstance(right, Formula)):
-        return False
-    return bool(divmod(right.polynomial, left.polynomial)[1].is_zero())
-
-
-def _once(relations: Iterable[Relation]) -> list[Relation]:
-    found: list[Relation] = []
-    for one in relations:
-        found += [] if one in found else [one]
-    return found
+    either = [_relation(one, seen) for one in case.any_of]
+    return [_relation(one, seen) for one in case.all_of], either
 
 
 def _counted(case: CaseStatement) -> Inline:
@@ -236,16 +252,38 @@ def _counted(case: CaseStatement) -> Inline:
     return Link(say(text, verdict=verdict, count=str(count)), "problem-6")
 
 
-def _where(case: CaseStatement, every: list[Relation], either: list[Relation], before: list[Relation]) -> Inline:
+def _where(
+    case: CaseStatement,
+    every: list[Relation],
+    either: list[Relation],
+    before: list[Relation],
+    keys: Keys,
+) -> Inline:
     """The verdict with its conditions; ``before``: those of the case in front of it."""
     verdict = Phrase(where(case.word, case.theorems))
     if len(either) > 1 and not every and [one.parts for one in either] == [_reversed(one) for one in before]:
         return say("[[verdict]] if one of these is negative", verdict=verdict)
     between = (", ", Said("and"), " ") if every and either else ()
-    conditions = Phrase((joined(every, ", "), *between, joined(either, " ", Said("or"), " ")))
+    told = [Phrase((one, *_numbered(one, keys))) for one in every]
+    others = [Phrase((one, *_numbered(one, keys))) for one in either]
+    conditions = Phrase((joined(told, ", "), *between, joined(others, " ", Said("or"), " ")))
     # Without a theorem behind it "gyroscopically stabilised only if" would be read as "only if".
     text = "[[verdict]] if [[conditions]]" if case.theorems else "[[verdict]], if [[conditions]]"
     return say(text, verdict=verdict, conditions=conditions)
+
+
+def _numbered(one: Relation, keys: Keys) -> tuple[Numbered, ...]:
+    """Where the condition stands in problem 6, a positive number times it, or its opposite reversed."""
+    left, relation, _ = one.parts
+    assert isinstance(left, Formula)
+    for item, key in keys:
+        assert item.formula is not None
+        ratio = rational_ratio(left.polynomial, item.formula.polynomial)
+        if ratio is not None and relation == (
+            item.relation if ratio > 0 else OPPOSITE.get(item.relation, item.relation)
+        ):
+            return (Numbered(key),)
+    return ()
 
 
 def _reversed(one: Relation) -> tuple[Math | str, ...]:
@@ -286,9 +324,9 @@ def _missing(results: Results) -> Iterator[Fact]:
     for reason, several in groupby(results.failures.items(), key=lambda one: one[1].reason):
         numbers_of = [number for number, _ in several]
         hint = results.failures[numbers_of[0]].hint
-        more = (" (", Words(hint), ")") if hint else ()
+        more = (" (", worded(hint), ")") if hint else ()
         text = "Problem [[number]]" if len(numbers_of) == 1 else "Problems [[number]]"
         title = Link(say(text, number=ranges(numbers_of)), f"problem-{numbers_of[0]}")
-        yield Fact(title, (Phrase((Said("no result"), ": ", Words(reason), *more)),))
+        yield Fact(title, (Phrase((Said("no result"), ": ", worded(reason), *more)),))
     for form, failure in results.forms.forms.failures:
-        yield Fact(Said(TITLES[form]), (Phrase((Said("no result"), ": ", Words(failure.reason))),))
+        yield Fact(Said(TITLES[form]), (Phrase((Said("no result"), ": ", worded(failure.reason))),))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from mbsym.expressions.message import worded
 from mbsym.expressions.tree import ZERO, Expression
 from mbsym.model.speeds import UnitVector
 from mbsym.model.system import INERTIAL, Body, System
@@ -30,7 +31,6 @@ from mbsym.report.content import (
     Tensor,
     Unit,
     Verbatim,
-    Words,
     named,
     paragraph,
     say,
@@ -48,6 +48,9 @@ _OUTSIDE = {
     "extrapolate": "outside as its end pieces go on",
     "error": "undefined outside",
 }
+_HELD = (
+    "In formulas [[held]] is this table with its end values outside; terms with the sign function take them away there"
+)
 
 
 def content(results: Results) -> Iterator[Block]:
@@ -107,7 +110,7 @@ def _variables(system: System) -> Iterator[Block]:
             ", ", Said(between), ", ", Said(_OUTSIDE[table.outside]),
             *((", ", say("[[count]] points", count=points)) if len(table.points) > MOST_LISTED else ()),
             *((", ", Said("from the file"), " ", Verbatim(table.source.file)) if table.source else ()),
-            ": ", Points(table.points), ".",
+            ": ", Points(table.points), *((". ", say(_HELD, held=Verbatim(table.held))) if table.jumps else ()), ".",
         )  # fmt: skip
     if system.parameters:
         columns = (TableColumn(Said("name"), 0), TableColumn(Said("value"), 4.4), TableColumn(Said("sign"), 3.0))
@@ -115,7 +118,7 @@ def _variables(system: System) -> Iterator[Block]:
         for own in system.parameters:
             value = Name(own.name) if own.value is None else Relation(Name(own.name), "=", own.value)
             shown = (value, *_unit(system, own.name))
-            rows.append(((Verbatim(own.name),), shown, (Words(own.sign),), (own.meaning,)))
+            rows.append(((Verbatim(own.name),), shown, (worded(own.sign),), (own.meaning,)))
         yield Table(Said("Parameters"), (*columns, TableColumn(Said("meaning"), 7.4)), tuple(rows))
 
 

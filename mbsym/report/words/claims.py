@@ -6,13 +6,13 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import groupby
 
-from mbsym.expressions.message import Message
+from mbsym.expressions.message import Message, worded
 from mbsym.expressions.tree import text
 from mbsym.formulas.formula import Formula
 from mbsym.problems.claims import DIFFERS, FACTOR, SCALED, UNDECIDED, ClaimResult, Part
 from mbsym.problems.claims.counterexample import THE_MOTION, Counterexample
 from mbsym.problems.claims.result import ENTRY
-from mbsym.report.content import Inline, Phrase, Said, Words, joined, say
+from mbsym.report.content import Inline, Phrase, Said, joined, say
 from mbsym.report.plain_writer import Writer
 
 #: Differences longer than this are counted, not printed.
@@ -49,8 +49,8 @@ def _outcome(result: ClaimResult) -> Iterator[Inline]:
     if factor is not None and result.outcome == SCALED:
         yield say("differs by the factor [[factor]]", factor=factor)
     else:
-        yield Words(result.outcome)
-        yield from (" ", Words(result.where)) if result.where else ()
+        yield worded(result.outcome)
+        yield from (" ", worded(result.where)) if result.where else ()
         if factor is not None and result.outcome == FACTOR:
             yield from (": ", say("claimed = [[factor]] times derived", factor=factor))
         elif factor is not None:
@@ -70,7 +70,7 @@ def _outcome(result: ClaimResult) -> Iterator[Inline]:
 
 def remarks(result: ClaimResult) -> Inline:
     """What else there is to say, sentence by sentence."""
-    return Words(result.remark)
+    return worded(result.remark)
 
 
 def together(lines: Iterable[ClaimLine]) -> Iterator[list[ClaimLine]]:
@@ -92,7 +92,7 @@ def titles(lines: Iterable[ClaimLine]) -> Inline:
             stems.setdefault(title.gaps["title"], []).append(f"[{title.gaps['entry']}]")
         else:
             stems.setdefault(title, [])
-    told = (Phrase((Words(stem), *((" ", ", ".join(indices)) if indices else ()))) for stem, indices in stems.items())
+    told = (Phrase((worded(stem), *((" ", ", ".join(indices)) if indices else ()))) for stem, indices in stems.items())
     return joined(told, "; ")
 
 
@@ -112,7 +112,7 @@ def counterexample(found: Counterexample, text: str = "For example at [[at]]: [[
     """``For example at A = 1, C = 3: C - (7*A) = -4, the motion is stable (Routh).``"""
     at = ", ".join(f"{name} = {value}" for name, value in found.at)
     shows = [
-        say("the motion is [[verdict]]", verdict=Words(value)) if what == THE_MOTION else f"{what} = {value}"
+        say("the motion is [[verdict]]", verdict=worded(value)) if what == THE_MOTION else f"{what} = {value}"
         for what, value in found.shows
     ]
     return say(text, at=at, shows=shows)

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from mbsym.algebra.certainty import Certainty
+from mbsym.expressions.message import worded
 from mbsym.mechanics.constraints.rows import RowName
 from mbsym.problems.constraints import Constraints, Demanded, Integrability
 from mbsym.problems.reactions import Reaction
 from mbsym.problems.reduction import Reduction
-from mbsym.report.content import Listed, Name, Phrase, Relation, Said, Symbol, Words, joined, named, say, speeds
+from mbsym.report.content import Listed, Name, Phrase, Relation, Said, Symbol, joined, named, say, speeds
 
 
 def sentences(found: Constraints) -> Iterator[Said]:
@@ -30,14 +31,14 @@ def sentences(found: Constraints) -> Iterator[Said]:
             yield say(
                 "Redundant: [[row]] is satisfied by every motion ([[sure]]).",
                 row=label(redundant.name),
-                sure=Words(redundant.certainty.value),
+                sure=worded(redundant.certainty.value),
             )
             continue
         yield say(
             "Redundant: [[row]] follows from [[others]] ([[sure]]).",
             row=label(redundant.name),
             others=[label(one) for one in redundant.from_rows],
-            sure=Words(redundant.certainty.value),
+            sure=worded(redundant.certainty.value),
         )
     if found.demanded.count:
         yield from _demanded(found.demanded)
@@ -83,7 +84,7 @@ def _demanded(found: Demanded) -> Iterator[Said]:
         yield say(
             "The parameters have to satisfy [[relations]] ([[sure]]).",
             relations=[Relation(x, "=", 0) for x in found.relations],
-            sure=Words(Certainty.VERIFIED.value),
+            sure=worded(Certainty.VERIFIED.value),
         )
     if found.satisfied:
         yield Said("The given values do so.")
@@ -181,7 +182,7 @@ def reduction_sentences(found: Reduction) -> Iterator[Said]:
 def _integrable(found: Integrability, dimension: int) -> Iterator[Said]:
     """Frobenius' verdict; its word falls with its certainty."""
     growth = list(map(str, found.growth))
-    sure = Words(found.certainty.value)
+    sure = worded(found.certainty.value)
     if found.kept is None:
         yield Said("Whether the velocity constraints are integrable is undecided: the formulas outgrew their budget.")
         return
@@ -212,15 +213,15 @@ def _integrable(found: Integrability, dimension: int) -> Iterator[Said]:
         yield say(
             "The system is nonholonomic ([[sure]]): no relation between the coordinates follows from the velocity "
             "constraints; the fields and their Lie brackets span [[growth]] dimensions.",
-            sure=Words(Certainty.PROVED.value),
+            sure=worded(Certainty.PROVED.value),
             growth=growth,
         )
 
 
 def label(name: RowName) -> Phrase:
     """``rolling 2, component 3``."""
-    component = (", ", Words("component"), f" {name.component}") if name.component else ()
-    return Phrase((Words(name.kind), f" {name.constraint + 1}", *component))
+    component = (", ", worded("component"), f" {name.component}") if name.component else ()
+    return Phrase((worded(name.kind), f" {name.constraint + 1}", *component))
 
 
 def _labels(names: Iterable[RowName]) -> Phrase:

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from mbsym.expressions.tree import ZERO, Expression, Negative, Number, Operation
 from mbsym.expressions.tree import Name as Variable
-from mbsym.model.constraints import Coincide, Constraint, Distance, Parallel, Relation, Rolling, Velocity
+from mbsym.model.constraints import Coincide, Constraint, Distance, Parallel, Relation, Rolling, Velocity, as_written
 from mbsym.model.loads import (
     EXACT,
     CoordinateDamper,
@@ -45,7 +45,7 @@ from mbsym.report.content import (
 
 def frame(name: str) -> Inline:
     """A body by its name, or the inertial frame."""
-    return Said("the inertial frame") if name == INERTIAL else Emphasis(name)
+    return Said("the inertial reference frame") if name == INERTIAL else Emphasis(name)
 
 
 def vector(values: Vector) -> Listed:
@@ -207,8 +207,9 @@ def _newtonian(value: NewtonianGravity) -> Iterator[Block]:
 # --- constraints ------------------------------------------------------------------------------------------------------
 
 
-def constraint(value: Constraint) -> Said:
+def constraint(written: Constraint) -> Said:
     """A constraint with its data.  Raises TypeError for what is none."""
+    value = as_written(written)
     match value:
         case Coincide(first, second):
             text = "Two points coincide: [[first]] and [[second]]."

@@ -10,12 +10,13 @@ from mbsym.algebra.quotients import Series
 from mbsym.algebra.signs import Condition
 from mbsym.analysis.expanding import Expansion
 from mbsym.analysis.small import Averaging, SmallParameters
+from mbsym.expressions.message import worded
 from mbsym.formulas.formula import Formula
 from mbsym.problems.small_parameter.result import Outcome
 from mbsym.problems.stability import Stability
 from mbsym.problems.stability.word import Word
 from mbsym.report.conditions import statements
-from mbsym.report.content import Gaps, Inline, Name, Phrase, Raised, Relation, Said, Words, named, say
+from mbsym.report.content import Gaps, Inline, Name, Phrase, Raised, Relation, Said, named, say
 from mbsym.report.words.expansion_measured import SLACK, JudgedAverage
 
 if TYPE_CHECKING:
@@ -143,7 +144,7 @@ def sentences(found: Expansion) -> Iterator[Said]:
             provided=found.provided,
         )
     if manifold.steady is None:
-        yield say("Nothing is said of stability: [[missing]].", missing=Words(found.missing))
+        yield say("Nothing is said of stability: [[missing]].", missing=worded(found.missing))
         return
     values["zeros"] = str(manifold.steady.zeros)
     outcome, conditions = found.fast
@@ -176,7 +177,7 @@ def sentences(found: Expansion) -> Iterator[Said]:
 def of_measured(small: str, told: Measured | str) -> Iterator[Said]:
     """The error of the flow against all equations."""
     if isinstance(told, str):
-        yield say("The error of the flow was not measured: [[why]].", why=Words(told))
+        yield say("The error of the flow was not measured: [[why]].", why=worded(told))
         return
     values: Gaps = {"small": Name(small), "time": f"{told.time:.4g}"}
     values["distances"] = ", ".join(f"{x:.2g}" for x in told.distances)
@@ -211,7 +212,7 @@ def of_averaging(told: JudgedAverage) -> Iterator[Said]:
     one = told.one
     phase = Name(one.phase)
     if one.found is None:
-        yield say("Averaging over [[phase]] gives nothing: [[why]].", phase=phase, why=Words(one.failure))
+        yield say("Averaging over [[phase]] gives nothing: [[why]].", phase=phase, why=worded(one.failure))
         return
     yield say(
         "Averaged over the phase [[phase]]. Its rate [[rate]] is taken as of order $1/\\epsilon$, and what is not "
@@ -250,8 +251,8 @@ def _of_averaged_motion(one: Averaging) -> Iterator[Said]:
     stage = one.analysis.stage(6)
     if stage.value is None:
         assert stage.failure is not None
-        hint = (" (", Words(stage.failure.hint), ")") if stage.failure.hint else ()
-        why = Phrase((Words(stage.failure.reason), *hint))
+        hint = (" (", worded(stage.failure.hint), ")") if stage.failure.hint else ()
+        why = Phrase((worded(stage.failure.reason), *hint))
         yield say("Of the stability of the averaged motion there is no result: [[why]].", why=why)
         return
     found: Stability = stage.value
@@ -262,11 +263,11 @@ def _of_averaged_motion(one: Averaging) -> Iterator[Said]:
     for part in found.subsystems:
         verdict = part.theory.verdict
         text = "The averaged motion, not the motion itself, by problem 6: [[names]]: [[word]]."
-        yield say(text, names=named(part.coordinates), word=Words(verdict.word.value))
+        yield say(text, names=named(part.coordinates), word=worded(verdict.word.value))
         items = [] if verdict.stable else list(statements(part.ring, part.theory.requirements))
         if verdict.word is Word.DEPENDS and items:
             written = [
-                Phrase((Relation(x.formula, x.relation, 0), " (", Words(x.place.value), ")"))
+                Phrase((Relation(x.formula, x.relation, 0), " (", worded(x.place.value), ")"))
                 for x in items
                 if x.formula is not None
             ]
@@ -275,12 +276,12 @@ def _of_averaged_motion(one: Averaging) -> Iterator[Said]:
             if len(written) < len(items):
                 yield Said("Further conditions are not written out here.")
     if found.numerical is not None:
-        yield say("At the given values: [[word]].", word=Words(found.numerical.word.value))
+        yield say("At the given values: [[word]].", word=worded(found.numerical.word.value))
 
 
 def _of_measured_average(told: MeasuredAverage | str) -> Iterator[Said]:
     if isinstance(told, str):
-        yield say("The distance to the averaged motion was not measured: [[why]].", why=Words(told))
+        yield say("The distance to the averaged motion was not measured: [[why]].", why=worded(told))
         return
     values: Gaps = {**_measures(told)}
     yield Said(
@@ -309,7 +310,7 @@ def of_none(found: SmallParameters) -> Iterator[Said]:
         yield say(
             "No slow manifold was found in powers of [[small]]: [[why]].",
             small=Name(found.small),
-            why=Words(found.no_slow),
+            why=worded(found.no_slow),
         )
 
 
@@ -320,6 +321,6 @@ def _told(found: Expansion, conditions: Sequence[Condition]) -> tuple[Inline, ..
         if one.kind == "inequality":
             parts[f"{one.polynomial} > 0"] = Relation(Formula(ring, one.polynomial), ">", 0)
         elif one.kind == "unwritten":
-            parts[""] = Words("a condition too long to be written out")
+            parts[""] = worded("a condition too long to be written out")
         parts |= {f"{p} != 0": Relation(Formula(ring, p), "!=", 0) for p in one.nonzero}
     return tuple(parts.values())

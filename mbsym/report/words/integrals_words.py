@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from mbsym.algebra.certainty import Certainty
-from mbsym.expressions.message import Message
+from mbsym.expressions.message import Message, worded
 from mbsym.problems.polynomial_integrals import FUNCTION, Case, Generator, OnLevel, PolynomialIntegrals
-from mbsym.report.content import Gaps, Inline, Phrase, Said, Words, joined, named, say
+from mbsym.report.content import Gaps, Inline, Phrase, Said, joined, named, say
 from mbsym.report.plain_writer import Writer
 
 #: One integral of a list, and one that holds where another is zero.
@@ -90,7 +90,7 @@ def sentences(found: PolynomialIntegrals) -> Iterator[Said]:
         yield Said(_TRIVIAL, values)
     for one in found.generators:
         if not one.independent:
-            yield say(_DEPENDENT[one.certainty], name=Words(title(one)), weight=str(one.weight))
+            yield say(_DEPENDENT[one.certainty], name=worded(title(one)), weight=str(one.weight))
     if found.complete:
         yield Said(_EVERY[bool(found.aside)][bool(found.field.parameters)], values)
     yield from _left_out(found)

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from mbsym.algebra.ring import Ring
+from mbsym.expressions.message import worded
 from mbsym.formulas.formula import Formula
 from mbsym.problems.invariant_sets import (
     Definiteness,
@@ -28,7 +29,6 @@ from mbsym.report.content import (
     Polynomial,
     Relation,
     Said,
-    Words,
     joined,
     named,
     say,
@@ -47,9 +47,9 @@ def opening(found: InvariantSets) -> Iterator[Said]:
         "0$ stays there."
     )
     for k, (name, formula) in enumerate(found.integrals):
-        yield say("[[symbol]], [[name]]: [[formula]].", symbol=_integral(k), name=Words(name), formula=formula)
+        yield say("[[symbol]], [[name]]: [[formula]].", symbol=_integral(k), name=worded(name), formula=formula)
     if found.left_out:
-        names = tuple(map(Words, found.left_out))
+        names = tuple(map(worded, found.left_out))
         yield say(
             "Left out of the families, as functions of these (verified at a random state): [[names]].", names=names
         )

@@ -8,9 +8,10 @@ from typing import Any
 
 from flint import arb
 
+from mbsym.expressions.message import worded
 from mbsym.problems.normal_forms import Focus, InSymbols, Judged, NormalForms, Outcome, Theorem, Why
 from mbsym.problems.stability.word import Word
-from mbsym.report.content import Gaps, Math, Notation, Number, Relation, Said, Words, named, say
+from mbsym.report.content import Gaps, Math, Notation, Number, Relation, Said, named, say
 
 #: Digits of enclosed numbers.
 DIGITS = 10
@@ -106,7 +107,8 @@ def sentences(found: NormalForms) -> Iterator[Said]:
         )
     if found.first is not None:
         yield say(
-            "At the given values problem 6 says without terms of higher order: [[word]].", word=Words(found.first.value)
+            "At the given values problem 6 says without terms of higher order: [[word]].",
+            word=worded(found.first.value),
         )
     if found.at_values is not None:
         yield from _judged(found.at_values, found)
@@ -115,7 +117,7 @@ def sentences(found: NormalForms) -> Iterator[Said]:
     elif isinstance(found.in_symbols, Focus):
         yield from _focus(found.in_symbols)
     elif found.no_symbols:
-        yield say("There is no formula in parameters: [[why]].", why=Words(found.no_symbols))
+        yield say("There is no formula in parameters: [[why]].", why=worded(found.no_symbols))
     elif found.at_values is None:
         yield Said("There is no formula in parameters here; with numbers for all of them it may be decided.")
 
@@ -132,7 +134,7 @@ def _judged(found: Judged, whole: NormalForms) -> Iterator[Said]:
     for order, value in found.determinants:
         yield say("$[[symbol]] = [[value]]$.", symbol=Notation(f"D_{order}"), value=_number(value))
     if found.theorem is Theorem.FIRST:
-        yield say("The first approximation decides: the motion is [[word]].", word=Words(found.outcome.value))
+        yield say("The first approximation decides: the motion is [[word]].", word=worded(found.outcome.value))
     elif found.theorem is Theorem.FOURTH and found.sides is not None:
         left, right = map(_number, found.sides)
         greater = found.outcome is Outcome.STABLE
@@ -163,7 +165,7 @@ def _judged(found: Judged, whole: NormalForms) -> Iterator[Said]:
 def _gaps(found: Judged) -> Gaps:
     """What the sentence of a theorem names."""
     text = THEOREMS[found.theorem]
-    gaps: Gaps = {"word": Words(found.outcome.value)} if "[[word]]" in text else {}
+    gaps: Gaps = {"word": worded(found.outcome.value)} if "[[word]]" in text else {}
     if "[[degree]]" in text:
         gaps |= {"name": named((found.along,)), "degree": str(found.degree), "a": _number(found.coefficient)}
     return gaps
@@ -219,7 +221,7 @@ def _in_symbols(found: InSymbols, everywhere: Word | None) -> Iterator[Said]:
                 formula=formula,
             )
     if everywhere is not None:
-        yield say("For all parameters problem 6 has decided already: [[word]].", word=Words(everywhere.value))
+        yield say("For all parameters problem 6 has decided already: [[word]].", word=worded(everywhere.value))
         return
     if found.determinant.is_zero:
         return

@@ -7,6 +7,7 @@ from itertools import zip_longest
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.tower import Element
+from mbsym.expressions.message import worded
 from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula
 from mbsym.problems.small_parameter.harmonics import Harmonics
@@ -21,7 +22,6 @@ from mbsym.report.content import (
     Raised,
     Relation,
     Said,
-    Words,
     named,
     say,
 )
@@ -197,7 +197,7 @@ def numerator(told: Oscillating, value: Element) -> Formula:
 def measured_sentences(told: Oscillating, measured: MeasuredOrders | str) -> Iterator[Said]:
     """The slopes, and whether they are what they have to be; or why there are none."""
     if isinstance(measured, str):
-        yield say(_NOT_MEASURED, why=Words(measured))
+        yield say(_NOT_MEASURED, why=worded(measured))
         return
     expected = told.found.order + 1
     values: Gaps = {"small": Name(told.found.small), "expected": str(expected)}
@@ -219,6 +219,6 @@ def measured_sentences(told: Oscillating, measured: MeasuredOrders | str) -> Ite
 def of_no_oscillation(small: str, reason: str) -> Iterator[Said]:
     """Where none was found, or none was asked for."""
     if reason:
-        yield say(_NONE, small=Name(small), why=Words(reason))
+        yield say(_NONE, small=Name(small), why=worded(reason))
     else:
         yield say(_NOT_ASKED, small=Name(small))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from mbsym.algebra.certainty import Certainty
+from mbsym.expressions.message import worded
 from mbsym.formulas.formula import Formula
 from mbsym.problems.stabilisation import (
     Control,
@@ -16,11 +17,23 @@ from mbsym.problems.stabilisation import (
     Region,
     Stabilisation,
 )
-from mbsym.report.content import Gaps, Phrase, Polynomial, Relation, Said, Words, joined, named, say
+from mbsym.report.content import Gaps, Phrase, Polynomial, Relation, Said, joined, named, say
 
 
 def sentences(found: Stabilisation) -> Iterator[Said]:
     """Everything but the matrices of the feedback, in order."""
+    if found.nonholonomic:
+        yield Said(
+            "The theorems on gyroscopic forces, dissipation and energy do not apply to constraints in velocities: "
+            "constraint forces stand in $D$, $G$, $K$ and $N$, which may feed a motion or damp it although energy is "
+            "kept."
+        )
+    if found.left_out:
+        yield Said(
+            "These equations are about the independent velocities and what acts on them; what they show carries over "
+            "where the equations of motion do not depend on [[names]], and of these nothing is said.",
+            {"names": named(found.left_out)},
+        )
     for part in found.gyroscopic:
         yield from _gyroscopic(part)
     yield from _together(found.gyroscopic)
@@ -34,7 +47,7 @@ def sentences(found: Stabilisation) -> Iterator[Said]:
         sets = joined(map(named, found.least), "; ")
         yield say("The smallest sets of inputs that suffice for almost all parameters (proved): [[sets]].", sets=sets)
     if found.control and found.feedback is None:
-        yield say("No feedback is given: [[why]].", why=Words(found.no_feedback))
+        yield say("No feedback is given: [[why]].", why=worded(found.no_feedback))
 
 
 def _all(formulas: Sequence[Formula], relation: str) -> tuple[Relation, ...]:
@@ -174,7 +187,7 @@ def _dissipation(part: Dissipation) -> Iterator[Said]:
     else:
         yield Said(
             "Whether $D$ is felt by every motion of [[names]] is undecided: [[why]].",
-            {**names, "why": Words(part.rank.why_not)},
+            {**names, "why": worded(part.rank.why_not)},
         )
     for motion in part.motions:
         if motion.shape is None:
@@ -208,7 +221,7 @@ def _locus(rank: Rank) -> Iterator[Said]:
     if not rank.full:
         return
     if locus is None:
-        yield say("At which parameters it is otherwise was not found: [[why]].", why=Words(rank.why_not))
+        yield say("At which parameters it is otherwise was not found: [[why]].", why=worded(rank.why_not))
         return
     if locus.factors:
         yield say("It is otherwise (proved) where [[where]].", where=_any(locus.factors))
@@ -249,7 +262,7 @@ def _control(part: Control) -> Iterator[Said]:
     else:
         yield Said(
             "Controllability of [[names]] by [[inputs]]: undecided ([[why]]).",
-            {**gaps, "why": Words(part.rank.why_not)},
+            {**gaps, "why": worded(part.rank.why_not)},
         )
     yield from _locus(part.rank)
     if part.at_values:
@@ -268,6 +281,16 @@ FEEDBACK = (
     "(proved: the roots of the closed loop, counted exactly, lie to the left). It was found as an LQR with unit "
     "weights and rounded."
 )
+#: The same where values are irrational.
+ENCLOSED = (
+    "At the given values the feedback $u = -k z$, $z = (q, \\dot q)$, makes the linear equations asymptotically stable "
+    "(proved: by the Lyapunov function below, the values being enclosed). It was found as an LQR with unit weights and "
+    "rounded."
+)
+#: Before either, where it is one of some coordinates only.
+OF_PART = "There is no feedback of all coordinates: [[why]]. This one is about the linear equations of [[names]] alone."
+#: Where some velocities follow from the others.
+STATES = "Here $z$ is ([[names]])."
 LYAPUNOV = (
     "A Lyapunov function of the closed loop is $z \\cdot P z$: $P$ is positive definite, and its rate negative "
     "definite (proved)."

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from mbsym.algebra.certainty import Certainty
+from mbsym.expressions.message import worded
 from mbsym.problems.symmetries import Symmetries, Symmetry
-from mbsym.report.content import Inline, Name, Relation, Said, Symbol, Words, say
+from mbsym.report.content import Inline, Name, Relation, Said, Symbol, say
 
 #: In reports: what a symmetry gives.
 OPENING = (
@@ -41,7 +42,7 @@ def field(one: Symmetry) -> tuple[Inline, ...]:
 def gives(one: Symmetry, field: Inline | Sequence[Inline]) -> Said:
     """What a symmetry gives; behind those of what has no name the integral stands."""
     if one.name:
-        return say(DEPENDS if one.certainty is Certainty.VERIFIED else KNOWN, field=field, name=Words(one.name))
+        return say(DEPENDS if one.certainty is Certainty.VERIFIED else KNOWN, field=field, name=worded(one.name))
     return say(GIVES if one.is_new else OPEN, field=field)
 
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from mbsym.expressions.message import worded
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
 from mbsym.problems.stability import Stability
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word
-from mbsym.report.content import Inline, Strong, Words
+from mbsym.report.content import Inline, Strong
 from mbsym.report.words.claims import HELD, REFUTED
 
 _GOOD = {*(word for word in Word if word.stable), EXACT, NUMERICAL, HELD}
@@ -22,16 +23,16 @@ def grade(word: str) -> str:
 
 def concluded(word: Word, theorems: Sequence[str], key: str = "") -> tuple[Inline, ...]:
     """``stable (Routh)``."""
-    return Strong(Words(word), grade(word), key), *_by(theorems)
+    return Strong(worded(word), grade(word), key), *_by(theorems)
 
 
 def where(word: Word, theorems: Sequence[str]) -> tuple[Inline, ...]:
     """The same of what holds under conditions: it is neither good nor bad."""
-    return Words(word), *_by(theorems)
+    return worded(word), *_by(theorems)
 
 
 def _by(theorems: Sequence[str]) -> tuple[Inline, ...]:
-    names = [part for name in theorems for part in (", ", Words(name))][1:]
+    names = [part for name in theorems for part in (", ", worded(name))][1:]
     return (" (", *names, ")") if names else ()
 
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from mbsym.expressions.place import Complaints
 from mbsym.source.robots.describe import describe
-from mbsym.source.robots.elements import parsed
+from mbsym.source.robots.elements import include, parsed
 from mbsym.source.robots.mjcf import read_mjcf
 from mbsym.source.robots.urdf import read_urdf
 
@@ -49,17 +50,22 @@ def convert(
     symbols: bool = False,
     damping: bool = True,
     exact_angles: bool = False,
+    inputs: bool = True,
+    beside: Callable[[str], str | None] | None = None,
 ) -> Converted | None:
     """The description of a robot, or None with complaints.  The options are those of :func:`describe`.
 
     Angles in radians that are parts of pi, rounded to the digits that are printed, are read as these, or with
-    ``exact_angles`` left as they are.
+    ``exact_angles`` left as they are.  ``beside`` gives the text of a file that MJCF includes, by the name that it is
+    called there.
     """
     root = parsed(text, complaints)
     if root is None:
         return None
+    if beside is not None and root.tag == "mujoco":
+        include(root, beside, complaints, set())
     robot = (read_mjcf if root.tag == "mujoco" else read_urdf)(root, complaints, exact_angles)
     if robot is None or complaints.errors:
         return None
-    made = describe(robot, floating, symbols, damping)
+    made = describe(robot, floating, symbols, damping, inputs)
     return Converted(made.yaml, made.joints, robot.left_out, made.still, robot.snapped)

@@ -4,6 +4,8 @@
   is held still at zero, as no equation determines it.
 * A tensor in axes of its own, or a second inertia, is a body fixed to the link.
 * Tensors that no body has (rounded, or made up) are accepted as they stand.
+* A driven joint has an input, the torque or force in it.
+* The inertia of a rotor turns by the joint's coordinate in the inertial frame: T has armature q'^2/2 more.
 """
 
 from __future__ import annotations
@@ -12,14 +14,18 @@ import re
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
+from mbsym.expressions.rates import is_rate
 from mbsym.source.bodies import is_body_name
 from mbsym.source.robots.numbers import NOWHERE, Texts, is_of_a_body, opposite
-from mbsym.source.robots.placing import Step, steps
-from mbsym.source.robots.robot import GROUND, Inertial, Joint, Link, Robot, Shape
+from mbsym.source.robots.placing import Moving, Step, steps
+from mbsym.source.robots.robot import GROUND, Inertial, Joint, JointTie, Link, PointTie, Robot, Shape
+from mbsym.source.scope import MAX_NAME
 from mbsym.source.yaml_writer import scalar_text
 
 _NUMBER = re.compile(r"[0-9.eE+-]+\Z")
-_FREE = Joint("", "free")
+_FREE = Moving(Joint("", "free"), ("x", "y", "z", "yaw", "pitch", "roll"))
+#: The link that is the ground itself, as ROS has it.
+_WORLD = "world"
 
 
 @dataclass(frozen=True)
@@ -35,13 +41,16 @@ class Described:
     still: tuple[str, ...]
 
 
-def describe(robot: Robot, floating: bool = False, symbols: bool = False, damping: bool = True) -> Described:
+def describe(
+    robot: Robot, floating: bool = False, symbols: bool = False, damping: bool = True, inputs: bool = True
+) -> Described:
     """The description of a robot.
 
     ``floating`` frees its first link, which otherwise stands on the ground; with ``symbols`` masses, lengths and
-    moments are named parameters with the printed values; ``damping``: dampers and springs of joints are loads.
+    moments are named parameters with the printed values; ``damping``: dampers and springs of joints are loads;
+    ``inputs``: driven joints have one, their torque or force.
     """
-    return _Writer(robot, floating, symbols, damping).described()
+    return _Writer(robot, floating, symbols, damping, inputs).described()
 
 
 @dataclass
@@ -50,26 +59,32 @@ class _Writer:
     floating: bool
     symbols: bool
     damping: bool
+    driven: bool
     bodies: list[str] = field(default_factory=list)
     parameters: list[str] = field(default_factory=list)
     loads: list[str] = field(default_factory=list)
     limits: list[str] = field(default_factory=list)
+    inputs: list[str] = field(default_factory=list)
+    constraints: list[str] = field(default_factory=list)
     joints: list[str] = field(default_factory=list)
     still: list[str] = field(default_factory=list)
     names: dict[str, str] = field(default_factory=dict)  # of the file's links
     taken: set[str] = field(default_factory=set)
+    leading: dict[str, str] = field(default_factory=dict)  # the coordinates of joints that others may follow
+    refs: dict[str, str] = field(default_factory=dict)
     frames: int = 0
-    count: int = 0  # of coordinates that have a number
 
     def described(self) -> Described:
-        carrying = self._carrying()
+        links = self._numbered(self._carrying())
         if any(part != "0" for part in self.robot.gravity):
             self._load(f"uniform gravity: {{{self._gravity()}}}")
-        for link in self.robot.links:
-            if link.name not in carrying:
-                self.still += [joint.name for joint in link.joints]
-                link = replace(link, joints=())
-            self._link(link)
+        for link, stems in links:
+            if self._is_ground(link):
+                self.names[link.name] = GROUND
+            else:
+                self._link(link, stems)
+        for tie in self.robot.ties:
+            self._tie(tie)
         head = [f"# From the robot '{self._comment(self.robot.name)}'."]
         if self.robot.left_out:
             head.append(f"# Left out: {self._comment('; '.join(self.robot.left_out))}.")
@@ -78,11 +93,54 @@ class _Writer:
         if self.still:
             head.append(f"# Held still, because they move no inertia: {self._comment(', '.join(self.still))}.")
         lines = [*head, "mbsym: 1", f"name: {scalar_text(self.robot.name)}"]
+        if self.robot.left_out or self.still:
+            lines.append(f"description: {scalar_text(self._told())}")
         lines += ["parameters:", *self.parameters] if self.parameters else []
+        lines += ["inputs:", *self.inputs] if self.inputs else []
         lines += ["bodies:", *self.bodies]
         lines += ["loads:", *self.loads] if self.loads else []
+        lines += ["constraints:", *self.constraints] if self.constraints else []
         lines += ["limits:", *self.limits] if self.limits else []
         return Described("\n".join(lines) + "\n", tuple(self.joints), self.frames, tuple(self.still))
+
+    def _told(self) -> str:
+        """What reports have to say besides: what of the file is no part of the model."""
+        told = []
+        if self.robot.left_out:
+            told.append(f"Of the robot's file is left out: {'; '.join(self.robot.left_out)}.")
+        if self.still:
+            told.append(f"Held still, because they move no inertia, are the joints {', '.join(self.still)}.")
+        return self._comment(" ".join(told))
+
+    def _numbered(self, carrying: set[str]) -> list[tuple[Link, list[str]]]:
+        """The links with the joints that move, and what the coordinates of these begin with, "" where one is led."""
+        driving = {
+            joint.led[0] for link in self.robot.links if link.name in carrying for joint in link.joints if joint.led
+        }
+        links, count = [], 0
+        for link in self.robot.links:
+            moves = link.name in carrying
+            kept = tuple(joint for joint in link.joints if moves or joint.led or joint.name in driving)
+            self.still += [joint.name for joint in link.joints if joint not in kept]
+            stems = []
+            for joint in kept:
+                count += joint.led is None
+                stems.append(f"q{count}" if joint.led is None else "")
+            self.refs |= {joint.name: joint.ref for joint in kept}
+            self.leading |= dict(zip((joint.name for joint in kept), stems, strict=True))
+            links.append((replace(link, joints=kept), stems))
+        return links
+
+    def _is_ground(self, link: Link) -> bool:
+        """Whether a link is but a name of the ground: that of a URDF which is called ``world``."""
+        alone = (
+            link.parent == GROUND
+            and link.name == _WORLD
+            and link.name == self.robot.links[0].name
+            and not self.floating
+        )
+        others = any(one.parent == GROUND for one in self.robot.links[1:])
+        return alone and not (others or link.joints or link.inertials or link.shapes)
 
     @staticmethod
     def _comment(text: str) -> str:
@@ -109,14 +167,41 @@ class _Writer:
         direction = ["0" if part == "0" else "-1" if part.startswith("-") else "1" for part in self.robot.gravity]
         return f"acceleration: {size}, direction: {_list(direction)}"
 
+    # --- ties ---
+
+    def _tie(self, tie: JointTie | PointTie) -> None:
+        if isinstance(tie, PointTie):
+            ends = (
+                f"{{body: {place if place == GROUND else scalar_text(place)}, point: {_list(point)}}}"
+                for place, point in (
+                    (self.names.get(tie.first, GROUND), tie.first_point),
+                    (self.names.get(tie.second, GROUND), tie.second_point),
+                )
+            )
+            self.constraints.append(f"  - coincide: [{', '.join(ends)}]")
+            return
+        left, right = self._deviation(tie.first), self._deviation(tie.second)
+        powers = ["", f"*({right})", *(f"*({right})**{k}" for k in range(2, len(tie.coefficients)))]
+        terms = [f"({x}){power}" for x, power in zip(tie.coefficients, powers, strict=False) if x != "0"]
+        self.constraints.append(f"  - relation: {left} = {' + '.join(terms) or '0'}")
+
+    def _deviation(self, joint: str) -> str:
+        """A joint's coordinate less what it is at zero; "0" of one that is held still."""
+        name = self.leading.get(joint, "")
+        return _linear("1", name, opposite(self.refs[joint])) if name else "0"
+
     # --- bodies ---
 
-    def _link(self, link: Link) -> None:
-        moving = [(joint, self._coordinates(joint)) for joint in link.joints]
+    def _link(self, link: Link, stems: list[str]) -> None:
+        moving = [self._moving(joint, stem) for joint, stem in zip(link.joints, stems, strict=True)]
         place, turned = link.place, link.turned
-        if self.floating and link is self.robot.links[0] and not any(joint.kind == "free" for joint in link.joints):
-            moving.insert(0, (_FREE, ("x", "y", "z", "yaw", "pitch", "roll")))
-        if any(joint.kind == "free" for joint, _ in moving):
+        if (
+            self.floating
+            and link.name == self.robot.links[0].name
+            and not any(joint.kind == "free" for joint in link.joints)
+        ):
+            moving.insert(0, _FREE)
+        if any(one.joint.kind == "free" for one in moving):
             place, turned = NOWHERE, ()  # its coordinates say where it is, from the ground
         number = len(self.names) + 1
         *before, last = steps(self._lengths(place, f"p{number}", link.name), turned, tuple(moving))
@@ -135,6 +220,19 @@ class _Writer:
                 name = self._free_name(f"{link.name} inertial")
                 there = Step(self._lengths(inertial.centre, f"c{number}", link.name), inertial.turned)
                 self._body(name, own, there, self._matter(inertial, number, link.name, apart=True))
+        for one in moving:
+            if one.joint.armature != "0":
+                self._rotor(one)
+
+    def _rotor(self, moving: Moving) -> None:
+        """A body without mass whose angular velocity is q': T has armature |q'|^2/2, and nothing else feels it."""
+        joint = moving.joint
+        size = self._named(f"Ja{moving.names[0][1:]}", joint.armature, f"inertia of the rotor of joint {joint.name}")
+        turns = ((3, moving.value),) if moving.value else tuple(zip((3, 2, 1), moving.names[-3:], strict=True))
+        tensor = ["0", "0", size] if moving.value else [size] * 3
+        accept = f"{{tensor: {_list(tensor)}, accept: true}}" if moving.value else _list(tensor)
+        matter = ["mass: 0", "inertia about: mass centre", f"inertia: {accept}"]
+        self._body(self._free_name(f"rotor of {joint.name}"), GROUND, Step(turns=turns), matter)
 
     def _free_name(self, wanted: str) -> str:
         """A name that a body may have and no other has."""
@@ -146,10 +244,24 @@ class _Writer:
         self.taken.add(found)
         return found
 
-    def _coordinates(self, joint: Joint) -> tuple[str, ...]:
+    def _moving(self, joint: Joint, stem: str) -> Moving:
+        if joint.led is not None:
+            leader, multiplier, offset = joint.led
+            first = self.leading.get(leader, "")
+            if not first:  # it is fixed, or held still, at zero
+                multiplier = "0"
+            if (
+                self.damping and joint.damping != "0" and multiplier != "0"
+            ):  # R = b q'^2/2 at q' = multiplier * that of the leading joint
+                factor = "" if multiplier in ("1", "-1") else f"*({multiplier})**2"
+                self._load(f"damper: {{coordinate: {first}, coefficient: {joint.damping}{factor}}}")
+            return Moving(joint, (), _linear(multiplier, first, offset))
+        names = self._coordinates(joint, stem)
+        return Moving(joint, names, _linear("1", names[0], opposite(joint.ref)) if len(names) == 1 else "")
+
+    def _coordinates(self, joint: Joint, stem: str) -> tuple[str, ...]:
         self.joints.append(joint.name)
-        self.count += 1
-        stem = f"q{self.count}"
+        number = stem[1:]
         if joint.kind == "free":
             return tuple(f"{stem}{part}" for part in ("x", "y", "z", "yaw", "pitch", "roll"))
         if joint.kind == "ball":
@@ -157,13 +269,34 @@ class _Writer:
         if joint.limits is not None:
             self.limits.append(f"  {stem}: {_list(joint.limits)}{self._note(joint.name)}")
         if self.damping and joint.damping != "0":
-            value = self._named(f"b{self.count}", joint.damping, f"damping of joint {joint.name}")
+            value = self._named(f"b{number}", joint.damping, f"damping of joint {joint.name}")
             self._load(f"damper: {{coordinate: {stem}, coefficient: {value}}}")
         if self.damping and joint.stiffness != "0":
-            value = self._named(f"k{self.count}", joint.stiffness, f"stiffness of joint {joint.name}")
+            value = self._named(f"k{number}", joint.stiffness, f"stiffness of joint {joint.name}")
             rest = "" if joint.rest == "0" else f", rest: {joint.rest}"
             self._load(f"spring: {{coordinate: {stem}, stiffness: {value}{rest}}}")
+        if self.driven and joint.driven:
+            self._input(joint, stem)
         return (stem,)
+
+    def _input(self, joint: Joint, stem: str) -> None:
+        """The joint's torque or force: tau in  M q'' + ... = tau."""
+        what, unit = ("torque", "N*m") if joint.kind == "turn" else ("force", "N")
+        most = f", at most {joint.effort} {unit}" if joint.effort else ""
+        name = self._input_name(joint.name)
+        self.inputs.append(
+            f"  {name}: {{meaning: {scalar_text(self._comment(f'{what} in joint {joint.name}{most}'))}}}"
+        )
+        self._load(f"generalized force: {{{stem}: {name}}}")
+
+    def _input_name(self, joint: str) -> str:
+        """``tau_`` and the joint's name, as descriptions take it: letters, digits and single underscores."""
+        name = "_".join(["tau", *re.findall("[A-Za-z0-9]+", joint)])[: MAX_NAME - 10].rstrip("_")
+        name = f"{name}_joint" if is_rate(name) else name
+        found, index = name, 2
+        while any(line.startswith(f"  {found}:") for line in self.inputs):
+            found, index = f"{name}_{index}", index + 1
+        return found
 
     def _note(self, name: str) -> str:
         return f" # {self._comment(name)}" if name else ""
@@ -176,7 +309,11 @@ class _Writer:
             axes, angles = _list([str(axis) for axis, _ in step.turns]), _list([words for _, words in step.turns])
             lines.append(f"rotation: {{axes: {axes}, angles: {angles}}}")
         if step.coordinates:
-            note = self._note(", ".join(joint.name for joint in link.joints)) if link is not None else ""
+            note = (
+                self._note(", ".join(joint.name for joint in link.joints if joint.led is None))
+                if link is not None
+                else ""
+            )
             lines.append(f"coordinates: {_list(list(dict.fromkeys(step.coordinates)))}{note}")
         lines += matter
         if link is not None and link.shapes:
@@ -228,6 +365,14 @@ def _weighs(link: Link) -> bool:
 
 def _is_nothing(inertial: Inertial) -> bool:
     return all(value == "0" for value in (inertial.mass, *inertial.tensor))
+
+
+def _linear(multiplier: str, name: str, offset: str) -> str:
+    """``multiplier*name + offset``."""
+    first = {"1": name, "-1": f"-{name}", "0": ""}.get(multiplier, f"{multiplier}*{name}")
+    if offset == "0" or not first:
+        return first or offset
+    return f"{first} - {offset[1:]}" if offset.startswith("-") else f"{first} + {offset}"
 
 
 def _shape(shape: Shape) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
@@ -84,3 +84,29 @@ def parsed(text: str, complaints: Complaints) -> Element | None:
         complaints.error("syntax", message, Span(error.lineno, error.offset + 1))
         return None
     return roots[0]
+
+
+def include(root: Element, beside: Callable[[str], str | None], complaints: Complaints, seen: set[str]) -> None:
+    """Puts what other files hold in place of ``<include file="...">``, each file once.
+
+    Complaints about it have the place of the <include>.  One that cannot be read stays, for whoever reads on.
+    """
+    children: list[Element] = []
+    for child in root.children:
+        file = child.get("file") if child.tag == "include" else ""
+        text = beside(file) if file and file not in seen else None
+        if child.tag == "include" and text is not None:
+            seen.add(file)
+            own = Complaints()
+            found = parsed(text, own)
+            for one in own.items:
+                complaints.error(one.code, f"in {ascii_safe(file)}: {one.message}", child.span)
+            if found is not None:
+                for element in found.walk():
+                    element.span = child.span
+                include(found, beside, complaints, seen)
+                children += found.children
+            continue
+        include(child, beside, complaints, seen)
+        children.append(child)
+    root.children = children

@@ -6,25 +6,26 @@ pitch, roll, exact where these are multiples of pi/4 or pi/6 and else rounded to
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from fractions import Fraction
 
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints
 from mbsym.source.robots.elements import Element
 from mbsym.source.robots.geoms import checked, is_solid, matter_of, shape_of, weighs
-from mbsym.source.robots.numbers import NOWHERE, Texts, degrees, number
+from mbsym.source.robots.numbers import NOWHERE, Texts, decimal, degrees, number
 from mbsym.source.robots.orientation import TURNING, Angles, orientation
 from mbsym.source.robots.reader import Reader
 from mbsym.source.robots.robot import GROUND, Inertial, Joint, Link, Robot, Turns
 from mbsym.source.robots.spelling import check_spelling
+from mbsym.source.robots.ties import ties
 
 _KINDS = {"hinge": "turn", "slide": "slide", "ball": "ball", "free": "free"}
 
 #: Sections, and elements of bodies, that rigid bodies in a tree have no place for.
 _SECTIONS = {
-    "equality": "constraint (<equality>)",
     "tendon": "tendon",
-    "actuator": "actuator",
     "sensor": "sensor",
     "contact": "contact pair",
     "deformable": "deformable body",
@@ -34,9 +35,8 @@ _SAVED = 'let MuJoCo save the compiled model with <compiler saveinertial="true"/
 
 #: What stands for other elements, and what to do about it.
 _NOT_READ = {
-    "include": "what it stands for is in another file",
+    "include": "what it stands for is in another file, which is not beside this one or was included before",
     "attach": "what it stands for is in another model",
-    "frame": "what is inside has its place relative to it",
     "replicate": "it stands for copies of what is inside",
 }
 _COMPILED = "MuJoCo writes the model without it: mj_saveLastXML, or Save xml in its viewer"
@@ -47,7 +47,7 @@ _WORDS = {
     "inertiafromgeom": ("auto", "true", "false"),
     "autolimits": ("true", "false"),
 }
-_INSIDE = {"composite": "composite body", "flexcomp": "flexible body", "frame": "", "replicate": ""}
+_INSIDE = {"composite": "composite body", "flexcomp": "flexible body", "replicate": ""}
 
 
 _MAIN = "main"
@@ -74,7 +74,43 @@ def read_mjcf(root: Element, complaints: Complaints, exact: bool = False) -> Rob
         reader.error("missing-key", "there is no <body>", worlds[0])
     name = root.get("model") or "robot"
     gravity = _gravity(root, reader)
-    return None if complaints.errors else Robot(name, tuple(links), gravity, reader.left_out(), reader.snapped())
+    tied = tuple(ties(root, {link.name: link for link in links}, bodies.site_links, reader))
+    if not complaints.errors:
+        links = _of_mass(links, root, reader)
+    if complaints.errors:
+        return None
+    return Robot(name, tuple(links), gravity, reader.left_out(), reader.snapped(), tied)
+
+
+def _of_mass(links: list[Link], root: Element, reader: Reader) -> list[Link]:
+    """With ``settotalmass`` all masses and moments are multiplied such that the sum of masses is what it says."""
+    section = _together(root, "compiler")
+    whole = reader.number(section, "settotalmass", "-1")
+    masses = [one.mass for link in links for one in link.inertials if one.mass != "0"]
+    if float(whole) <= 0 or not masses:
+        return links
+    factor = f"{whole}/({' + '.join(masses)})"
+    numbers = [decimal(mass) for mass in masses]
+    if None not in numbers:
+        factor = str(Fraction(whole) / sum(Fraction(mass) for mass in masses))
+
+    def scaled(text: str) -> str:
+        return text if text == "0" else f"{text}*({factor})" if decimal(text) is not None else f"({text})*({factor})"
+
+    return [
+        replace(
+            link,
+            inertials=tuple(
+                replace(one, mass=scaled(one.mass), tensor=_six(map(scaled, one.tensor))) for one in link.inertials
+            ),
+        )
+        for link in links
+    ]
+
+
+def _six(parts: Iterable[str]) -> tuple[str, str, str, str, str, str]:
+    xx, xy, xz, yy, yz, zz = parts
+    return xx, xy, xz, yy, yz, zz
 
 
 def _together(root: Element, tag: str) -> Element:
@@ -93,6 +129,24 @@ def _gravity(root: Element, reader: Reader) -> Texts:
     return NOWHERE if _together(option, "flag").get("gravity") == "disable" else gravity
 
 
+def _driven(root: Element, reader: Reader) -> set[str]:
+    """The joints that an actuator drives; what else actuators do is left out.
+
+    The input is the torque or force in the joint: that of an actuator times its gear.
+    """
+    found = set()
+    for section in root.all("actuator"):
+        for element in section.children:
+            joint = element.get("joint") or element.get("jointinparent")
+            if not joint:
+                reader.leave_out(f"actuator of no joint ({element.tag})")
+                continue
+            found.add(joint)
+            if element.tag != "motor":
+                reader.leave_out(f"law of an actuator ({element.tag})")
+    return found
+
+
 class _Bodies:
     """Reads bodies with the settings of the compiler and the defaults of classes."""
 
@@ -108,12 +162,15 @@ class _Bodies:
         self.groups = tuple(map(float, reader.numbers(section, "inertiagrouprange", 2, "0 5")))
         self.angles = Angles(compiler.get("angle", "degree") != "radian", compiler.get("eulerseq", "xyz"))
         self.autolimits = compiler.get("autolimits", "true") != "false"
+        self.driven = _driven(root, reader)
         self.from_geoms = compiler.get("inertiafromgeom", "auto")
         self.names: set[str] = set()
         self.sites: set[str] = set()
+        self.site_links: dict[str, str] = {}
+        self.world_frames: set[str] = {GROUND}
         inside = [element for world in root.all("worldbody") for element in world.walk()]
         self.bodies = {element.get("name") for element in inside if element.tag == "body"}
-        for key in ("settotalmass", "balanceinertia", "boundmass", "boundinertia"):
+        for key in ("balanceinertia", "boundmass", "boundinertia"):
             if compiler.get(key, "0") not in ("0", "false", "-1"):
                 reader.leave_out(f"setting of the compiler ({key})")
         if compiler.get("coordinate", "local") != "local":
@@ -123,18 +180,50 @@ class _Bodies:
         """The default class of what is inside an element."""
         return self.defaults.checked(element, "childclass") or above
 
-    def links(self, above: Element, parent: str, childclass: str) -> Iterator[Link]:
-        """The bodies inside an element, each followed by those inside it, and then its sites."""
-        for element in above.all("body"):
+    def links(self, above: Element, parent: str, childclass: str, weighing: bool = False) -> Iterator[Link]:
+        """The bodies and frames inside an element, each followed by what is inside it, and then its sites.
+
+        ``weighing``: whether geoms in frames weigh.
+        """
+        for element in above.children:
+            if element.tag == "frame":
+                yield from self.frame(element, parent, childclass, weighing)
+            if element.tag != "body":
+                continue
             name = element.get("name") or f"body {len(self.names) + 1}"
             if name in self.names:
                 self.reader.error("repeated-name", f"a second body called {ascii_safe(name)}", element)
             self.names.add(name)
             inside = self.childclass(element, childclass)
             yield self.link(name, element, parent, inside)
-            yield from self.links(element, name, inside)
+            yield from self.links(element, name, inside, self.takes_geoms(element))
         for site in above.all("site"):
             yield from self.site(self.defaults.of(site, childclass), parent)
+
+    def takes_geoms(self, body: Element) -> bool:
+        """Whether the matter of a body is that of its geoms."""
+        return self.from_geoms == "true" or (body.first("inertial") is None and self.from_geoms != "false")
+
+    def frame(self, element: Element, parent: str, childclass: str, weighing: bool) -> Iterator[Link]:
+        """A link without joints: what is inside is placed relative to it; its geoms belong to the body around it."""
+        for child in element.children:
+            if child.tag in ("joint", "freejoint", "inertial"):
+                self.reader.error("unsupported", f"<{child.tag}> in <frame> is not read", child, _COMPILED)
+            elif child.tag in _INSIDE:
+                self.reader.leave_out(_INSIDE[child.tag])
+        own = element.get("name") or "frame"
+        name, index = own, 2
+        while name in self.names or name in self.bodies:
+            name, index = f"{own} {index}", index + 1
+        self.names.add(name)
+        if parent in self.world_frames:
+            self.world_frames.add(name)
+        inside = self.childclass(element, childclass)
+        place, turned = self.pose(element)
+        geoms = self.geoms(element, inside) if parent not in self.world_frames else []
+        shapes = tuple(shape_of(geom, self.angles, self.reader) for geom in geoms if is_solid(geom))
+        yield Link(name, parent, place, turned, (), self.of_geoms(geoms) if weighing else (), shapes, element.span)
+        yield from self.links(element, name, inside, weighing)
 
     def site(self, element: Element, parent: str) -> Iterator[Link]:
         """A site with a name is a massless frame; others nothing can name."""
@@ -147,6 +236,7 @@ class _Bodies:
             self.reader.error("repeated-name", f"a second site called {ascii_safe(name)}", element)
         self.names.add(own)
         self.sites.add(own)
+        self.site_links[name] = own
         place, turned = self.pose(element)
         yield Link(own, parent, place, turned, span=element.span)
 
@@ -154,6 +244,8 @@ class _Bodies:
         reader = self.reader
         place, turned = self.pose(element)
         joints = tuple(self.joints(name, element, childclass))
+        if any(joint.kind == "free" for joint in joints) and parent in self.world_frames:
+            parent = GROUND  # its coordinates say where it is, whatever frame it stands in
         if any(joint.kind == "free" for joint in joints) and (parent != GROUND or len(joints) > 1):
             reader.error("unsupported", "a free joint moves a body of the world, alone", element)
         for child in element.children:
@@ -162,21 +254,26 @@ class _Bodies:
         for attribute, none, told in (("gravcomp", "0", "compensation of gravity"), ("mocap", "false", "mocap body")):
             if element.get(attribute, none) != none:
                 reader.leave_out(told)
-        geoms = [self.defaults.of(geom, childclass) for geom in element.all("geom")]
-        geoms = [geom for geom in geoms if checked(geom, reader)]
-        for geom in geoms:
-            if not is_solid(geom):
-                reader.leave_out(f"geom of the type {geom.get('type', 'sphere')}")
-            elif geom.get("contype", "1") != "0" or geom.get("conaffinity", "1") != "0":
-                reader.leave_out("contact (<geom>)")
+        geoms = self.geoms(element, childclass)
         solid = [geom for geom in geoms if is_solid(geom)]
         shapes = tuple(shape_of(geom, self.angles, reader) for geom in solid)
         given = element.first("inertial")
-        if self.from_geoms == "true" or (given is None and self.from_geoms != "false"):
+        if self.takes_geoms(element):
             matter = self.of_geoms(geoms)
         else:
             matter = () if given is None else (self.inertial(given),)
         return Link(name, parent, place, turned, joints, matter, shapes, element.span)
+
+    def geoms(self, element: Element, childclass: str) -> list[Element]:
+        """The geoms of a body or frame; what of them has no place here is noted."""
+        found = [self.defaults.of(geom, childclass) for geom in element.all("geom")]
+        found = [geom for geom in found if checked(geom, self.reader)]
+        for geom in found:
+            if not is_solid(geom):
+                self.reader.leave_out(f"geom of the type {geom.get('type', 'sphere')}")
+            elif geom.get("contype", "1") != "0" or geom.get("conaffinity", "1") != "0":
+                self.reader.leave_out("contact (<geom>)")
+        return found
 
     def of_geoms(self, geoms: list[Element]) -> tuple[Inertial, ...]:
         """The matter of a body's geoms; complains about what weighs something that is not known here."""
@@ -217,9 +314,12 @@ class _Bodies:
         if all(float(part) == 0 for part in axis):
             reader.error("bad-axis", "an axis of length zero", element)
             axis = ("0", "0", "1")
-        for attribute, told in (("armature", "inertia of a rotor (armature)"), ("frictionloss", "dry friction")):
-            if float(reader.number(element, attribute)):
-                reader.leave_out(told)
+        if float(reader.number(element, "frictionloss")):
+            reader.leave_out("dry friction")
+        armature = reader.number(element, "armature")
+        if kind == "free" and float(armature):
+            reader.leave_out("armature of a free joint")
+            armature = "0"
         if kind in ("ball", "free") and (
             float(reader.number(element, "damping")) or float(reader.number(element, "stiffness"))
         ):
@@ -228,11 +328,8 @@ class _Bodies:
             reader.error(
                 "unsupported", "a joint with 'springdamper' is not read", element, "give stiffness and damping"
             )
-        if float(reader.number(element, "ref")):
-            reader.error(
-                "unsupported", "a joint with 'ref' is not read", element, "let MuJoCo save the model without it"
-            )
         turns = kind == "turn"
+        ref = reader.number(element, "ref")
         limited = element.get("limited", "auto")
         limits = None
         if (
@@ -252,6 +349,9 @@ class _Bodies:
             reader.number(element, "damping"),
             reader.number(element, "stiffness"),
             self.angle(rest) if turns else rest,
+            armature,
+            kind in ("turn", "slide") and element.get("name") in self.driven,
+            ref=self.angle(ref) if turns else ref if kind == "slide" else "0",
         )
 
     def angle(self, text: str) -> str:

@@ -25,23 +25,33 @@ class Step:
     coordinates: tuple[str, ...] = ()
 
 
-def steps(place: Texts, turned: Turns, joints: tuple[tuple[Joint, tuple[str, ...]], ...]) -> tuple[Step, ...]:
-    """The steps that lead over a link's pose and its joints (each with its coordinates) to its axes."""
+@dataclass(frozen=True, slots=True)
+class Moving:
+    """A joint with the coordinates that it introduces; one that turns or slides does so by ``value``."""
+
+    joint: Joint
+    names: tuple[str, ...]
+    value: str = ""
+
+
+def steps(place: Texts, turned: Turns, joints: tuple[Moving, ...]) -> tuple[Step, ...]:
+    """The steps that lead over a link's pose and its joints to its axes."""
     moves = [Step(place), *(Step(turns=(turn,)) for turn in turned)]
-    for joint, names in joints:
-        moves += _moves(joint, names)
+    for moving in joints:
+        moves += _moves(moving)
     return tuple(_joined(moves))
 
 
-def _moves(joint: Joint, names: tuple[str, ...]) -> list[Step]:
+def _moves(moving: Moving) -> list[Step]:
     """A joint as elementary steps; a turn about a point elsewhere goes there and comes back."""
+    joint, names, value = moving.joint, moving.names, moving.value
     match joint.kind:
         case "slide":
-            return [Step(along(joint.axis, names[0]), (), names)]
+            return [Step(along(joint.axis, value), (), names)]
         case "turn":
             turns = [
-                Step(turns=(turn,), coordinates=names if names[0] in turn[1] else ())
-                for turn in turns_about(joint.axis, names[0])
+                Step(turns=(turn,), coordinates=names if value in turn[1] else ())
+                for turn in turns_about(joint.axis, value)
             ]
         case _:
             angles = names[-3:]
@@ -82,7 +92,7 @@ def _sum(one: Texts, other: Texts) -> Texts:
 
 
 def turns_about(axis: Texts, name: str) -> Turns:
-    """The turn by ``name`` about an axis: e_3 = Ry(b) Rz(a) turned onto it, where it is no coordinate axis."""
+    """The turn by a name or formula about an axis: e_3 = Ry(b) Rz(a) turned onto it, where it is no coordinate axis."""
     x, y, z = map(float, axis)
     on = [k for k, value in enumerate((x, y, z), start=1) if value != 0]
     if len(on) == 1:
@@ -101,7 +111,8 @@ def _negative(name: str) -> str:
 
 
 def along(axis: Texts, name: str) -> Texts:
-    """``name`` times the unit vector of an axis."""
+    """``name`` (or a formula) times the unit vector of an axis."""
+    name = name if name.isidentifier() else f"({name})"
     components = list(map(float, axis))
     length = math.hypot(*components)
     moved = []

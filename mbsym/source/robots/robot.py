@@ -32,7 +32,10 @@ class Joint:
     """A movement of a link.  ``kind`` is turn, slide, ball or free; ``axis`` and ``anchor`` are in axes of the link.
 
     ``limits`` are the least and greatest value; ``damping`` and ``stiffness`` act on the joint's coordinate, the
-    latter about ``rest``.
+    latter about ``rest``.  ``armature`` is the inertia of a rotor, which adds armature q'^2/2 to the kinetic energy.
+    A joint is ``driven`` where something can exert a torque or a force in it, of ``effort`` at most ("": not said).
+    Its coordinate is ``ref`` where it is at zero.  One that is ``led`` has no coordinate: it stands at
+    multiplier * q + offset, with q that of the joint of this name.
     """
 
     name: str
@@ -43,6 +46,11 @@ class Joint:
     damping: str = "0"
     stiffness: str = "0"
     rest: str = "0"
+    armature: str = "0"
+    driven: bool = False
+    effort: str = ""
+    led: tuple[str, str, str] | None = None
+    ref: str = "0"
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,8 +81,27 @@ class Link:
 
 
 @dataclass(frozen=True, slots=True)
+class JointTie:
+    """y - y_ref = sum of coefficients[k] (x - x_ref)^k between two joints; of one alone where second is ""."""
+
+    first: str
+    second: str
+    coefficients: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class PointTie:
+    """A point of one link is a point of another; both in the axes of their links."""
+
+    first: str
+    first_point: Texts
+    second: str
+    second_point: Texts
+
+
+@dataclass(frozen=True, slots=True)
 class Robot:
-    """Links, each after its parent; ``left_out`` says in words what of the file is no part of it.
+    """Links, each after its parent, and ``ties`` between them; ``left_out`` says in words what is no part of it.
 
     ``snapped`` are the printed angles that were read as parts of pi: ``1.5708 as pi/2``.
     """
@@ -84,3 +111,4 @@ class Robot:
     gravity: Texts = ("0", "0", "-9.81")
     left_out: tuple[str, ...] = ()
     snapped: tuple[str, ...] = ()
+    ties: tuple[JointTie | PointTie, ...] = ()

@@ -24,6 +24,7 @@ _ATTRIBUTES = {
         "sdf_iterations sdf_initpoints actuatorgroupdisable",
         "worldbody": f"name childclass pos {_TURNS} gravcomp mocap sleep user",
         "body": f"name childclass pos {_TURNS} gravcomp mocap sleep user",
+        "frame": f"name childclass pos {_TURNS}",
         "inertial": f"pos {_TURNS} mass diaginertia fullinertia",
         "joint": "name class type group pos axis springdamper limited actuatorfrclimited solreflimit solimplimit "
         "solreffriction solimpfriction stiffness range actuatorfrcrange actuatorgravcomp margin ref springref armature "
@@ -54,7 +55,7 @@ def check_spelling(root: Element, reader: Reader) -> None:
         for name in element.attributes if known else ():
             if name not in known:
                 _tell(f"attribute {ascii_safe(name)} of <{element.tag}>", name, known, element, reader)
-        for child in element.children if element.tag in ("body", "worldbody") else ():
+        for child in element.children if element.tag in ("body", "worldbody", "frame") else ():
             if child.tag not in _INSIDE:
                 _tell(
                     f"element <{ascii_safe(child.tag).strip(chr(39))}> in <{element.tag}>",
@@ -85,7 +86,7 @@ def _read(root: Element) -> Iterator[Element]:
 def _within(element: Element) -> Iterator[Element]:
     yield element
     for child in element.children:
-        if child.tag in ("body", "default"):
+        if child.tag in ("body", "frame", "default"):
             yield from _within(child)
         else:
             yield child

@@ -7,12 +7,14 @@ digits that were printed are spelled so, and told, unless they are to stay as th
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from decimal import Decimal
 from fractions import Fraction
 
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints
 from mbsym.source.robots.elements import Element
-from mbsym.source.robots.numbers import Texts, is_nonnegative
+from mbsym.source.robots.numbers import Texts, is_nonnegative, number
 from mbsym.source.robots.reader import Reader
 from mbsym.source.robots.robot import GROUND, Inertial, Joint, Link, Robot, Shape, Turns
 
@@ -78,7 +80,8 @@ def read_urdf(root: Element, complaints: Complaints, exact: bool = False) -> Rob
         lost = next(name for name in links if name not in ordered)
         reader.error("no-tree", f"link {ascii_safe(lost)} hangs on itself", links[lost])
         return None
-    made = tuple(_link(name, links[name], joints.get(name), reader) for name in ordered)
+    named = {joint.get("name"): joint for joint in reversed(joints.values())}
+    made = tuple(_link(name, links[name], joints.get(name), named, reader) for name in ordered)
     name = root.get("name") or "robot"
     return None if complaints.errors else Robot(name, made, left_out=reader.left_out(), snapped=reader.snapped())
 
@@ -141,7 +144,7 @@ def _ordered(first: str, joints: dict[str, Element]) -> list[str]:
     return ordered
 
 
-def _link(name: str, element: Element, joint: Element | None, reader: Reader) -> Link:
+def _link(name: str, element: Element, joint: Element | None, named: Mapping[str, Element], reader: Reader) -> Link:
     inertial = element.first("inertial")
     matter = () if inertial is None else (_inertial(inertial, reader),)
     shapes = tuple(shape for visual in element.all("visual") if (shape := _shape(visual, reader)) is not None)
@@ -150,11 +153,11 @@ def _link(name: str, element: Element, joint: Element | None, reader: Reader) ->
     parent = joint.first("parent")
     assert parent is not None
     place, turned = _origin(joint, reader)
-    moved = _joint(joint, reader)
+    moved = _joint(joint, named, reader)
     return Link(name, parent.get("link"), place, turned, moved, matter, shapes, element.span)
 
 
-def _joint(element: Element, reader: Reader) -> tuple[Joint, ...]:
+def _joint(element: Element, named: Mapping[str, Element], reader: Reader) -> tuple[Joint, ...]:
     kind = _KINDS[element.get("type")]
     if not kind:
         return ()
@@ -162,8 +165,6 @@ def _joint(element: Element, reader: Reader) -> tuple[Joint, ...]:
     if all(float(part) == 0 for part in axis):
         reader.error("bad-axis", "an axis of length zero", element)
         axis = ("1", "0", "0")
-    if element.first("mimic") is not None:
-        reader.leave_out("mimic: such a joint is a coordinate of its own")
     if element.first("safety_controller") is not None:
         reader.leave_out("safety controller")
     dynamics, limit = element.first("dynamics"), element.first("limit")
@@ -174,7 +175,51 @@ def _joint(element: Element, reader: Reader) -> tuple[Joint, ...]:
     if limit is not None and element.get("type") in ("revolute", "prismatic"):
         limits = (reader.number(limit, "lower"), reader.number(limit, "upper"))
         limits = limits if float(limits[0]) < float(limits[1]) else None
-    return (Joint(element.get("name"), kind, axis, limits=limits, damping=damping),)
+    led = _led(element, named, reader) if kind != "free" else None
+    if led is not None and limits is not None:
+        reader.leave_out("limits of a joint that mimics another")
+    effort = "0" if limit is None else reader.number(limit, "effort")
+    return (
+        Joint(
+            element.get("name"),
+            kind,
+            axis,
+            limits=limits,
+            damping=damping,
+            driven=kind != "free",
+            effort=effort if float(effort) > 0 else "",
+            led=led,
+        ),
+    )
+
+
+def _led(element: Element, named: Mapping[str, Element], reader: Reader) -> tuple[str, str, str] | None:
+    """(leader, multiplier, offset) of a joint that mimics another, which mimics none itself: those between are put in.
+
+    One that mimics a fixed joint stands at its offset.
+    """
+    multiplier, offset, seen = Fraction(1), Fraction(0), [element.get("name")]
+    while (mimic := element.first("mimic")) is not None:
+        leader = reader.name(mimic, "joint")
+        offset += multiplier * Fraction(reader.number(mimic, "offset"))
+        multiplier *= Fraction(reader.number(mimic, "multiplier", "1"))
+        found = named.get(leader)
+        if found is None or leader in seen:
+            what = "joints that mimic each other" if found is not None else f"there is no joint {ascii_safe(leader)}"
+            reader.error("no-tree" if found is not None else "unknown-name", what, mimic)
+            return None
+        if found.get("type") in ("fixed", "floating"):
+            if found.get("type") == "floating":
+                reader.error("unsupported", "a floating joint cannot be mimicked", mimic)
+            return leader, "0", _decimal(offset)
+        seen.append(leader)
+        element = found
+    return (seen[-1], _decimal(multiplier), _decimal(offset)) if len(seen) > 1 else None
+
+
+def _decimal(value: Fraction) -> str:
+    """As descriptions write it; products and sums of decimals end."""
+    return number(str(Decimal(value.numerator) / Decimal(value.denominator)))
 
 
 def _inertial(element: Element, reader: Reader) -> Inertial:

@@ -11,7 +11,7 @@ from flint import fmpq
 from mbsym.algebra.certainty import Certainty
 from mbsym.expressions.message import Message
 from mbsym.model.system import System
-from mbsym.report.content import Block, aligned, column, paragraph, worded
+from mbsym.report.content import Block, aligned, column, paragraph
 from mbsym.studies.study import Answer, Exit, Watch
 
 if TYPE_CHECKING:
@@ -62,15 +62,15 @@ def _lines(found: Branches) -> Iterator[Block]:
     for one in found.criticals:
         if (polynomial := _minimal(one.sample)) and critical_words(found, one):
             told = Message("[[value]] is a root of [[polynomial]]", value=value(one.sample), polynomial=polynomial)
-            yield paragraph(worded(told))
+            yield paragraph(told)
     for remark in found.remarks:
-        yield paragraph(worded(remark_words(remark)))
+        yield paragraph(remark_words(remark))
     lost = sum(not piece.throughout for piece in found.pieces)
     if lost:
         text = "verdicts proved at the sample only, not along the whole piece: [[lost]] of [[all]]"
-        yield paragraph(worded(Message(text, lost=lost, all=len(found.pieces))))
+        yield paragraph(Message(text, lost=lost, all=len(found.pieces)))
     if found.proved:
-        yield paragraph(worded(Message("the numbers of equilibria are proved in every open interval")))
+        yield paragraph(Message("the numbers of equilibria are proved in every open interval"))
 
 
 def rows(found: Branches) -> list[tuple[str, str, str, str]]:

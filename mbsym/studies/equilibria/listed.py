@@ -24,11 +24,9 @@ from mbsym.report.content import (
     Strong,
     Subheading,
     Table,
-    Words,
     aligned,
     column,
     paragraph,
-    worded,
 )
 from mbsym.report.unit_text import labelled, pretty
 
@@ -45,11 +43,11 @@ def lines(system: System, found: Equilibria, permanent: PermanentRotations | Non
     for name, rate in found.turning:
         value = with_unit(f"{rate:.10g}", pretty(system.units.rate_of(name)))
         text = "[[name]] turns at the rate [[rate]]" if name in angles else "[[name]] moves at the rate [[rate]]"
-        yield paragraph(Words(Message(text, name=name, rate=value)))
+        yield paragraph(Message(text, name=name, rate=value))
     if found.singular:
         text = "[[solutions]], the coordinates are singular there: equilibria or not is undecided"
         solutions = Counted(len(found.singular), "more solution", "more solutions")
-        yield paragraph(Strong(Words(Message(text, solutions=solutions))))
+        yield paragraph(Strong(Message(text, solutions=solutions)))
         yield _table(system, found.singular, judged=False)
     if found.beyond:
         lengths = ", ".join(f"{name} < 0" for name in dict.fromkeys(x for one in found.beyond for x in one.beyond))
@@ -59,7 +57,7 @@ def lines(system: System, found: Equilibria, permanent: PermanentRotations | Non
             "but other forces would act"
         )
         solutions = Counted(len(found.beyond), "more solution", "more solutions")
-        yield paragraph(Strong(Words(Message(text, solutions=solutions, lengths=lengths))))
+        yield paragraph(Strong(Message(text, solutions=solutions, lengths=lengths)))
         yield _table(system, found.beyond, judged=False)
     for number, family in enumerate(found.families, 1):
         yield from _family(system, number, family)
@@ -81,7 +79,7 @@ def _table(system: System, listed: Sequence[RelativeEquilibrium], judged: bool =
         cells: list[Inline] = [str(number), *(_cell(one, name) for name in names)]
         if judged:
             word = one.verdict.word
-            cells += [Graded(Words(Message(word)), _grade(word)), joined(map(Message, one.verdict.theorems), ", ")]
+            cells += [Graded(Message(word), _grade(word)), joined(map(Message, one.verdict.theorems), ", ")]
         cells += [Message(one.proof)] if boxes else []
         cells += [one.coordinates_of] if others else []
         rows.append(cells)
@@ -108,16 +106,14 @@ def _family(system: System, number: int, family: EquilibriumFamily) -> Iterator[
         text = "family [[number]]: [[parameters]] ([[names]]); angles of [[body]]"
     gaps = {"body": family.coordinates_of} if family.coordinates_of else {}
     parameters = Counted(family.dimension, "parameter")
-    yield Subheading(
-        (Words(Message(text, number=number, parameters=parameters, names=", ".join(family.free), **gaps)),)
-    )
+    yield Subheading((Message(text, number=number, parameters=parameters, names=", ".join(family.free), **gaps),))
     for equation in family.equations[:12]:
-        yield paragraph("  ", worded(_shortened(equation)), " = 0")
+        yield paragraph("  ", _shortened(equation), " = 0")
     sample = ", ".join(
         f"{item.name} = {with_unit(_text(item), pretty(unit_of(system, item.name)))}" for item in family.sample
     )
     text = "for example [[values]]: [[verdict]]"
-    yield paragraph("  ", Words(Message(text, values=sample, verdict=family.verdict.word)))
+    yield paragraph("  ", Message(text, values=sample, verdict=family.verdict.word))
 
 
 def _shortened(polynomial: str) -> str:
@@ -130,9 +126,9 @@ def _shortened(polynomial: str) -> str:
 def _permanent(found: PermanentRotations) -> Iterator[Block]:
     """The family that a steady turn at the description's rate is a member of."""
     text = "permanent rotations about the fixed axis of [[angle]], at whatever rate"
-    yield Subheading((Words(Message(text, angle=found.angle)),))
+    yield Subheading((Message(text, angle=found.angle),))
     text = "g: that axis in the axes of [[body]], g1**2 + g2**2 + g3**2 = 1"
-    yield paragraph("  ", Words(Message(text, body=found.body)))
+    yield paragraph("  ", Message(text, body=found.body))
     acts = [found.loaded, found.gyrostatic, found.inertial]
     where = None
     if found.axes:
@@ -149,7 +145,7 @@ def _permanent(found: PermanentRotations) -> Iterator[Block]:
     elif not any(acts):
         where = Message("nothing acts: every axis, at any rate")
     if where is not None:
-        yield paragraph("  ", Words(where))
+        yield paragraph("  ", where)
     for row in zip(found.constant, found.linear, found.quadratic, strict=True):
         if any(x != "0" for x in row):
             parts = (("", row[0]), ("rate*", row[1]), ("rate**2*", row[2]))
@@ -161,7 +157,7 @@ def _permanent(found: PermanentRotations) -> Iterator[Block]:
             "with the square "
             "of the rate vanishes at g"
         )
-        yield paragraph("  ", Words(Message(text)))
+        yield paragraph("  ", Message(text))
 
 
 def _summary(found: Equilibria) -> Iterator[Block]:
@@ -169,26 +165,26 @@ def _summary(found: Equilibria) -> Iterator[Block]:
     words = Counter(one.verdict.word for one in found.equilibria)
     kinds = joined((joined((str(n), Message(word))) for word, n in words.items()), "; ")
     counts = [count, *([Counted(len(found.families), "family", "families")] if found.families else [])]
-    yield paragraph(Strong(Words(joined(counts, ", "))), *([": ", Words(kinds)] if words else []))
+    yield paragraph(Strong(joined(counts, ", ")), *([": ", kinds] if words else []))
     exact = all(x.proof == "exact" for x in found.equilibria)
     if found.complete and (found.singular or found.beyond):
         text = "the list is complete apart from the solutions below that are not counted ([[how]])"
         how = Message("every one exact") if exact else Message("every one proved")
-        yield paragraph(Graded(Words(Message(text, how=how)), "good"))
+        yield paragraph(Graded(Message(text, how=how), "good"))
     elif found.complete:
         how = Message("every one exact") if exact else Message("every one proved")
-        yield paragraph(Graded(Words(Message("the list is complete ([[how]])", how=how)), "good"))
+        yield paragraph(Graded(Message("the list is complete ([[how]])", how=how), "good"))
     else:
-        yield paragraph(Graded(Words(Message("the list may be incomplete")), "open"))
+        yield paragraph(Graded(Message("the list may be incomplete"), "open"))
     for remark in found.remarks:
-        yield paragraph(Graded(worded(remark), "open"))
+        yield paragraph(Graded(remark, "open"))
     twice = sorted({one.described for one in found.equilibria if one.described > 1})
     if twice:
         text = "counted as configurations: the coordinates describe one in [[ways]] ways"
-        yield paragraph(Words(Message(text, ways=joined((str(n) for n in twice), "/"))))
+        yield paragraph(Message(text, ways="/".join(map(str, twice))))
     if found.charts > 1:
         text = "singular angles were replaced by others ([[count]] sets of angles)"
-        yield paragraph(Words(Message(text, count=found.charts)))
+        yield paragraph(Message(text, count=found.charts))
 
 
 def _grade(word: Word) -> str:

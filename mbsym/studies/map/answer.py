@@ -18,7 +18,7 @@ from mbsym.maps.slices import Picture, Stack
 from mbsym.maps.soft_borders import Onset
 from mbsym.maps.subdivision import End
 from mbsym.model.system import System
-from mbsym.report.content import Block, Table, aligned, column, paragraph, worded
+from mbsym.report.content import Block, Table, aligned, column, paragraph
 from mbsym.report.language import Language
 from mbsym.report.maps.words import LACKS, cell_words, condition_words, row_words, share, stem, telling
 from mbsym.studies.study import Answer, Exit
@@ -115,7 +115,7 @@ def _lines(system: System, found: Map) -> Iterator[Block]:
     """A row for what is said of cells, or for each picture of a stack, then what there is to know besides."""
     yield _pictures(found) if isinstance(found, Stack) else _table(found)
     for text in remarks(found, system):
-        yield paragraph(worded(text))
+        yield paragraph(text)
 
 
 #: What is said of cells, by what a map is of.

@@ -182,7 +182,7 @@ def test_asymptotic_or_merely_stable_depends_but_stable_it_is() -> None:
     assert any(text.startswith("  Hurwitz minor 5: ") and "m3 (k1 + k2) - m1 k3 != 0" in text for text in lines)
     assert "Otherwise stable (Lagrange-Dirichlet):" in lines[place + 2 :]
     text = TARGETS["latex"].render(a, (6,))
-    assert "Otherwise \\textbf{stable} (Lagrange-Dirichlet):\n\nK " in text
+    assert "Otherwise \\textbf{stable} (Lagrange-Dirichlet):\n\n$K > 0$" in text
     cases = json.loads(TARGETS["json"].render(a, (6,)))["stability"]["subsystems"][0]["cases"]
     assert [(case["verdict"], bool(case["all_of"])) for case in cases] == [
         ("asymptotically stable", True),

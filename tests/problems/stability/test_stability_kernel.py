@@ -124,7 +124,7 @@ def test_satellite_pitch_conditions_are_eq_5() -> None:
 def test_satellite_yaw_and_roll_conditions_are_eq_6() -> None:
     found = analyse(YAW_ROLL, RANGES)
     assert found.kind == "gyroscopic conservative"
-    assert found.method == "all roots in lambda^2 real, negative and simple: coefficients and discriminants"
+    assert found.method == "all squares of roots real, negative and simple: coefficients and discriminants"
     assert found.characteristic == (V0, V0 * 0, V2, V0 * 0, V4, V0 * 0, V6)
     assert [r.label for r in found.requirements] == ["v6", "v4", "v2", "v0", "discriminant"]
     assert [r.polynomial for r in found.requirements] == [V6, V4, V2, V0, DIS]

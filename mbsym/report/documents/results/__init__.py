@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from msgspec import UNSET, Meta, UnsetType, field
 
 from mbsym.algebra.failures import Limit, Severity
+from mbsym.expressions.table import CUBIC, ENDS, EXTRAPOLATE, HOLD, LINEAR, OUTSIDE_ZERO
 from mbsym.report.documents.base import ASIDE, Format, Part, Version, told_apart_by, words
 from mbsym.report.documents.parts import Formula
 from mbsym.report.documents.results.canonical import Brackets, Hamilton, Routh
@@ -41,6 +42,28 @@ class Described(Part, frozen=True):
 
     name: Annotated[str, "its name"]
     description: Annotated[str, "its own words about it"]
+
+
+class Assumption(Part, frozen=True):
+    """an inequality that the parameters are assumed to satisfy"""
+
+    left: Annotated[Formula, "its left side, in parameters and symbols of the notation"]
+    relation: Annotated[str, words("<", "<=", ">", ">=", "!="), "how it is related to the right side"]
+    right: Annotated[Formula, "its right side"]
+
+
+class Table(Part, frozen=True):
+    """a function that is given by points"""
+
+    name: Annotated[str, "its name, by which formulas call it"]
+    points: Annotated[list[list[str]], "argument and value, exact, arguments increasing"]
+    between: Annotated[str, words(LINEAR, CUBIC), "between the points: straight lines, or the natural spline"]
+    outside: Annotated[str, words(HOLD, OUTSIDE_ZERO, EXTRAPOLATE, ENDS), "before the first point and after the last"]
+    held: Annotated[
+        str | UnsetType,
+        "where it is zero outside and jumps: how formulas call the same table with its end values outside, which "
+        "terms with sign() take away there",
+    ] = UNSET
 
 
 class Motion(Part, frozen=True):
@@ -188,6 +211,16 @@ class Results(Part, frozen=True, kw_only=True):
         list[Output] | UnsetType, "what is measured, where the description says so", told_apart_by("name")
     ] = UNSET
     parameters: Annotated[list[Parameter], "parameters, in their order", told_apart_by("name")]
+    relations: Annotated[
+        dict[str, Formula] | UnsetType,
+        "parameters that are functions of others, used from problem 4 on, where the description gives relations",
+    ] = UNSET
+    assumptions: Annotated[
+        list[Assumption] | UnsetType, "what is assumed of parameters beside their signs, where anything is"
+    ] = UNSET
+    tables: Annotated[
+        list[Table] | UnsetType, "functions given by points, where the description has any", told_apart_by("name")
+    ] = UNSET
     checks: Annotated[list[SelfCheck], "the self-check", told_apart_by("name")]
     kinematics: Kinematics | UnsetType = UNSET
     energy: Energy | UnsetType = UNSET

@@ -63,6 +63,9 @@ class Claim(Part, frozen=True):
         ),
         "the outcome",
     ]
+    role: Annotated[
+        str | UnsetType, words("necessary", "sufficient"), "what a condition is said to be of stability, if it is said"
+    ] = UNSET
     claimed: Annotated[Formula | UnsetType, "what is claimed, as it is printed"] = UNSET
     derived: Annotated[Formula | UnsetType, "what is derived"] = UNSET
     difference: Annotated[Formula | UnsetType, "by what they differ; difference_is says which difference"] = UNSET

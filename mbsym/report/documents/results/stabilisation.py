@@ -101,8 +101,12 @@ class Control(Part, frozen=True):
 class Feedback(Verdict, frozen=True):
     """a feedback"""
 
+    states: Annotated[list[str], "z of u = -k z: coordinates, then velocities, those left out that others determine"]
+    of_part: Annotated[str, "why the states are those of some coordinates only; empty where they are of all"]
     gains: Annotated[list[Annotated[list[Annotated[str, "a rational number"]], "a row"]], "k, a row for each input"]
-    characteristic_polynomial: Annotated[list[str], "of the closed loop, from low to high powers, rational numbers"]
+    characteristic_polynomial: Annotated[
+        list[str], "of the closed loop, from low to high powers, rational numbers; empty where values are irrational"
+    ]
     lyapunov: Annotated[
         list[list[str]] | None,
         "rational symmetric P of a Lyapunov function z.P z of the closed loop; null where none was found",
@@ -127,5 +131,6 @@ class Stabilisation(Part, frozen=True):
     least_inputs: Annotated[
         list[Annotated[list[str], "a set"]], "the smallest sets of inputs that suffice for almost all parameters"
     ]
-    feedback: Annotated[Feedback | None, "a linear feedback u = -k (q, q') at the given values, proved to stabilise"]
+    feedback: Annotated[Feedback | None, "a linear feedback u = -k z at the given values, proved to stabilise"]
     no_feedback: Annotated[str, "why there is none; empty where there is one"]
+    left_out: Annotated[list[str], "coordinates of which independent equations under constraints know nothing"]

@@ -88,7 +88,7 @@ class StabilitySubsystem(Verdict, frozen=True):
     method: Annotated[
         str,
         words(Method),
-        "even: all roots in lambda^2 real, negative, simple; hurwitz: all roots to the left (Lienard-Chipart); none",
+        "even: all squares of roots real, negative, simple; hurwitz: all roots to the left (Lienard-Chipart); none",
     ]
     conditions: Annotated[list[Condition], "conditions that are not known to hold", told_apart_by("label")]
     cases: Annotated[list[Case], "read in order, like if and elif"]

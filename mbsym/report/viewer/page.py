@@ -22,14 +22,14 @@ from mbsym.expressions.tree import Expression, substitute
 from mbsym.model.system import System, rational, with_values
 from mbsym.picture.build import picture
 from mbsym.picture.encode import as_json
-from mbsym.picture.modes import modes, modes_json
-from mbsym.picture.motion import motion, motion_json
-from mbsym.picture.resting import at_rest, at_rest_json
 from mbsym.report.html.environment import embedded
+from mbsym.report.viewer.modes import modes, modes_json
+from mbsym.report.viewer.motion import motion, motion_json
+from mbsym.report.viewer.resting import at_rest, at_rest_json
 from mbsym.simulation import Request
 
 #: Where the bundles are that `make page` builds.
-BUNDLES = Path(__file__).parents[1] / "serving" / "page"
+BUNDLES = Path(__file__).parents[2] / "serving" / "page"
 
 
 Values = Mapping[str, Expression]

@@ -1,0 +1,92 @@
+"""Machine code that outlives the process, under the SHA-256 of all that it was made of: compiled once, loaded after.
+
+The folder is ``MBSYM_CACHE``, or else ``mbsym`` in ``XDG_CACHE_HOME`` or ``~/.cache``; ``MBSYM_CACHE=`` (empty) keeps
+nothing.  It may be deleted at any time.  What stands in it is executed, as Python's own compiled modules are: a folder
+that belongs to another user, or that others may write to, is not looked at, and a file whose digest does not fit is no
+file.  Whatever goes wrong with it, the code is compiled.
+"""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Sequence
+from contextlib import suppress
+from hashlib import sha256
+from pathlib import Path
+
+#: Bytes that the folder may hold; beyond, what was written first goes, until half is left.
+MOST_BYTES = 2**28
+
+_DIGEST = sha256().digest_size
+
+
+def key_of(parts: Sequence[str]) -> str:
+    """One name for all of the parts, in their order."""
+    return sha256("".join(f"{len(part)}:{part}" for part in parts).encode()).hexdigest()
+
+
+def found(key: str) -> bytes | None:
+    """What was kept under a key; None where there is nothing, or it is not whole."""
+    with suppress(OSError):
+        folder = _folder()
+        if folder is not None and _own(folder):
+            kept = (folder / key).read_bytes()
+            if kept[:_DIGEST] == _digest(key, kept[_DIGEST:]):
+                return kept[_DIGEST:]
+    return None
+
+
+def keep(key: str, code: bytes) -> None:
+    """Keeps it where that can be done; a reader sees all of it or nothing."""
+    with suppress(OSError):
+        folder = _folder()
+        if folder is None:
+            return
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        if not _own(folder):
+            return
+        _make_room(folder, len(code))
+        handle, aside = tempfile.mkstemp(dir=folder)
+        try:
+            with os.fdopen(handle, "wb") as file:
+                file.write(_digest(key, code) + code)
+            os.replace(aside, folder / key)
+        except OSError:
+            os.unlink(aside)
+
+
+def _folder() -> Path | None:
+    """Where code is kept; None where nothing is to be, or where nobody is at home."""
+    told = os.environ.get("MBSYM_CACHE")
+    if told is not None:
+        return Path(told) / "kernels" if told else None
+    with suppress(RuntimeError):
+        base = os.environ.get("XDG_CACHE_HOME", "")
+        return (Path(base) if os.path.isabs(base) else Path.home() / ".cache") / "mbsym" / "kernels"
+    return None
+
+
+def _own(folder: Path) -> bool:
+    """Whether nobody else can have written there."""
+    if not hasattr(os, "getuid"):  # Windows: a profile is its user's
+        return True
+    known = folder.stat()
+    return known.st_uid == os.getuid() and not known.st_mode & 0o022
+
+
+def _digest(key: str, code: bytes) -> bytes:
+    return sha256(key.encode() + code).digest()
+
+
+def _make_room(folder: Path, size: int) -> None:
+    """Deletes the oldest files where the folder would hold too much."""
+    known = sorted((one.stat().st_mtime, one.stat().st_size, one.path) for one in os.scandir(folder))
+    total = size + sum(size for _, size, _ in known)
+    if total > MOST_BYTES:
+        for _, freed, path in known:
+            with suppress(OSError):
+                os.unlink(path)
+            total -= freed
+            if total <= MOST_BYTES // 2:
+                break

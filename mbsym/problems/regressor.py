@@ -1,0 +1,265 @@
+"""Base parameters: the smallest set of inertial parameters that an open tree's motion can tell, and their regressor.
+
+The generalised forces are linear in the ten inertial parameters theta of each body, tau = Y(q, q', q'') theta + the
+forces of other loads.  Columns of Y depend on each other: what a combination c of parameters does to T and U is
+
+    sum_j c_j dT/dtheta_j = 0   and   sum_j c_j dU/dtheta_j = const
+
+if and only if Y c = 0, for T is a form of second degree in q' and Lagrange's equations of L = 0 alone are empty.  So
+the relations between columns are those between functions of the state, with coefficients that are constants of the
+system: found by elimination in the ring, over the field of its parameters, in a part of the monomials; then every one
+is verified in all of them.  Columns are taken from the base to the tips, J before h before m: the first of those that
+depend on each other are kept, as in W. Khalil and E. Dombre, Modeling, Identification and Control of Robots (2002),
+chapter 9.
+
+That the kept columns are independent holds for almost all values of parameters that are symbols; exactly for numbers.
+
+Sources: H. Mayeda, K. Yoshida and K. Osuka, Base parameters of manipulator dynamic models, IEEE Trans. Robotics
+Automation 6 (1990) 312-321; M. Gautier and W. Khalil, Direct calculation of minimum set of inertial parameters of
+serial robots, ibid. 368-373.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.program import Node, Program
+from mbsym.algebra.quotients import Quotient
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.message import Message
+from mbsym.expressions.tree import names
+from mbsym.formulas.formula import Formula
+from mbsym.mechanics.constraints.refusal import refuse_constraints
+from mbsym.mechanics.given_matrices import refuse_matrices
+from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.newton_euler import Accelerations
+from mbsym.mechanics.regressor import Standard, column, energies, values
+from mbsym.mechanics.variables import expressions, program_environment
+from mbsym.model.loads import UniformGravity
+from mbsym.model.system import System
+
+#: Of each column so many monomials take part in the elimination at first.
+_FIRST = 4
+
+#: The monomials of moving quantities of one function, each with its constant coefficient; U's have a mark.
+_Column = Mapping[tuple[Any, ...], Polynomial]
+
+
+@dataclass(frozen=True)
+class Base:
+    """kept + sum of coefficient * other: the motion tells this sum and nothing of its parts.
+
+    ``value`` is what it is for the parameters of the description.
+    """
+
+    kept: Standard
+    others: tuple[tuple[Standard, Formula], ...]
+    value: Formula
+
+
+@dataclass(frozen=True)
+class Regressor:
+    """``columns`` of Y, one for each of ``base``, as nodes of ``program`` with the names of the system as inputs.
+
+    ``standard`` are all parameters, ``without_effect`` those that no motion tells.  ``besides``: whether there are
+    loads that tau = Y beta leaves out.
+    """
+
+    system: System
+    standard: tuple[Standard, ...]
+    base: tuple[Base, ...]
+    without_effect: tuple[Standard, ...]
+    program: Program
+    columns: tuple[tuple[Node, ...], ...]
+    besides: bool
+
+
+def regressor(scene: Scene[Polynomial]) -> Regressor:
+    """Base parameters and regressor of a system over its ring.
+
+    Raises NoClosedForm for what moves as prescribed, gravity that is not uniform, formulas that are too long;
+    Constrained, GivenByMatrices.
+    """
+    system, ring = scene.system, scene.ring
+    _refuse(system)
+    functions = {one: (ring.reduce(t), ring.reduce(u)) for one, t, u in energies(scene)}
+    split = _Split(ring, system)
+    columns = {one: split(t, u) for one, (t, u) in functions.items()}
+    kept, dependent = _relations(ring, columns)
+    given = values(scene)
+    found = []
+    for one in kept:
+        others = [(other, row[one]) for other, row in dependent.items() if one in row]
+        told = tuple((other, Formula(ring, _polynomial(ring, x))) for other, x in others)
+        value = given[one]
+        for other, factor in told:
+            value = value + ring.times(factor.polynomial, given[other])
+        found.append(Base(one, told, Formula(ring, ring.reduce(value))))
+    without = tuple(one for one in columns if not columns[one])
+    besides = any(not isinstance(load, UniformGravity) for load in system.loads) or any(
+        motion.gyrostatic_moment is not None for motion in scene.motions.values()
+    )
+    program = Program()
+    moving = Scene(system, program, program_environment(system, program), ring)
+    accelerations = Accelerations(moving)
+    nodes = tuple(column(moving, accelerations, one) for one in kept)
+    return Regressor(system, tuple(columns), tuple(found), without, program, nodes, besides)
+
+
+def _refuse(system: System) -> None:
+    what = Message("base parameters")
+    refuse_matrices(system, what)
+    refuse_constraints(system, what)
+    timely = {item.name for item in system.prescribed} | {"t"}
+    inertial = [part for body in system.bodies for part in expressions(body)]
+    fields = [load for load in system.loads if isinstance(load, UniformGravity)]
+    if any(timely & names(x) for x in (*inertial, *expressions(tuple(fields)))):
+        raise NoClosedForm(Message("base parameters of a system that moves as prescribed are not looked for"))
+    if system.newtonian_fields:
+        raise NoClosedForm(Message("base parameters are looked for in uniform fields of gravity alone"))
+    if any(names(x) & {*system.coordinates} for body in system.bodies for x in _mass_properties(body)):
+        raise NoClosedForm(Message("the inertia of a body changes with the motion"))
+
+
+def _mass_properties(body: Any) -> list[Any]:
+    found = [body.mass, *body.mass_centre]
+    return found + [x for row in body.inertia.tensor for x in row] if body.inertia is not None else found
+
+
+class _Split:
+    """A polynomial by monomials of what moves, with coefficients of what is constant."""
+
+    def __init__(self, ring: Ring, system: System) -> None:
+        self.ring = ring
+        coordinates = set(system.coordinates)
+        kinds = ("velocity", "acceleration", "coordinate", "prescribed", "time")
+        self.moving = [
+            g.kind in kinds or (g.kind in ("sine", "cosine") and g.name in coordinates) for g in ring.generators
+        ]
+
+    def __call__(self, kinetic: Polynomial, force: Polynomial) -> _Column:
+        found: dict[tuple[Any, ...], dict[tuple[int, ...], Any]] = {}
+        for mark, x in (("T", kinetic), ("U", force)):
+            self._check(x)
+            for monomial, coefficient in x.terms():
+                fast = tuple(int(e) if m else 0 for e, m in zip(monomial, self.moving, strict=True))
+                if mark == "U" and not any(fast):
+                    continue
+                slow = tuple(0 if m else int(e) for e, m in zip(monomial, self.moving, strict=True))
+                key = (mark, *((k, e) for k, e in enumerate(fast) if e))
+                found.setdefault(key, {})[slow] = coefficient
+        return {key: self.ring.context.from_dict(part) for key, part in found.items()}
+
+    def _check(self, x: Polynomial) -> None:
+        """Adjoined elements (roots, reciprocals) have to be constant, or monomials with them may depend on others."""
+        if not x:
+            return
+        degrees = x.degrees()
+        for k, g in enumerate(self.ring.generators[: self.ring.spare]):
+            if degrees[k] > 0 and (g.argument is None or self._moves(g.argument)):
+                raise NoClosedForm(Message("a joint's place is no polynomial in coordinates, sines and cosines"))
+
+    def _moves(self, x: Polynomial) -> bool:
+        degrees = x.degrees()
+        spare = self.ring.generators[: self.ring.spare]
+        return any(d > 0 and m for d, m in zip(degrees, self.moving, strict=True)) or any(
+            degrees[k] > 0 and (g.argument is None or self._moves(g.argument)) for k, g in enumerate(spare)
+        )
+
+
+def _relations(
+    ring: Ring, columns: Mapping[Standard, _Column]
+) -> tuple[list[Standard], dict[Standard, dict[Standard, Quotient]]]:
+    """The columns that do not depend on earlier ones, and the others as combinations of these."""
+    rows = list(dict.fromkeys(key for one in columns.values() for key in sorted(one, key=len)[:_FIRST]))
+    while True:
+        kept, dependent = _eliminated(ring, columns, rows)
+        missed = [key for one, row in dependent.items() if (key := _unequal(ring, columns, one, row, rows)) is not None]
+        if not missed:
+            return kept, dependent
+        rows += dict.fromkeys(missed)
+
+
+def _eliminated(
+    ring: Ring, columns: Mapping[Standard, _Column], rows: Sequence[tuple[Any, ...]]
+) -> tuple[list[Standard], dict[Standard, dict[Standard, Quotient]]]:
+    """Gauss and Jordan on some monomials: columns that are independent there are so, others perhaps not."""
+    zero = Quotient.of(ring.zero)
+    one = Quotient.of(ring.one)
+    kept: list[Standard] = []
+    dependent: dict[Standard, dict[Standard, Quotient]] = {}
+    #: Pivot: the monomial, the column that is 1 there, and what it is made of.
+    pivots: list[tuple[tuple[Any, ...], dict[tuple[Any, ...], Quotient], dict[Standard, Quotient]]] = []
+    for name, full in columns.items():
+        left = {key: Quotient.of(full[key]) for key in rows if key in full}
+        made = {name: one}
+        for key, reduced, parts in pivots:
+            factor = left.get(key)
+            if factor is None:
+                continue
+            for other, x in reduced.items():
+                value = _normal(ring, left.get(other, zero) - factor * x)
+                if value.is_zero:
+                    left.pop(other, None)
+                else:
+                    left[other] = value
+            for part, x in parts.items():
+                made[part] = _normal(ring, made.get(part, zero) - factor * x)
+        if not left:
+            dependent[name] = {other: -x for other, x in made.items() if other != name and not x.is_zero}
+            continue
+        key = min(left, key=lambda one: (len(left[one].top) + len(left[one].bottom), rows.index(one)))
+        if ring.is_zero(left[key].top) is None:
+            raise NoClosedForm(Message("whether a constant is zero cannot be decided"))
+        unit = left[key]
+        kept.append(name)
+        pivots.append(
+            (
+                key,
+                {other: _normal(ring, x / unit) for other, x in left.items()},
+                {other: _normal(ring, x / unit) for other, x in made.items()},
+            )
+        )
+    return kept, dependent
+
+
+def _normal(ring: Ring, x: Quotient) -> Quotient:
+    """With constants such as sqrt(2) in normal form."""
+    if not x.top or (len(x.top) == 1 and x.top.is_constant() and x.bottom.is_constant()):
+        return x
+    return Quotient.of(ring.reduce(x.top), ring.reduce(x.bottom))
+
+
+def _unequal(
+    ring: Ring,
+    columns: Mapping[Standard, _Column],
+    name: Standard,
+    row: Mapping[Standard, Quotient],
+    known: Sequence[tuple[Any, ...]],
+) -> tuple[Any, ...] | None:
+    """A monomial in which a column is not this combination of others; None where it is in all of them."""
+    common = ring.one
+    for x in row.values():
+        common = common * (x.bottom / common.gcd(x.bottom))
+    factors = {other: x.top * (common / x.bottom) for other, x in row.items()}
+    keys = dict.fromkeys([*columns[name], *(key for other in row for key in columns[other])])
+    seen = set(known)
+    for key in keys:
+        if key in seen:
+            continue
+        total = common * columns[name].get(key, ring.zero)
+        for other, factor in factors.items():
+            if key in columns[other]:
+                total = total - factor * columns[other][key]
+        if not ring.vanishes(ring.reduce(total)):
+            return key
+    return None
+
+
+def _polynomial(ring: Ring, x: Quotient) -> Polynomial:
+    if x.bottom.is_constant():
+        return x.top / x.bottom.leading_coefficient()
+    return ring.reduce(ring.times(x.top, ring.reciprocal(x.bottom)))

@@ -1,0 +1,142 @@
+"""Base parameters and regressor as files: JSON, LaTeX, a module of Python; and in sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.program import Node, Program
+from mbsym.expressions.counting import counted
+from mbsym.mechanics.regressor import KINDS, Standard
+from mbsym.mechanics.variables import program_environment
+from mbsym.report.documents import regressor as doc
+from mbsym.report.documents.writer import written
+from mbsym.source.meaning import meaning
+
+if TYPE_CHECKING:
+    from mbsym.problems.regressor import Base, Regressor
+
+
+def named(one: Standard) -> str:
+    """``Jxx(upper arm)``."""
+    return f"{one.kind}({one.body})"
+
+
+def sum_of(one: Base) -> str:
+    """``Jzz(one) + l**2 m(two)``."""
+    told = named(one.kept)
+    for other, factor in one.others:
+        text = str(factor)
+        sign, text = ("-", text[1:]) if text.startswith("-") and not set(text[1:]) & set("+-") else ("+", text)
+        if set(text) & set("+-"):
+            text = f"({text})"
+        told += f" {sign} {named(other)}" if text == "1" else f" {sign} {text}*{named(other)}"
+    return told
+
+
+def regressor_json(found: Regressor) -> str:
+    """The file's text."""
+    content = doc.Regressor(
+        system=found.system.name,
+        description_sha256=meaning(found.system),
+        coordinates=list(found.system.coordinates),
+        standard=len(found.standard),
+        base=[
+            doc.Base(
+                body=one.kept.body,
+                kind=one.kept.kind,
+                others=[doc.Share(other.body, other.kind, str(factor)) for other, factor in one.others],
+                value=str(one.value),
+            )
+            for one in found.base
+        ],
+        without_effect=[doc.Parameter(one.body, one.kind) for one in found.without_effect],
+        other_loads=found.besides,
+    )
+    return written(content)
+
+
+def regressor_latex(found: Regressor) -> str:
+    """``align`` environments with a label; bodies are numbers, in a comment with their names."""
+    numbers = {body.name: k for k, body in enumerate(found.system.bodies, start=1)}
+    lines = [
+        "% Base parameters: tau = Y(q, q', q'') beta; needs amsmath.  J about the connection point, h = m c.",
+        *(f"% {k}: {name}" for name, k in numbers.items()),
+        r"\begin{align}",
+    ]
+    rows = []
+    for k, one in enumerate(found.base, start=1):
+        told = _symbol(one.kept, numbers)
+        for other, factor in one.others:
+            text = factor.latex()
+            if text == "1":
+                told += f" + {_symbol(other, numbers)}"
+            elif text == "-1":
+                told += f" - {_symbol(other, numbers)}"
+            else:
+                told += rf" + \left({text}\right) {_symbol(other, numbers)}"
+        rows.append(rf"  \beta_{{{k}}} &= {told}")
+    return "\n".join([*lines, " \\\\\n".join(rows), r"\end{align}"]) + "\n"
+
+
+def _symbol(one: Standard, numbers: dict[str, int]) -> str:
+    letter, index = one.kind[0], one.kind[1:]
+    return f"{letter}_{{{numbers[one.body]}{',' + index if index else ''}}}"
+
+
+def regressor_module(found: Regressor) -> str:
+    """``regressor.py``: Y and the values of the base parameters, of NumPy alone."""
+    from mbsym.report.code.functions import Functions
+    from mbsym.report.code.model_values import parameters_of
+    from mbsym.report.code.python_module import DIALECT, RESERVED, default, plain
+    from mbsym.report.environment import rendered
+
+    system = found.system
+    taken = RESERVED | {"BASE", "regressor", "base_parameters"}
+    writer = Functions(system, DIALECT, taken, lambda name: name + "_" if name in taken else name, "np.pi")
+    n, rank = len(system.coordinates), len(found.base)
+    entries = [(i, j, column[i]) for j, column in enumerate(found.columns) for i in range(n)]
+    kept = [(i, j, x) for i, j, x in entries if not found.program.vanishes(x)]
+    program, values = _values(found)
+    return rendered(
+        "regressor.py.j2",
+        {},
+        system=system,
+        title=plain(system.name),
+        n=n,
+        rank=rank,
+        base=[(named(one.kept), plain(sum_of(one))) for one in found.base],
+        meanings=[(item.name, plain(item.told)) for item in parameters_of(system, writer) if item.told],
+        defaults=[(item.name, default(item.value)) for item in system.parameters],
+        places=[(i, j) for i, j, _ in kept],
+        Y=writer.function(found.program, [x for _, _, x in kept]),
+        values=writer.function(program, values),
+        besides=found.besides,
+    )
+
+
+def _values(found: Regressor) -> tuple[Program, list[Node]]:
+    program = Program()
+    environment = program_environment(found.system, program)
+    rings = {id(one.value.ring): one.value.ring for one in found.base}
+    carry = {key: Carrier(ring, program, environment) for key, ring in rings.items()}
+    return program, [carry[id(one.value.ring)](one.value.polynomial) for one in found.base]
+
+
+def sentences(found: Regressor) -> Iterator[tuple[str, str]]:
+    """(title, text)."""
+    rank, standard = len(found.base), len(found.standard)
+    kinds = f"{', '.join(KINDS[:2])}, ..., {', '.join(KINDS[6:])}"
+    yield "base", f"{counted(rank, 'parameter')} of {standard} ({kinds} of each body) determine all generalised forces"
+    for k, one in enumerate(found.base, start=1):
+        yield f"{k}", sum_of(one)
+    if found.without_effect:
+        told = ", ".join(map(named, found.without_effect))
+        yield "none", f"{counted(len(found.without_effect), 'parameter')} that no motion tells: {told}"
+    yield (
+        "how",
+        "exact: relations are identities of T and U; that there are no others is the rank, for almost all values",
+    )
+    if found.besides:
+        yield "besides", "tau = Y base leaves out the loads that are no uniform gravity"

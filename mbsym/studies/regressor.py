@@ -1,0 +1,66 @@
+"""``mbsym regressor``: base parameters of an open tree, and the regressor that belongs to them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from mbsym.studies.described import public
+from mbsym.studies.study import Answer, Asked, Refusal, Study, Watch, failed
+
+if TYPE_CHECKING:
+    from mbsym.problems.regressor import Regressor
+
+
+@dataclass(frozen=True)
+class Request:
+    """Find the smallest set of inertial parameters that FILE's motion can tell, and their regressor.
+
+    The generalised forces are tau = Y(q, q', q'') theta + other loads, with ten parameters of each body: mass m, first
+    moment h = m c, tensor J about its connection point.  Said is which sums of them are all that enters (base
+    parameters), which enter not at all, and how they are known: by identities of the exact ring.
+
+    Written are regressor.py (Y as a program of NumPy, and the sums' values), regressor.tex and regressor.json.  Exit
+    codes: 0 done, 1 there is no answer or it was not written, 2 something is wrong.
+
+    \b
+    Example:
+      mbsym regressor systems/spatial-arm.yaml
+    """
+
+
+@public(Request)
+def regressor(asked: Asked, request: Request, watch: Watch) -> Regressor:
+    """Base parameters of an open tree under uniform gravity, and their regressor: ``mbsym regressor``.
+
+        >>> import mbsym
+        >>> found = mbsym.regressor("systems/double-pendulum.yaml")
+        >>> len(found.standard), [(one.kept.kind, one.kept.body) for one in found.base][:2]
+        (20, [('Jzz', 'first'), ('hx', 'first')])
+
+    Raises DescriptionError, ``mbsym.algebra.failures.Failure``.
+    """
+    from mbsym.analysis import Analysis
+    from mbsym.problems.regressor import regressor as found_of
+
+    watch("base parameters")
+    return found_of(Analysis(asked.system.without_speeds).scene)
+
+
+def answer(asked: Asked, request: Request, found: Regressor) -> Answer:
+    from mbsym.report.content import facts
+    from mbsym.report.regressor_files import regressor_json, regressor_latex, regressor_module, sentences
+
+    files: dict[str, str | bytes] = {
+        "regressor.py": regressor_module(found),
+        "regressor.tex": regressor_latex(found),
+        "regressor.json": regressor_json(found),
+    }
+    return Answer(facts(sentences(found)), files)
+
+
+def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+    return failed(error, "no base parameters")
+
+
+STUDY = Study("regressor", Request, regressor.derive, answer, refusal, held=False)

@@ -1,0 +1,127 @@
+"""MJCF against MuJoCo itself: mass matrix, bias forces, frames and constraints at random states.
+
+Needs MuJoCo 3 (the extra ``robots``); without it these tests are skipped.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+
+import mbsym
+from mbsym.analysis import Analysis
+from mbsym.expressions.place import Complaints
+from mbsym.report.code.python_module import render
+from mbsym.source.robots import convert
+
+mujoco = pytest.importorskip("mujoco", reason="needs the extra 'robots'")
+if not hasattr(mujoco, "MjModel"):
+    pytest.skip("needs MuJoCo 3", allow_module_level=True)
+
+CLOSE = 1e-11
+ARM = (Path(__file__).parent / "mjcf" / "arm.xml").read_text(encoding="utf-8")
+
+#: Rotors, joints that are not at zero where they are straight, frames in frames, a mass that is set, a default class.
+EVERYTHING = """<mujoco model="everything">
+<compiler angle="degree" settotalmass="7.5"/><option gravity="0.3 0 -9.81"/>
+<default><joint armature="0.05"/><geom density="700"/></default>
+<worldbody><frame pos="0.1 0.2 0.3" euler="0 40 0">
+ <body name="a" pos="0 0 0.5" euler="10 20 30"><joint name="j1" axis="0 1 0" ref="35" armature="0.4"/>
+  <geom type="box" size="0.05 0.06 0.3" pos="0 0 0.3"/>
+  <frame name="shelf" pos="0 0 0.6" axisangle="1 0 0 60"><geom type="sphere" size="0.1" pos="0.1 0 0"/>
+   <site name="tip" pos="0.2 0 0.1"/>
+   <body name="b" pos="0 0.1 0"><joint name="j2" type="slide" axis="1 2 0.5" ref="0.2" damping="1"/>
+    <joint name="j3" axis="1 1 0" pos="0.02 0.01 0"/>
+    <geom type="capsule" size="0.04 0.2"/></body>
+  </frame></body>
+ </frame>
+ <body name="c" pos="1 0 1"><joint name="ball" type="ball" armature="0.7"/>
+  <geom type="ellipsoid" size="0.1 0.2 0.3"/></body>
+</worldbody></mujoco>"""
+
+#: Two pendulums that are tied at a point and by a relation of their joints.
+TIED = """<mujoco><compiler angle="radian"/><worldbody>
+<body name="a"><joint name="y" axis="0 1 0" ref="0.3"/>
+ <inertial mass="1" pos="0 0 -1" diaginertia="0.1 0.1 0.1"/><site name="p" pos="0.1 0 -0.8"/></body>
+<body name="b" pos="0.5 0 0" euler="0 0.4 0"><joint name="x" axis="0 1 0"/>
+ <inertial mass="2" pos="0 0 -0.7" diaginertia="0.1 0.1 0.1"/>
+ <body name="d" pos="0 0 -1"><joint name="z" type="slide" axis="1 0 0"/><inertial mass="1" pos="0 0 0"
+  diaginertia="0.1 0.1 0.1"/><site name="s" pos="0.05 0 0.1"/></body></body>
+</worldbody><equality>{}</equality></mujoco>"""
+
+
+def ours(text: str) -> tuple[Analysis, Any, tuple[str, ...]]:
+    complaints = Complaints()
+    made = convert(text, complaints, damping=False)
+    assert made is not None, [one.message for one in complaints]
+    analysis = mbsym.loads(made.yaml, problems=())
+    module = ModuleType("model")
+    exec(render(analysis, ()), module.__dict__)  # our own generated module
+    return analysis, module, made.joints
+
+
+def whole(model: Any, data: Any) -> np.ndarray:
+    """M, column by column."""
+    found = np.zeros((model.nv, model.nv))
+    for column, unit in zip(found, np.eye(model.nv), strict=True):
+        mujoco.mj_mulM(model, data, column, unit)
+    return found.T
+
+
+@pytest.mark.parametrize("text", [ARM, EVERYTHING])
+def test_masses_forces_and_frames_are_mujoco_s(text: str) -> None:
+    """M(q), c + g; of the ball only M about its own axes at zero angles, where angular velocity and rates agree."""
+    _, own, joints = ours(text)
+    model = mujoco.MjModel.from_xml_string(text)
+    model.dof_damping[:] = 0
+    data, source = mujoco.MjData(model), np.random.default_rng(2)
+    turning = [name for name in joints if model.joint(name).type[0] != mujoco.mjtJoint.mjJNT_BALL]
+    n = len(turning)
+    for _ in range(3):
+        q, v = source.normal(size=(2, len(own.COORDINATES)))
+        q[n:], v[n:] = 0, 0  # a ball joint comes last here
+        for name, value, rate in zip(turning, q, v, strict=False):
+            data.joint(name).qpos[0], data.joint(name).qvel[0] = value, rate
+        mujoco.mj_forward(model, data)
+        order = [model.joint(name).dofadr[0] for name in turning]
+        mass = own.mass_matrix(q, own.DEFAULTS)
+        theirs = whole(model, data)
+        assert np.abs(mass[:n, :n] - theirs[np.ix_(order, order)]).max() < CLOSE * np.abs(theirs).max()
+        bias = own.coriolis(q, v, own.DEFAULTS) + own.gravity(q, own.DEFAULTS)
+        assert np.abs(bias[:n] - data.qfrc_bias[order]).max() < CLOSE * np.abs(data.qfrc_bias).max()
+        if len(q) > n:
+            last = model.joint(joints[-1]).dofadr[0] + np.array([2, 1, 0])  # yaw, pitch, roll
+            assert np.abs(mass[n:, n:] - theirs[np.ix_(last, last)]).max() < CLOSE * np.abs(theirs).max()
+        for k in range(model.nsite):
+            site = own.frame_pose(model.site(k).name, q, own.DEFAULTS)
+            assert np.abs(site[:3, 3] - data.site_xpos[k]).max() < CLOSE
+
+
+@pytest.mark.parametrize(
+    "tie",
+    [
+        '<joint joint1="y" joint2="z" polycoef="0.1 2 0.3 -0.4"/>',
+        '<connect body1="a" body2="d" anchor="0.1 0 -0.8"/>',
+        '<connect body1="d" anchor="0.1 0 -0.8"/>',
+        '<connect site1="p" site2="s"/>',
+    ],
+)
+def test_ties_are_mujoco_s(tie: str) -> None:
+    """What MuJoCo pulls to zero is what the constraints are, up to signs and rows that are always zero."""
+    text = TIED.format(tie)
+    _, own, joints = ours(text)
+    model = mujoco.MjModel.from_xml_string(text)
+    data, source = mujoco.MjData(model), np.random.default_rng(4)
+    assert joints == ("y", "x", "z")
+    for _ in range(3):
+        q = source.normal(size=3)
+        for name, value in zip(joints, q, strict=True):
+            data.joint(name).qpos[0] = value
+        mujoco.mj_forward(model, data)
+        theirs, found = (np.sort(np.abs(x)) for x in (data.efc_pos[: data.ne], own.constraints(q, own.DEFAULTS)))
+        assert len(theirs) >= 1
+        assert np.linalg.norm(theirs) == pytest.approx(np.linalg.norm(found), rel=CLOSE)
