@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
-from fractions import Fraction
 from functools import partial
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from mbsym.expressions.parser import ascii_safe, parse_expression
 from mbsym.expressions.place import Complaints, Span
@@ -20,8 +19,8 @@ if TYPE_CHECKING:
     from mbsym.model.system import System
     from mbsym.numerics.scenario import Scenario
 
-#: Reads a number for an option: (text, option).
-Read: TypeAlias = Callable[[str, str], "Fraction | float | None"]
+#: Reads a number for an option, exact or not: (text, option); None where that is none.
+Read: TypeAlias = Callable[[str, str], Any]
 
 _DRAW = re.compile(r"\s*(normal|uniform)\s*\((.*)\)\s*", re.DOTALL)
 _TOLERANCE = re.compile(r"(?P<middle>.*?)\s*\+-\s*(?P<size>[^%]+?)\s*(?P<percent>%?)\s*", re.DOTALL)
@@ -73,7 +72,7 @@ def _varied(text: str, option: str, read: Read, system: System | None, options: 
 
 def _about(
     name: str, tolerance: re.Match[str], option: str, read: Read, system: System | None, options: Options
-) -> tuple[Fraction | float, Fraction | float] | None:
+) -> tuple[Any, Any] | None:
     """The ends of ``m = 1 +- 5%``; without a number in front, about the value of the description."""
     size = read(tolerance["size"], option)
     if tolerance["middle"]:

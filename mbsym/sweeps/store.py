@@ -22,7 +22,7 @@ class Folder:
     """The chunks of one sweep in ``folder/chunks``; ``write`` writes a file that is whole or not there."""
 
     def __init__(
-        self, folder: Path, digest: str, columns: tuple[str, ...], write: Callable[[Path, bytes], None]
+        self, folder: Path, digest: str, columns: tuple[str, ...], write: Callable[[Path, bytes], object]
     ) -> None:
         self.folder, self.digest, self.columns, self.write = folder / "chunks", digest[:16], columns, write
 

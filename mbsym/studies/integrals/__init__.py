@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from mbsym.analysis.polynomial import Setting
     from mbsym.model.system import System
     from mbsym.problems.polynomial_integrals import Along, Cases, DarbouxAlong, PolynomialIntegrals
+    from mbsym.report.content import Block
 
 #: For ``--cases``: counted work, worth about so many seconds.
 BUDGET = 60.0
@@ -140,10 +141,10 @@ def _unfit(there: Setting, request: Request) -> Iterator[Unfit]:
 
 
 def answer(asked: Asked, request: Request, found: Found) -> Answer:
-    return Answer(_lines(found, asked.system), code=Exit.OK if found.integrals.complete else Exit.FAILED)
+    return Answer(_lines(found), code=Exit.OK if found.integrals.complete else Exit.FAILED)
 
 
-def _lines(found: Found, system: System) -> Iterator[Line]:
+def _lines(found: Found) -> Iterator[Line | Block]:
     """The integrals, what is known of them as a whole, and what is there besides."""
     from mbsym.report.content import ragged
     from mbsym.report.sections.polynomial_integrals import listed
