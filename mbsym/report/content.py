@@ -498,8 +498,8 @@ def paragraph(*parts: Inline) -> Paragraph:
     return Paragraph(parts)
 
 
-def facts(pairs: Iterable[tuple[str, str]]) -> Iterator[Facts]:
-    """What was found, each with its name; a ``warning`` stands out."""
+def titled(pairs: Iterable[tuple[str, str]]) -> Iterator[Facts]:
+    """What was found, each with its title, in every language where that is a message; a ``warning`` stands out."""
     items = ((Graded(name, "open") if name == "warning" else name, (text,)) for name, text in pairs)
     yield Facts(tuple(Fact(*item) for item in items))
 
