@@ -14,9 +14,7 @@ from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 import click
 
-from mbsym.expressions.message import Message
 from mbsym.report.language import Language
-from mbsym.report.plain_writer import Writer
 from mbsym.studies.request import fields_of
 from mbsym.studies.study import Answer, Asked, Document, Folder, Line, NotFit, Rows, Single, Study, Unfit
 from mbsym_cli.console import (
@@ -25,7 +23,6 @@ from mbsym_cli.console import (
     INTERRUPTED,
     OK,
     OutPath,
-    asked_width,
     complain,
     printable,
     read_description,
@@ -38,13 +35,10 @@ from mbsym_cli.files import deliver, folder_for, obstacle, write_whole
 from mbsym_cli.options import Options
 from mbsym_cli.progress import watching
 from mbsym_cli.requests import option_of, read_fields
+from mbsym_cli.telling import show, show_files
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
-
-FILES_IN = Message("files in")
-#: Columns of tables in a file or pipe of which nothing is said.
-WIDTH = 120
 
 Found = TypeVar("Found")
 
@@ -188,18 +182,15 @@ class _Run:
         if loud:
             seconds = f", {time.perf_counter() - self.started:.2f} s" if self.study.timed else ""
             tell((asked.system.name, "bold"), (f"  {printable(self.file)}{answer.after}{seconds}", "dim"))
-        writer = Writer(Language(asked.system.language), width=(asked_width() or WIDTH) - 2)
         for one in answer.lines if loud or not answer.brief else answer.brief:
             if isinstance(one, Line) and (loud or one.always):
                 tell(*one.parts, whole=one.whole)
             elif isinstance(one, Rows) and loud:
                 show_rows(one)
             elif not isinstance(one, Line | Rows) and (loud or answer.brief):
-                for parts, whole, margin in writer.block(one):
-                    tell("  ", *parts, whole=whole, margin=None if margin is None else margin + 2)
+                show([one], asked.system.language)
         if answer.files and loud:
-            folder = folder_for(self.file, self.out)
-            tell(f"  {self.say(FILES_IN)} ", (printable(folder), "bold"), f": {', '.join(answer.files)}")
+            show_files(folder_for(self.file, self.out), answer.files, asked.system.language)
 
     def _written(self, out: Path, document: Document) -> int:
         """The exit code of a single file."""

@@ -23,9 +23,25 @@ STUDIES = [
     ("map", "triangular-points", "--x mu=0:1/2 --format json"),
     ("groups", "double-pendulum", ""),
     ("extremes", "heavy-top", "--sequences"),
+    ("simulate", "double-pendulum", "--time 1 --vary theta1=uniform(0,1) --members 5 --format csv"),
 ]
 #: What is typed, and names of methods and arithmetics, of files and of what the description declares.
-TYPED = {"lambda", "json", "csv", "svg", "png", "map", "sqrt", "taylor", "extended", "yaml", "log", "theta", "det"}
+TYPED = {
+    "lambda",
+    "json",
+    "csv",
+    "svg",
+    "png",
+    "map",
+    "sqrt",
+    "taylor",
+    "extended",
+    "yaml",
+    "log",
+    "theta",
+    "det",
+    "float64",
+}
 
 
 def said(command: str, name: str, options: str, language: str, folder: Path) -> str:
