@@ -80,7 +80,7 @@ class Options:
                 inside.sort(key=lambda child: (child.stem, SUFFIXES.index(child.suffix)))
                 others += len(named) - len(inside)
             for one in inside:
-                found.setdefault(_identity(one), one)
+                found.setdefault(identity_of(one), one)
         if not found and not self.complaints:
             hint = f"a description has the key 'mbsym', and its name ends in {', '.join(SUFFIXES)}"
             passed = f" ({counted(others, 'other file was', 'other files were')} passed over)" if others else ""
@@ -139,7 +139,7 @@ class Options:
         if len(text) > MAX_LENGTH:
             complaints.error("bad-number", "this number is too long")
         else:
-            value = parse_expression(text, complaints, _place, named=False)
+            value = parse_expression(text, complaints, place_in, named=False)
         if value is not None:
             for node in walk(value):
                 if isinstance(node, Name) and node.name not in CONSTANTS and node.span is not None:
@@ -215,7 +215,7 @@ def _listed(choices: Iterable[str], every: str = "") -> str:
     return f"choose from {', '.join(choices)}" + (f" or {every}" if every else "")
 
 
-def _identity(path: Path) -> str:
+def identity_of(path: Path) -> str:
     """The same for two names of one file; the name itself where links lead nowhere."""
     try:
         return os.path.realpath(path)
@@ -223,5 +223,5 @@ def _identity(path: Path) -> str:
         return str(path)
 
 
-def _place(start: int, end: int) -> Span:
+def place_in(start: int, end: int) -> Span:
     return Span(1, start + 1, max(1, end - start))

@@ -185,7 +185,7 @@ def _show(
     language = Language(analysis.language or analysis.system.language)
     with angles_as(request.angles or "shorter"):
         known = results(analysis, analysis.problems)
-        writer = Writer(language, True, LONGEST, asked_width() or WIDEST, file)
+        writer = Writer(language, True, LONGEST, (asked_width() or WIDEST) - 2, file)  # documents stand further in
         lines = _documents(known, writer, request)
         told = finding(known)
         show_finding(told, analysis.system.name, path, seconds, written, writer, lines, not request.verbose)

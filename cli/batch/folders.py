@@ -10,7 +10,7 @@ from pathlib import Path, PurePosixPath
 
 from mbsym.batch.coordinator import Place
 from mbsym_cli.files import safe_name
-from mbsym_cli.options import SUFFIXES
+from mbsym_cli.options import SUFFIXES, identity_of
 
 #: Folders that hold no descriptions of the user's.
 _APART = {"__pycache__", "node_modules"}
@@ -77,12 +77,12 @@ def _walk(root: Path, out: Path, unreadable: list[tuple[str, str]]) -> Iterable[
     def refused(error: OSError) -> None:
         unreadable.append((_shown(Path(error.filename)), error.strerror or str(error)))
 
-    own = _identity(out)
+    own = identity_of(out)
     for folder, inside, names in os.walk(root, onerror=refused):
         inside[:] = sorted(
             name
             for name in inside
-            if not name.startswith(".") and name not in _APART and _identity(Path(folder, name)) != own
+            if not name.startswith(".") and name not in _APART and identity_of(Path(folder, name)) != own
         )
         for name in names:
             if name.endswith(SUFFIXES):
@@ -96,7 +96,7 @@ def _places(candidates: Iterable[tuple[Path, PurePosixPath]]) -> Iterable[Place]
     taken: set[str] = set()
     found = []
     for file, inside in sorted(candidates, key=_order):
-        identity = _identity(file)
+        identity = identity_of(file)
         if identity in seen:
             continue
         seen.add(identity)
@@ -123,10 +123,3 @@ def _order(candidate: tuple[Path, PurePosixPath]) -> tuple[tuple[str, ...], str,
 def _shown(path: Path) -> str:
     """A path with ``/`` on every system, as CI systems want it."""
     return path.as_posix()
-
-
-def _identity(path: Path) -> str:
-    try:
-        return os.path.realpath(path)
-    except (OSError, ValueError):
-        return str(path)

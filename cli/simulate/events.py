@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 import click
 
 from mbsym.expressions.condition import AxisText, Condition, parse_axes, parse_condition
-from mbsym.expressions.place import Complaints, Span
+from mbsym.expressions.place import Complaints
 from mbsym.source import render_option
 from mbsym_cli.option_groups import group
-from mbsym_cli.options import Options
+from mbsym_cli.options import Options, place_in
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
@@ -65,7 +65,7 @@ def _read(option: str, texts: Sequence[str], system: System, asked: Options) -> 
     found = []
     for text in (" ".join(one.splitlines()) for one in texts):
         complaints = Complaints()
-        found.append(parse_condition(text, known_names(system), complaints, _place))
+        found.append(parse_condition(text, known_names(system), complaints, place_in))
         asked.complaints += [render_option(complaint, text, option) for complaint in complaints.sorted()]
     return tuple(one for one in found if one is not None)
 
@@ -74,10 +74,6 @@ def _axes(text: str | None, system: System, asked: Options) -> tuple[AxisText, .
     from mbsym.numerics.events.surfaces import known_names
 
     complaints = Complaints()
-    found = () if text is None else parse_axes(text, known_names(system), complaints, _place)
+    found = () if text is None else parse_axes(text, known_names(system), complaints, place_in)
     asked.complaints += [render_option(complaint, text or "", "--axes") for complaint in complaints.sorted()]
     return found
-
-
-def _place(start: int, end: int) -> Span:
-    return Span(1, start + 1, max(1, end - start))

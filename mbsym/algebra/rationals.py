@@ -23,6 +23,12 @@ def ball(value: Fraction | int) -> arb:
     return arb(exact(value))
 
 
+def middle(value: arb) -> fmpq:
+    """Of a ball, exactly."""
+    mantissa, exponent = value.mid().man_exp()
+    return fmpq(int(mantissa)) * fmpq(2) ** int(exponent)
+
+
 def rounded(x: float, digits: int) -> fmpq:
     """A number to some significant digits."""
     if x == 0:

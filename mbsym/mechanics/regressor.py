@@ -13,10 +13,19 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Generic
 
-from mbsym.algebra.base import S
-from mbsym.algebra.vectors import Vector, axis_vector
-from mbsym.mechanics.articulation import mass_properties
+from mbsym.algebra.base import Algebra, S
+from mbsym.algebra.vectors import Vector, axis_vector, symmetric_tensor
+from mbsym.mechanics.articulation import (
+    Articulation,
+    Frame,
+    MassProperties,
+    mass_properties,
+    nothing,
+    shifted,
+    turned_back,
+)
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import base_acceleration
 from mbsym.mechanics.newton_euler import Accelerations, Joints
@@ -58,21 +67,117 @@ def values(scene: Scene[S]) -> dict[Standard, S]:
     return {one: scene.algebra.reduce(value) for one, value in found.items()}
 
 
-def energies(scene: Scene[S]) -> Iterator[tuple[Standard, S, S]]:
-    """Each parameter with what one unit of it adds to T, and to U of the uniform fields."""
-    algebra = scene.algebra
-    half, down = algebra.number(Fraction(1, 2)), -base_acceleration(scene)
-    for body in dict.fromkeys(one.body for one in standard_parameters(scene)):
-        motion = scene.motions[body]
-        velocity, spin = motion.velocity_origin, motion.angular_velocity
-        lever, weight = velocity.cross(spin), scene.to_axes(down, body)
-        for kind, (i, j) in zip(KINDS, _PAIRS, strict=False):
-            share = algebra.times(spin[i], spin[j])
-            yield Standard(body, kind), algebra.times(half, share) if i == j else share, algebra.zero
-        for k in range(3):
-            yield Standard(body, KINDS[6 + k]), lever[k], weight[k]
-        height = scene.position(scene.zero(body), INERTIAL).dot(down)
-        yield Standard(body, "m"), algebra.times(half, velocity.dot(velocity)), height
+#: A parameter of an elementary frame: its number in the articulation, and which of KINDS.
+Slot = tuple[int, str]
+
+
+def regrouped(system: Articulation[S]) -> dict[Standard, dict[Slot, S]]:
+    """Each parameter as a combination of parameters of frames that joints can feel, with constant coefficients.
+
+    What a joint does not feel is moved towards the base: of a turn about the axis a the mass, h_a, and Jcc as the
+    tensor with Jcc at (b, b) and (c, c); of a slide the tensor; all of what is fixed.  What reaches the ground has no
+    effect.
+    """
+    algebra, found = system.algebra, dict[Standard, dict[Slot, S]]()
+    for one in standard_parameters(system.scene):
+        shares = found[one] = {}
+        number = system.frame_of[one.body]
+        own = _unit(algebra, one.kind, system.frames[number].name)
+        while number >= 0:
+            frame = system.frames[number]
+            stays, leaves = _split(algebra, frame, own)
+            for kind, x in _parts(stays):
+                x = algebra.reduce(x)
+                if not algebra.vanishes(x):
+                    shares[number, kind] = x
+            own = turned_back(algebra, leaves, frame)
+            if frame.fixed_offset:
+                own = shifted(algebra, own, frame.offset)
+            number = frame.parent
+    return found
+
+
+def _unit(algebra: Algebra[S], kind: str, frame: str) -> MassProperties[S]:
+    none = nothing(algebra, frame)
+    if kind == "m":
+        return MassProperties(algebra.one, none.first_moment, none.tensor)
+    if kind in KINDS[6:9]:
+        return MassProperties(
+            algebra.zero, axis_vector(algebra, KINDS.index(kind) - 5, algebra.one, frame), none.tensor
+        )
+    i, j = _PAIRS[KINDS.index(kind)]
+    rows = [
+        [algebra.one if {k, m} == {i, j} and (k != m or i == j) else algebra.zero for m in range(3)] for k in range(3)
+    ]
+    return MassProperties(algebra.zero, none.first_moment, symmetric_tensor(algebra, rows, frame))
+
+
+def _parts(x: MassProperties[S]) -> Iterator[tuple[str, S]]:
+    yield from zip(KINDS, (x.tensor[i][j] for i, j in _PAIRS), strict=False)
+    yield from zip(KINDS[6:9], x.first_moment, strict=True)
+    yield "m", x.mass
+
+
+def _split(algebra: Algebra[S], frame: Frame[S], own: MassProperties[S]) -> tuple[MassProperties[S], MassProperties[S]]:
+    """What stays on a frame, and what its joint does not feel."""
+    none = nothing(algebra, frame.name)
+    if frame.together or not (frame.fixed_turn or frame.fixed_offset):
+        return own, none
+    if frame.fixed_turn and frame.fixed_offset:
+        return none, own
+    if frame.fixed_turn:
+        stays = MassProperties(own.mass, own.first_moment, none.tensor)
+        return stays, MassProperties(algebra.zero, none.first_moment, own.tensor)
+    assert frame.turn is not None
+    a = frame.turn.axis - 1
+    b, c = (a + 1) % 3, (a + 2) % 3
+    h, rows, round_ = list(own.first_moment), [list(row) for row in own.tensor], own.tensor[c][c]
+    along = axis_vector(algebra, a + 1, h[a], frame.name)
+    h[a] = algebra.zero
+    rows[b][b], rows[c][c] = rows[b][b] - round_, algebra.zero
+    leaving = [[round_ if i == j != a else algebra.zero for j in range(3)] for i in range(3)]
+    stays = MassProperties(
+        algebra.zero, Vector(algebra, (h[0], h[1], h[2]), frame.name), symmetric_tensor(algebra, rows, frame.name)
+    )
+    return stays, MassProperties(own.mass, along, symmetric_tensor(algebra, leaving, frame.name))
+
+
+class Energies(Generic[S]):
+    """What one unit of a frame's parameter adds to T, and to U of the uniform fields; frame after frame."""
+
+    def __init__(self, system: Articulation[S]) -> None:
+        self.system, self.algebra = system, system.algebra
+        zero = system.scene.zero(INERTIAL)
+        self._base = (zero, zero, -base_acceleration(system.scene), self.algebra.zero)
+        self._known: dict[int, tuple[Vector[S], Vector[S], Vector[S], S]] = {}
+
+    def _motion(self, number: int) -> tuple[Vector[S], Vector[S], Vector[S], S]:
+        """(V, w, g) in the axes of a frame, and g.r of its origin."""
+        if number < 0:
+            return self._base
+        if number not in self._known:
+            frame = self.system.frames[number]
+            velocity, spin, down, height = self._motion(frame.parent)
+            carried = velocity + spin.cross(frame.offset) + frame.offset_rate
+            turned = frame.out(spin)
+            if frame.turn is not None:
+                turned = turned + axis_vector(self.algebra, frame.turn.axis, frame.turn.rate, frame.name)
+            height = height + down.dot(frame.offset)
+            self._known[number] = frame.out(carried), turned, frame.out(down), height
+        return self._known[number]
+
+    def of(self, slot: Slot) -> tuple[S, S]:
+        algebra = self.algebra
+        (number, kind), half = slot, algebra.number(Fraction(1, 2))
+        velocity, spin, down, height = self._motion(number)
+        if kind == "m":
+            return algebra.times(half, velocity.dot(velocity)), height
+        if kind in KINDS[6:9]:
+            k = KINDS.index(kind) - 6
+            return velocity.cross(spin)[k], down[k]
+        i, j = _PAIRS[KINDS.index(kind)]
+        share = algebra.times(spin[i], spin[j])
+        return algebra.times(half, share) if i == j else share, algebra.zero
 
 
 def column(scene: Scene[S], found: Accelerations[S], one: Standard) -> tuple[S, ...]:

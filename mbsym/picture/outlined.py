@@ -38,23 +38,25 @@ def outlined(
         edges = []
         for k in range(3):
             other = tuple(-s if i == k else s for i, s in enumerate(nearest))
-            ends = [flat(there(*(s * x / 2 for s, x in zip(signs, size, strict=True)))) for signs in (nearest, other)]
-            edges.append(tuple(ends))
+            first, second = (
+                flat(there(*(s * x / 2 for s, x in zip(signs, size, strict=True)))) for signs in (nearest, other)
+            )
+            edges.append((first, second))
         return hull(map(flat, corners)), tuple(edges)
     if kind in ("sphere", "ellipsoid"):
         half = tuple(size) * 3 if kind == "sphere" else tuple(size)
         return _ellipse(half, middle, rows, look), tuple(_fronts(half, middle, rows, look, kind == "sphere"))
     radius, length = size
-    ends = [there(0.0, 0.0, sign * length / 2) for sign in (1, -1)]
+    tops = [there(0.0, 0.0, sign * length / 2) for sign in (1, -1)]
     if kind == "capsule":
-        balls = [_ellipse((radius,) * 3, end, rows, look) for end in ends]
+        balls = [_ellipse((radius,) * 3, end, rows, look) for end in tops]
         return hull(place for one in balls for place in one), ()
     rims = [
         [
             flat(combined((1.0, radius * cos(a), radius * sin(a)), (end, rows[0], rows[1])))
             for a in (2 * pi * k / PIECES for k in range(PIECES + 1))
         ]
-        for end in ends
+        for end in tops
     ]
     near = 0 if dot(look[2], rows[2]) > 0 else 1
     seen = abs(dot(look[2], rows[2])) > 1e-6

@@ -43,7 +43,9 @@ _ONE: Mapping[str, tuple[str, Callable[[float], float]]] = {
     "abs": ("abs", abs),
     "sign": ("sign", lambda x: x if math.isnan(x) else float((x > 0) - (x < 0))),
 }
-_NUMBERS: Mapping[str, Callable[..., float]] = {name: does for name, (_, does) in (*_TWO.items(), *_ONE.items())}
+_NUMBERS: dict[str, Callable[..., float]] = {}
+_NUMBERS |= {name: does for name, (_, does) in _TWO.items()}
+_NUMBERS |= {name: does for name, (_, does) in _ONE.items()}
 
 #: All operations but tables: who interprets programs must know these.
 OPERATIONS = (*_TWO, *_ONE)

@@ -156,7 +156,7 @@ class _Paper:
         self.state = self._state()
         self.values = found.program.at(self.state)
         self.marks: list[Mark] = []
-        self.letters = Letters()
+        self.letters: Letters[Expression | int] = Letters()
         self.few = len(found.bodies) <= LETTERED
 
     # --- where ---

@@ -7,10 +7,11 @@ forces of other loads.  Columns of Y depend on each other: what a combination c 
 
 if and only if Y c = 0, for T is a form of second degree in q' and Lagrange's equations of L = 0 alone are empty.  So
 the relations between columns are those between functions of the state, with coefficients that are constants of the
-system: found by elimination in the ring, over the field of its parameters, in a part of the monomials; then every one
-is verified in all of them.  Columns are taken from the base to the tips, J before h before m: the first of those that
-depend on each other are kept, as in W. Khalil and E. Dombre, Modeling, Identification and Control of Robots (2002),
-chapter 9.
+system.  What a joint does not feel is first moved towards the base, in the ring (``mechanics.regressor.regrouped``).
+Between what is left relations are found by elimination, over the field of the parameters, in a part of the monomials;
+then every one is verified in all of them.  Columns are taken from the base to the tips, J before h before m: the first
+of those that depend on each other are kept, as in W. Khalil and E. Dombre, Modeling, Identification and Control of
+Robots (2002), chapter 9.
 
 That the kept columns are independent holds for almost all values of parameters that are symbols; exactly for numbers.
 
@@ -23,29 +24,36 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from random import Random
+from typing import Any, TypeVar
+
+from flint import arb, arb_mat, ctx, fmpq
 
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.point import Balls
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.quotients import Quotient
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message
 from mbsym.expressions.tree import names
 from mbsym.formulas.formula import Formula
+from mbsym.mechanics.articulation import Articulation, articulation
 from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.mechanics.given_matrices import refuse_matrices
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.newton_euler import Accelerations
-from mbsym.mechanics.regressor import Standard, column, energies, values
+from mbsym.mechanics.regressor import Energies, Slot, Standard, column, regrouped, values
 from mbsym.mechanics.variables import expressions, program_environment
 from mbsym.model.loads import UniformGravity
-from mbsym.model.system import System
+from mbsym.model.system import System, acceleration_name
 
 #: Of each column so many monomials take part in the elimination at first.
 _FIRST = 4
 
 #: The monomials of moving quantities of one function, each with its constant coefficient; U's have a mark.
 _Column = Mapping[tuple[Any, ...], Polynomial]
+
+Key = TypeVar("Key", Standard, Slot)
 
 
 @dataclass(frozen=True)
@@ -85,20 +93,19 @@ def regressor(scene: Scene[Polynomial]) -> Regressor:
     """
     system, ring = scene.system, scene.ring
     _refuse(system)
-    functions = {one: (ring.reduce(t), ring.reduce(u)) for one, t, u in energies(scene)}
-    split = _Split(ring, system)
-    columns = {one: split(t, u) for one, (t, u) in functions.items()}
-    kept, dependent = _relations(ring, columns)
+    frames = articulation(scene)
+    told = _in_independent(ring, regrouped(frames), *_slots(frames, system))
+    kept, dependent = _relations(ring, told)
     given = values(scene)
     found = []
     for one in kept:
         others = [(other, row[one]) for other, row in dependent.items() if one in row]
-        told = tuple((other, Formula(ring, _polynomial(ring, x))) for other, x in others)
+        added = tuple((other, Formula(ring, _polynomial(ring, x))) for other, x in others)
         value = given[one]
-        for other, factor in told:
+        for other, factor in added:
             value = value + ring.times(factor.polynomial, given[other])
-        found.append(Base(one, told, Formula(ring, ring.reduce(value))))
-    without = tuple(one for one in columns if not columns[one])
+        found.append(Base(one, added, Formula(ring, ring.reduce(value))))
+    without = tuple(one for one in told if not told[one])
     besides = any(not isinstance(load, UniformGravity) for load in system.loads) or any(
         motion.gyrostatic_moment is not None for motion in scene.motions.values()
     )
@@ -106,7 +113,7 @@ def regressor(scene: Scene[Polynomial]) -> Regressor:
     moving = Scene(system, program, program_environment(system, program), ring)
     accelerations = Accelerations(moving)
     nodes = tuple(column(moving, accelerations, one) for one in kept)
-    return Regressor(system, tuple(columns), tuple(found), without, program, nodes, besides)
+    return Regressor(system, tuple(told), tuple(found), without, program, nodes, besides)
 
 
 def _refuse(system: System) -> None:
@@ -170,9 +177,91 @@ class _Split:
         )
 
 
-def _relations(
-    ring: Ring, columns: Mapping[Standard, _Column]
-) -> tuple[list[Standard], dict[Standard, dict[Standard, Quotient]]]:
+def _slots(
+    frames: Articulation[Polynomial], system: System
+) -> tuple[dict[Slot, dict[Slot, Quotient]], tuple[Slot, ...]]:
+    """What parameters of frames do as combinations of what some of them do, and these; {} of one without effect.
+
+    Functions that outgrow the ring's bounds are taken for independent of all others; that this is so, is proved by
+    the rank in balls at random states.
+    """
+    ring = frames.scene.ring
+    functions, split = Energies(frames), _Split(ring, system)
+    columns: dict[Slot, _Column] = {}
+    long: list[Slot] = []
+    for slot in dict.fromkeys(slot for shares in regrouped(frames).values() for slot in shares):
+        try:
+            kinetic, force = functions.of(slot)
+            columns[slot] = split(ring.reduce(kinetic), ring.reduce(force))
+        except NoClosedForm as error:
+            if error.limit is None:
+                raise
+            long.append(slot)
+    ordered = {slot: columns[slot] for slot in sorted(columns)}
+    kept, dependent = _relations(ring, ordered)
+    kept = [*kept, *long]
+    if long:
+        _independent(frames, system, kept)
+    made: dict[Slot, dict[Slot, Quotient]] = {slot: {slot: Quotient.of(ring.one)} for slot in kept}
+    return made | dependent, tuple(kept)
+
+
+def _in_independent(
+    ring: Ring,
+    shares: Mapping[Standard, Mapping[Slot, Polynomial]],
+    slots: Mapping[Slot, Mapping[Slot, Quotient]],
+    kept: Sequence[Slot],
+) -> dict[Standard, _Column]:
+    """Each parameter's effect in those of the slots ``kept``, all times one common denominator."""
+    common = ring.one
+    for row in slots.values():
+        for x in row.values():
+            common = common * (x.bottom / common.gcd(x.bottom))
+    found: dict[Standard, _Column] = {}
+    for one, own in shares.items():
+        total: dict[Slot, Polynomial] = {}
+        for slot, factor in own.items():
+            for other, x in slots[slot].items():
+                total[other] = total.get(other, ring.zero) + factor * x.top * (common / x.bottom)
+        reduced = {slot: ring.reduce(x) for slot, x in total.items()}
+        found[one] = {slot: x for slot, x in reduced.items() if not ring.vanishes(x)}
+    return found
+
+
+def _independent(frames: Articulation[Polynomial], system: System, slots: Sequence[Slot]) -> None:
+    """Proves that no combination of the slots' functions is zero in T and constant in U: a determinant is not zero.
+
+    Its rows are combinations of values at as many random states; parameters have random values, too.
+    """
+    ring, size = frames.scene.ring, len(slots)
+    source = Random(20260711)
+
+    def state(still: Mapping[str, arb]) -> dict[str, arb]:
+        names_ = [*system.coordinates, *system.velocities]
+        found: dict[str, arb] = {name: arb(fmpq(source.randint(-(10**6), 10**6), 10**6)) for name in names_}
+        return {**still, **found, **{acceleration_name(q): arb(0) for q in system.coordinates}}
+
+    with ctx.workprec(512 + 24 * size):
+        constants = {name: arb(fmpq(source.randint(10**5, 10**6), 10**6)) for name in system.parameter_names}
+        constants |= {"pi": arb.pi(), "t": arb(0)} | dict.fromkeys(system.input_names, arb(0))
+        rows: list[list[arb]] = []
+        at_first: list[arb] = []
+        for _ in range(size + 1):
+            values_ = state(constants)
+            functions = Energies(articulation(Scene(system, Balls(values_), values_, ring)))
+            pairs = [functions.of(slot) for slot in slots]
+            at_first = at_first or [u for _, u in pairs]
+            rows.append([t + 3 * (u - v) for (t, u), v in zip(pairs, at_first, strict=True)])
+        matrix = arb_mat(rows[1:])
+        for k in range(size):  # columns of very different lengths cost digits
+            longest = max((abs(matrix[i, k]).mid() for i in range(size)), default=arb(0))
+            for i in range(size):
+                matrix[i, k] = matrix[i, k] / longest if longest > 0 else matrix[i, k]
+        if matrix.det().contains(0):
+            raise NoClosedForm(Message("formulas of T are too long to find the relations between their parts"))
+
+
+def _relations(ring: Ring, columns: Mapping[Key, _Column]) -> tuple[list[Key], dict[Key, dict[Key, Quotient]]]:
     """The columns that do not depend on earlier ones, and the others as combinations of these."""
     rows = list(dict.fromkeys(key for one in columns.values() for key in sorted(one, key=len)[:_FIRST]))
     while True:
@@ -184,15 +273,15 @@ def _relations(
 
 
 def _eliminated(
-    ring: Ring, columns: Mapping[Standard, _Column], rows: Sequence[tuple[Any, ...]]
-) -> tuple[list[Standard], dict[Standard, dict[Standard, Quotient]]]:
+    ring: Ring, columns: Mapping[Key, _Column], rows: Sequence[tuple[Any, ...]]
+) -> tuple[list[Key], dict[Key, dict[Key, Quotient]]]:
     """Gauss and Jordan on some monomials: columns that are independent there are so, others perhaps not."""
     zero = Quotient.of(ring.zero)
     one = Quotient.of(ring.one)
-    kept: list[Standard] = []
-    dependent: dict[Standard, dict[Standard, Quotient]] = {}
+    kept: list[Key] = []
+    dependent: dict[Key, dict[Key, Quotient]] = {}
     #: Pivot: the monomial, the column that is 1 there, and what it is made of.
-    pivots: list[tuple[tuple[Any, ...], dict[tuple[Any, ...], Quotient], dict[Standard, Quotient]]] = []
+    pivots: list[tuple[tuple[Any, ...], dict[tuple[Any, ...], Quotient], dict[Key, Quotient]]] = []
     for name, full in columns.items():
         left = {key: Quotient.of(full[key]) for key in rows if key in full}
         made = {name: one}
@@ -235,9 +324,9 @@ def _normal(ring: Ring, x: Quotient) -> Quotient:
 
 def _unequal(
     ring: Ring,
-    columns: Mapping[Standard, _Column],
-    name: Standard,
-    row: Mapping[Standard, Quotient],
+    columns: Mapping[Key, _Column],
+    name: Key,
+    row: Mapping[Key, Quotient],
     known: Sequence[tuple[Any, ...]],
 ) -> tuple[Any, ...] | None:
     """A monomial in which a column is not this combination of others; None where it is in all of them."""

@@ -48,7 +48,7 @@ def brief(analysis: Analysis, seconds: float) -> Brief:
         ),
         self_check=write.inline(self_check(analysis.checks)),
         worst=worst(analysis.checks),
-        claims=write.inline(_claims([claim_line(result).word for result in analysis.claims])),
+        claims=write.inline(claims_counted([claim_line(result).word for result in analysis.claims])),
         seconds=seconds,
     )
 
@@ -84,6 +84,7 @@ def worst(checks: Sequence[Check]) -> str:
     return next((word for word in (FAILED, SINGULAR, UNDECIDED, NUMERICAL, EXACT) if word in outcomes), "")
 
 
-def _claims(words: Sequence[str]) -> Inline:
+def claims_counted(words: Sequence[str]) -> Inline:
+    """``2 held, 1 refuted``."""
     counts = [Phrase((f"{words.count(word)} ", worded(word))) for word in (HELD, REFUTED, OPEN) if word in words]
     return joined(counts, ", ") if counts else Said("no claims")

@@ -8,9 +8,10 @@ from typing import TypeGuard
 
 from mbsym.algebra.factors import rational_ratio
 from mbsym.algebra.ring import Ring
-from mbsym.expressions.message import Message
+from mbsym.expressions.message import Message, joined
 from mbsym.formulas.formula import Formula
-from mbsym.problems.stability import SubsystemStability
+from mbsym.problems.equilibrium import Equilibrium
+from mbsym.problems.stability import Stability, SubsystemStability
 from mbsym.problems.stability.requirements import PART, REVERSED, Case, Place, Requirement
 from mbsym.problems.stability.word import Word
 from mbsym.report.coefficients import InCoefficients, in_coefficients, names_in
@@ -283,15 +284,26 @@ _HELD = (
 )
 
 
-def provided(conditions: int, inputs: bool = False) -> str:
-    """What the verdicts presume where problem 4 left so many conditions, and where there are inputs."""
+def provided(found: Stability, motion: Equilibrium | None, inputs: bool = False) -> str:
+    """What the verdicts presume: that the motion exists, for which problem 4 has the conditions, and what inputs do.
+
+    Where other angles were judged more may have to hold than in singular ones, which is then told itself.
+    """
+    own, count = () if motion is None else motion.conditions, len(found.presumed)
+    known = [x for x in found.presumed if any(rational_ratio(x.polynomial, y.polynomial) is not None for y in own)]
+    if motion is not None and len(known) < count:
+        wanted = joined((Message("$[[left]] = 0$", left=x) for x in found.presumed), ", ")
+        if inputs:
+            return Message(
+                "while the inputs keep their values on the unperturbed motion, for [[wanted]]", wanted=wanted
+            )
+        return Message("provided that [[wanted]]", wanted=wanted)
+    count = len(own) if own and count else count
     if inputs:
-        return _HELD[min(conditions, 2)]
-    if conditions == 0:
+        return _HELD[min(count, 2)]
+    if count == 0:
         return ""
-    return (
-        "provided the condition of problem 4 holds" if conditions == 1 else "provided the conditions of problem 4 hold"
-    )
+    return "provided the condition of problem 4 holds" if count == 1 else "provided the conditions of problem 4 hold"
 
 
 def factors(part: SubsystemStability) -> list[tuple[list[Formula], int]]:

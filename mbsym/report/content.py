@@ -532,6 +532,11 @@ def equalities(pairs: Iterable[tuple[Math, Math]], key: str) -> Iterator[Display
         yield Display(Relation(left, "=", right), f"{key}:{k}")
 
 
+def compared(formulas: Iterable[Formula], relation: str = "=") -> tuple[Relation, ...]:
+    """Each with 0."""
+    return tuple(Relation(x, relation, 0) for x in formulas)
+
+
 def numbered(symbol: Symbol, values: Iterable[Formula]) -> Iterator[tuple[Symbol, Formula]]:
     """Components, by the symbol with their number as its index."""
     return ((replace(symbol, lower=str(k)), value) for k, value in enumerate(values, start=1))

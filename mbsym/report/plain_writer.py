@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 from mbsym.expressions.message import GAP, Message, Said, pieces, plain_notation
 from mbsym.expressions.safe import UNBROKEN
-from mbsym.expressions.tree import text
+from mbsym.expressions.tree import Expression, Negative, Operation, text
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.python import readable_name
 from mbsym.formulas.straight_line import Dialect, listing
@@ -33,6 +33,8 @@ MOST_DEFINITIONS = 24
 LONGEST = 320
 #: Longer relations may be broken, in letters.
 MOST_UNBROKEN = 40
+#: No column of words in a table is made narrower than that.
+NARROW = 24
 #: What is no longer stands in one line with the sign behind it.
 _SHORT = 16
 
@@ -81,7 +83,8 @@ class Writer:
             yield from self.pieces(value.text)
         elif isinstance(value, Said):
             parts = (
-                plain_notation(x, self._power) if inside else x for inside, x in pieces(self.language.text_of(value))
+                self._unbroken_notation(plain_notation(x, self._power)) if inside else x
+                for inside, x in pieces(self.language.text_of(value))
             )
             for k, text in enumerate(GAP.split("".join(parts))):
                 if k % 2 == 0:
@@ -94,6 +97,10 @@ class Writer:
         else:
             yield self.inline(value), value
 
+    def _unbroken_notation(self, written: str) -> str:
+        """``K > 0`` stands in one line."""
+        return written.replace(" ", UNBROKEN) if self.readable and len(written) <= _SHORT else written
+
     @property
     def _power(self) -> str:
         return "^" if self.readable else "**"
@@ -103,7 +110,7 @@ class Writer:
         """What stands in a line."""
         if not self.readable:
             return text(value)
-        primed = re.sub(r"_(d{1,2})ot\b", lambda m: "'" * len(m[1]), text(value))
+        primed = re.sub(r"_(d{1,2})ot\b", lambda m: "'" * len(m[1]), text(_divided_last(value)))
         return primed.replace("**", "^").replace("*", UNBROKEN)
 
     @inline.register
@@ -350,7 +357,7 @@ class Writer:
         texts = [heads, *([_plain(cell) for cell in row] for row in rows)]
         widths = [max(map(len, cells)) for cells in zip(*texts, strict=True)]
         folded = [k for k, one in enumerate(value.columns) if one.fold]
-        least = {k: max(len(word) for row in texts for word in (row[k].split() or [""])) for k in folded}
+        least = {k: max(min(widths[k], NARROW), *(len(x) for row in texts for x in row[k].split())) for k in folded}
         while folded and sum(widths) + 2 * len(widths) - 2 > self.width:
             k = max(folded, key=lambda k: widths[k] - least[k])
             if widths[k] <= least[k]:
@@ -443,6 +450,20 @@ def _plain(parts: Iterable[tuple[str, str]]) -> str:
 def _first(parts: Iterable[tuple[str, str]]) -> str:
     """The style of a cell."""
     return next((style for _, style in parts if style), "")
+
+
+def _divided_last(value: Expression) -> Expression:
+    """v t/r of (v/r) t: beside a space for a product v/r t would be read as v/(r t)."""
+    match value:
+        case Negative(operand):
+            return Negative(_divided_last(operand))
+        case Operation("*", Negative(Operation("/") as quotient), factor):
+            return Negative(_divided_last(Operation("*", quotient, factor)))
+        case Operation("*", Operation("/", above, below), factor):
+            return Operation("/", _divided_last(Operation("*", above, factor)), below)
+        case Operation(operator, left, right):
+            return Operation(operator, _divided_last(left), _divided_last(right))
+    return value
 
 
 def _style(value: object) -> str:

@@ -94,7 +94,8 @@ class Results:
     def presumed(self) -> tuple[Inline, ...]:
         """What the verdicts of problem 6 presume, after a comma."""
         found = self.found.get(6)
-        text = "" if found is None else provided(found.presumed, bool(self.system.inputs))
+        motion = self.analysis.optional("equilibrium")
+        text = "" if found is None else provided(found, motion, bool(self.system.inputs))
         return (", ", worded(text)) if text else ()
 
     def intermediates(self, number: int) -> Iterator[Block]:

@@ -99,7 +99,9 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         state=_in_order(analysis.system, names),
         numberless=[names[name] for name in _numberless(analysis.system)],
         **first_order(analysis, found.get(5)),
-        provided=provided(found[6].presumed, bool(analysis.system.inputs)) if 6 in found else "",
+        provided=provided(found[6], analysis.optional("equilibrium"), bool(analysis.system.inputs))
+        if 6 in found
+        else "",
         checks=analysis.checks,
     )
 

@@ -66,4 +66,4 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     return no_program(error, asked, request)
 
 
-STUDY = Study("floquet", Request, floquet.derive, answer, refusal)
+STUDY = Study("floquet", Request, floquet.derive, answer, refusal, constraints=True)

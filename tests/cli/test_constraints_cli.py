@@ -50,7 +50,7 @@ def test_a_check_counts_coordinates_and_constraints(tmp_path: Path) -> None:
     assert "degree" not in done.stdout
 
 
-@pytest.mark.parametrize("command", [("equilibria",), ("floquet",)])
+@pytest.mark.parametrize("command", [("equilibria",), ("nonlinear",)])
 def test_what_does_not_know_constraints_refuses_by_name(tmp_path: Path, command: tuple[str, ...]) -> None:
     name, *options = command
     done = mbsym(name, written(tmp_path, TEXT), *options)

@@ -115,7 +115,9 @@ def test_the_same_writers_write_every_map(made: tuple[mbsym.Analysis, Map]) -> N
     kind = stem(found).replace("-", "_")
     data = json.loads(map_json(analysis.system, found))
     assert list(Draft202012Validator(schema(kind)).iter_errors(data)) == []
-    assert f"{stem(found)}.pdf" in map_tex(analysis.system, found, Language("es"))
+    tex = map_tex(analysis.system, found, Language("es"))
+    assert f"{stem(found)}.pdf" in tex
+    assert f"fig:{stem(found)}}}" in tex, "a label of its own"
 
 
 def test_points_of_numbers_of_equilibria(tmp_path: Path) -> None:

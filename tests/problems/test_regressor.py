@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -16,8 +17,9 @@ from conftest import SHIPPED
 import mbsym
 from mbsym.algebra.failures import Failure
 from mbsym.analysis import Analysis
+from mbsym.mechanics.loads.kinds import base_acceleration
 from mbsym.mechanics.newton_euler import Accelerations, residuals
-from mbsym.mechanics.regressor import KINDS, Standard, column, energies
+from mbsym.mechanics.regressor import KINDS, Standard, column
 from mbsym.problems import regressor as problem
 from mbsym.problems.regressor import regressor
 from mbsym.report.regressor_files import sum_of
@@ -71,6 +73,20 @@ def arm(rows: Rows, gravity: str = "[0, 0, -g]", rotors: bool = False) -> Analys
             lines += [f"     inertia: {{tensor: [0, 0, I{k}], accept: true}}}}"]
     lines += ["loads:", f"  - uniform gravity: {{vector: {gravity}}}"]
     return mbsym.loads("\n".join(lines), problems=())
+
+
+def energies(scene: Any) -> Iterator[tuple[Standard, Any, Any]]:
+    """What one unit of each parameter adds to T and to U: m V.V/2 + h.(V x w) + w.J w/2, m g.r + h.g."""
+    ring, down = scene.algebra, scene.zero("0") - base_acceleration(scene)
+    for name, motion in scene.motions.items():
+        velocity, spin = motion.velocity_origin, motion.angular_velocity
+        lever, weight = velocity.cross(spin), scene.to_axes(down, name)
+        for k, kind in enumerate(KINDS[:6]):
+            i, j = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))[k]
+            yield Standard(name, kind), spin[i] * spin[j] / (2 if i == j else 1), ring.zero
+        for k in range(3):
+            yield Standard(name, KINDS[6 + k]), lever[k], weight[k]
+        yield Standard(name, "m"), velocity.dot(velocity) / 2, scene.position(scene.zero(name), "0").dot(down)
 
 
 def test_the_planar_arm_by_hand() -> None:
@@ -168,14 +184,14 @@ def generated(analysis: Analysis) -> tuple[Any, Any]:
 
 
 def test_a_wrong_function_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    """With the wrong sign of what a mass does to T it goes to other sums, and these do not make the forces."""
-    right = problem.energies
+    """A mass that is moved to the base with the wrong sign is in wrong sums, and these do not make the forces."""
+    right = problem.regrouped
 
-    def wrong(scene: Any) -> Any:
-        for one, t, u in right(scene):
-            yield one, -t if one == Standard("L3", "m") else t, u
+    def wrong(frames: Any) -> Any:
+        found = right(frames)
+        return found | {Standard("L3", "m"): {slot: -x for slot, x in found[Standard("L3", "m")].items()}}
 
-    monkeypatch.setattr(problem, "energies", wrong)
+    monkeypatch.setattr(problem, "regrouped", wrong)
     analysis = arm(ELBOW)
     _, own = generated(analysis)
     model, _ = generated(analysis)

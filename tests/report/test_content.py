@@ -217,7 +217,8 @@ def test_facts_links_and_grades(analysis: mbsym.Analysis) -> None:
 def test_a_table_without_a_title_has_headings_and_falls_into_paragraphs(analysis: mbsym.Analysis) -> None:
     columns = tuple(content.TableColumn(Said(x), 3.0) for x in ("place", "claim", "outcome"))
     table = content.Table(None, columns, (((), ("a_b",), (worded("differs"), ": ", "2")), (("p",), ("c",), ("d",))))
-    assert "place & claim & outcome\\\\\\hline\\endhead\n & a\\_b & differs: 2\\\\\n" in in_latex(analysis).block(table)
+    head = "place & claim & outcome\\\\\\midrule\\endhead"
+    assert f"{head}\n & a\\_b & differs: 2\\\\\n" in in_latex(analysis).block(table)
     assert in_latex(analysis, form=Form.APPENDIX).block(table) == "a\\_b: differs: 2.\n\np, c: d.\n"
     assert "<h3>" not in in_html(analysis).block(table)
     assert '<th scope="col">place</th>' in in_html(analysis).block(table)

@@ -18,6 +18,7 @@ from mbsym.analysis import Analysis
 from mbsym.report import conditions
 from mbsym.report.code.parsing import unreadable
 from mbsym.report.latex.appendix import joined
+from mbsym.report.latex.displays import written_out
 from mbsym.report.latex.labels import labels, slug
 from mbsym.report.rendering import rendered
 from mbsym.report.targets import TARGETS
@@ -133,7 +134,9 @@ def test_version_and_description_are_at_the_foot(name: str) -> None:
     digest = meaning(mbsym.load(SHIPPED / name, ()).system)
     text = files_of(name)["report.tex"]
     foot = text.partition(r"\@oddfoot}")[2].partition("\n\\title")[0]
-    assert digest in foot
+    assert digest[:12] in foot
+    assert digest not in foot, "all of it stands at the end"
+    assert digest in text[-400:]
     assert mbsym.__version__ in foot
     other = mbsym.loads((SHIPPED / name).read_text().replace("name: ", "name: Other ", 1), ())
     assert meaning(other.system) not in text
@@ -147,7 +150,9 @@ def test_the_foot_is_printed(tmp_path: Path) -> None:
     complaints(tmp_path, 2)
     pages = subprocess.run(["pdftotext", "main.pdf", "-"], cwd=tmp_path, capture_output=True, text=True).stdout
     first = pages.split("\f")[0]
-    assert meaning(mbsym.load(SHIPPED / "double-pendulum.yaml", ()).system) in first
+    digest = meaning(mbsym.load(SHIPPED / "double-pendulum.yaml", ()).system)
+    assert digest[:12] in first
+    assert digest in pages
     assert "What was found" in first
     assert "Contents" not in first, "of four pages"
     assert all(str(number) in page.split("\n") for number, page in enumerate(pages.split("\f")[:-1], start=1))
@@ -230,3 +235,50 @@ def test_factors_that_labels_speak_of_are_written() -> None:
     assert list(map(str, product)) == [str(x.polynomial) for x in part.characteristic]
     assert r"1 \colon\quad  \penalty0  \lambda^{2} \penalty0 + \omega^{2}" in text
     assert r"\Delta^{(2)} (\lambda)" in text
+
+
+def test_the_finding_refers_to_the_conditions_by_their_numbers() -> None:
+    """Bead on a hoop: the constant of m R^2 s^2 + b s + m R (g - R Omega^2) is positive where g - R Omega^2 is.
+
+    The opposite of it, under which the motion is unstable, is no formula of its own and has no number.  Each formula
+    that has one has a label; a claimed condition is set as mathematics.
+    """
+    text = TARGETS["latex"].render(mbsym.load(SHIPPED / "bead-on-hoop.yaml"), (3, 4, 5, 6))
+    body = text.partition(r"\begin{document}")[2]
+    (label,) = re.findall(r"> 0\$~\\eqref\{([^}]*)\}", body)
+    assert body.count("eqref{") == 1
+    shown = text.partition(f"\\longformula[{label}]")[2].partition("\n")[0]
+    assert shown.replace("\\penalty0 ", "") == r"{a_{0} \colon\quad g - R \Omega^{2} > 0}"
+    assert "\\longformula{" not in body
+    assert r"\frac{R \Omega^{2}}{g} < 1" in body
+    assert "Omega**2" not in body.partition("For example")[0]
+    assert unreadable("report.tex", text.replace(rf"\longformula[{label}]", r"\longformula[other]"))
+
+
+def test_a_label_is_not_cut_inside_a_word() -> None:
+    """Forty letters at most, and the last word whole; a word longer than that is cut."""
+    assert slug("Satellite with a gravitational stabilizer") == "satellite-with-a-gravitational"
+    assert slug("Satellite with a gravitational stabilize") == "satellite-with-a-gravitational-stabilize"
+    assert slug("a" * 50) == "a" * 40
+
+
+def test_formulas_of_an_appendix_are_those_that_a_person_writes() -> None:
+    """Short ones below each other's sign; a longer one broken between its terms; what has a long word as before."""
+    short = r"\longformula[p:a]{a = b\penalty0  + c}" + "\n" + r"\longformula[p:b]{\ddot x =\penalty0 0}"
+    assert written_out(short) == (
+        "\\begin{align}\na &= b + c \\label{p:a} \\\\\n\\ddot x &= 0 \\label{p:b}\n\\end{align}"
+    )
+    assert written_out(r"\longformula[p:a]{a < b}") == "\\begin{equation}\\label{p:a}\na < b\n\\end{equation}"
+    apart = written_out(f"{short[: short.index(chr(10))]}\n\nand\n\n{short[short.index(chr(10)) + 1 :]}")
+    assert apart.count(r"\begin{equation}") == 2
+    terms = [rf"k_{{{n}}} \sin \theta_{{{n}}} \cos \theta_{{{n}}}" for n in range(6)]
+    long = r"\longformula[p:l]{" + "\\penalty0  + ".join(terms) + " = 0}"
+    found = written_out(long)
+    assert found.startswith("\\begin{multline}\\label{p:l}\n")
+    lines = found.split("\n")[1:-1]
+    assert len(lines) > 1
+    assert all(line.startswith("+ ") for line in lines[1:])
+    assert " ".join(line.removesuffix(" \\\\") for line in lines) == " + ".join(terms) + " = 0"
+    # Inside of a fraction no line may end.
+    whole = r"\longformula[p:f]{x = \frac{" + "\\penalty0  + ".join(terms) + r"}{y}}"
+    assert "hangindent" in written_out(whole)

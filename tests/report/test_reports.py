@@ -186,7 +186,7 @@ def test_results_hold_what_was_asked_for():
     assert set(found) == {
         "format", "version", "problems", "terms", "prescribed", "motion", "initial",
         "system", "coordinates", "parameters", "kinematics", "energy", "equations", "equilibrium", "linearisation",
-        "stability", "integrals", "claims", "checks", "unavailable",
+        "stability", "integrals", "claims", "checks", "unavailable", "relations", "assumptions",
     }  # fmt: skip
     assert found["unavailable"] == {}
     assert {claim["outcome"] for claim in found["claims"]} == {"holds exactly"}

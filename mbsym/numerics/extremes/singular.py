@@ -126,8 +126,8 @@ def singularities(given: Scenario, ranges: Mapping[str, Fraction]) -> Singularit
 
 
 #: What a list of singular sets stands on.
-WHOLE = "the factors of det M at these numbers"
-OWN = "the kinetic energy that every joint gives its own body while what carries it rests"
+WHOLE = Message("the factors of det M at these numbers")
+OWN = Message("the kinetic energy that every joint gives its own body while what carries it rests")
 
 
 def _told(

@@ -15,6 +15,9 @@ stable, likewise.  Where the equations follow from a Lagrangian, mu and 1/conj(m
 one whose ball meets the mirror image of no other is on the circle exactly; if all are, the first approximation is
 stable, and the whole equations are a critical case, unless they are linear.  Anything else is undecided.
 
+With constraints the flow takes changes that keep them, C y = 0 with C = [df/dq, 0; dg/dq, J], to such.  y has free
+components, and others y_d = -C_d^-1 C_f y_f; of the monodromy matrix M_ff - M_fd C_d^-1 C_f is left, C being periodic.
+
 Irrational numbers of the description are rounded to 256 bits before all this.
 """
 
@@ -26,21 +29,27 @@ from enum import Enum
 from fractions import Fraction
 from itertools import combinations
 from math import ceil, gcd, lcm
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from flint import acb, acb_mat, arb, arb_mat, arb_series, ctx
+from scipy.linalg import qr
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
+from mbsym.algebra.derivative import jacobian
 from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.program import Node
 from mbsym.algebra.rationals import ball
-from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels.balls import enclosures
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.methods.symplectic import without_potential
 from mbsym.numerics.probes import motion_state
 from mbsym.numerics.specialise import bound, substituted
+
+if TYPE_CHECKING:
+    from mbsym.numerics.constrained import Constraints
 
 #: Order of the series, working precision, and how large |J| h and the fastest frequency times h may be on a step.
 ORDER, BITS, REACH = 24, 192, Fraction(1, 4)
@@ -102,17 +111,63 @@ def judged(dynamics: Dynamics, order: int = ORDER, bits: int = BITS) -> Judged:
     Raises NotPeriodic where there is none, where its coefficients are constant or not seen to be periodic, or where the
     unperturbed motion is none at these values.
     """
-    refuse_constraints(dynamics.system, "multipliers of periodic motions")
     code, rests = jacobian_on_motion(dynamics)
     frequency = common_frequency(code)
     with ctx.workprec(bits):
         period = 2 * arb.pi() / ball(frequency)
         monodromy, steps = enclosed(code, period, len(dynamics.inputs) - 1, order)
         lagrangian = not without_potential(dynamics.system) or (dynamics.size == 1 and _traceless(code))
+        names: tuple[str, ...] = (*dynamics.system.coordinates, *dynamics.system.velocities)
+        if dynamics.constraints is not None:
+            monodromy, names = _allowed(dynamics, dynamics.constraints, monodromy, period, names)
+            lagrangian = lagrangian and dynamics.constraints.holonomic == len(dynamics.constraints)
         multipliers, simple = _multipliers(monodromy, lagrangian)
-    names = (*dynamics.system.coordinates, *dynamics.system.velocities)
     word = _word(multipliers, simple, dynamics.linear)
     return Judged(word, period, frequency, names, monodromy, multipliers, simple, lagrangian, rests, steps)
+
+
+def _allowed(
+    dynamics: Dynamics, constraints: Constraints, monodromy: arb_mat, period: arb, names: tuple[str, ...]
+) -> tuple[arb_mat, tuple[str, ...]]:
+    """What is left of the monodromy matrix on changes that keep the constraints, and the names of these components.
+
+    Raises NotPeriodic where the motion does not satisfy the constraints, or these are not the same after the period.
+    """
+    n, h, r = constraints.size, constraints.holonomic, len(constraints)
+    program, outputs = constraints.code.program, constraints.code.outputs
+    slopes = jacobian(program, outputs[h : h + r], [program.input(name) for name in names])
+    kept = constraints.kept
+    nodes = [x for i in kept if i < h for x in (*outputs[h + r + i * n : h + r + (i + 1) * n], *[program.zero] * n)]
+    nodes += [x for i in kept for x in slopes[i]]
+    code = Code(program, constraints.code.inputs, (*outputs[: h + r], *nodes))
+    state = motion_state(dynamics.scenario)
+    assert state is not None
+
+    def at(time: arb) -> list[arb]:
+        places = [ball(x) + ball(rate) * time for x, rate in zip(state[:n], state[n:], strict=True)]
+        found = enclosures(code, (time, *places, *map(ball, state[n:])), BITS)
+        if not all(abs(x) < ball(AT_REST) for x in found[: h + r]):
+            raise NotPeriodic("the unperturbed motion does not satisfy the constraints at these values")
+        return found[h + r :]
+
+    first, last = at(arb(0)), at(period)
+    if not all(abs(x - y) < ball(AT_REST) for x, y in zip(first, last, strict=True)):
+        raise NotPeriodic("the constraints are not the same after the period of the equations")
+    count = len(first) // (2 * n)
+    rows = [first[k * 2 * n : (k + 1) * 2 * n] for k in range(count)]
+    order = qr(np.array([[float(x.mid()) for x in row] for row in rows]), pivoting=True)[2].tolist()
+    tied = sorted(order[:count])
+    free = [k for k in range(2 * n) if k not in tied]
+
+    def block(lines: Sequence[Sequence[arb]], columns: Sequence[int]) -> arb_mat:
+        return arb_mat(len(lines), len(columns), [line[k] for line in lines for k in columns])
+
+    try:
+        following = block(rows, tied).solve(block(rows, free))
+    except ZeroDivisionError:
+        raise NotPeriodic("the constraints lose their rank on the unperturbed motion") from None
+    lines = [monodromy.tolist()[k] for k in free]
+    return block(lines, free) - block(lines, tied) * following, tuple(names[k] for k in free)
 
 
 def _word(multipliers: Sequence[Multiplier], simple: bool, linear: bool) -> Word:

@@ -15,10 +15,11 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
-from flint import arb, fmpq, fmpq_poly
+from flint import fmpq, fmpq_poly
 
 from mbsym.algebra import rationals
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.rationals import middle
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
@@ -216,7 +217,7 @@ def _between(polynomials: Sequence[fmpq_poly]) -> Iterator[fmpq]:
         if one.degree() > 0:
             whole *= one
     roots: list[Any] = [pair for factor, _ in whole.factor()[1] for pair in factor.numer().complex_roots()]
-    zeros = sorted(_rational(root.real) for root, _ in roots if root.imag == 0)
+    zeros = sorted(middle(root.real) for root, _ in roots if root.imag == 0)
     if not zeros:
         yield fmpq(0)
         return
@@ -225,11 +226,6 @@ def _between(polynomials: Sequence[fmpq_poly]) -> Iterator[fmpq]:
         if low < high:
             yield _simple(low, high)
     yield zeros[-1] + 1
-
-
-def _rational(x: arb) -> fmpq:
-    mid, power = x.mid().man_exp()
-    return fmpq(int(mid)) * fmpq(2) ** int(power)
 
 
 def _simple(low: fmpq, high: fmpq) -> fmpq:

@@ -165,6 +165,8 @@ class ClaimResult:
 
 #: The title of a claim about an entry: ``mass matrix`` and its indices.
 ENTRY = "[[title]] [[[entry]]]"
+#: That of a condition, and what it says.
+CONDITION = "[[title]] [[that]]"
 
 
 def title(claim: Claim, system: System) -> Message:
@@ -183,7 +185,7 @@ def title(claim: Claim, system: System) -> Message:
         said = Message(ENTRY, title=said, entry=entry)
     if claim.right is not None:
         that = f"{text(claim.equals)} {claim.relation} {text(claim.right)}"
-        said = Message("[[title]] [[that]]", title=said, that=that)
+        said = Message(CONDITION, title=said, that=that)
     if claim.at_initial:
         return Message("[[title]] at the initial state", title=said)
     if claim.state:

@@ -59,6 +59,11 @@ def matrix_of(hamiltonian: Truncated) -> list[list[Any]]:
     ]
 
 
+def absolute(x: Any) -> float:
+    """About |x|, to choose the largest by."""
+    return float(abs(x).mid())
+
+
 def diagonalised(
     hamiltonian: Truncated, roots: Sequence[Any], inverse: Callable[[Any], Any], size: Callable[[Any], float]
 ) -> Linear:

@@ -34,7 +34,7 @@ from mbsym.algebra.truncated import Space, Truncated, bracket
 from mbsym.problems.normal_forms.birkhoff import Linear, NormalForm, matrix_of, normal_form
 from mbsym.problems.normal_forms.centre import on_double_pair
 from mbsym.problems.normal_forms.checks import defects
-from mbsym.problems.normal_forms.nilpotent import on_double_root, pairing
+from mbsym.problems.normal_forms.nilpotent import conjugate, on_double_root, pairing
 from mbsym.problems.normal_forms.result import Judged, Outcome, Theorem, Why
 from mbsym.problems.normal_forms.twist import NotVerified, definite
 
@@ -119,8 +119,8 @@ def _of_two_eigenvectors(hamiltonian: Truncated, w: arb) -> Judged:
         return _open(w)
     one, two = columns
     # [v, v*] = -i |d| of both: H_2 = w (I_1 - I_2) with I = |d| xi xi*
-    weights = [abs(pairing(v, _conjugate(v)).imag) for v in (one, two)]
-    conjugates = [tuple(x / pairing(v, _conjugate(v)) for x in _conjugate(v)) for v in (one, two)]
+    weights = [abs(pairing(v, conjugate(v)).imag) for v in (one, two)]
+    conjugates = [tuple(x / pairing(v, conjugate(v)) for x in conjugate(v)) for v in (one, two)]
     linear = Linear((acb(0, w), acb(0, -w)), (tuple(one), tuple(two), *conjugates))
     kept = [(k, k) for k in (-2, -1, 1, 2)]
     form = normal_form(hamiltonian, linear, lambda x: 1 / x, kept, Space(4, 4, acb(0), acb(1)))
@@ -163,20 +163,16 @@ def _eigenvectors(hamiltonian: Truncated, w: arb) -> tuple[list[acb], list[acb]]
     for i in range(m):
         for j in range(i):
             tried += [[x + f * y for x, y in zip(plane[i], plane[j], strict=True)] for f in (acb(1), acb(0, 1))]
-    first = next((v for v in tried if pairing(v, _conjugate(v)).imag < 0), None)
+    first = next((v for v in tried if pairing(v, conjugate(v)).imag < 0), None)
     if first is None:
         return None
-    own = pairing(first, _conjugate(first))
+    own = pairing(first, conjugate(first))
     for v in tried:
-        factor = pairing(v, _conjugate(first)) / own
+        factor = pairing(v, conjugate(first)) / own
         rest = [x - factor * y for x, y in zip(v, first, strict=True)]
-        if pairing(rest, _conjugate(rest)).imag > 0:
-            return first, _conjugate(rest)
+        if pairing(rest, conjugate(rest)).imag > 0:
+            return first, conjugate(rest)
     return None
-
-
-def _conjugate(column: Sequence[acb]) -> list[acb]:
-    return [x.conjugate() for x in column]
 
 
 def _on_the_cone(form: NormalForm, weights: Sequence[arb]) -> list[acb]:

@@ -28,7 +28,7 @@ from flint import acb
 
 from mbsym.algebra.matrices import adjugate_at, adjugate_slope_at
 from mbsym.algebra.truncated import Truncated, bracket, flow
-from mbsym.problems.normal_forms.birkhoff import Linear, NormalForm, diagonalised, matrix_of
+from mbsym.problems.normal_forms.birkhoff import Linear, NormalForm, absolute, diagonalised, matrix_of
 
 #: chi of a product with lambda.(a - b) = 0 that does not stay; None where it stays.
 Solves = Callable[[tuple[int, ...], acb], "tuple[tuple[int, ...], acb] | None"]
@@ -42,15 +42,11 @@ def pairing(a: Sequence[acb], b: Sequence[acb]) -> acb:
     return total
 
 
-def _size(x: acb) -> float:
-    return float(abs(x).mid())
-
-
 def chain(hamiltonian: Truncated, root: acb) -> tuple[list[acb], list[acb]]:
     """v and u with A v = root v, A u = root u + v: a column of adj(s - A) and of its derivative at a double root."""
     matrix, m = matrix_of(hamiltonian), hamiltonian.space.variables
     whole = adjugate_at(matrix, root, acb(0), acb(1))
-    column = max(range(m), key=lambda j: sum(_size(row[j]) for row in whole))
+    column = max(range(m), key=lambda j: sum(absolute(row[j]) for row in whole))
     return [row[column] for row in whole], [row[column] for row in adjugate_slope_at(matrix, root, acb(0), acb(1))]
 
 
@@ -60,21 +56,21 @@ def on_double_root(whole: Truncated, root: acb) -> tuple[NormalForm, acb]:
     Divisions by what may be zero give enclosures that are not finite, of which nothing is said.
     """
     v, u = chain(whole, root)
-    e = pairing(v, _conjugate(u))
-    shift = -pairing(u, _conjugate(u)) / (2 * e)
+    e = pairing(v, conjugate(u))
+    shift = -pairing(u, conjugate(u)) / (2 * e)
     u = [a + shift * b for a, b in zip(u, v, strict=True)]
     columns = (
         tuple(v),
         tuple(u),
-        tuple(x / e for x in _conjugate(u)),
-        tuple(-x / e for x in _conjugate(v)),
+        tuple(x / e for x in conjugate(u)),
+        tuple(-x / e for x in conjugate(v)),
     )
     space = whole.space
     nilpotent = Truncated(space, {(0, 1, 1, 0): acb(1)})
     return _formed(whole, Linear((root, root), columns), nilpotent, lambda key, value: None), e
 
 
-def _conjugate(column: Sequence[acb]) -> list[acb]:
+def conjugate(column: Sequence[acb]) -> list[acb]:
     return [x.conjugate() for x in column]
 
 
@@ -88,7 +84,7 @@ def on_zero_root(whole: Truncated, other: acb | None) -> tuple[NormalForm, acb]:
     u = [x * slope for x in u]
     columns, roots = [tuple(v), tuple(u)], [acb(0)]
     if other is not None:
-        one, two = diagonalised(whole, [other], lambda x: 1 / x, _size).columns
+        one, two = diagonalised(whole, [other], lambda x: 1 / x, absolute).columns
         columns, roots = [tuple(v), one, tuple(u), two], [acb(0), other]
     n = len(roots)
     key = tuple(2 * int(k == n) for k in range(2 * n))

@@ -14,6 +14,7 @@ from flint import acb, acb_poly, arb, ctx
 
 from mbsym.algebra.matrices import faddeev
 from mbsym.algebra.truncated import Truncated
+from mbsym.problems.normal_forms.birkhoff import absolute
 from mbsym.problems.normal_forms.centre import matrix_of, on_pair, on_zero
 from mbsym.problems.normal_forms.dissipative import state_field
 from mbsym.problems.normal_forms.expansion import Expansion
@@ -52,7 +53,7 @@ def judged_enclosed(field: Sequence[Truncated], positions: Sequence[str], zero: 
     if not all(root.real < 0 for k, root in enumerate(roots) if k not in (i, j)):
         return _open(Why.MIXED_ROOTS)
     w = abs(roots[i].imag)
-    reduced = on_pair(field, acb(0, w), lambda x: 1 / x, _size)
+    reduced = on_pair(field, acb(0, w), lambda x: 1 / x, absolute)
     place = next((k for k in range(len(positions)) if reduced.lengths[k].real > 0), None)
     if place is None:
         return _open(Why.COEFFICIENT_OPEN)
@@ -73,7 +74,7 @@ def _zero(field: Sequence[Truncated], others: Sequence[acb]) -> Judged:
         return Judged(Outcome.UNSTABLE, Theorem.FIRST)
     if not all(root.real < 0 for root in roots):
         return _open(Why.ZERO_ROOT)
-    reduced = on_zero(field, lambda x: 1 / x, _size)
+    reduced = on_zero(field, lambda x: 1 / x, absolute)
     if reduced.quadratic.real != 0:
         return Judged(Outcome.UNSTABLE, Theorem.REDUCTION, coefficient=reduced.quadratic.real)
     a = reduced.cubic.real
@@ -86,10 +87,6 @@ def _isolated(coefficients: Sequence[acb]) -> list[acb]:
     """Roots, each alone in its enclosure.  Raises ValueError."""
     found: list[acb] = acb_poly(coefficients).roots(tol=arb(2) ** (-(ctx.prec // 2)))
     return found
-
-
-def _size(x: acb) -> float:
-    return float(abs(x).mid())
 
 
 def _open(why: Why) -> Judged:

@@ -36,7 +36,7 @@ from flint import acb, acb_poly, arb, arb_mat, ctx
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.matrices import faddeev
 from mbsym.algebra.truncated import Space, Truncated
-from mbsym.problems.normal_forms.birkhoff import NormalForm, diagonalised, matrix_of, normal_form
+from mbsym.problems.normal_forms.birkhoff import NormalForm, absolute, diagonalised, matrix_of, normal_form
 from mbsym.problems.normal_forms.checks import defects
 from mbsym.problems.normal_forms.result import Judged, Outcome, Resonance, Theorem, Why
 
@@ -57,10 +57,6 @@ class NotVerified(Failure):
 
 def _inverse(x: acb) -> acb:
     return 1 / x
-
-
-def _size(x: acb) -> float:
-    return float(abs(x).mid())
 
 
 def squares(hamiltonian: Truncated) -> list[acb]:
@@ -119,7 +115,7 @@ def signed(hamiltonian: Truncated, found: Sequence[arb]) -> list[arb]:
     result = []
     n = hamiltonian.space.variables // 2
     for w in found:
-        column = diagonalised(hamiltonian, [acb(0, w)], lambda x: acb(1), _size).columns
+        column = diagonalised(hamiltonian, [acb(0, w)], lambda x: acb(1), absolute).columns
         v, u = column
         d = acb(0)
         for i in range(n):
@@ -191,7 +187,7 @@ def _formed(
     """The verified normal form with lambda_k = i Omega_k."""
     whole = lowered(order)
     space = Space(2 * len(omega), order, acb(0), acb(1))
-    linear = diagonalised(whole, [acb(0, w) for w in omega], _inverse, _size)
+    linear = diagonalised(whole, [acb(0, w) for w in omega], _inverse, absolute)
     kept: set[tuple[int, ...]] = set()
     for one in exact:
         oriented = tuple(k if w > 0 else -k for k, w in zip(one.vector, omega, strict=True))

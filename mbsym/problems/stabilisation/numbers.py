@@ -21,7 +21,7 @@ from typing import Any
 
 from flint import arb, arb_mat, fmpq, fmpq_mat, fmpq_mpoly_ctx, fmpq_poly
 
-from mbsym.algebra.rationals import fraction, rounded
+from mbsym.algebra.rationals import fraction, middle, rounded
 from mbsym.algebra.roots import count_roots
 from mbsym.expressions.message import Message
 from mbsym.problems.stabilisation.result import Feedback
@@ -73,7 +73,7 @@ class AtValues:
         """Rational matrices in the middle of the balls."""
 
         def of(matrix: Numbers) -> Numbers:
-            return fmpq_mat(matrix.nrows(), matrix.ncols(), [_middle(x) for x in matrix.entries()])
+            return fmpq_mat(matrix.nrows(), matrix.ncols(), [middle(x) for x in matrix.entries()])
 
         inputs = None if self.inputs is None else of(self.inputs)
         return AtValues(of(self.mass), of(self.rates), of(self.places), inputs)
@@ -330,12 +330,6 @@ def energy_bundle(there: AtValues) -> tuple[Fraction, ...] | None:
     if not is_positive(total) or total * a + a.transpose() * total != total * 0:
         return None
     return tuple(fraction(w) for w in weights)
-
-
-def _middle(x: Any) -> Any:
-    """The middle of a ball."""
-    mantissa, exponent = x.mid().man_exp()
-    return fmpq(int(mantissa)) * fmpq(2) ** int(exponent)
 
 
 def _float(x: Any) -> float:

@@ -23,7 +23,7 @@ from mbsym.algebra.ring import ParameterRing, Polynomial, Ring
 from mbsym.algebra.signs import MOST_TERMS, Signs
 from mbsym.expressions.message import Message
 from mbsym.expressions.tree import names
-from mbsym.formulas.formula import Formula, Matrix
+from mbsym.formulas.formula import Column, Formula, Matrix
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import dependent, relations
@@ -153,16 +153,16 @@ class SubsystemStability(Shown):
 class Stability(Shown):
     """``verdict`` for the whole system; ``numerical`` the verdict at the description's parameter values, if any.
 
-    ``spectra`` are the eigenvalues there, subsystem by subsystem, where the motion exists.  ``presumed``: so many
-    conditions of problem 4 are presumed by all this.  ``before_higher_order``: the verdict there that was open, where
-    terms of higher order decide it.
+    ``spectra`` are the eigenvalues there, subsystem by subsystem, where the motion exists.  ``presumed``: what has
+    to be zero for the motion to exist; all this presumes it.  ``before_higher_order``: the verdict there that was open,
+    where terms of higher order decide it.
     """
 
     subsystems: tuple[SubsystemStability, ...]
     verdict: Verdict
     numerical: Verdict | None
     spectra: tuple[Spectrum, ...] = ()
-    presumed: int = 0
+    presumed: Column = ()
     before_higher_order: Verdict | None = None
 
     @property
@@ -213,7 +213,7 @@ def stability(
     verdict = combine((part.theory.verdict for part in judged), balance.law.bounded)
     if verdict.word is Word.DEPENDS and len(judged) > 1:
         verdict = _whole(scene.ring, judged, signs, balance.law.bounded)
-    return Stability(judged, verdict, numerical, spectra, len(equilibrium.conditions))
+    return Stability(judged, verdict, numerical, spectra, tuple(equilibrium.conditions))
 
 
 def _whole(ring: Ring, parts: Sequence[SubsystemStability], signs: Signs, one_energy: bool) -> Verdict:

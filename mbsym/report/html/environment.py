@@ -52,14 +52,14 @@ def fragment(template: str, known: Mapping[str, Callable[..., Any]], **values: A
 
 def _policy(style: str, scripts: list[str]) -> str:
     """Nothing from anywhere; the page's own style and scripts, known by their hashes; pictures that stand in it."""
-    run = " ".join(map(_hash, scripts)) or "'none'"
+    run = " ".join(map(hash_of, scripts)) or "'none'"
     return (
-        f"default-src 'none'; style-src {_hash(style)}; script-src {run}; img-src data:; "
+        f"default-src 'none'; style-src {hash_of(style)}; script-src {run}; img-src data:; "
         "base-uri 'none'; form-action 'none'"
     )
 
 
-def _hash(text: str) -> str:
+def hash_of(text: str) -> str:
     return f"'sha256-{b64encode(sha256(text.encode()).digest()).decode()}'"
 
 

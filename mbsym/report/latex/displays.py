@@ -1,14 +1,24 @@
 r"""From what the templates write to what stands in anyone's document: no macro, nothing wider than a narrow column.
 
 The templates write ``\longformula[label]{...}``.  ``report.tex`` defines it; in an appendix and in fragments, which
-define nothing, it is written out here: a paragraph of inline mathematics with a number, which TeX breaks at the places
-that the formula allows, however wide the column is.
+define nothing, it is written out here: as an ``equation``, several short ones after each other as one ``align``, a
+longer one as a ``multline`` whose lines end between terms.  What does not fit so, a long bracket, is a paragraph of
+inline mathematics with a number, which TeX breaks at the places that the formula allows.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+from mbsym.report.latex.formulas import NARROW, width
+
+#: So many equations are one ``align``.
+MOST_ROWS = 6
+
+#: The widest line in a narrow column, in ems: signs and brackets are counted here, which ``width`` does not.
+LINE = NARROW + 2
 
 _OPENING = r"{\par\raggedright\binoppenalty=10000 \relpenalty=10000 \lineskiplimit=1pt \lineskip=2pt"
 _NUMBER = (
@@ -22,16 +32,121 @@ _SHORT_WORDS = 12
 
 def written_out(text: str) -> str:
     r"""The text with every ``\longformula`` as plain LaTeX; its other mathematics may be broken after commas."""
-    pieces = []
+    pieces: list[str] = []
+    short: list[tuple[str, str]] = []
     last = 0
     for start, label, formula, end in long_formulas(text):
-        pieces += [_loosened(text[last:start]), display(formula, label)]
+        between = text[last:start]
+        if between.strip() or "\n\n" in between:
+            pieces += [*_together(short), _loosened(between)]
+            short = []
+        lines = _lines(formula)
+        if lines is not None and len(lines) == 1:
+            if not _fits([*short, (lines[0], label)]):
+                pieces += [*_together(short), "\n"]
+                short = []
+            short.append((lines[0], label))
+        else:
+            pieces += [*_together(short), "\n" if short else "", display(formula, label)]
+            short = []
         last = end
-    return "".join([*pieces, _loosened(text[last:])])
+    return "".join([*pieces, *_together(short), _loosened(text[last:])])
+
+
+def _together(short: Sequence[tuple[str, str]]) -> Iterator[str]:
+    """Equations that follow each other, below each other's first sign of relation."""
+    if len(short) == 1:
+        yield _environment("equation", short[0][0], short[0][1])
+    elif short:
+        rows = []
+        for formula, label in short:
+            left, right = _sides(formula)
+            named = f" \\label{{{label}}}" if label else ""
+            rows.append(f"{left} &{right}{named}")
+        yield "\\begin{align}\n" + " \\\\\n".join(rows) + "\n\\end{align}"
+
+
+def _fits(short: Sequence[tuple[str, str]]) -> bool:
+    """Whether they may be one ``align``, which pages do not break."""
+    sides = [_sides(formula) for formula, _ in short]
+    return len(short) <= MOST_ROWS and sum(max(map(_width, side)) for side in zip(*sides, strict=True)) <= NARROW
+
+
+def _sides(formula: str) -> tuple[str, str]:
+    """What stands in front of the first sign of relation outside of braces, and the rest; all of it where none is."""
+    depth = 0
+    for match in _RELATION.finditer(formula):
+        if match[0] in "{}":
+            depth += 1 if match[0] == "{" else -1
+        elif depth == 0 and not match[0].startswith("\\{") and not match[0].startswith("\\}"):
+            return formula[: match.start()].rstrip(), formula[match.start() :].lstrip()
+    return "", formula
+
+
+_RELATION = re.compile(r"\\[{}]|[{}]|(?<= )(?:[=<>]|\\(?:geq|leq|neq|colon)\b)")
+
+
+def _environment(kind: str, body: str, label: str) -> str:
+    named = f"\\label{{{label}}}" if label else ""
+    return f"\\begin{{{kind}}}{named}\n{body}\n\\end{{{kind}}}"
+
+
+def _lines(formula: str) -> list[str] | None:
+    """The lines that it takes in a narrow column, broken where TeX may break it; None where some would be too wide."""
+    parts, penalties, place, depth = [], [], 0, 0
+    for match in re.finditer(r"\\[{}]|[{}]|\\penalty(\d+) ", formula):
+        if match[0] in "{}":
+            depth += 1 if match[0] == "{" else -1
+        elif depth == 0 and match[1] is not None:
+            parts.append(_plain(formula[place : match.start()]))
+            penalties.append(int(match[1]))
+            place = match.end()
+    parts.append(_plain(formula[place:]))
+    found: list[str] = []
+    for line in _broken(parts, penalties):
+        if found and _width(f"{found[-1]} {line}") <= LINE:
+            found[-1] += f" {line}"
+        else:
+            found.append(line)
+    whole = all(_width(line) <= LINE and line.count("\\left") == line.count("\\right") for line in found)
+    return found if found and whole else None
+
+
+def _broken(parts: Sequence[str], penalties: Sequence[int]) -> list[str]:
+    """What is too wide is broken at the least of its penalties, then piece by piece."""
+    whole = " ".join(filter(None, parts))
+    if not penalties or _width(whole) <= LINE:
+        return [whole] if whole else []
+    least = min(penalties)
+    places = [k + 1 for k, penalty in enumerate(penalties) if penalty == least]
+    found = []
+    for start, end in pairwise([0, *places, len(parts)]):
+        found += _broken(parts[start:end], penalties[start : end - 1])
+    return found
+
+
+def _plain(formula: str) -> str:
+    """Without the places where TeX may break it."""
+    bare = re.sub(r"\\penalty\d+ ?|\\allowbreak ?", " ", formula)
+    return re.sub(r"(?<=[^\\]) {2,}", " ", bare).strip()
+
+
+_FRACTION = re.compile(r"\\frac\{((?:[^{}]|\{[^{}]*\})*)\}\{((?:[^{}]|\{[^{}]*\})*)\}")
+
+
+def _width(formula: str) -> float:
+    """In ems, roughly: letters as for matrices, and signs and brackets besides."""
+    while (fraction := _FRACTION.search(formula)) is not None:  # as wide as the wider of its two parts
+        formula = formula[: fraction.start()] + max(fraction[1], fraction[2], key=width) + formula[fraction.end() :]
+    signs = len(re.findall(r"[=<>]|\\(?:geq|leq|neq|colon|quad)\b", formula))
+    return width(formula) + 1.3 * signs + 0.4 * len(re.findall(r"[(),\[\]]", formula))
 
 
 def display(formula: str, label: str = "") -> str:
-    """One numbered formula as a paragraph."""
+    """One numbered formula in lines that end between its terms, else as a paragraph."""
+    lines = _lines(formula)
+    if lines is not None:
+        return _environment("equation" if len(lines) == 1 else "multline", " \\\\\n".join(lines), label)
     named = f"\\label{{{label}}}" if label else ""
     return (
         f"{_OPENING}\n\\hangindent=2em \\hangafter=1 \\noindent\\refstepcounter{{equation}}{named}%\n"

@@ -10,8 +10,13 @@ _LONGEST = 40
 
 
 def slug(name: str) -> str:
-    """A system's name in labels: small letters, digits and hyphens; a hash where nothing of it can stand there."""
-    plain = re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")[:_LONGEST].rstrip("-")
+    """A system's name in labels: small letters, digits and hyphens; a hash where nothing of it can stand there.
+
+    A long one ends with a whole word.
+    """
+    plain = re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")
+    if len(plain) > _LONGEST:
+        plain = plain[: plain.rfind("-", 0, _LONGEST + 1)] if "-" in plain[: _LONGEST + 1] else plain[:_LONGEST]
     return plain or "system-" + hashlib.sha256(name.encode()).hexdigest()[:8]
 
 

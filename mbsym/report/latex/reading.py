@@ -28,12 +28,12 @@ _WORDS = """textbf textit texttt emph textbackslash textless textgreater textbar
     raggedright raggedbottom centering clearpage ref eqref label cite section subsection subsubsection paragraph
     addcontentsline caption hline endhead multicolumn arraybackslash columnwidth textwidth verb allowbreak penalty
     begingroup endgroup binoppenalty relpenalty linepenalty lineskiplimit lineskip hangindent hangafter parfillskip
-    refstepcounter theequation emergencystretch setlength itemsep par newline"""
+    refstepcounter theequation emergencystretch setlength itemsep par newline toprule midrule bottomrule"""
 _PICTURES = "node draw includegraphics parskip"
 _DOCUMENT = """documentclass usepackage IfFileExists parindent medmuskip setcounter newcommand renewcommand
     makeatletter makeatother parbox title author date maketitle contentsifneeded tableofcontents bibitem refname
     longformula LARGE
-    if ifnum expandafter csname endcsname edef pages newwrite tf immediate openout jobname relax else fi
+    if ifnum expandafter csname endcsname edef pages pageof newwrite tf immediate openout jobname relax else fi
     detokenize thepage ps let thispagestyle pagestyle"""
 
 _COMMANDS = frozenset(f"{_GREEK} {_MATHEMATICS} {_WORDS} {_PICTURES}".split())

@@ -342,11 +342,14 @@ class Writer:
         columns = "".join(f">{{\\raggedright\\arraybackslash}}p{{{x:g}cm}}" for x in widths)
         lines = [f"\\begin{{longtable}}{{@{{}}{columns}@{{}}}}"]
         if title:
-            lines += [f"\\multicolumn{{{len(shown)}}}{{@{{}}l}}{{\\textbf{{{title}}}}}\\\\"]
+            lines += [f"\\multicolumn{{{len(shown)}}}{{@{{}}l}}{{\\textbf{{{title}}}}}\\\\\\midrule"]
         else:
-            lines += [" & ".join(self.inline(value.columns[k].title) for k in shown) + r"\\\hline\endhead"]
+            lines += [
+                "\\toprule",
+                " & ".join(self.inline(value.columns[k].title) for k in shown) + r"\\\midrule\endhead",
+            ]
         lines += [" & ".join(row) + "\\\\" for row in rows]
-        return "\n".join([*lines, "\\end{longtable}"])
+        return "\n".join([*lines, "\\bottomrule", "\\end{longtable}"])
 
     @block.register
     def _(self, value: content.Facts) -> str:

@@ -17,6 +17,7 @@ from mbsym.maps.result import Lack, Map, Of
 from mbsym.maps.slices import Stack
 from mbsym.model.system import System
 from mbsym.report.language import Language
+from mbsym.report.latex.labels import prefix_of
 from mbsym.report.maps.figure import lettered, mark_name, marks, page_names, panels
 from mbsym.report.maps.words import INTERRUPTED, border_words, critical_words, percent, stem
 
@@ -56,7 +57,7 @@ def map_tex(system: System, found: Map, language: Language) -> str:
     if found.interrupted:
         caption += f" {language.say(INTERRUPTED)}."
     command = "map --of equilibria" if found.of is Of.EQUILIBRIA else "map"
-    lines = [line for name in page_names(found) for line in figure_lines(f"{name}.pdf", caption, command)]
+    lines = [line for name in page_names(found) for line in figure_lines(system, name, caption, command)]
     points = isinstance(found.ground, Line) and not isinstance(found, Stack)
     head = "The points of the map:" if points else "The curves of the map:"
     return "\n".join([*lines, *listed(language.say(head), _marks(found, names, language))]) + "\n"
@@ -78,7 +79,7 @@ def _branches(system: System, found: Branches, language: Language) -> str:
         numbers.append(rf"\item ${low} < {name} < {high}$: {counted.count}, {stable}{doubt}")
     told = [(one, words) for one in found.criticals if (words := language.say(critical_words(found, one)))]
     critical = [rf"\item ${name} = {number_tex(one.sample)}$: {escaped(words)}" for one, words in told]
-    lines = figure_lines("branches.pdf", caption, "equilibria --vary")
+    lines = figure_lines(system, "branches", caption, "equilibria --vary")
     lines += listed(language.say("Numbers of equilibria:"), numbers)
     return "\n".join([*lines, *listed(language.say("Critical values:"), critical)]) + "\n"
 
@@ -108,14 +109,14 @@ def caption_of(system: System, head: str, values: Mapping[str, Any], language: L
     return f"{language.say(head)} {escaped(system.name)}" + (f": {plane}" if plane else "") + f"{told}."
 
 
-def figure_lines(file: str, caption: str, command: str) -> list[str]:
-    """A figure with a picture of the same folder."""
+def figure_lines(system: System, name: str, caption: str, command: str) -> list[str]:
+    """A figure with a picture of the same folder, and a label like those of the system's equations."""
     return [
         f"% needs \\usepackage{{graphicx}}; written by mbsym {command}",
         r"\begin{figure}",
         r"\centering",
-        rf"\includegraphics[width=\columnwidth]{{{file}}}",
-        rf"\caption{{{caption}}}",
+        rf"\includegraphics[width=\columnwidth]{{{name}.pdf}}",
+        rf"\caption{{{caption}}}\label{{{prefix_of(system.name)}fig:{name}}}",
         r"\end{figure}",
     ]
 

@@ -28,6 +28,7 @@ from mbsym.model.quantities import (
 )
 from mbsym.model.system import System
 from mbsym.numerics.body_motion import BodyMotions
+from mbsym.report.runs.events_csv import cell
 from mbsym.report.runs.trajectory_csv import parts
 
 _VECTORS = (
@@ -54,7 +55,7 @@ def _table(found: BodyMotions, system: System | None) -> tuple[list[str], list[A
     energies = {"kinetic_energy": kinetic, "force_function": found.force_function}
     table = {"t": found.times, **dict(_columns(found)), **energies, "energy": kinetic - found.force_function}
     units = {} if system is None else _units(system)
-    return [_cell(marked(name, units.get(_quantity(name)))) for name in table], list(table.values())
+    return [cell(marked(name, units.get(_quantity(name)))) for name in table], list(table.values())
 
 
 def _units(system: System) -> dict[str, str | None]:
@@ -84,8 +85,3 @@ def _columns(found: BodyMotions) -> Iterator[tuple[str, Any]]:
             for axis in range(3):
                 yield f"{name}.{what}_{axis + 1}", getattr(found, attribute)[k, axis]
         yield f"{name}.kinetic_energy", found.kinetic[k]
-
-
-def _cell(name: str) -> str:
-    """Quoted where it has to be."""
-    return '"' + name.replace('"', '""') + '"' if any(c in name for c in ',"\r\n') else name

@@ -63,7 +63,7 @@ def _told(results: Results, claims: tuple[ClaimResult, ...]) -> Iterator[Block]:
             TableColumn(Said("claim"), 6.2),
             TableColumn(Said("outcome"), 6.2),
         ),
-        rows=tuple(((lines[0].place,), (titles(lines),), _outcome(lines[0])) for lines in groups),
+        rows=tuple(((lines[0].place,), (titles(lines, typeset=True),), _outcome(lines[0])) for lines in groups),
     )
     number = 0
     for result in claims:
@@ -79,7 +79,7 @@ def _outcome(line: ClaimLine) -> tuple[Inline, ...]:
 def _difference(result: ClaimResult, number: int) -> Iterator[Block]:
     """By what a claim differs."""
     claim = result.claim
-    about = titles([claim_line(result)])
+    about = titles([claim_line(result)], typeset=True)
     title: tuple[Inline, ...] = (Strong(claim.place), ", ", about) if claim.place else (Strong(about),)
     if claim.right is None:
         yield paragraph(*title, ", ", Said("claimed"), ":")

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
 
 from msgspec import UNSET
 
@@ -15,6 +15,7 @@ from mbsym.report.content import (
     Folded,
     Heading,
     Matrices,
+    Name,
     Notation,
     Relation,
     Said,
@@ -64,7 +65,11 @@ def content(results: Results) -> Iterator[Block]:
     else:
         yield from closed
     cyclic, prescribed = ((), ()) if found is None else _absent(found, system)
-    if cyclic:
+    felt = [] if system.constraints else [name for name in cyclic if is_felt(name, results.found)]
+    if felt:
+        text = "$L$ does not contain $[[names]]$, but other forces depend on it."
+        yield from (paragraph(say(text, names=Name(name))) for name in felt)
+    if cyclic := [name for name in cyclic if name not in felt]:
         text = (
             "$L$ does not contain $[[names]]$; whether a momentum is kept depends on the constraints."
             if system.constraints
@@ -98,6 +103,12 @@ def _closed(found: Energy, results: Results) -> Iterator[Block]:
             yield Display(Relation(Symbol("A", str(k)), "=", entry), f"A:linear:{k}")
     yield Display(Relation(Symbol("A", "0"), "=", found.A0), "A:zero")
     yield Display(Relation(Symbol("U"), "=", found.force_function), "U")
+
+
+def is_felt(name: str, found: Mapping[int, Any]) -> bool:
+    """Whether forces that U does not hold depend on a coordinate, as far as problem 3 was derived."""
+    forces = getattr(found.get(3), "generalized_force", ())
+    return any(force.ring.dependencies(force.polynomial, (name,)) for force in forces)
 
 
 def _absent(found: Energy, system: System) -> tuple[list[str], list[str]]:

@@ -29,7 +29,7 @@ _ENERGY = (
     "parts of $T$ that are quadratic in the velocities and free of them; $T$ and $U$ are those of problem 2, $M$ is "
     "that of problem 3."
 )
-_CONSTANT = Notation(r"\mathrm{const}")
+CONSTANT = Notation(r"\mathrm{const}")
 
 
 def content(results: Results) -> Iterator[Block]:
@@ -41,9 +41,9 @@ def content(results: Results) -> Iterator[Block]:
     found: tuple[Integral, ...] = results.found[7]
     for number, item in enumerate(found, start=1):
         yield paragraph(worded(item.name), " (", worded(item.status), "):")
-        written = Display(Relation(item.formula, "=", _CONSTANT), f"integral:{number}")
+        written = Display(Relation(item.formula, "=", CONSTANT), f"integral:{number}")
         if item.kind == ENERGY and 2 in results.told and 3 in results.problems:
-            yield Display(Relation(Notation("T_2 - T_0 - U"), "=", _CONSTANT), f"integral:{number}")
+            yield Display(Relation(Notation("T_2 - T_0 - U"), "=", CONSTANT), f"integral:{number}")
             yield paragraph(
                 Said(_ENERGY),
                 " ",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from mbsym.formulas.formula import Column
 from mbsym.model.system import System
 from mbsym.problems.kinematics import BodyKinematics, Kinematics
 from mbsym.problems.telling import ToldKinematics
@@ -73,12 +74,19 @@ def _rotation(k: int, body: BodyKinematics, results: Results) -> Block:
 
 def _velocities(k: int, body: BodyKinematics | ToldKinematics) -> Iterator[Block]:
     joint, centre = Symbol("V", f"O{k}"), Symbol("V", f"C{k}")
-    yield Components(Symbol("omega", str(k)), body.angular_velocity, f"omega{k}")
-    yield Components(joint, body.velocity_origin, f"VO{k}")
+    if not _named(body.angular_velocity, f"omega{k}"):
+        yield Components(Symbol("omega", str(k)), body.angular_velocity, f"omega{k}")
+    if not _named(body.velocity_origin, f"V{k}"):
+        yield Components(joint, body.velocity_origin, f"VO{k}")
     if body.velocity_mass_centre == body.velocity_origin:
         yield Display(Relation(centre, "=", joint), f"VC{k}")
     else:
         yield Components(centre, body.velocity_mass_centre, f"VC{k}")
+
+
+def _named(value: Column, letter: str) -> bool:
+    """Whether each component is an intermediate quantity with its own name, which says all of it."""
+    return [str(x) for x in value] == [f"{letter}_{i}" for i in (1, 2, 3)]
 
 
 def _terms(body: BodyKinematics | ToldKinematics) -> int:

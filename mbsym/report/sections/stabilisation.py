@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import asdict
 
-from mbsym.expressions.message import worded
 from mbsym.expressions.rates import is_velocity
 from mbsym.model.system import System
 from mbsym.problems.stabilisation import Feedback, Locus, Rank, Stabilisation
@@ -151,7 +150,7 @@ def content(results: Results) -> Iterator[Block]:
     states = found.feedback.states
     if found.feedback.of_part:
         places = named([name for name in states if not is_velocity(name)])
-        yield paragraph(say(OF_PART, why=worded(found.feedback.of_part), names=places))
+        yield paragraph(say(OF_PART, why=found.feedback.of_part, names=places))
     yield paragraph(Said(FEEDBACK if found.feedback.characteristic else ENCLOSED))
     if found.feedback.of_part or 2 * sum(map(is_velocity, states)) < len(states):
         yield paragraph(Said(STATES, {"names": speeds(states)}))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
@@ -14,10 +13,11 @@ from mbsym.formulas.formula import Formula
 from mbsym.model.quantities import rate_unit
 from mbsym.model.system import INERTIAL, System
 from mbsym.problems.equilibrium import Equilibrium
+from mbsym.problems.integrals import Integral
 from mbsym.problems.stability import Stability, SubsystemStability
 from mbsym.problems.stability.spectrum import numbers
 from mbsym.problems.stability.word import Word
-from mbsym.report.brief import ranges, self_check, worst
+from mbsym.report.brief import claims_counted, ranges, self_check, worst
 from mbsym.report.conditions import OPPOSITE, CaseStatement, Statement, cases, label_meanings
 from mbsym.report.content import (
     Block,
@@ -43,8 +43,10 @@ from mbsym.report.content import (
     say,
 )
 from mbsym.report.sections.canonical import TITLES
+from mbsym.report.sections.energy import is_felt
 from mbsym.report.sections.equations import is_short, short_equations
 from mbsym.report.sections.equilibrium import exists_if
+from mbsym.report.sections.integrals import CONSTANT
 from mbsym.report.sections.stability import condition_keys
 from mbsym.report.sections.system import unperturbed_motion
 from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line, titles
@@ -120,8 +122,7 @@ def _facts(results: Results) -> Iterator[Fact]:
         yield Fact(Said("Stability"), tuple(_stability(found[6], results)))
     if 7 in found:
         none = (Said("none in closed form of the kinds that are looked for"),)
-        integrals = tuple(Phrase((worded(one.name), " (", worded(one.status), ")")) for one in found[7])
-        yield Fact(Said("First integrals"), integrals or none)
+        yield Fact(Said("First integrals"), tuple(map(_integral, found[7])) or none)
     if results.analysis.claims:
         yield Fact(Said("Claims"), tuple(_claims(results)))
     yield from _missing(results)
@@ -144,8 +145,9 @@ def _size(system: System, found: dict[int, Any]) -> Fact:
     if tied is not None:
         freedom = len(tied.coordinates) - tied.velocity_rank
         said += ["; ", say("degrees of freedom: [[freedom]]", freedom=str(freedom))]
-    if 2 in found and found[2].cyclic and not system.constraints:
-        said += ["; ", Said("$L$ does not contain"), " ", named(found[2].cyclic)]
+    cyclic = [] if 2 not in found or system.constraints else [x for x in found[2].cyclic if not is_felt(x, found)]
+    if cyclic:
+        said += ["; ", Said("$L$ does not contain"), " ", named(cyclic)]
     said += ["; ", say("bodies and frames: [[count]]", count=str(len(system.bodies)))]
     return Fact(Said("Coordinates"), (Phrase(tuple(said)),))
 
@@ -163,6 +165,12 @@ def _motion(found: Equilibrium, system: System) -> Iterator[Inline]:
     else:
         text = "satisfies the equations of motion under conditions; their number: [[count]]"
         yield Phrase((*told, Link(say(text, count=str(len(found.conditions))), "problem-4")))
+
+
+def _integral(found: Integral) -> Inline:
+    """Its name, how surely it is one, and what it is where that is short."""
+    shown = (": ", Relation(found.formula, "=", CONSTANT)) if is_short(found.formula) else ()
+    return Phrase((worded(found.name), " (", worded(found.status), ")", *shown))
 
 
 def _at_values(found: Stability, system: System) -> Inline:
@@ -306,12 +314,11 @@ def _relation(item: Statement, seen: list[Formula]) -> Relation:
 def _claims(results: Results) -> Iterator[Inline]:
     """How many hold; each that does not."""
     lines = list(map(claim_line, results.analysis.claims))
-    count = Counter(one.word for one in lines)
-    gravest = next(word for word in (REFUTED, OPEN, HELD) if count[word])
-    said = say("all [[count]] hold", count=str(len(lines))) if len(lines) > 1 else Said("it holds")
+    words = [one.word for one in lines]
+    gravest = next(word for word in (REFUTED, OPEN, HELD) if word in words)
+    said: Inline = say("all [[count]] hold", count=str(len(lines))) if len(lines) > 1 else Said("it holds")
     if gravest != HELD:
-        text = "[[held]] hold, [[refuted]] do not, [[open]] undecided"
-        said = say(text, held=str(count[HELD]), refuted=str(count[REFUTED]), open=str(count[OPEN]))
+        said = claims_counted(words)
     yield Link(Graded(said, grade(gravest)), "claims")
     for line in lines:
         if line.word != HELD:

@@ -6,10 +6,8 @@ hashes; what the description says stands in the file as text and as JSON, and ne
 
 from __future__ import annotations
 
-from base64 import b64encode
 from collections.abc import Callable, Mapping
 from fractions import Fraction
-from hashlib import sha256
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -22,7 +20,7 @@ from mbsym.expressions.tree import Expression, substitute
 from mbsym.model.system import System, rational, with_values
 from mbsym.picture.build import picture
 from mbsym.picture.encode import as_json
-from mbsym.report.html.environment import embedded
+from mbsym.report.html.environment import embedded, hash_of
 from mbsym.report.viewer.modes import modes, modes_json
 from mbsym.report.viewer.motion import motion, motion_json
 from mbsym.report.viewer.resting import at_rest, at_rest_json
@@ -77,7 +75,7 @@ def view_page(
     script = _inside((BUNDLES / "view.js").read_text(encoding="utf-8"), "script")
     style = _inside((BUNDLES / "view.css").read_text(encoding="utf-8"), "style")
     policy = (
-        f"default-src 'none'; script-src {_hash(script)}; style-src {_hash(style)}; img-src data: blob:; "
+        f"default-src 'none'; script-src {hash_of(script)}; style-src {hash_of(style)}; img-src data: blob:; "
         "base-uri 'none'; form-action 'none'"
     )
     data = embedded({"picture": picture, "motion": motion, "modes": modes, "equilibria": equilibria})
@@ -102,10 +100,6 @@ def _inside(text: str, element: str) -> str:
     if f"</{element}" in text.lower() or "<!--" in text:
         raise ValueError(f"the bundle holds what ends a <{element}> element")
     return text
-
-
-def _hash(text: str) -> str:
-    return f"'sha256-{b64encode(sha256(text.encode()).digest()).decode()}'"
 
 
 def picture_part(system: System, overrides: Values) -> dict[str, Any]:

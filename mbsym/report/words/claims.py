@@ -11,8 +11,8 @@ from mbsym.expressions.tree import text
 from mbsym.formulas.formula import Formula
 from mbsym.problems.claims import DIFFERS, FACTOR, SCALED, UNDECIDED, ClaimResult, Part
 from mbsym.problems.claims.counterexample import THE_MOTION, Counterexample
-from mbsym.problems.claims.result import ENTRY
-from mbsym.report.content import Inline, Phrase, Said, joined, say
+from mbsym.problems.claims.result import CONDITION, ENTRY
+from mbsym.report.content import Inline, Phrase, Relation, Said, joined, say
 from mbsym.report.plain_writer import Writer
 
 #: Differences longer than this are counted, not printed.
@@ -25,7 +25,7 @@ HELD, REFUTED, OPEN = "held", "refuted", "undecided"
 class ClaimLine:
     """One claim: its place, what it is about, the outcome in a few words, and the lines that say by what it differs.
 
-    ``said`` is the outcome as reports say it.
+    ``said`` is the outcome as reports say it, ``that`` the condition that is claimed, as mathematics.
     """
 
     place: str
@@ -34,6 +34,7 @@ class ClaimLine:
     word: str
     lines: tuple[str, ...] = ()
     said: tuple[Inline, ...] = ()
+    that: Relation | None = None
 
 
 def claim_line(result: ClaimResult) -> ClaimLine:
@@ -41,7 +42,9 @@ def claim_line(result: ClaimResult) -> ClaimLine:
     word = HELD if result.holds else REFUTED if result.refuted else OPEN
     said = tuple(_outcome(result))
     outcome = "".join(map(Writer().inline, said))
-    return ClaimLine(result.claim.place, result.title, outcome, word, tuple(_differences(result)), said)
+    claim = result.claim
+    that = None if claim.right is None else Relation(claim.equals, claim.relation, claim.right)
+    return ClaimLine(claim.place, result.title, outcome, word, tuple(_differences(result)), said, that)
 
 
 def _outcome(result: ClaimResult) -> Iterator[Inline]:
@@ -83,16 +86,25 @@ def together(lines: Iterable[ClaimLine]) -> Iterator[list[ClaimLine]]:
             yield from ([line] for line in found)
 
 
-def titles(lines: Iterable[ClaimLine]) -> Inline:
-    """What several claims are about: ``mass matrix [theta, theta], [theta, delta]; angular velocity of A [1]``."""
+def titles(lines: Iterable[ClaimLine], typeset: bool = False) -> Inline:
+    """What several claims are about: ``mass matrix [theta, theta], [theta, delta]; angular velocity of A [1]``.
+
+    ``typeset``: conditions as mathematics, in names that may be those of abbreviations.
+    """
     stems: dict[str, list[str]] = {}
+    shown: dict[str, Inline] = {}
     for line in lines:
         title = line.title
+        if typeset and line.that is not None and isinstance(title, Message) and title.text == CONDITION:
+            shown[title] = say(CONDITION, title=worded(title.gaps["title"]), that=line.that)
         if isinstance(title, Message) and title.text == ENTRY:
             stems.setdefault(title.gaps["title"], []).append(f"[{title.gaps['entry']}]")
         else:
             stems.setdefault(title, [])
-    told = (Phrase((worded(stem), *((" ", ", ".join(indices)) if indices else ()))) for stem, indices in stems.items())
+    told = (
+        Phrase((shown.get(stem) or worded(stem), *((" ", ", ".join(indices)) if indices else ())))
+        for stem, indices in stems.items()
+    )
     return joined(told, "; ")
 
 

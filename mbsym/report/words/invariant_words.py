@@ -29,6 +29,7 @@ from mbsym.report.content import (
     Polynomial,
     Relation,
     Said,
+    compared,
     joined,
     named,
     say,
@@ -54,7 +55,7 @@ def opening(found: InvariantSets) -> Iterator[Said]:
             "Left out of the families, as functions of these (verified at a random state): [[names]].", names=names
         )
     if found.relations:
-        yield say("Between the variables: [[relations]].", relations=_zeros(found.relations))
+        yield say("Between the variables: [[relations]].", relations=compared(found.relations))
         text = "Of the zero roots of a first approximation so many belong to these relations, and to no motion: [[n]]."
         yield say(text, n=str(len(found.relations)))
     yield say(
@@ -108,7 +109,7 @@ def of_set(one: StationarySet, number: int, ring: Ring | None) -> Iterator[Said]
     """What is known of one set."""
     gaps: Gaps = {
         "number": str(number),
-        "equations": (*_values(one.solved, ring), *_zeros(one.relations)),
+        "equations": (*_values(one.solved, ring), *compared(one.relations)),
         "dimension": str(one.dimension),
         "union": str(one.union),
     }
@@ -120,7 +121,7 @@ def of_set(one: StationarySet, number: int, ring: Ring | None) -> Iterator[Said]
         text = "Set [[number]], an invariant manifold of dimension [[dimension]] for fixed multipliers: [[equations]]."
         yield Said(text, gaps)
     if one.nonzero:
-        yield say("There [[nonzero]].", nonzero=_zeros(one.nonzero, "!="))
+        yield say("There [[nonzero]].", nonzero=compared(one.nonzero, "!="))
     told = _values([(name, x) for name, x in one.multipliers if x is not None], ring)
     if told:
         yield say("Multipliers: [[told]].", told=told)
@@ -145,10 +146,6 @@ _INVARIANT = {
 
 def _values(given: Iterable[tuple[str, Formula]], ring: Ring | None, dots: int = 0) -> tuple[Relation, ...]:
     return tuple(Relation(Name(name, dots, ring), "=", x) for name, x in given)
-
-
-def _zeros(formulas: Iterable[Formula], relation: str = "=") -> tuple[Relation, ...]:
-    return tuple(Relation(x, relation, 0) for x in formulas)
 
 
 def _all(signs: Iterable[Sign]) -> tuple[Relation, ...]:
@@ -217,7 +214,7 @@ def _first(found: FirstApproximation) -> Iterator[Said]:
         yield say("Necessary for stability: [[conditions]].", conditions=_all(plain))
     for one in found.necessary:
         if one.unless:
-            unless = joined(_zeros(one.unless), " ", Said("or"), " ")
+            unless = joined(compared(one.unless), " ", Said("or"), " ")
             gaps: Gaps = {"condition": _all([one]), "unless": unless}
             yield Said("Necessary for stability: [[condition]], unless [[unless]].", gaps)
     if not found.complete:
@@ -254,4 +251,4 @@ _NO_GAP = (
 def closing(found: InvariantSets) -> Iterator[Said]:
     if found.generic:
         text = "All this is for parameters with [[zeros]]; others were not looked at."
-        yield say(text, zeros=_zeros(found.generic, "!="))
+        yield say(text, zeros=compared(found.generic, "!="))

@@ -17,7 +17,7 @@ from mbsym.problems.stabilisation import (
     Region,
     Stabilisation,
 )
-from mbsym.report.content import Gaps, Phrase, Polynomial, Relation, Said, joined, named, say
+from mbsym.report.content import Gaps, Phrase, Polynomial, Relation, Said, compared, joined, named, say
 
 
 def sentences(found: Stabilisation) -> Iterator[Said]:
@@ -48,10 +48,6 @@ def sentences(found: Stabilisation) -> Iterator[Said]:
         yield say("The smallest sets of inputs that suffice for almost all parameters (proved): [[sets]].", sets=sets)
     if found.control and found.feedback is None:
         yield say("No feedback is given: [[why]].", why=worded(found.no_feedback))
-
-
-def _all(formulas: Sequence[Formula], relation: str) -> tuple[Relation, ...]:
-    return tuple(Relation(one, relation, 0) for one in formulas)
 
 
 # --- gyroscopic forces ---
@@ -150,7 +146,7 @@ def _energy(energy: EnergyFunction) -> Iterator[Said]:
     elif energy.definite is False:
         yield Said("It is not positive definite (proved).")
     elif energy.minors:
-        yield say("It is positive definite where [[where]].", where=_all(energy.minors, ">"))
+        yield say("It is positive definite where [[where]].", where=compared(energy.minors, ">"))
     if energy.definite is None and energy.at_values is not None:
         yield Said(
             "At the given values it is positive definite (proved)."
@@ -226,7 +222,7 @@ def _locus(rank: Rank) -> Iterator[Said]:
     if locus.factors:
         yield say("It is otherwise (proved) where [[where]].", where=_any(locus.factors))
     if locus.together:
-        yield say("It is otherwise where all of these vanish at once: [[where]].", where=_all(locus.together, "="))
+        yield say("It is otherwise where all of these vanish at once: [[where]].", where=compared(locus.together, "="))
     yield from _provided(locus)
     if not locus.factors and not locus.together and not locus.provided:
         yield Said("It is so at all parameters that are allowed (proved).")
@@ -234,7 +230,7 @@ def _locus(rank: Rank) -> Iterator[Said]:
 
 def _provided(locus: Locus | None) -> Iterator[Said]:
     if locus is not None and locus.provided:
-        yield say("This is about parameters with [[where]].", where=_all(locus.provided, "!="))
+        yield say("This is about parameters with [[where]].", where=compared(locus.provided, "!="))
 
 
 def _any(formulas: Sequence[Formula]) -> Phrase:

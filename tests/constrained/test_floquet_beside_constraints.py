@@ -1,0 +1,60 @@
+"""Periodic first approximations under constraints: a bob on a rod in Cartesian coordinates, its pivot shaken.
+
+It is the shaken pendulum in its angle, whose multipliers are those of  th'' = (g - h nu^2 cos(nu t)) th/l  about the
+upper position: two on what the rod allows, not four.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import mbsym
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.orbits.floquet import NotPeriodic, Word, judged
+from mbsym.numerics.scenario import scenario
+
+TEXT = """
+mbsym: 1
+name: A bob on a rod whose pivot is shaken
+parameters: {m: positive, l: positive, g: positive, h: positive, nu: positive}
+prescribed: {phi: {rate: nu}}
+bodies:
+  - {name: pivot, attached to: 0, connection point: [0, h*cos(phi), 0], mass: 0}
+  - {name: bob, attached to: pivot, connection point: [x, y, 0], coordinates: [x, y], mass: m}
+loads: [{uniform gravity: {acceleration: g, direction: [0, -1, 0]}}]
+constraints:
+  - distance: {between: [{body: bob, point: [0, 0, 0]}, {body: pivot, point: [0, 0, 0]}], length: l}
+motion: {x: 0, y: PLACE}
+values: {m: 1, l: 1, g: 9.81, h: 0.1, nu: RATE}
+initial: {x: 0, y: 1}
+"""
+
+
+def found(place: str, rate: float):
+    system = mbsym.loads(TEXT.replace("PLACE", place).replace("RATE", str(rate))).system
+    return judged(Dynamics(scenario(system)))
+
+
+@pytest.mark.parametrize(("rate", "word"), [(60, Word.STABLE_FIRST_APPROXIMATION), (30, Word.UNSTABLE)])
+def test_the_upper_position_is_held_by_fast_shaking(rate: int, word: Word) -> None:
+    """Kapitza: held where h nu > sqrt(2 g l) about, 44.3 here."""
+    told = found("l", rate)
+    assert told.word is word
+    assert len(told.multipliers) == 2
+    assert told.names == ("x", "x_dot")
+
+    def rates(t, y):
+        return [y[1], (9.81 - 0.1 * rate**2 * np.cos(rate * t)) * y[0]]
+
+    period = 2 * np.pi / rate
+    columns = [solve_ivp(rates, (0, period), e, rtol=1e-12, atol=1e-13).y[:, -1] for e in ([1, 0], [0, 1])]
+    wanted = sorted(np.linalg.eigvals(np.array(columns).T), key=lambda mu: (mu.real, mu.imag))
+    middles = sorted((complex(one.ball.mid()) for one in told.multipliers), key=lambda mu: (mu.real, mu.imag))
+    assert np.abs(np.array(wanted) - np.array(middles)) == pytest.approx(np.zeros(2), abs=1e-7)
+
+
+def test_a_motion_off_the_rod_is_none() -> None:
+    with pytest.raises(NotPeriodic):
+        found("2*l", 60)
