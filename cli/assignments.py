@@ -102,6 +102,18 @@ def given_numbers(
         return None, assigned.values
 
 
+def sound_numbers(file: Path, system: System, settings: Sequence[str], options: Options) -> Mapping[str, Expression]:
+    """The values of ``--set``; those that contradict each other join the complaints, missing ones do not."""
+    from mbsym.numerics.scenario import Incomplete, Lack, scenario
+
+    assigned = assignments(settings, system, options)
+    try:
+        scenario(system, assigned.values, state=False)
+    except Incomplete as error:
+        contradictions(file, Lack((), error.lack.contradictions), assigned, options)
+    return assigned.values
+
+
 def with_settings(file: Path, system: System, settings: Sequence[str], options: Options) -> System:
     """The description with the values of ``--set``; every complaint joins those of ``options``."""
     from mbsym.model.system import with_values

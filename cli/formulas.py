@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from mbsym.expressions.parser import ascii_safe
+from mbsym.expressions.parser import ascii_safe, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.source import render_option
+from mbsym.studies.request import Formula, Quantity
 from mbsym_cli.options import MAX_LENGTH, Options
 
 if TYPE_CHECKING:
@@ -66,3 +67,29 @@ def _read(text: str, system: System, what: Kind, complaints: Complaints, found: 
     law = read_law(right, system, complaints, place, allowed)
     if law is not None and not complaints.errors:
         found[name] = law
+
+
+def read_quantity(option: str, text: str, kind: Formula, system: System | None, options: Options) -> Quantity:
+    """A word of ``kind``, or a formula; one that cannot be read is left out, and joins the complaints."""
+    from mbsym.expressions.constants import out_of_range
+    from mbsym.expressions.tree import CONSTANTS, Name, walk
+    from mbsym.source.scope import did_you_mean
+
+    if text in kind.words:
+        return Quantity(text)
+    known = () if system is None else kind.names(system, text)
+    formula, complaints = " ".join(text.removeprefix(kind.prefix).split()), Complaints()
+    anything = f"{', '.join(kind.words)}, or a formula"
+    if not formula or len(formula) > MAX_LENGTH:
+        options.complain(option, "bad-formula", f"no {option.lstrip('-')} is said", anything)
+        return Quantity(text)
+    value = parse_expression(formula, complaints, lambda start, end: Span(1, start + 1, max(1, end - start)))
+    for node in walk(value) if value is not None and system is not None else ():
+        if isinstance(node, Name) and node.name not in {*known, *CONSTANTS} and node.span is not None:
+            hint = did_you_mean(node.name, [*known, *kind.words]) or anything
+            complaints.error("unknown-name", f"unknown name {ascii_safe(node.name)}", node.span, hint)
+    if value is not None and (why := out_of_range(value)):
+        span = Span(1, 1, max(1, len(formula)))
+        complaints.error("no-number", f"nothing can be computed with this number: {why}", span)
+    options.complaints += [render_option(one, formula, option) for one in complaints.sorted()]
+    return Quantity(text, None if complaints.errors else value)

@@ -14,13 +14,17 @@ from mbsym.studies.request import (
     ExactSettings,
     Field,
     Flag,
+    Formula,
     Formulas,
     Named,
     Names,
     Number,
     Place,
+    Quantity,
     Range,
+    Ranges,
     Settings,
+    Share,
     Whole,
     Word,
     Words,
@@ -48,7 +52,7 @@ def option_of(field: Field) -> click.Option:
         return click.Option([*names, field.name], is_flag=True, help=told)
     if isinstance(kind, Place):
         return click.Option([*names, field.name], metavar=kind.metavar, type=click.Path(path_type=Path), help=told)
-    repeated = isinstance(kind, (Settings, ExactSettings, Assignments, Named, Names, Formulas))
+    repeated = isinstance(kind, (Settings, ExactSettings, Assignments, Named, Names, Formulas, Ranges))
     usual = None if repeated or field.default in (None, ()) else _text(field.default)
     return click.Option(
         [*names, field.name], metavar=kind.metavar, multiple=repeated, default=usual,
@@ -81,6 +85,8 @@ def read_some(request: type, names: Sequence[str], texts: Mapping[str, Any], opt
 def _text(default: Any) -> str:
     if isinstance(default, tuple):
         return ",".join(default)
+    if isinstance(default, Quantity):
+        return default.text
     return f"{default:g}".replace("e-0", "e-") if isinstance(default, float) else str(default)
 
 
@@ -92,23 +98,30 @@ def read_fields(
     given: Scenario | None = None
     for field in sorted(fields_of(request), key=lambda one: not isinstance(one.kind, Settings)):
         if isinstance(field.kind, Settings):
-            given, values[field.name] = _motion(file, system, texts[field.name], field.kind.state, options)
+            given, values[field.name] = _motion(file, system, texts[field.name], field.kind, texts, options)
         else:
-            values[field.name] = _read(field, texts[field.name], system, options)
+            values[field.name] = _read(field, texts[field.name], system, options, given)
     return values, given
 
 
 def _motion(
-    file: Path, system: System | None, texts: tuple[str, ...], state: bool, options: Options
+    file: Path,
+    system: System | None,
+    settings: tuple[str, ...],
+    kind: Settings,
+    texts: Mapping[str, Any],
+    options: Options,
 ) -> tuple[Scenario | None, Mapping[str, Any]]:
     if system is None:
         return None, {}
-    from mbsym_cli.assignments import given_numbers
+    from mbsym_cli.assignments import given_numbers, sound_numbers
 
-    return given_numbers(file, system, texts, options, state=state)
+    if not kind.whole(texts):
+        return None, sound_numbers(file, system, settings, options)
+    return given_numbers(file, system, settings, options, state=kind.state)
 
 
-def _read(field: Field, given: Any, system: System | None, options: Options) -> Any:
+def _read(field: Field, given: Any, system: System | None, options: Options, motion: Scenario | None = None) -> Any:
     match field.kind:
         case Number() as kind:
             if given is None and field.required:
@@ -140,6 +153,16 @@ def _read(field: Field, given: Any, system: System | None, options: Options) -> 
             return dict.fromkeys(assigned.texts) | dict(assigned.values)
         case Assignments():
             return {}
+        case Ranges() as kind:
+            from mbsym_cli.variations import read_variations
+
+            return read_variations(field.option, given, kind, system, motion, options)
+        case Formula() as kind:
+            from mbsym_cli.formulas import read_quantity
+
+            return read_quantity(field.option, given.strip(), kind, system, options)
+        case Share() if given is not None:
+            return _share(field.option, given, options)
         case Formulas():
             from mbsym_cli.formulas import MOTIONS, read_formula
 
@@ -149,6 +172,16 @@ def _read(field: Field, given: Any, system: System | None, options: Options) -> 
             return dict.fromkeys(text.partition("=")[0].strip() for text in given) | found
         case _:
             return given
+
+
+def _share(option: str, text: str, options: Options) -> tuple[int, int] | None:
+    first, slash, last = (part.strip() for part in text.partition("/"))
+    if not slash:
+        options.complain(option, "bad-number", f"{ascii_safe(text[:40])} is no share", f"for example {option} 3/16")
+        return None
+    of = options.whole(option, last, 1, 10**6)
+    number = options.whole(option, first, 1, of or 10**6)
+    return None if of is None or number is None else (number, of)
 
 
 def _whole_numbers(option: str, kind: Named, texts: tuple[str, ...], options: Options) -> dict[str, int]:

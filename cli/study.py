@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 import click
 
+from mbsym.report.language import Language
 from mbsym.studies.request import fields_of
 from mbsym.studies.study import Answer, Asked, Document, Folder, Line, NotFit, Rows, Single, Study, Unfit
 from mbsym_cli.console import (
@@ -34,6 +35,7 @@ from mbsym_cli.files import deliver, folder_for, obstacle, write_whole
 from mbsym_cli.options import Options
 from mbsym_cli.progress import watching
 from mbsym_cli.requests import option_of, read_fields
+from mbsym_cli.telling import show, show_files
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
@@ -84,27 +86,31 @@ class _Run:
         self.options = Options()
         self.writes = False
         self.started = time.perf_counter()
+        self.say = Language().say
 
     def code(self) -> int:
         study, file = self.study, self.file
         system = self._described()
+        self.say = Language("" if system is None else system.language).say
         values, given = read_fields(file, system, study.request, self.texts, self.options)
         request = study.request(**values)
         typed = {name for name, text in self.texts.items() if text not in (None, (), False)}
         self.writes = isinstance(study.out, Folder) and study.writes(typed)
         self._complain(request, system, typed)
-        code = prevented(file, folder_for(file, self.out) if self.writes else None, system is not None, self.options)
+        kept = self.writes or (isinstance(study.out, Single) and study.out.usual and self.out is None)
+        code = prevented(file, folder_for(file, self.out) if kept else None, system is not None, self.options)
         if code or system is None:
             return code or BAD_INPUT
-        return self._answered(Asked(system, given, printable(file)), request)
+        asked = Asked(system, given, printable(file), folder_for(file, self.out), write_whole)
+        return self._answered(asked, request)
 
     def _described(self) -> System | None:
         """The system, None after complaints; inputs are held, which is said, where the study does so."""
-        study = self.study
+        study, bodies = self.study, self.study.bodies(self.texts)
+        constraints, matrices = study.constraints and not bodies, study.matrices and not bodies
         if study.held:
-            return read_held(self.file, study.name, study.constraints, not study.matrices)
-        unknown = "" if study.constraints else study.name
-        return read_description(self.file, unknown, "" if study.matrices else study.name)
+            return read_held(self.file, study.name, constraints, not matrices)
+        return read_description(self.file, "" if constraints else study.name, "" if matrices else study.name)
 
     def _complain(self, request: Any, system: System | None, typed: Collection[str]) -> None:
         """About what does not go together."""
@@ -123,10 +129,11 @@ class _Run:
         self.options.sort(order)
 
     def _unfit(self, one: Unfit) -> None:
+        message, hint = self.say(one.message), None if one.hint is None else self.say(one.hint)
         if one.name:
-            self.options.complain_whole(one.option, self._text(one), one.code, one.message, one.hint)
+            self.options.complain_whole(one.option, self._text(one), one.code, message, hint)
         else:
-            self.options.complain(one.option or str(self.file), one.code, one.message, one.hint)
+            self.options.complain(one.option or str(self.file), one.code, message, hint)
 
     def _text(self, one: Unfit) -> str:
         """What was typed for that name."""
@@ -156,43 +163,51 @@ class _Run:
             if refusal is None:
                 raise
             for text in (refusal.text, *refusal.more):
-                complain(file, text)
+                complain(file, self.say(text))
             return refusal.code
         if self.as_json and study.json is not None:
             click.echo(study.json(asked, request, found), nl=False)
         else:
             self._tell(asked, answer)
         for text in answer.complaints:
-            complain(file, text)
-        if answer.code or self.out is None or study.document is None:
+            complain(file, self.say(text))
+        usual = study.out.usual if isinstance(study.out, Single) else ""
+        place = self.out or (folder_for(file, None) / usual if usual else None)
+        if answer.code or place is None or study.document is None:
             return answer.code
-        return self._written(self.out, study.document(asked, request, found))
+        return self._written(place, study.document(asked, request, found))
 
     def _tell(self, asked: Asked, answer: Answer) -> None:
         loud = not self.quiet
         if loud:
             seconds = f", {time.perf_counter() - self.started:.2f} s" if self.study.timed else ""
             tell((asked.system.name, "bold"), (f"  {printable(self.file)}{answer.after}{seconds}", "dim"))
-        for one in answer.lines:
+        for one in answer.lines if loud or not answer.brief else answer.brief:
             if isinstance(one, Line) and (loud or one.always):
                 tell(*one.parts, whole=one.whole)
             elif isinstance(one, Rows) and loud:
                 show_rows(one)
+            elif not isinstance(one, Line | Rows) and (loud or answer.brief):
+                show([one], asked.system.language)
         if answer.files and loud:
-            folder = folder_for(self.file, self.out)
-            tell("  files in ", (printable(folder), "bold"), f": {', '.join(answer.files)}")
+            show_files(folder_for(self.file, self.out), answer.files, asked.system.language)
 
     def _written(self, out: Path, document: Document) -> int:
         """The exit code of a single file."""
         for text in document.complaints:
-            complain(self.file, text)
+            complain(self.file, self.say(text))
         if document.text is None:
             return FAILED
         try:
-            write_whole(out, document.text)
+            if self.out is None:
+                deliver(out.parent, {out.name: document.text}, self.study.name)
+            else:
+                write_whole(out, document.text)
         except OSError as error:
             complain(out, f"cannot be written: {error.strerror or error}")
             return FAILED
+        if document.told and not self.quiet:
+            click.echo(f"{printable(out)}: {self.say(document.told)}")
         return OK
 
 

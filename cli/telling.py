@@ -1,20 +1,37 @@
-"""What a command has found, in lines with titles, and where the files are."""
+"""What a command has found, in the language of the description, and where the files are."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
 
-from mbsym_cli.console import console, printable
+from mbsym.expressions.message import Message
+from mbsym.model.system import System
+from mbsym.report.content import Block, titled
+from mbsym.report.language import Language
+from mbsym.report.plain_writer import Writer
+from mbsym_cli.console import asked_width, printable, tell
+
+#: Columns of tables in a file or pipe of which nothing is said.
+WIDTH = 120
 
 
-def told(file: Path, title: str, lines: Iterable[tuple[str, str]], folder: Path, names: Iterable[str]) -> None:
-    """Prints it; a line whose title is ``warning`` stands out."""
-    from rich.text import Text
+def show(blocks: Iterable[Block], language: str) -> None:
+    """Prints them beneath the name of a system."""
+    writer = Writer(Language(language), width=(asked_width() or WIDTH) - 2)
+    for parts, whole, margin in writer.document(blocks):
+        tell("  ", *parts, whole=whole, margin=None if margin is None else margin + 2)
 
-    out = console()
-    out.print(Text.assemble((title, "bold"), (f"  {printable(file)}", "dim")))
-    for name, text in lines:
-        style = "yellow" if name == "warning" else "bold cyan"
-        out.print(Text.assemble("  ", (f"{name:<9} ", style), text))
-    out.print(Text.assemble("  files in ", (printable(folder), "bold"), f": {', '.join(names)}"))
+
+def show_files(folder: Path, names: Iterable[str], language: str) -> None:
+    tell(f"  {Language(language).say(Message('files in'))} ", (printable(folder), "bold"), f": {', '.join(names)}")
+
+
+def told(
+    file: Path, system: System, lines: Iterable[tuple[str, str]], folder: Path, names: Iterable[str], after: str = ""
+) -> None:
+    """Prints lines with titles beneath the name of the system, ``after`` which stands what they are about."""
+    about = f": {Language(system.language).say(after)}" if after else ""
+    tell((f"{system.name}{about}", "bold"), (f"  {printable(file)}", "dim"))
+    show(titled(lines), system.language)
+    show_files(folder, names, system.language)

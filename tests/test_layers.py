@@ -35,9 +35,9 @@ BELOW = {
     "report": "expressions algebra model source mechanics formulas problems analysis numerics simulation maps sweeps"
     " picture",
     "studies": "expressions algebra model source mechanics formulas problems analysis maps numerics simulation sweeps"
-    " report",
+    " report batch picture",
     "editing": "expressions algebra model source formulas analysis report",
-    "batch": "expressions algebra model source formulas problems analysis report sweeps __init__",
+    "batch": "expressions algebra model source formulas problems analysis report sweeps",
     "diff": "expressions algebra formulas report",
     "serving": "expressions algebra model source formulas problems analysis maps numerics simulation report editing"
     " picture __init__",

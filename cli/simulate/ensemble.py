@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mbsym.expressions.message import Message
 from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, complain, printable, status
 from mbsym_cli.files import deliver
 from mbsym_cli.options import Options
@@ -66,7 +67,7 @@ def spread(
     if found is None:
         return FAILED
     if not wanted.quiet:
-        told(file, given.system.name, sentences(found), folder, texts)
+        told(file, given.system, sentences(found), folder, texts)
     if found.interrupted:
         complain(file, f"interrupted; kept up to t = {found.times[-1]:.9g}")
         return INTERRUPTED
@@ -98,7 +99,7 @@ def answers(
     if found is None:
         return FAILED
     if not wanted.quiet:
-        told(file, f"{given.system.name}: derivatives", sentences(found), folder, ["sensitivity.csv"])
+        told(file, given.system, sentences(found), folder, ["sensitivity.csv"], Message("derivatives"))
     if found.ended is not None:
         complain(file, f"the derivatives end early: {found.ended}")
         return BROKEN_DOWN

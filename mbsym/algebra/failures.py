@@ -160,7 +160,8 @@ class NoValue(Failure, KeyError):
 
 def message_of(error: Exception) -> Message:
     """What an exception says, ours or the number library's."""
-    return error.reason if isinstance(error, Failure) else worded(str(error))
+    said = error.args[0] if error.args else ""
+    return error.reason if isinstance(error, Failure) else said if isinstance(said, Message) else worded(str(error))
 
 
 #: A formula cannot be had, or is not defined there, in our words or in the number library's.

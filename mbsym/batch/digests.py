@@ -14,7 +14,7 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
-import mbsym
+from mbsym import __version__
 
 #: Libraries that formulas come from, as their distributions are called.
 _LIBRARIES = ("python-flint", "sympy")
@@ -67,7 +67,7 @@ def _pieces(tree: object) -> Iterator[str]:
 
 def derivation() -> str:
     """The digest of everything that derives and writes: whoever changes a line of it gets new results."""
-    found = hashlib.sha256(mbsym.__version__.encode())
+    found = hashlib.sha256(__version__.encode())
     for name in _LIBRARIES:
         found.update(f"\0{name} {_version(name)}".encode())
     for name, path in _sources():
@@ -82,7 +82,7 @@ def _sources() -> Iterator[tuple[str, Path]]:
 
     templates = find_spec("mbsym_templates")
     places = [] if templates is None else list(templates.submodule_search_locations or ())
-    for where, root in (("mbsym", Path(mbsym.__file__).parent), *(("templates", Path(place)) for place in places)):
+    for where, root in (("mbsym", Path(__file__).parents[1]), *(("templates", Path(place)) for place in places)):
         for folder, inside, names in os.walk(root):
             inside[:] = sorted(name for name in inside if name != "__pycache__")
             for name in sorted(names):

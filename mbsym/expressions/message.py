@@ -43,6 +43,25 @@ class Message(str, Said):
         return partial(type(self), self.text, **gaps), ()
 
 
+class Counted(Message):
+    """A number of things: ``Counted(3, "region")`` is "3 regions"; ``many`` where the plural is another than with an s.
+
+    Other languages have as many forms as their catalogues say.
+    """
+
+    def __new__(cls, number: int, one: str, many: str = "") -> Self:
+        form = one if number == 1 else many or one + "s"
+        return super().__new__(cls, "[[number]] [[form]]", number=number, form=form)
+
+    def __init__(self, number: int, one: str, many: str = "") -> None:
+        form = one if number == 1 else many or one + "s"
+        super().__init__("[[number]] [[form]]", number=number, form=form)
+        self.number, self.one = number, one
+
+    def __reduce__(self) -> tuple[Callable[..., Self], tuple[()]]:
+        return partial(type(self), self.number, self.one, str(self.gaps["form"])), ()
+
+
 def worded(text: str) -> Message:
     """Words of ours as a message, if they are none yet."""
     return (

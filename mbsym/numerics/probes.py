@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from mbsym.algebra.failures import SingularPoint
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import Expression, Number, names
 from mbsym.numerics.extremes.singular import Singularities, SingularSet
 from mbsym.numerics.scenario import Incomplete, Scenario, exact, scenario
@@ -152,7 +153,7 @@ def near_equilibrium(given: Scenario, units: SceneUnits) -> Iterator[Ladder]:
     for size in DISTANCES[::2]:
         state = tuple(x + _decimal(size) * c for x, c in zip(start, pattern, strict=True))
         probes.append(Probe(size, given, state))
-    yield Ladder(EQUILIBRIUM, "distance from the motion", tuple(probes))
+    yield Ladder(EQUILIBRIUM, Message("distance from the motion"), tuple(probes))
 
 
 # --- parameters ---

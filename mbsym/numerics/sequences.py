@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from mbsym.algebra.failures import Failure
+from mbsym.expressions.message import Message
 from mbsym.expressions.rates import without_velocity
 from mbsym.expressions.tree import Name, names
 from mbsym.mechanics.forward_dynamics import forward_dynamics
@@ -32,6 +33,8 @@ from mbsym.numerics.trade.digits import Arithmetic, Quantity, input_names
 
 #: Three axes of which no two neighbours are equal.
 SEQUENCES = tuple(axes for axes in product((1, 2, 3), repeat=3) if axes[0] != axes[1] != axes[2])
+
+FIXED = "its angles are not three coordinates of its own, so they cannot be exchanged"
 
 Matrix = Any  # 3 x 3, numpy
 
@@ -64,16 +67,20 @@ class Ranking:
     def sentence(self) -> str:
         """Which is best, and why."""
         if self.unusable:
-            return f"{self.body}: {self.unusable}."
+            return Message("[[body]]: [[why]].", body=self.body, why=self.unusable)
         best = self.alternatives[0]
         own = next(a for a in self.alternatives if a.own)
         text = (
-            f"{self.body}: the sequence {best.text} is best, {best.distance:.2g} from its singularity (at most 1) with "
-            f"{best.operations} operations"
+            "[[body]]: the sequence [[best]] is best, [[distance]] from its singularity (at most 1) with "
+            "[[operations]] "
+            "operations"
         )
+        gaps = {"best": best.text, "distance": f"{best.distance:.2g}", "operations": best.operations}
+        told = Message(text, body=self.body, **gaps)
         if best.own:
-            return text + "; it is the one in the description."
-        return text + f"; the description's {own.text} is {own.distance:.2g} away with {own.operations}."
+            return Message("[[told]]; it is the one in the description.", told=told)
+        text = "[[told]]; the description's [[own]] is [[distance]] away with [[operations]]."
+        return Message(text, told=told, own=own.text, distance=f"{own.distance:.2g}", operations=own.operations)
 
 
 def rankings(given: Scenario, states: Sequence[Sequence[float]], watch: Callable[[str], None]) -> Iterator[Ranking]:
@@ -92,10 +99,14 @@ def _ranking(given: Scenario, body: Body, states: Sequence[Sequence[float]]) -> 
     turns = list(body.rotation.turns())
     angles = [angle.name for _, angle in turns if isinstance(angle, Name)]
     if len(angles) != 3 or not set(angles) <= set(body.coordinates):
-        return Ranking(body.name, (), "its angles are not three coordinates of its own, so they cannot be exchanged")
+        return Ranking(body.name, (), Message(FIXED))
     elsewhere = _uses_elsewhere(system, body, angles)
     if elsewhere:
-        return Ranking(body.name, (), f"{', '.join(elsewhere)} occur outside the rotation, so the sequence is fixed")
+        return Ranking(
+            body.name,
+            (),
+            Message(("[[names]] occur outside the rotation, so the sequence is fixed"), names=", ".join(elsewhere)),
+        )
     places = [system.coordinates.index(name) for name in angles]
     own = tuple(axis for axis, _ in turns)
     found = []

@@ -379,10 +379,15 @@ class Itemised:
 
 @dataclass(frozen=True)
 class TableColumn:
-    """A column of a table; ``width``: that on a wide page in cm, 0 for what screens alone show."""
+    """A column of a table; ``width``: that on a wide page in cm, 0 for what screens alone show.
 
-    title: Said
-    width: float
+    Numbers stand to the ``right``; what is ``folded`` may take several lines on a narrow terminal.
+    """
+
+    title: Inline
+    width: float = 0.0
+    right: bool = False
+    fold: bool = False
 
 
 @dataclass(frozen=True)
@@ -390,11 +395,13 @@ class Table:
     """Rows of cells, each of them parts of a line; in narrow columns of paper its rows follow one another.
 
     One without a title has headings of its columns on paper, too, and its rows are paragraphs where they follow.
+    ``aligned``: its columns stand under one another on the terminal, too.
     """
 
     title: Said | None
     columns: tuple[TableColumn, ...]
     rows: tuple[tuple[tuple[Inline, ...], ...], ...]
+    aligned: bool = False
 
 
 @dataclass(frozen=True)
@@ -489,6 +496,23 @@ Block = (
 def paragraph(*parts: Inline) -> Paragraph:
     """A paragraph of these parts."""
     return Paragraph(parts)
+
+
+def titled(pairs: Iterable[tuple[str, str]]) -> Iterator[Facts]:
+    """What was found, each with its title, in every language where that is a message; a ``warning`` stands out."""
+    items = ((Graded(name, "open") if name == "warning" else name, (text,)) for name, text in pairs)
+    yield Facts(tuple(Fact(*item) for item in items))
+
+
+def column(title: str, right: bool = False, fold: bool = False) -> TableColumn:
+    """A column of an aligned table."""
+    return TableColumn(title, right=right, fold=fold)
+
+
+def aligned(columns: Iterable[TableColumn], rows: Iterable[Sequence[Inline]]) -> Table:
+    """A table whose columns stand under one another."""
+    listed = tuple(tuple((cell,) for cell in row) for row in rows)
+    return Table(None, tuple(columns), listed, aligned=True)
 
 
 def ragged(*sentences: Inline) -> Paragraph:

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import singledispatchmethod
+from textwrap import wrap
 from typing import Any, NamedTuple
 
 from mbsym.expressions.message import GAP, Message, Said, pieces, plain_notation
@@ -32,6 +33,8 @@ MOST_DEFINITIONS = 24
 LONGEST = 320
 #: Longer relations may be broken, in letters.
 MOST_UNBROKEN = 40
+#: No column of words in a table is made narrower than that.
+NARROW = 24
 #: What is no longer stands in one line with the sign behind it.
 _SHORT = 16
 
@@ -81,7 +84,7 @@ class Writer:
         elif isinstance(value, Said):
             parts = (
                 self._unbroken_notation(plain_notation(x, self._power)) if inside else x
-                for inside, x in pieces(self.language.sentence(value.text))
+                for inside, x in pieces(self.language.text_of(value))
             )
             for k, text in enumerate(GAP.split("".join(parts))):
                 if k % 2 == 0:
@@ -334,7 +337,10 @@ class Writer:
 
     @block.register
     def _(self, value: content.Table) -> Iterator[Line]:
-        """Each row in a line."""
+        """Each row in a line, or columns under one another."""
+        if value.aligned:
+            yield from self._aligned(value)
+            return
         shown = [k for k, column in enumerate(value.columns) if column.width]
         head = tuple((column.title,) for column in value.columns)
         if value.title is not None:
@@ -343,6 +349,47 @@ class Writer:
             cells = (row[k] for k in shown if self.inline(content.Phrase(row[k])))
             parts = [part for cell in cells for part in (" | ", *cell)][1:]
             yield self._line(*parts, style="bold" if row is head else "")
+
+    def _aligned(self, value: content.Table) -> Iterator[Line]:
+        """Columns of words take several lines where that is needed; what is too wide even so follows beneath."""
+        heads = [self.inline(one.title) for one in value.columns]
+        rows = [[self._shown(cell) for cell in row] for row in value.rows]
+        texts = [heads, *([_plain(cell) for cell in row] for row in rows)]
+        widths = [max(map(len, cells)) for cells in zip(*texts, strict=True)]
+        folded = [k for k, one in enumerate(value.columns) if one.fold]
+        least = {k: max(min(widths[k], NARROW), *(len(x) for row in texts for x in row[k].split())) for k in folded}
+        while folded and sum(widths) + 2 * len(widths) - 2 > self.width:
+            k = max(folded, key=lambda k: widths[k] - least[k])
+            if widths[k] <= least[k]:
+                break
+            widths[k] -= 1
+        for group in self._groups(widths):
+            for number, row in enumerate(texts):
+                cells = {k: self._wrapped(row[k], widths[k]) if k in folded else [row[k]] for k in group}
+                styles = {k: TITLE if number == 0 else _first(rows[number - 1][k]) for k in group}
+                for line in range(max(map(len, cells.values()), default=0)):
+                    pieces = {k: cells[k][line] if line < len(cells[k]) else "" for k in group}
+                    turned = {k: str.rjust if value.columns[k].right else str.ljust for k in group}
+                    padded = [(turned[k](pieces[k], widths[k]), styles[k]) for k in group]
+                    while len(padded) > 1 and not padded[-1][0].strip():
+                        padded.pop()
+                    last = ((padded[-1][0].rstrip(), padded[-1][1]),)
+                    yield Line(tuple(x for one in padded[:-1] for x in (one, ("  ", ""))) + last, whole=True)
+
+    @staticmethod
+    def _wrapped(text: str, width: int) -> list[str]:
+        return wrap(text, max(width, 1), break_long_words=False, break_on_hyphens=False) or [""]
+
+    def _groups(self, widths: Sequence[int]) -> Iterator[list[int]]:
+        """Columns that fit beside each other; the first one is in front of each group."""
+        group, taken = [0], widths[0] if widths else 0
+        for k, width in list(enumerate(widths))[1:]:
+            if len(group) > 1 and taken + 2 + width > self.width:
+                yield group
+                group, taken = [0], widths[0]
+            group.append(k)
+            taken += 2 + width
+        yield group if widths else []
 
     @block.register
     def _(self, value: content.Facts) -> Iterator[Line]:
@@ -394,6 +441,15 @@ class Writer:
             yield self._line(self._counted(say("[[count]] steps", count=str(len(steps))), self.file), indent=2)
             return
         yield from (self._line(f"{left} =", UNBROKEN, right, indent=2) for left, right in steps)
+
+
+def _plain(parts: Iterable[tuple[str, str]]) -> str:
+    return "".join(text for text, _ in parts).replace(UNBROKEN, " ")
+
+
+def _first(parts: Iterable[tuple[str, str]]) -> str:
+    """The style of a cell."""
+    return next((style for _, style in parts if style), "")
 
 
 def _divided_last(value: Expression) -> Expression:

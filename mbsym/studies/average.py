@@ -17,11 +17,10 @@ from mbsym.studies.study import (
     Unfit,
     Watch,
     failed,
-    told,
+    refused,
 )
 
 if TYPE_CHECKING:
-    from mbsym.algebra.failures import Failure
     from mbsym.model.system import System
     from mbsym.problems.small_parameter.averaging import Averaged
     from mbsym.simulation.averaged import Measured
@@ -143,7 +142,7 @@ def answer(asked: Asked, request: Request, found: Found) -> Answer:
     from mbsym.report.words.expansion_words import of_averaging
 
     one = Averaging(found.averaged.phase, found.averaged, Analysis(found.system, (6,)))
-    return Answer(told(map(ragged, of_averaging(JudgedAverage(one, found.measured, False))), asked.system))
+    return Answer(map(ragged, of_averaging(JudgedAverage(one, found.measured, False))))
 
 
 def document(asked: Asked, request: Request, found: Found) -> Document:
@@ -154,14 +153,11 @@ def document(asked: Asked, request: Request, found: Found) -> Document:
 
 
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
-    def said(failure: Failure) -> str:
-        return f"{failure}{f' ({failure.remedy})' if failure.remedy else ''}"
-
     if isinstance(error, Withdrawn):
         return Refusal(str(error))
     if isinstance(error, Unsound):
-        return Refusal(f"it cannot be averaged: {error}")
-    return failed(error, "it cannot be averaged", said)
+        return refused("it cannot be averaged", error)
+    return failed(error, "it cannot be averaged", True)
 
 
 STUDY = Study(

@@ -17,8 +17,6 @@ from mbsym.studies.study import (
     Unfit,
     Watch,
     failed,
-    remedied,
-    told,
 )
 
 if TYPE_CHECKING:
@@ -87,7 +85,7 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Found:
 def answer(asked: Asked, request: Request, found: Found) -> Answer:
     from mbsym.report.sections.small_parameters import of_slow
 
-    return Answer(told(of_slow(found.expansion, found.measured), asked.system))
+    return Answer(of_slow(found.expansion, found.measured))
 
 
 def as_json(asked: Asked, request: Request, found: Found) -> str:
@@ -99,7 +97,7 @@ def as_json(asked: Asked, request: Request, found: Found) -> str:
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     if isinstance(error, ZeroDivisionError):
         return Refusal(f"no expansion: {error}", Exit.BAD_INPUT)
-    return failed(error, "no expansion", remedied)
+    return failed(error, "no expansion", True)
 
 
 STUDY = Study("expand", Request, derive, answer, refusal, unfit, as_json, held=False, out=None)

@@ -6,29 +6,18 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
+from mbsym.expressions.message import Message
 from mbsym.model.constraints import listed
 from mbsym.studies.closing import closed_motion, not_closed
 from mbsym.studies.request import Flag, Number, Values
-from mbsym.studies.study import (
-    Answer,
-    Asked,
-    Column,
-    Folder,
-    Line,
-    Refusal,
-    Rows,
-    Study,
-    Unfit,
-    Watch,
-    failed,
-    line,
-)
+from mbsym.studies.study import Answer, Asked, Folder, Refusal, Study, Unfit, Watch, failed
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
     from mbsym.numerics.extremes.extremes import Extremes
     from mbsym.numerics.scenario import Scenario
     from mbsym.numerics.sequences import Ranking
+    from mbsym.report.content import Block, Table
 
 
 @dataclass(frozen=True)
@@ -105,53 +94,60 @@ def _ranked(given: Scenario, watch: Watch) -> Ranked:
 
 
 def answer(asked: Asked, request: Request, found: Measured | Ranked) -> Answer:
+    from mbsym.report.content import Graded, paragraph
+
     if isinstance(found, Ranked):
-        return Answer(_sequences(found.rankings))
+        said = [one.sentence for one in found.rankings] or [Message("no body is oriented by three turns.")]
+        brief = [paragraph(text) for text in said]
+        return Answer((*brief, *_sequences(found.rankings)), brief=brief)
+    from mbsym.numerics.extremes.extremes_told import sentences
     from mbsym.report.figures.extremes_figure import extremes_figure
     from mbsym.report.runs.extremes_tables import extremes_csv, extremes_json
 
     measured = found.extremes
     files: dict[str, str | bytes] = {"extremes.csv": extremes_csv(measured), "extremes.json": extremes_json(measured)}
     files |= extremes_figure(measured, ("svg", "png"))
-    return Answer(_lines(measured, asked.file), files, found.notes)
+    brief = [paragraph("- ", text) for text in sentences(measured, asked.file)]
+    left = (Message("left out: [[what]]", what=text) for text in measured.left_out)
+    brief += [paragraph("- ", Graded(text, "open")) for text in left]
+    return Answer((*brief, *_tables(measured)), files, found.notes, brief=brief)
 
 
-def _lines(found: Extremes, file: str) -> Iterator[Line | Rows]:
-    from mbsym.numerics.extremes.extremes_told import sentences
+def _tables(found: Extremes) -> Iterator[Block]:
+    from mbsym.report.content import paragraph
     from mbsym.report.runs.extremes_tables import tables
 
-    yield line("  fewest digits kept along each ladder, float64 / float32; * lost by the formula, not by the question")
+    text = "fewest digits kept along each ladder, float64 / float32; * lost by the formula, not by the question"
+    yield paragraph(Message(text))
     for columns, rows in tables(found):
         yield digits(columns, rows)
-    for sentence in sentences(found, file):
-        yield line(f"- {sentence}", always=True)
-    for reason in found.left_out:
-        yield line((f"- left out: {reason}", "yellow"), always=True)
 
 
-def digits(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> Rows:
+def digits(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
     """Names, verdicts and titles fold where the terminal is narrow; numbers never do."""
-    from mbsym.report.runs.extremes_tables import APPROXIMATION
+    from mbsym.report.content import aligned, column
+    from mbsym.report.runs.extremes_tables import APPROXIMATION, EXTREME
 
-    names = ("extreme", APPROXIMATION)
-    return Rows([Column(name, right=name not in names, fold=name in names) for name in columns], rows, wide=True)
+    names = (EXTREME, APPROXIMATION)
+    return aligned((column(name, right=name not in names, fold=name in names) for name in columns), rows)
 
 
-def _sequences(rankings: Sequence[Ranking]) -> Iterator[Line | Rows]:
-    names = ("sequence", "distance from singularity", "smallest / largest pivot", "operations", "M and f", "")
+def _sequences(rankings: Sequence[Ranking]) -> Iterator[Block]:
+    from mbsym.report.content import aligned, column, paragraph
+
+    numbers = ("distance from singularity", "smallest / largest pivot", "operations", "M and f")
+    heads = (Message("sequence"), *map(Message, numbers), "")
     for ranking in rankings:
         if ranking.alternatives:
             rows = [
                 (
                     *(a.text, f"{a.distance:.4f}", f"{a.pivot:.2e}", str(a.operations), str(a.equations)),
-                    "in the description" if a.own else "",
+                    Message("in the description") if a.own else "",
                 )
                 for a in ranking.alternatives
             ]
-            yield Rows([Column(name, right=bool(name)) for name in names], rows)
-        yield line((ranking.sentence, "bold"), always=True)
-    if not rankings:
-        yield line("  no body is oriented by three turns.", always=True)
+            yield paragraph(ranking.body)
+            yield aligned((column(name, right=bool(name)) for name in heads), rows)
 
 
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:

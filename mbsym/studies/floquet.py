@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from mbsym.studies.described import public
 from mbsym.studies.request import Values
-from mbsym.studies.study import Answer, Asked, Refusal, Study, Watch, no_program, titled
+from mbsym.studies.study import Answer, Asked, Refusal, Study, Watch, no_program, refused
 
 if TYPE_CHECKING:
     from mbsym.numerics.orbits.floquet import Judged
@@ -52,6 +52,7 @@ def floquet(asked: Asked, request: Request, watch: Watch) -> Judged:
 
 
 def answer(asked: Asked, request: Request, found: Judged) -> Answer:
+    from mbsym.report.content import titled
     from mbsym.report.runs.floquet_files import floquet_json, sentences
 
     return Answer(titled(sentences(found)), {"floquet.json": floquet_json(asked.system, found)})
@@ -61,7 +62,7 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     from mbsym.numerics.orbits.floquet import NotPeriodic
 
     if isinstance(error, NotPeriodic):
-        return Refusal(f"there is no periodic first approximation to judge: {error}")
+        return refused("there is no periodic first approximation to judge", error)
     return no_program(error, asked, request)
 
 

@@ -6,19 +6,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from mbsym.studies.study import (
-    Answer,
-    Asked,
-    Document,
-    Line,
-    Refusal,
-    Single,
-    Study,
-    Watch,
-    failed,
-    heading,
-    line,
-)
+from mbsym.expressions.message import Counted, Message
+from mbsym.report.content import Block, Subheading, paragraph
+from mbsym.studies.study import Answer, Asked, Document, Refusal, Single, Study, Watch, failed
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -68,38 +58,44 @@ def answer(asked: Asked, request: Request, found: Found) -> Answer:
     return Answer(_lines(found))
 
 
-def _lines(found: Found) -> Iterator[Line]:
-    sections = [("first approximation", _linear(found.analysis))]
+def _lines(found: Found) -> Iterator[Block]:
+    sections = [(Message("first approximation"), _linear(found.analysis))]
     if found.analysis.system.linear is None:
-        sections.insert(0, ("equations of motion", _told(found.groups)))
+        sections.insert(0, (Message("equations of motion"), _said(found.groups)))
     for title, lines in sections:
-        yield heading(title)
+        yield Subheading((title,))
         for text in lines:
-            yield line(f"    {text}")
+            yield paragraph("  ", text)
 
 
-def _told(found: Groups) -> Iterator[str]:
+def _said(found: Groups, effects: bool = True) -> Iterator[str]:
+    """``effects``: those of parameters on the motion are all known, so that what has none is told."""
     from mbsym.analysis.in_groups import group_of, product
-    from mbsym.expressions.counting import counted
     from mbsym.expressions.tree import text
 
-    left = counted(len(found.groups), "group", "groups")
-    most = "at most " if found.unused else ""
-    yield f"{counted(len(found.free), 'parameter', 'parameters')}, {len(found.units)} of them set to 1: {most}{left}"
+    told = "[[parameters]], [[units]] of them set to 1: [[groups]]"
     if found.unused:
-        more = counted(found.unused, "scaling more is", "scalings more are")
-        yield f"{more} not used: no other parameter is declared positive, and one that may vanish cannot be set to 1"
+        told = "[[parameters]], [[units]] of them set to 1: at most [[groups]]"
+    parameters, groups = Counted(len(found.free), "parameter"), Counted(len(found.groups), "group")
+    yield Message(told, parameters=parameters, units=len(found.units), groups=groups)
+    if found.unused:
+        told = (
+            "[[scalings]] not used: no other parameter is declared positive, and one that may vanish cannot be set to 1"
+        )
+        yield Message(told, scalings=Counted(found.unused, "scaling more is", "scalings more are"))
     if found.units:
         yield ", ".join(f"{name} = 1" for name in found.units)
     for one in found.groups:
         stands = text(group_of(one.parameter, one.powers))
-        yield one.parameter if stands == one.parameter else f"{one.parameter} stands for {stands}"
+        told = Message("[[name]] stands for [[group]]", name=one.parameter, group=stands)
+        yield one.parameter if stands == one.parameter else told
     if found.rate:
-        yield f"time in units of {text(product((name, -power) for name, power in found.rate))}"
+        unit = text(product((name, -power) for name, power in found.rate))
+        yield Message("time in units of [[unit]]", unit=unit)
     for one in found.lengths:
-        yield f"{one.parameter} in units of {text(product(one.powers))}"
-    if found.idle:
-        yield f"without effect on the motion: {', '.join(found.idle)}"
+        yield Message("[[name]] in units of [[unit]]", name=one.parameter, unit=text(product(one.powers)))
+    if found.idle and effects:
+        yield Message("without effect on the motion: [[names]]", names=", ".join(found.idle))
 
 
 def _of_linear(analysis: Analysis) -> Groups:
@@ -118,11 +114,9 @@ def _linear(analysis: Analysis) -> Iterator[str]:
     try:
         found = _of_linear(analysis)
     except Failure as error:
-        yield f"none: {error.reason}"
+        yield Message("none: [[reason]]", reason=error.reason)
         return
-    for text in _told(found):
-        if not text.startswith("without effect"):
-            yield text
+    yield from _said(found, effects=False)
 
 
 def document(asked: Asked, request: Request, found: Found) -> Document:
@@ -135,12 +129,13 @@ def document(asked: Asked, request: Request, found: Found) -> Document:
     if system is not None:
         return Document(text)
     # What the equations do not ask of a body may be asked of its numbers.
-    told = complaints.sorted()[0].message
+    why = complaints.sorted()[0].message
     text = to_yaml(in_groups(asked.system, found.groups, values=False))
     system, complaints = read(text)
     if system is None:
-        return Document(None, (f"it cannot be written in groups: {complaints.sorted()[0].message}",))
-    return Document(text, (f"values are left out of what is written, where they belong to no bodies: {told}",))
+        return Document(None, (Message("it cannot be written in groups: [[why]]", why=complaints.sorted()[0].message),))
+    told = "values are left out of what is written, where they belong to no bodies: [[why]]"
+    return Document(text, (Message(told, why=why),))
 
 
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from mbsym.studies.described import analysis_of
 from mbsym.studies.request import Formulas, Settings, Value, Whole, duration
-from mbsym.studies.study import Answer, Asked, Exit, Refusal, Study, Unfit, Watch, no_program, titled
+from mbsym.studies.study import Answer, Asked, Exit, Refusal, Study, Unfit, Watch, no_program, refused
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -68,6 +68,7 @@ def derive(asked: Asked, request: Request, watch: Watch) -> InverseDynamics:
 
 
 def answer(asked: Asked, request: Request, found: InverseDynamics) -> Answer:
+    from mbsym.report.content import titled
     from mbsym.report.runs.inverse_files import inputs_csv, inputs_figure, sentences
 
     files: dict[str, str | bytes] = {"inputs.csv": inputs_csv(found)}
@@ -79,7 +80,7 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     from mbsym.numerics.inverse import NotLinear
 
     if isinstance(error, (NotLinear, ValueError)):
-        return Refusal(f"there are no inputs to be found: {error}")
+        return refused("there are no inputs to be found", error)
     return no_program(error, asked, request)
 
 

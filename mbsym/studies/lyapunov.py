@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 from mbsym.studies.closing import closed_motion, not_closed
 from mbsym.studies.described import public
 from mbsym.studies.request import Number, Values, Whole, duration
-from mbsym.studies.study import Answer, Asked, Exit, Refusal, Study, Unfit, Watch, no_program, titled
+from mbsym.studies.study import Answer, Asked, Exit, Refusal, Study, Unfit, Watch, no_program
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
@@ -81,13 +81,13 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
 
 
 def answer(asked: Asked, request: Request, found: Exponents) -> Answer:
+    from mbsym.report.content import titled
     from mbsym.report.runs.lyapunov_files import lyapunov_csv, lyapunov_figure, lyapunov_json, sentences
 
     files: dict[str, str | bytes] = {"lyapunov.csv": lyapunov_csv(found)}
     files |= lyapunov_figure(asked.system, found, ("svg", "png")) if len(found.times) > 1 else {}
     files["lyapunov.json"] = lyapunov_json(asked.system, found)
-    lines = titled(sentences(found))
-    notes = closed_motion(asked.motion)[1]
+    lines, notes = titled(sentences(found)), closed_motion(asked.motion)[1]
     if found.ended is None:
         return Answer(lines, files, notes)
     code = Exit.INTERRUPTED if found.ended.kind == "interrupted" else Exit.BROKEN_DOWN

@@ -21,8 +21,6 @@ from mbsym.studies.study import (
     failed,
     line,
     missing,
-    remedied,
-    told,
 )
 
 if TYPE_CHECKING:
@@ -30,6 +28,7 @@ if TYPE_CHECKING:
     from mbsym.model.system import System
     from mbsym.problems.normal_forms import NormalForms
     from mbsym.problems.normal_forms.along import Along
+    from mbsym.report.content import Block
 
 
 @dataclass(frozen=True)
@@ -142,11 +141,11 @@ def answer(asked: Asked, request: Request, found: AtValues | Along) -> Answer:
     return Answer(_of_values(asked, found) if isinstance(found, AtValues) else _along(found))
 
 
-def _of_values(asked: Asked, found: AtValues) -> Iterator[Line]:
+def _of_values(asked: Asked, found: AtValues) -> Iterator[Line | Block]:
     from mbsym.report.content import ragged
     from mbsym.report.words.normal_form_words import sentences
 
-    yield from told(map(ragged, sentences(found.forms)), asked.system)
+    yield from map(ragged, sentences(found.forms))
     if found.lacking:
         words = " ".join(f"--set {name}=NUMBER" for name in found.lacking)
         yield line(f"  At numbers nothing is said: {', '.join(found.lacking)} have none.  Give them:")
@@ -176,7 +175,7 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
 
     if isinstance(error, Unavailable) and request.vary is None:
         return Refusal(f"nothing decided: {error.reason}" + (f"; {error.remedy}" if error.remedy else ""))
-    return failed(error, "nothing decided", remedied) if request.vary is None else failed(error, "no values listed")
+    return failed(error, "nothing decided", True) if request.vary is None else failed(error, "no values listed")
 
 
 STUDY = Study(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 from mbsym.studies.closing import closed_motion, not_closed
 from mbsym.studies.described import public
 from mbsym.studies.request import Named, Number, Values, Word
-from mbsym.studies.study import Answer, Asked, Refusal, Study, Unfit, Watch, no_program, titled
+from mbsym.studies.study import Answer, Asked, Refusal, Study, Unfit, Watch, no_program, refused
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
@@ -80,6 +80,7 @@ def orbit(asked: Asked, request: Request, watch: Watch) -> PeriodicMotion:
 
 
 def answer(asked: Asked, request: Request, found: PeriodicMotion) -> Answer:
+    from mbsym.report.content import titled
     from mbsym.report.runs.orbit_files import orbit_csv, orbit_json, sentences
 
     return Answer(
@@ -93,7 +94,7 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     from mbsym.numerics.orbits.periodic import NotFound
 
     if isinstance(error, NotFound):
-        return Refusal(f"no periodic motion was found: {error}")
+        return refused("no periodic motion was found", error)
     return not_closed(error, asked.system) or no_program(error, asked, request)
 
 

@@ -19,8 +19,6 @@ from mbsym.studies.study import (
     Unfit,
     Watch,
     failed,
-    remedied,
-    told,
 )
 
 if TYPE_CHECKING:
@@ -122,7 +120,7 @@ def answer(asked: Asked, request: Request, found: Found) -> Answer:
 
     files, reason = _figures(asked.system, request, found.solution) if request.format else ({}, "")
     complaints = (f"no figures: {reason}",) if reason else ()
-    lines = told(of_wave(found.solution, found.measured), asked.system)
+    lines = of_wave(found.solution, found.measured)
     return Answer(lines, files, complaints, Exit.FAILED if reason else Exit.OK)
 
 
@@ -156,7 +154,7 @@ def as_json(asked: Asked, request: Request, found: Found) -> str:
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     if isinstance(error, ZeroDivisionError):
         return Refusal(f"no periodic solution: {error}", Exit.BAD_INPUT)
-    return failed(error, "no expansion", remedied)
+    return failed(error, "no expansion", True)
 
 
 STUDY = Study(

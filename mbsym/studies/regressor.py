@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from mbsym.studies.described import public
-from mbsym.studies.study import Answer, Asked, Refusal, Study, Watch, failed, titled
+from mbsym.studies.study import Answer, Asked, Refusal, Study, Watch, failed
 
 if TYPE_CHECKING:
     from mbsym.problems.regressor import Regressor
@@ -48,6 +48,7 @@ def regressor(asked: Asked, request: Request, watch: Watch) -> Regressor:
 
 
 def answer(asked: Asked, request: Request, found: Regressor) -> Answer:
+    from mbsym.report.content import titled
     from mbsym.report.regressor_files import regressor_json, regressor_latex, regressor_module, sentences
 
     files: dict[str, str | bytes] = {

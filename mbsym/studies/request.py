@@ -17,7 +17,9 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, get_args, get_type_
 from mbsym.report.language import LANGUAGES
 
 if TYPE_CHECKING:
+    from mbsym.expressions.tree import Expression
     from mbsym.model.system import System
+    from mbsym.numerics.ensembles.variation import Variation
 
 #: What Python takes for a parameter, an initial position or an initial velocity: ``Fraction(1, 3)``, ``0.5``,
 #: ``"pi/6"``.
@@ -138,10 +140,11 @@ class Named(Kind):
 class Settings(Kind):
     """Values by name that replace those of the description: of parameters, initial positions and velocities.
 
-    ``state``: whether an initial state is needed.
+    ``state``: whether an initial state is needed, ``whole``: whether values are, by the texts of the options.
     """
 
     state: bool = True
+    whole: Callable[[Mapping[str, Any]], bool] = lambda texts: True
 
 
 @dataclass(frozen=True)
@@ -169,6 +172,47 @@ class ExactSettings(Kind):
 @dataclass(frozen=True)
 class Range(Kind):
     """``NAME=LOW:HIGH``, an interval of a parameter or symbol (``mbsym.maps.axis.Axis``)."""
+
+
+@dataclass(frozen=True)
+class Varied:
+    """What varies, and between which numbers each name lies, exact ones where these are asked for."""
+
+    variation: Variation
+    ends: tuple[Any, Any]
+
+
+@dataclass(frozen=True)
+class Ranges(Kind):
+    """``NAME=0:1:1000``, ``NAME=1 +- 5%``, ``NAME=uniform(0, 1)``, ``NAME=normal(1, 0.05)``; ``most`` of them.
+
+    ``exact``: ends are rational; else they are made of numbers, pi and parameters.
+    """
+
+    most: int = 64
+    exact: bool = False
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A word, or a formula with what it is of in front."""
+
+    text: str
+    formula: Expression | None = None
+
+
+@dataclass(frozen=True)
+class Formula(Kind):
+    """A ``Quantity``: one of the ``words``, or a formula in ``names(system, text)``, behind the ``prefix`` or not."""
+
+    words: tuple[str, ...] = ()
+    prefix: str = ""
+    names: Callable[[System, str], Sequence[str]] = lambda system, text: system.parameter_names
+
+
+@dataclass(frozen=True)
+class Share(Kind):
+    """``I/N``: the I-th of N parts."""
 
 
 #: ``--set`` of studies of one motion, and of exact ones.

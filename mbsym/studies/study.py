@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
+from mbsym.expressions.message import Message, joined
+
 if TYPE_CHECKING:
-    from mbsym.algebra.failures import Failure
     from mbsym.model.system import System
     from mbsym.numerics.scenario import Scenario
     from mbsym.report.content import Block
@@ -60,21 +62,6 @@ def line(*parts: str | tuple[str, str], whole: bool = False, always: bool = Fals
     return Line(parts, whole, always)
 
 
-def titled(pairs: Iterable[tuple[str, str]]) -> Iterator[Line]:
-    """Lines with titles; one whose title is ``warning`` stands out."""
-    for title, text in pairs:
-        yield line("  ", (f"{title:<9} ", "yellow" if title == "warning" else "bold cyan"), text)
-
-
-def told(blocks: Iterable[Block], system: System) -> Iterator[Line]:
-    """What reports say, in the language of the description; formulas in Python syntax."""
-    from mbsym.report.language import Language
-    from mbsym.report.plain_writer import Writer
-
-    for parts, whole, _ in Writer(Language(system.language)).document(blocks):
-        yield line("  ", *parts, whole=whole)
-
-
 def heading(text: str) -> Line:
     return line("  ", (text, "bold cyan"))
 
@@ -93,12 +80,14 @@ def unwatched(text: str, done: float = 0.0, whole: float = 0.0) -> None:
 class Asked:
     """What a study is about: the description, with the values of the request where it is of one motion.
 
-    ``file``: its name, for commands to be pasted.
+    ``file``: its name, for commands to be pasted; ``folder``: where its files go, ``write`` writes one at once, whole.
     """
 
     system: System
     scenario: Scenario | None = None
     file: str = ""
+    folder: Path = Path()
+    write: Callable[[Path, bytes], object] = Path.write_bytes
 
     @property
     def motion(self) -> Scenario:
@@ -110,22 +99,25 @@ class Asked:
 class Answer:
     """What is said of a result: ``lines`` beneath the system's name, ``files``, and ``complaints`` after them.
 
-    ``after``: what stands behind the name of the description.
+    Of blocks, and of complaints that are messages, the language is that of the description.  ``after``: what stands
+    behind the name of the description; ``brief``: the blocks that ``--quiet`` leaves.
     """
 
-    lines: Iterable[Line | Rows] = ()
-    files: Mapping[str, str | bytes] = field(default_factory=dict)
+    lines: Iterable[Line | Rows | Block] = ()
+    files: Mapping[str, str | bytes | Iterable[str]] = field(default_factory=dict)
     complaints: Sequence[str] = ()
     code: Exit = Exit.OK
     after: str = ""
+    brief: Iterable[Block] = ()
 
 
 @dataclass(frozen=True)
 class Document:
-    """The text of a single file, None where there is none, and complaints about it."""
+    """The text of a single file, None where there is none, complaints about it; ``told`` stands behind its name."""
 
     text: str | None
     complaints: Sequence[str] = ()
+    told: str = ""
 
 
 @dataclass(frozen=True)
@@ -176,9 +168,10 @@ class Folder:
 
 @dataclass(frozen=True)
 class Single:
-    """One file, a description, is written where ``--out`` says so; ``help`` of that option."""
+    """One file is written where ``--out`` says so; ``help`` of that option, ``usual``: its name without it."""
 
     help: str
+    usual: str = ""
 
 
 R = TypeVar("R")
@@ -198,9 +191,10 @@ class Study(Generic[R, F]):
     what of a request does not go together; fields that could not be read are None there, but among those that were
     ``typed``.
 
-    ``constraints``, ``matrices``: whether descriptions with these are understood; ``held``: whether inputs are held at
-    their constant values.  ``out``: where files go; ``writes``: whether there are any, by what was typed; ``document``
-    makes the single one.  ``timed``: whether the seconds are told.
+    ``constraints``, ``matrices``: whether descriptions with these are understood, ``bodies``: whether neither are, by
+    the texts of the options; ``held``: whether inputs are held at their constant values.  ``out``: where files go;
+    ``writes``: whether there are any, by what was typed; ``document`` makes the single one.  ``timed``: whether the
+    seconds are told.
     """
 
     name: str
@@ -213,6 +207,7 @@ class Study(Generic[R, F]):
     json_help: str = "Print JSON instead of a table."
     constraints: bool = False
     matrices: bool = False
+    bodies: Callable[[Mapping[str, Any]], bool] = lambda texts: False
     held: bool = True
     out: Folder | Single | None = Folder()
     writes: Callable[[Collection[str]], bool] = lambda typed: True
@@ -220,16 +215,21 @@ class Study(Generic[R, F]):
     timed: bool = False
 
 
-def failed(error: Exception, before: str, said: Callable[[Failure], str] = str) -> Refusal | None:
-    """Of exact studies: what could not be derived, and why."""
+def refused(before: str, error: Exception, code: Exit = Exit.FAILED) -> Refusal:
+    """What could not be had, and why."""
+    from mbsym.algebra.failures import message_of
+
+    return Refusal(joined((Message(before), message_of(error)), ": "), code)
+
+
+def failed(error: Exception, before: str, remedied: bool = False) -> Refusal | None:
+    """Of exact studies: what could not be derived, and why; ``remedied``: with what to try next."""
     from mbsym.algebra.failures import Failure
 
-    return Refusal(f"{before}: {said(error)}") if isinstance(error, Failure) else None
-
-
-def remedied(error: Failure) -> str:
-    """With what to try next."""
-    return f"{error}; {error.remedy}" if error.remedy else str(error)
+    if not isinstance(error, Failure):
+        return None
+    told = refused(before, error)
+    return Refusal(joined((told.text, error.remedy), "; ")) if remedied and error.remedy else told
 
 
 def no_program(error: Exception, asked: Asked, request: object) -> Refusal | None:

@@ -6,7 +6,7 @@ from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING
 
 from mbsym.studies.request import Numbers
-from mbsym.studies.study import Answer, Asked, Exit, Refusal, Study, Watch, failed, told
+from mbsym.studies.study import Answer, Asked, Exit, Refusal, Study, Watch, failed
 
 if TYPE_CHECKING:
     from mbsym.problems.symmetries import Symmetries
@@ -48,7 +48,7 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Symmetries:
 def answer(asked: Asked, request: Request, found: Symmetries) -> Answer:
     from mbsym.report.sections.polynomial_integrals import of_symmetries
 
-    return Answer(told(of_symmetries(found), asked.system), code=Exit.OK if found.complete else Exit.FAILED)
+    return Answer(of_symmetries(found), code=Exit.OK if found.complete else Exit.FAILED)
 
 
 def as_json(asked: Asked, request: Request, found: Symmetries) -> str:

@@ -6,7 +6,6 @@ NumPy's PCG64 or Sobol's sequence (scrambled, SciPy); the points are the same fo
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import prod
@@ -14,8 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from mbsym.expressions.guessing import guess
-from mbsym.numerics.ensembles.variation import RANDOM, SOBOL, Draw, Grid, Variation, badly_ranged, mixed
+from mbsym.numerics.ensembles.variation import RANDOM, SOBOL, Draw, Grid, Variation
 
 #: More points than this are refused: a picture of so many says no more, and their numbers fill disks.
 MOST_POINTS = 1_000_000_000
@@ -69,29 +67,3 @@ class Points:
         bits = np.random.PCG64(self.seed)
         bits.advance(start * count)
         return np.random.Generator(bits).random((stop - start, count)).T
-
-
-def complaints(
-    variations: Sequence[Variation], members: int | None, known: Sequence[str]
-) -> Iterator[tuple[str, str, str]]:
-    """What is wrong with them: (name, sentence, hint)."""
-    seen: set[str] = set()
-    for one in variations:
-        if one.name not in known:
-            yield one.name, f"there is no parameter called '{one.name}'{guess(one.name, known)}", ""
-        if one.name in seen:
-            yield one.name, f"{one.name} is varied twice", "join the two"
-        seen.add(one.name)
-        yield from badly_ranged(one)
-        if isinstance(one, Grid) and one.low == one.high:
-            yield one.name, f"the range of {one.name} is empty: {one.low:g} to {one.high:g}", "give two ends"
-    clash = list(mixed(variations))
-    yield from clash
-    grids = [one for one in variations if isinstance(one, Grid)]
-    if not clash and grids and members is not None:
-        yield grids[0].name, "a grid says itself how many points it has", "leave --points out"
-    elif not grids and members is None and variations:
-        yield variations[0].name, "how many points to draw is not said", "for example --points 100000"
-    count = prod(one.count for one in grids) if grids else members or 0
-    if count > MOST_POINTS:
-        yield variations[0].name, f"{count} points are too many", f"at most {MOST_POINTS}"

@@ -74,8 +74,10 @@ def test_where_a_border_changes_from_hard_to_soft(changing: Map) -> None:
         assert arc.soft is not None
         assert float(arc.soft.coefficient) == pytest.approx(float(-3 * (1 + q**2) * (q - Fraction(1, 3)) / 8))
         assert float(arc.soft.frequency) ** 2 == pytest.approx(float(1 + q**2))
-    assert onset_words(borders(changing)) == ", soft border in parts, hard in others"
-    assert onset_words(borders(changing), Language("ru")) == ", граница частью безопасная, частью опасная"
+    assert onset_words(borders(changing)) == ["soft border in parts, hard in others"]
+    assert [Language("ru").say(x) for x in onset_words(borders(changing))] == [
+        ("граница частью безопасная, частью опасная")
+    ]
 
 
 def test_the_same_with_the_axes_exchanged() -> None:
@@ -89,7 +91,7 @@ def test_a_whole_border(s: int, onset: Onset) -> None:
     """3 (1 + q^2)(q - 1/3) is between -8 and 4 for -1 < q < 1: s decides alone."""
     found = mapped(TEXT, "q", "p", s=s)
     assert told(found) == {(-1, 0, onset), (0, 1, onset)}
-    assert onset_words(borders(found)) == f", {onset} border"
+    assert onset_words(borders(found)) == [f"{onset} border"]
 
 
 CIRCLE = TEXT.replace("(p - q**2 -", "(1/16 - (p - 1/2)**2 - (q - 1/2)**2 -")
@@ -123,7 +125,7 @@ def test_a_linear_border_is_neither() -> None:
     """Without any term of third order a = 0 on the whole arc."""
     found = borders(mapped(TEXT.replace("(q - 1/3)*x_dot**3", "0*x_dot**3"), "q", "p", s=0))
     assert {(x.soft.onset, x.soft.why) for x in found if x.soft} == {(Onset.OPEN, Why.COEFFICIENT_OPEN)}
-    assert onset_words(found) == ""
+    assert onset_words(found) == []
 
 
 def test_two_pairs_at_once_are_left_open() -> None:
@@ -156,7 +158,7 @@ def test_a_wrong_formula_is_not_believed(monkeypatch: pytest.MonkeyPatch) -> Non
     monkeypatch.setattr(soft_borders._Along, "sign", lambda self, x, y: -right(self, x, y))
     found = borders(mapped(TEXT, "q", "p", s=9))
     assert {(x.soft.onset, x.soft.stretches) for x in found if x.soft} == {(Onset.SOFT, None)}
-    assert onset_words(found) == ""
+    assert onset_words(found) == []
 
 
 def test_a_zero_of_a_line() -> None:
@@ -211,7 +213,7 @@ def test_a_pair_that_only_touches_the_axis_is_no_border(damping: str) -> None:
     (zero,) = [one for one in found.corners if one.soft is not None]
     assert zero.soft is not None
     assert (zero.soft.onset, zero.soft.why) == (Onset.NEITHER, why)
-    assert onset_words([zero]) == ""
+    assert onset_words([zero]) == []
     plane = mapped(text, "p", "q", k=1)
     assert {(x.soft.onset, x.soft.why) for x in borders(plane) if x.soft} == {(Onset.NEITHER, why)}
 

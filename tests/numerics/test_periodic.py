@@ -204,8 +204,8 @@ def test_what_telling_an_exponent_from_zero_takes_stands_beside_it() -> None:
     assert found.values[0] + found.uncertainty[0] < 0
     assert found.parting is Parting.NOT_TOLD_FROM_ZERO
     assert dict(sentences(found))["motion"].startswith(
-        "the largest exponent is not told from zero, which takes three times its uncertainty and three times log(T)/T "
-        "= 0.026"
+        "the largest exponent is not distinguishable from zero, which takes three times its uncertainty and three "
+        "times log(T)/T = 0.026"
     )
 
 

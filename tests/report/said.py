@@ -17,6 +17,8 @@ from mbsym.expressions.message import GAP
 ROOT = Path(mbsym.__file__).parent
 #: The layers whose refusals can stand in a report.
 LAYERS = ("algebra", "analysis", "formulas", "mechanics", "model", "problems")
+#: What is said before a reason, by the function that says it, and which argument that is.
+BEFORE = {"refused": 0, "failed": 1}
 
 
 @dataclass(frozen=True)
@@ -29,7 +31,7 @@ class Asked:
 
 
 class Module(ast.NodeVisitor):
-    """``texts`` are what is said; ``open``: places where a text is put together of pieces."""
+    """``texts`` are what is said, ``counted`` what has a plural; ``open``: places where a text is put together."""
 
     def __init__(self, name: str, tree: ast.Module, refusals: frozenset[str]) -> None:
         self.name = name
@@ -39,6 +41,7 @@ class Module(ast.NodeVisitor):
         self.of_descriptions = self.name.startswith(("source/", "expressions/")) and "/robots/" not in self.name
         self.texts: list[Asked] = []
         self.open: list[str] = []
+        self.counted: set[str] = set()
         self.known: dict[str, list[ast.expr]] = {}
         for node in ast.walk(tree):
             if isinstance(node, ast.Assign):
@@ -64,6 +67,11 @@ class Module(ast.NodeVisitor):
             self._words([*node.args[1:2], *node.args[3:4], *(x.value for x in node.keywords if x.arg == "hint")], node)
         elif name in ("Breakdown", "_fail") and self.name.startswith("numerics/"):
             self._words(node.args[1:2], node)
+        elif name == "Counted":
+            self.counted |= {text for one in node.args[1:2] for text in self._literals(one)}
+        elif name in BEFORE:
+            before = node.args[BEFORE[name] :][:1]
+            self.texts += [Asked(text, self._at(node)) for one in before for text in self._literals(one)]
         elif not self.layered:
             return
         elif name in self.refusals:
@@ -77,10 +85,13 @@ class Module(ast.NodeVisitor):
 
     def _message(self, node: ast.Call) -> None:
         first = node.args[0]
-        for text in self._literals(first):
-            starred = any(x.arg is None for x in node.keywords)
-            gaps = None if starred else frozenset(x.arg for x in node.keywords if x.arg)
-            self.texts.append(Asked(text, self._at(node), gaps))
+        starred = any(x.arg is None for x in node.keywords)
+        gaps = None if starred else frozenset(x.arg for x in node.keywords if x.arg)
+        known = self.known.get(first.id, []) if isinstance(first, ast.Name) else []
+        before = [x for x in known if x.lineno <= node.lineno]
+        nearest = set(self._literals(max(before, key=lambda x: x.lineno) if before else first))
+        for text in self._literals(first):  # a name that was used before had other texts
+            self.texts.append(Asked(text, self._at(node), gaps if text in nearest else None))
         for text in self._named(first):
             self.texts.append(Asked(text, self._at(node)))
 

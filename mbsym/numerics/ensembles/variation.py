@@ -6,7 +6,7 @@ space of all that varies, from NumPy's PCG64 or from Sobol's sequence (scrambled
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import isfinite, prod
@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from mbsym.algebra.base import Lowering
+from mbsym.expressions.guessing import guess
 from mbsym.expressions.tree import names
 from mbsym.expressions.tree import text as spelled
 from mbsym.model.comparison import has_sign, holds
@@ -91,15 +92,23 @@ class Unvaried(ValueError):
         self.reasons = tuple(reasons)
 
 
-def complaints(system: System, variations: Sequence[Variation], members: int | None) -> Iterator[tuple[str, str, str]]:
-    """What is wrong with them: (name, sentence, hint)."""
-    known = (*system.parameter_names, *system.coordinates, *system.velocities)
-    following = {relation.name for relation in system.relations}
+def complaints(
+    variations: Sequence[Variation],
+    members: int | None,
+    known: Sequence[str],
+    following: Collection[str] = (),
+    what: str = "members",
+    most: int = MOST_MEMBERS,
+    example: int = 1000,
+) -> Iterator[tuple[str, str, str]]:
+    """What is wrong with them: (name, sentence, hint).
+
+    ``known`` names may vary but for those ``following`` from others.  How many of ``what`` are drawn, ``most`` at most,
+    an option of that name says.
+    """
     seen: set[str] = set()
     for one in variations:
         if one.name not in known:
-            from mbsym.expressions.guessing import guess
-
             yield one.name, f"there is nothing called '{one.name}' to vary{guess(one.name, known)}", ""
         elif one.name in following:
             yield one.name, f"{one.name} follows from other parameters", "vary those of which its relation is made"
@@ -111,12 +120,20 @@ def complaints(system: System, variations: Sequence[Variation], members: int | N
     yield from clash
     grids = [one for one in variations if isinstance(one, Grid)]
     if not clash and grids and members is not None:
-        yield grids[0].name, "a grid says itself how many members it has", "leave --members out"
+        yield grids[0].name, f"a grid says itself how many {what} it has", f"leave --{what} out"
     elif not grids and members is None and variations:
-        yield variations[0].name, "how many members to draw is not said", "for example --members 1000"
+        yield variations[0].name, f"how many {what} to draw is not said", f"for example --{what} {example}"
     count = prod(one.count for one in grids) if grids else members or 0
-    if count > MOST_MEMBERS:
-        yield variations[0].name, f"{count} members are too many", f"at most {MOST_MEMBERS}"
+    if count > most:
+        yield variations[0].name, f"{count} {what} are too many", f"at most {most}"
+
+
+def complaints_of(
+    system: System, variations: Sequence[Variation], members: int | None
+) -> Iterator[tuple[str, str, str]]:
+    """Of the members of an ensemble."""
+    known = (*system.parameter_names, *system.coordinates, *system.velocities)
+    yield from complaints(variations, members, known, {relation.name for relation in system.relations})
 
 
 def badly_ranged(one: Variation) -> Iterator[tuple[str, str, str]]:
@@ -124,6 +141,8 @@ def badly_ranged(one: Variation) -> Iterator[tuple[str, str, str]]:
     ends = (one.low, one.high) if isinstance(one, Grid) else (one.first, one.second)
     if not all(map(isfinite, ends)):
         yield one.name, f"the range of {one.name} is not finite", ""
+    elif isinstance(one, Grid) and one.low == one.high:
+        yield one.name, f"the range of {one.name} is empty: {one.low:g} to {one.high:g}", "give two ends"
     if isinstance(one, Draw) and one.kind == NORMAL and not one.second > 0:
         yield one.name, f"the standard deviation of {one.name} must be positive, not {one.second:g}", ""
     if isinstance(one, Draw) and one.kind == UNIFORM and not one.second > one.first:
@@ -142,7 +161,7 @@ def drawn(
     system: System, variations: Sequence[Variation], members: int | None = None, seed: int = 1, sampling: str = RANDOM
 ) -> Any:
     """The values, shape (len(variations), m).  Raises Unvaried with everything that is wrong."""
-    wrong = list(complaints(system, variations, members))
+    wrong = list(complaints_of(system, variations, members))
     if wrong:
         raise Unvaried(wrong)
     grids = [one for one in variations if isinstance(one, Grid)]

@@ -13,10 +13,11 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
-from mbsym.algebra.failures import Failure
+from mbsym.algebra.failures import Failure, message_of
 from mbsym.algebra.program import Program
 from mbsym.algebra.ring import Ring
 from mbsym.analysis import Analysis
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import Expression
 from mbsym.mechanics.falling import falling_frames
 from mbsym.mechanics.newton_euler import residuals
@@ -177,7 +178,7 @@ def extremes(
             late.append(ladder.title)
     if late:
         shown = late if len(late) <= LISTED + 1 else [*late[:LISTED], f"and {len(late) - LISTED} more"]
-        left_out.append(f"beyond the budget, raise --budget: {', '.join(shown)}")
+        left_out.append(Message("beyond the budget, raise --budget: [[what]]", what=", ".join(shown)))
     joined = falling(given, ring, found, truth)
     seconds = time.perf_counter() - started
     enclosed = _enclosed(given, linear)
@@ -290,25 +291,25 @@ def _singularities(given: Scenario, units: SceneUnits, left_out: list[str]) -> S
     try:
         return singularities(given, ranges)
     except Failure as reason:
-        left_out.append(f"singular configurations: {reason}")
+        left_out.append(Message("singular configurations: [[why]]", why=message_of(reason)))
         return Singularities((), False, "", {})
 
 
 def _linear(given: Scenario, budget: float, left_out: list[str]) -> LinearModel | None:
     what = "linear equations, eigenvalues and verdicts"
     if given.system.constraints:
-        left_out.append(f"{what}: those of systems with constraints are not measured")
+        left_out.append(Message("[[what]]: those of systems with constraints are not measured", what=what))
         return None
     analysis = Analysis(given.system)
     analysis.ring.limit_work(int(budget * STEPS_PER_UNIT))
     try:
         terms = sum(len(x) for matrix in analysis.linearisation.matrices for row in matrix.polynomials for x in row)
         if terms > MOST_OPERATIONS:
-            left_out.append(f"{what}: {terms} terms are too many here")
+            left_out.append(Message("[[what]]: [[terms]] terms are too many here", what=what, terms=terms))
             return None
         return LinearModel(analysis)
     except Failure as reason:
-        left_out.append(f"{what}: {reason.reason}")
+        left_out.append(Message("[[what]]: [[why]]", what=what, why=reason.reason))
         return None
 
 

@@ -16,6 +16,7 @@ import numpy as np
 
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Ring
+from mbsym.expressions.message import Message
 from mbsym.mechanics.constraints.dynamics import ConstrainedDynamics, constrained_dynamics
 from mbsym.numerics.closing import closed
 from mbsym.numerics.dynamics import Dynamics
@@ -55,7 +56,8 @@ def on_constraints(ladder: Ladder, left_out: list[str]) -> Ladder | None:
         else:
             probes.append(replace(probe, state=state))
     if missing:
-        left_out.append(f"{ladder.title} {', '.join(missing)}: no state of the constraints was found there")
+        text = "[[ladder]] [[sizes]]: no state of the constraints was found there"
+        left_out.append(Message(text, ladder=ladder.title, sizes=", ".join(missing)))
     return replace(ladder, probes=tuple(probes)) if probes else None
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from math import isfinite
 
+from mbsym.expressions.message import Message, enumerated, joined, worded
 from mbsym.numerics.borders import BORDER
 from mbsym.numerics.extremes.extremes import LISTED, Compensated, Extremes, Row, VerdictRow
 from mbsym.numerics.extremes.singular import Singularities, SingularSet
@@ -29,10 +30,12 @@ def sentences(found: Extremes, file: str = "FILE") -> Iterator[str]:
     ``file`` stands in the commands that are advised.
     """
     if found.falling is not None and found.falling.joined - found.falling.apart >= TOLD:
-        yield (
-            f"Gravity and the acceleration of {', '.join(found.falling.frames)} are joined before numbers are put in: "
-            f"with the bodies at rest float64 keeps {found.falling.joined:.1f} digits of the forcing, "
-            f"where term by term it would keep {found.falling.apart:.1f}."
+        yield Message(
+            "Gravity and the acceleration of [[frames]] are joined before numbers are put in: with the bodies at rest "
+            "float64 keeps [[joined]] digits of the forcing, where term by term it would keep [[apart]].",
+            frames=", ".join(found.falling.frames),
+            joined=f"{found.falling.joined:.1f}",
+            apart=f"{found.falling.apart:.1f}",
         )
     if found.positions is not None:
         yield from lost_rank(found.positions)
@@ -40,21 +43,22 @@ def sentences(found: Extremes, file: str = "FILE") -> Iterator[str]:
         yield from _where(found.singularities, file, None if found.positions is None else found.positive)
     yield from _near(found)
     yield from _pairs(found)
-    yield from _range(found, RATES, "Rates")
-    yield from _range(found, EQUILIBRIUM, "States at distances from the unperturbed motion")
+    yield from _range(found, RATES, Message("Rates"))
+    yield from _range(found, EQUILIBRIUM, Message("States at distances from the unperturbed motion"))
     yield from _ratios(found, file)
     if found.eigenvalues:
-        yield f"Eigenvalues of the first approximation at the given values, in proved enclosures: {_roots(found)}."
+        text = "Eigenvalues of the first approximation at the given values, in proved enclosures: [[roots]]."
+        yield Message(text, roots=_roots(found))
     yield from _verdicts(found)
     yield from _formulas(found)
 
 
-def _onward(sizes: Iterable[float], bad: Iterable[float]) -> str:
+def _onward(sizes: Iterable[float], bad: Iterable[float]) -> Message:
     """``from 1e-05 on`` where everything nearer is bad as well, else the places one by one."""
     places = sorted(set(bad), reverse=True)
     if {size for size in sizes if size <= places[0]} == set(places):
-        return f"from {places[0]:.0e} on"
-    return "at " + ", ".join(f"{place:.0e}" for place in places)
+        return Message("from [[size]] on", size=f"{places[0]:.0e}")
+    return Message("at [[sizes]]", sizes=", ".join(f"{place:.0e}" for place in places))
 
 
 def _short(size: float) -> str:
@@ -68,49 +72,79 @@ def _pairs(found: Extremes) -> Iterator[str]:
     for one in found.compensated:
         said.setdefault(one.subject, []).append(one)
     for subject, places in said.items():
-        where = (
-            f"{subject} times {', '.join(f'{one.size:.0e}' for one in places)}" if subject else "At the given values"
-        )
+        where = Message("At the given values")
+        if subject:
+            sizes = ", ".join(f"{one.size:.0e}" for one in places)
+            where = Message("[[name]] times [[sizes]]", name=subject, sizes=sizes)
         worst = min(places, key=lambda one: one.found.after)
-        dearest = max(one.found.cost for one in places)
-        yield (
-            f"{where}: float64 kernels carry {worst.found.sensitive} operations of the accelerations in pairs of "
-            f"numbers and keep {worst.found.after:.1f} digits there, where plain ones keep "
-            f"{worst.found.before:.1f}; they take up to {dearest:.1f} times as many operations."
+        yield Message(
+            "[[where]]: float64 kernels carry [[operations]] operations of the accelerations in pairs of "
+            "numbers and keep "
+            "[[after]] digits there, where plain ones keep [[before]]; they take up to [[cost]] times as "
+            "many operations.",
+            where=where,
+            operations=worst.found.sensitive,
+            after=f"{worst.found.after:.1f}",
+            before=f"{worst.found.before:.1f}",
+            cost=f"{max(one.found.cost for one in places):.1f}",
         )
     if said:
         least = min(one.found.before for one in found.compensated)
-        yield (
-            f"Ensembles (mbsym simulate --vary) are computed with plain kernels: of the accelerations they keep "
-            f"{least:.1f} digits where these are fewest."
+        yield Message(
+            "Ensembles (mbsym simulate --vary) are computed with plain kernels: of the accelerations "
+            "they keep [[digits]] "
+            "digits where these are fewest.",
+            digits=f"{least:.1f}",
         )
 
 
 def lost_rank(found: SingularPositions) -> Iterator[str]:
     """Where constraints lose their rank, how that is known, and that a search is no proof."""
-    yield (
-        "States are led to the constraints; mass matrix and forcing, and where that matrix is singular, are those of "
-        "the tree without them."
+    yield Message(
+        "States are moved onto the constraints; mass matrix and forcing, and where that matrix is singular, "
+        "are those of the "
+        "tree without them."
     )
-    when = " at t = 0" if found.moving else ""
     for one in found.found:
-        how = "proved by rational arithmetic" if one.proved else "to the roundings of float64"
-        near = "; others are next to it" if one.family else ""
-        yield (
-            f"The constraints lose their rank{when} where {one.text}: {one.rank} of {one.usual} rows are independent "
-            f"there ({how}){near}."
+        how = Message("proved by rational arithmetic") if one.proved else Message("to the roundings of float64")
+        text = (
+            "The constraints lose their rank where [[where]]: [[rank]] of [[usual]] rows are independent "
+            "there ([[how]])"
         )
-    what = "These were" if found.found else f"No position in which constraints lose their rank{when} was"
-    more = ", more than are listed" if found.more else ""
-    others = "no others" if found.found else "none"
-    yield f"{what} found from {found.starts} starts{more}, which is no proof that there are {others}."
+        if found.moving:
+            text = (
+                "The constraints lose their rank at t = 0 where [[where]]: [[rank]] of [[usual]] rows "
+                "are independent there "
+                "([[how]])"
+            )
+        told = Message(text, where=one.text, rank=one.rank, usual=one.usual, how=how)
+        yield Message("[[told]]; others are next to it.", told=told) if one.family else Message("[[told]].", told=told)
+    if found.found:
+        text = "These were found from [[starts]] starts, which is no proof that there are no others."
+        if found.more:
+            text = (
+                "These were found from [[starts]] starts, more than are listed, which is no proof that "
+                "there are no others."
+            )
+    else:
+        text = (
+            "No position in which constraints lose their rank was found from [[starts]] starts, which is no proof that "
+            "there are none."
+        )
+        if found.moving:
+            text = (
+                "No position in which constraints lose their rank at t = 0 was found from [[starts]] "
+                "starts, which is no "
+                "proof that there are none."
+            )
+    yield Message(text, starts=found.starts)
 
 
 #: With constraints, what their directions make of a singular matrix of the tree.
 _ALLOWED = {
-    True: "on what the constraints allow it is positive there, where that was looked at (in float64)",
-    False: "on what the constraints allow it is singular there, too, where that was looked at (in float64)",
-    None: "no state of the constraints was found there",
+    True: Message("on what the constraints allow it is positive there, where that was looked at (in float64)"),
+    False: Message("on what the constraints allow it is singular there, too, where that was looked at (in float64)"),
+    None: Message("no state of the constraints was found there"),
 }
 
 
@@ -119,101 +153,145 @@ def _where(found: Singularities, file: str, positive: Sequence[bool | None] | No
     if not found.how:
         return
     for number, one in enumerate(found.sets):
-        others = ", whatever else is" if one.proved else ""
         why = _why(one, file) if positive is None else _ALLOWED[positive[number]]
-        yield f"The mass matrix is singular where {_set(one)}{others}: {why}."
+        text = "The mass matrix is singular where [[where]]: [[why]]."
+        if one.proved:
+            text = "The mass matrix is singular where [[where]], whatever else is: [[why]]."
+        yield Message(text, where=_set(one), why=why)
     for factor in found.undecided:
-        yield f"It is undecided whether the mass matrix is singular where {factor} vanishes, and whether that does."
+        yield Message(
+            "It is undecided whether the mass matrix is singular where [[factor]] vanishes, and whether that does.",
+            factor=factor,
+        )
     within = ", ".join(f"|{name}| <= {float(bound):.3g}" for name, bound in found.ranges.items())
-    bounds = f" (for {within})" if within else ""
     if found.complete:
-        where = "nowhere else" if found.sets else "nowhere"
-        yield f"The mass matrix is {where} singular{bounds}: proved by {found.how}."
+        text = "The mass matrix is nowhere singular[[within]]: proved by [[how]]."
+        if found.sets:
+            text = "The mass matrix is nowhere else singular[[within]]: proved by [[how]]."
+        bounds = Message(" (for [[ranges]])", ranges=within) if within else ""
+        yield Message(text, within=bounds, how=worded(found.how))
     elif not found.undecided:
-        none = "No other" if found.sets else "No"
-        yield f"{none} singular configuration was found, which is no proof; searched were {found.how}."
+        text = "No singular configuration was found, which is no proof; searched were [[how]]."
+        if found.sets:
+            text = "No other singular configuration was found, which is no proof; searched were [[how]]."
+        yield Message(text, how=worded(found.how))
+
+
+def _alternatives(parts: Sequence[str]) -> str:
+    """``a``, ``a or b``, ``a or b or c``."""
+    told = parts[0]
+    for one in parts[1:]:
+        told = Message("[[first]] or [[second]]", first=told, second=one)
+    return told
 
 
 def _set(one: SingularSet) -> str:
     """``theta = pi/2 or -pi/2``, ``cos(a) + cos(b) = 0``, ``a = 1.57 and b = 3.14``."""
     if one.values:
-        return f"{one.names[0]} = {' or '.join(value.label for value in one.values)}"
-    points = [
-        " and ".join(f"{name} = {float(x):.6g}" for name, x in sorted(place.items())) for place in one.places[:LISTED]
-    ]
+        values = [value.label for value in one.values]
+        return Message("[[name]] = [[values]]", name=one.names[0], values=_alternatives(values))
+    points: list[str] = []
+    for place in one.places[:LISTED]:
+        values = [f"{name} = {float(x):.6g}" for name, x in sorted(place.items())]
+        points.append(enumerated(values))
     if one.finite:
-        return " or ".join(points) + (
-            f" or at {len(one.places) - LISTED} more places" if len(one.places) > LISTED else ""
-        )
-    return f"{one.equation} = 0 (for instance {points[0]})"
+        more = len(one.places) - LISTED
+        told = _alternatives(points)
+        return Message("[[places]] or at [[more]] more places", places=told, more=more) if more > 0 else told
+    return Message("[[equation]] = 0 (for instance [[point]])", equation=one.equation, point=points[0])
 
 
 _WHY = {
-    CHART: "there the coordinates fail, not the model",
-    MODEL: "there the model fails: it may move without moving any mass, in whatever coordinates",
-    BOTH: "there the coordinates fail, and the model, too: it may move without moving any mass",
-    OPEN: "ranks did not tell whether the coordinates or the model fail there",
+    CHART: Message("there the coordinates fail, not the model"),
+    MODEL: Message("there the model fails: it may move without moving any mass, in whatever coordinates"),
+    BOTH: Message("there the coordinates fail, and the model, too: it may move without moving any mass"),
+    OPEN: Message("ranks did not tell whether the coordinates or the model fail there"),
 }
 
 
-def _why(one: SingularSet, file: str) -> str:
-    text = _WHY[one.kind]
+def _why(one: SingularSet, file: str) -> Message:
+    why = _WHY[one.kind]
     if one.joint:
-        text += f", because the first and the third turn of {one.joint} are about one axis"
-        return f"{text}; other turns are regular there: mbsym extremes {file} --sequences"
-    return text if one.proved else f"{text} (found with the other coordinates near the given ones, not proved for all)"
+        return Message(
+            "[[why]], because the first and the third turn of [[joint]] are about one axis; other turns "
+            "are regular there: "
+            "mbsym extremes [[file]] --sequences",
+            why=why,
+            joint=one.joint,
+            file=file,
+        )
+    text = "[[why]] (found with the other coordinates near the given ones, not proved for all)"
+    return why if one.proved else Message(text, why=why)
 
 
 def _near(found: Extremes) -> Iterator[str]:
     """What is lost near singular configurations; ladders of which the same is to be said are named together."""
-    said: dict[tuple[str, ...], list[str]] = {}
+    said: dict[tuple[Message, ...], list[str]] = {}
     for kind, subject in found.ladders:
         if kind == SINGULAR:
             said.setdefault(tuple(_lost(found, subject)), []).append(subject)
     for facts, subjects in said.items():
         for fact in facts:
-            yield f"{', '.join(subjects)}: {fact}."
+            yield Message("[[subjects]]: [[fact]].", subjects=", ".join(subjects), fact=fact)
 
 
-def _lost(found: Extremes, subject: str) -> Iterator[str]:
-    parts = []
+def _lost(found: Extremes, subject: str) -> Iterator[Message]:
+    parts: list[Message] = []
     for quantity in ("accelerations", "Jacobian"):
         rows = [r for r in found.of(SINGULAR, subject, quantity) if r.found.bits]
         for scalar in FULL:
             lost = [r.size for r in rows if r.found.digits[scalar] < FEW]
             if lost:
                 where = _onward((r.size for r in rows), lost)
-                parts.append(f"{scalar} keeps fewer than {FEW:.0f} digits of the {quantity} {where}")
+                text = "[[scalar]] keeps fewer than [[few]] digits of the accelerations [[where]]"
+                if quantity == "Jacobian":
+                    text = "[[scalar]] keeps fewer than [[few]] digits of the Jacobian [[where]]"
+                parts.append(Message(text, scalar=scalar, few=f"{FEW:.0f}", where=where))
     known = [r for r in found.of(SINGULAR, subject, "accelerations") if r.found.bits]
     avoidable = [r for r in known if r.found.verdict == "formula"]
     if parts and not avoidable:
-        parts.append("the question makes that unavoidable in these coordinates, whatever the formula")
+        parts.append(Message("the question makes that unavoidable in these coordinates, whatever the formula"))
     if not parts and known:
         least = min(r.found.digits[FLOAT64] for r in known)
         nearest = min(r.size for r in known)
-        parts = [f"float64 keeps at least {least:.0f} digits of the accelerations down to {nearest:.0e}"]
+        text = "float64 keeps at least [[least]] digits of the accelerations down to [[nearest]]"
+        parts = [Message(text, least=f"{least:.0f}", nearest=f"{nearest:.0e}")]
     if parts:
-        yield "; ".join(parts)
+        yield joined(parts, "; ")
     if avoidable:
         r = max(avoidable, key=lambda row: row.size)
         where = _onward((row.size for row in known), (row.size for row in avoidable))
-        yield (
-            f"{where} more digits of the accelerations are lost than the question makes unavoidable (condition "
-            f"{r.found.condition:.0e}, but {r.found.formula:.1f} digits at the state as rounded, at {r.size:.0e})"
+        yield Message(
+            "[[where]] more digits of the accelerations are lost than the question makes unavoidable (condition "
+            "[[condition]], but [[digits]] digits at the state as rounded, at [[size]])",
+            where=where,
+            condition=f"{r.found.condition:.0e}",
+            digits=f"{r.found.formula:.1f}",
+            size=f"{r.size:.0e}",
         )
 
 
-def _range(found: Extremes, kind: str, title: str) -> Iterator[str]:
+def _range(found: Extremes, kind: str, title: Message) -> Iterator[str]:
     rows = [r for r in found.rows if r.kind == kind and r.found.bits]
     if not rows:
         return
     least = min(rows, key=lambda r: r.found.digits[FLOAT64])
     single = min(rows, key=lambda r: r.found.digits[FLOAT32])
     sizes = [r.size for r in rows]
-    worst = f"{least.found.digits[FLOAT64]:.1f} digits (worst: {least.quantity} at {least.size:.0e})"
-    coarse = f"{single.found.digits[FLOAT32]:.1f} ({single.quantity} at {single.size:.0e})"
-    places = f"{title} from {_short(min(sizes))} to {_short(max(sizes))}"
-    yield f"{places}: float64 keeps at least {worst}, float32 {coarse}."
+    yield Message(
+        "[[title]] from [[low]] to [[high]]: float64 keeps at least [[digits]] digits (worst: "
+        "[[quantity]] at [[size]]), "
+        "float32 [[single]] ([[quantity32]] at [[size32]]).",
+        title=title,
+        low=_short(min(sizes)),
+        high=_short(max(sizes)),
+        digits=f"{least.found.digits[FLOAT64]:.1f}",
+        quantity=Message(least.quantity),
+        size=f"{least.size:.0e}",
+        single=f"{single.found.digits[FLOAT32]:.1f}",
+        quantity32=Message(single.quantity),
+        size32=f"{single.size:.0e}",
+    )
 
 
 def _ratios(found: Extremes, file: str) -> Iterator[str]:
@@ -230,41 +308,55 @@ def _ratios(found: Extremes, file: str) -> Iterator[str]:
             fine.setdefault(factors, {})[subject] = min(row.found.digits[FLOAT64] for row in own)
     for factors, subjects in fine.items():
         listed = ", ".join(f"{factor:.0e}" for factor in factors)
-        yield (
-            f"{', '.join(subjects)} times {listed}: float64 keeps at least {min(subjects.values()):.1f} digits of "
-            "everything that was measured."
+        yield Message(
+            "[[names]] times [[factors]]: float64 keeps at least [[digits]] digits of everything that was measured.",
+            names=", ".join(subjects),
+            factors=listed,
+            digits=f"{min(subjects.values()):.1f}",
         )
     for subject, lost in poor.items():
         worst = min(lost, key=lambda r: r.found.digits[FLOAT64])
-        names = ", ".join(dict.fromkeys(r.quantity for r in lost))
-        yield (
-            f"{subject} times {worst.size:.0e}: {worst.found.digits[FLOAT64]:.1f} digits of the {_called(worst)} are "
-            f"left in float64 (below {GOOD:.0f} digits: {names}), {_blame(found, worst, file)}."
+        yield Message(
+            "[[name]] times [[factor]]: [[digits]] digits of the [[quantity]] are left in float64 (below "
+            "[[good]] digits: "
+            "[[quantities]]), [[why]].",
+            name=subject,
+            factor=f"{worst.size:.0e}",
+            digits=f"{worst.found.digits[FLOAT64]:.1f}",
+            quantity=_called(worst),
+            good=f"{GOOD:.0f}",
+            quantities=joined(map(Message, dict.fromkeys(r.quantity for r in lost)), ", "),
+            why=_blame(found, worst, file),
         )
 
 
-def _called(row: Row) -> str:
+def _called(row: Row) -> Message:
     """``accelerations``, ``matrix M``."""
-    return f"matrix {row.quantity}" if row.quantity in ("M", "D", "G", "K", "N") else row.quantity
+    matrix = row.quantity in ("M", "D", "G", "K", "N")
+    return Message("matrix [[name]]", name=row.quantity) if matrix else Message(row.quantity)
 
 
-def _blame(found: Extremes, row: Row, file: str) -> str:
+def _blame(found: Extremes, row: Row, file: str) -> Message:
     """What loses the digits, and what to do about it."""
+    condition = f"{row.found.condition:.0e}"
     if row.found.verdict != "formula":
-        return f"the question itself loses them (condition {row.found.condition:.0e}), so that no formula keeps them"
-    text = f"lost by the formula (condition {row.found.condition:.0e})"
+        text = "the question itself loses them (condition [[condition]]), so that no formula keeps them"
+        return Message(text, condition=condition)
+    told = Message("lost by the formula (condition [[condition]])", condition=condition)
     value = found.values.get(row.subject)
     if value is None:
-        return text
+        return told
     changed = f"--set {row.subject}={value * Fraction(f'{row.size:e}')}"
     if row.quantity == "eigenvalues":
-        return f"{text}; exact enclosures: mbsym extremes {file} {changed}"
+        command = f"mbsym extremes {file} {changed}"
+        return Message("[[why]]; exact enclosures: [[command]]", why=told, command=command)
     if row.quantity == "accelerations":
-        return f"{text}; three more: mbsym simulate {file} {changed} --time 1 --arithmetic extended"
-    return text
+        command = f"mbsym simulate {file} {changed} --time 1 --arithmetic extended"
+        return Message("[[why]]; three more: [[command]]", why=told, command=command)
+    return told
 
 
-def _roots(found: Extremes) -> str:
+def _roots(found: Extremes) -> Message:
     """``[-0.25 +/- 3e-13] + [3.13 +/- 2e-13]*i``; of a conjugate pair the upper one, with +-."""
     shown = []
     for root in found.eigenvalues:
@@ -275,8 +367,14 @@ def _roots(found: Extremes) -> str:
         imaginary = "" if root.imag.is_zero() else f"{sign}{root.imag.str(13)}*i"
         shown.append(f"{real} {imaginary}".strip() or "0")
     counts = Counter(shown)
-    listed = [text if count == 1 else f"{text} ({count} times)" for text, count in counts.items()]
-    return "; ".join(listed[:LISTED]) + (f"; and {len(listed) - LISTED} more" if len(listed) > LISTED else "")
+    times = "[[root]] ([[count]] times)"
+    listed = [text if count == 1 else Message(times, root=text, count=count) for text, count in counts.items()]
+    return _cut(joined(listed[:LISTED], "; "), len(listed) - LISTED)
+
+
+def _cut(told: Message, more: int) -> Message:
+    """With the number of those that are not listed."""
+    return Message("[[listed]]; and [[more]] more", listed=told, more=more) if more > 0 else told
 
 
 def _verdicts(found: Extremes) -> Iterator[str]:
@@ -286,36 +384,38 @@ def _verdicts(found: Extremes) -> Iterator[str]:
         own = [row for row in borders if row.subject.startswith(subject + " from ")]
         sides = [[row for row in own if row.subject.endswith(f" from {side}")] for side in ("below", "above")]
         below, above = (_side(rows) for rows in sides)
-        text = f"{subject}: a border of the first approximation, {below} below and {above} above"
+        text = "[[where]]: a border of the first approximation, [[below]] below and [[above]] above"
+        told = [Message(text, where=subject, below=below, above=above)]
         if all(len({row.judged.exact.word for row in rows}) == 1 for rows in sides):
-            text += (
-                f", decided exactly down to a distance of {max(min(row.size for row in rows) for rows in sides):.0e}"
-            )
+            least = max(min(row.size for row in rows) for rows in sides)
+            text = "[[told]], decided exactly down to a distance of [[least]]"
+            told = [Message(text, told=told[0], least=f"{least:.0e}")]
         for scalar in FULL:
             wrong = [row.size for row in own if row.judged.wrong(scalar)]
             if wrong:
-                text += f"; {scalar} eigenvalues say otherwise {_onward((row.size for row in own), wrong)}"
-        yield text + "."
+                text = "[[scalar]] eigenvalues say otherwise [[where]]"
+                told.append(Message(text, scalar=scalar, where=_onward((row.size for row in own), wrong)))
+        yield Message("[[told]].", told=joined(told, "; "))
     others = [row for row in found.verdicts if row.kind == RATIO]
     misjudged = [row for row in others if row.judged.wrong(FLOAT64)]
     if misjudged:
-        listed = ", ".join(f"{row.subject} times {row.size:.0e}" for row in misjudged[:LISTED])
-        more = f" and {len(misjudged) - LISTED} more" if len(misjudged) > LISTED else ""
-        yield f"float64 eigenvalues contradict the exact verdict for {listed}{more}."
+        cases = (Message("[[name]] times [[sizes]]", name=r.subject, sizes=f"{r.size:.0e}") for r in misjudged[:LISTED])
+        told_cases = _cut(joined(cases, ", "), len(misjudged) - LISTED)
+        yield Message("float64 eigenvalues contradict the exact verdict for [[cases]].", cases=told_cases)
 
 
 def _side(rows: Sequence[VerdictRow]) -> str:
     """The verdict on one side of a border; where it varies, all of it."""
     if not rows:
-        return "not looked at"
+        return Message("not looked at")
     words = dict.fromkeys(row.judged.exact.word for row in rows)
     if len(words) == 1:
-        return str(rows[0].judged.exact.word)
+        return Message(rows[0].judged.exact.word)
     parts = []
     for word in words:
         places = [row.size for row in rows if row.judged.exact.word == word]
-        parts.append(f"{word} {_onward((row.size for row in rows), places)}")
-    return " and ".join(parts)
+        parts.append(joined((Message(word), _onward((row.size for row in rows), places))))
+    return enumerated(parts)
 
 
 def _formulas(found: Extremes) -> Iterator[str]:
@@ -323,9 +423,12 @@ def _formulas(found: Extremes) -> Iterator[str]:
         r for r in found.rows if r.found.verdict == "formula" and r.kind != SINGULAR and isfinite(r.found.condition)
     ]
     if rows:
-        listed = dict.fromkeys(f"{r.quantity} ({r.subject})" for r in rows)
-        yield f"More is lost than the condition explains, so another formula could keep it: {', '.join(listed)}."
-    open_ = dict.fromkeys(f"{r.quantity} ({r.subject} {r.size:.0e})" for r in found.rows if not r.found.bits)
+        listed = dict.fromkeys(joined((Message(r.quantity), f"({r.subject})")) for r in rows)
+        text = "More is lost than the condition explains, so another formula could keep it: [[quantities]]."
+        yield Message(text, quantities=joined(listed, ", "))
+    unbounded = (r for r in found.rows if not r.found.bits)
+    open_ = dict.fromkeys(joined((Message(r.quantity), f"({r.subject} {r.size:.0e})")) for r in unbounded)
     if open_:
-        undecided = f"Undecided, no tight enclosure within 2048 bits: {', '.join(list(open_)[:LISTED])}"
-        yield undecided + (f" and {len(open_) - LISTED} more." if len(open_) > LISTED else ".")
+        quantities = _cut(joined(list(open_)[:LISTED], ", "), len(open_) - LISTED)
+        text = "Undecided, no tight enclosure within 2048 bits: [[quantities]]."
+        yield Message(text, quantities=quantities)

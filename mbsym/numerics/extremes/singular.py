@@ -31,6 +31,7 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.zero_kinds import UNDECIDED, Zero, Zeros, ZeroSet
 from mbsym.algebra.zero_sets import zero_sets
 from mbsym.expressions.angles import linear_form
+from mbsym.expressions.message import Message
 from mbsym.formulas.python import python_text
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.own_energy import own_determinants
@@ -125,8 +126,8 @@ def singularities(given: Scenario, ranges: Mapping[str, Fraction]) -> Singularit
 
 
 #: What a list of singular sets stands on.
-WHOLE = "the factors of det M at these numbers"
-OWN = "the kinetic energy that every joint gives its own body while what carries it rests"
+WHOLE = Message("the factors of det M at these numbers")
+OWN = Message("the kinetic energy that every joint gives its own body while what carries it rests")
 
 
 def _told(
@@ -302,5 +303,6 @@ def _searched(given: Scenario, kinds: Kinds, joints: Sequence[tuple[str, ZeroSet
                 value = Value(_multiple_of_pi(turns), _exact(angle))
                 kind = kinds.kind({name: angle})
                 found.append(SingularSet((name,), (value,), "", ({name: value.exact},), False, kind, "", False))
-    how = f"multiples of pi/12 of one coordinate at a time; det M itself was not to be had: {reason}"
+    text = "multiples of pi/12 of one coordinate at a time; det M itself was not to be had: [[reason]]"
+    how = Message(text, reason=reason)
     return Singularities(_joined([*known, *found]), False, how, {})

@@ -22,6 +22,7 @@ from typing import Any
 
 import numpy as np
 
+from mbsym.expressions.message import Counted, Message
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.kernels.llvm import available
@@ -150,7 +151,7 @@ def periodic_orbit(
     search = _Search(flow, turns, energy, energy(guess.state) if guess.keep_energy else None)
     here = search.at(np.array(guess.state, float), float(guess.period))
     if here is None:
-        raise NotFound("the motion of the guess breaks down before its period is over")
+        raise NotFound(Message("the motion of the guess breaks down before its period is over"))
     best, since = here, 0
     for count in range(MOST_STEPS):
         watch(count, here.size)
@@ -166,7 +167,13 @@ def periodic_orbit(
             raise NotFound(_vanishing(here.period, turns))
         best, since = (here, 0) if here.size < 0.5 * best.size else (best, since + 1)
     left = min(best.size, here.size)
-    raise NotFound(f"no convergence: what is left over after {count + 1} steps is {left:.1e} of the state's size")
+    raise NotFound(
+        Message(
+            "no convergence: what is left over after [[steps]] is [[left]] of the state's size",
+            steps=Counted(count + 1, "step"),
+            left=f"{left:.1e}",
+        )
+    )
 
 
 def _require_repetition(dynamics: Dynamics, rates: Any, guess: Guess) -> None:
@@ -176,22 +183,30 @@ def _require_repetition(dynamics: Dynamics, rates: Any, guess: Guess) -> None:
         for t in np.linspace(0.0, guess.period, SAMPLES):
             now, then = (rates(np.concatenate(([at], state))) for at in (t, t + guess.period))
             if np.any(np.abs(then - now) > REPEATED * (1 + np.abs(now))):  # never where one of them is no number
-                raise NotFound(f"the equations do not repeat after {guess.period:.15g}{_repeats(dynamics)}")
+                raise NotFound(_unrepeated(dynamics, f"{guess.period:.15g}"))
 
 
-def _repeats(dynamics: Dynamics) -> str:
-    """After what they do, where that is seen."""
+def _unrepeated(dynamics: Dynamics, period: str) -> Message:
+    """With what they do repeat after, where that is seen."""
     try:
-        period = 2 * np.pi / float(common_frequency(dynamics.right_hand_side))
+        own = 2 * np.pi / float(common_frequency(dynamics.right_hand_side))
     except NotPeriodic:
-        return ", and no period of theirs is known"
-    return f": they do after {period:.15g} and its multiples, one of which the period has to be"
+        text = "the equations do not repeat after [[period]], and no period of theirs is known"
+        return Message(text, period=period)
+    text = (
+        "the equations do not repeat after [[period]]: they do after [[own]] and its multiples, one of "
+        "which the period "
+        "has to be"
+    )
+    return Message(text, period=period, own=f"{own:.15g}")
 
 
-def _vanishing(period: float, turns: Any) -> str:
+def _vanishing(period: float, turns: Any) -> Message:
     """In no time every motion closes: a search that gets there tells of itself, not of what is near the guess."""
-    told = f"the search runs to ever shorter periods ({period:.3g}), over which any motion closes: begin nearer"
-    return told if np.any(turns) else f"{told}, and say which angle comes back turned, if one does (--turns NAME=1)"
+    text = "the search runs to ever shorter periods ([[period]]), over which any motion closes: begin nearer"
+    told = Message(text, period=f"{period:.3g}")
+    more = "[[told]], and say which angle comes back turned, if one does (--turns NAME=1)"
+    return told if np.any(turns) else Message(more, told=told)
 
 
 @dataclass(frozen=True)
@@ -316,7 +331,9 @@ def _orbit(dynamics: Dynamics, flow: Flow, found: _Place, turns: Any, steps: int
     state, period = found.state, found.period
     speeds = rates(np.concatenate(([0.0], state)))
     if free and float(np.max(np.abs(speeds) / (1 + np.abs(state)))) * period < RESTING:
-        raise NotFound("Newton's method has found a state of rest: begin farther away from it, or keep the energy")
+        raise NotFound(
+            Message("Newton's method has found a state of rest: begin farther away from it, or keep the energy")
+        )
     _, phi = flow.passage(state, 0.0, period)
     _, other = Flow(dynamics, 1e-10).passage(state, 0.0, period)
     basis = flow.tangent(state)
@@ -379,17 +396,19 @@ def _trivial(dynamics: Dynamics, state: Any, phi: Any, free: bool, basis: Any) -
     candidates: list[tuple[str, Any, bool]] = []
     if free:
         rates = compiled_kernel(dynamics, "right_hand_side")(np.concatenate(([0.0], state)))
-        candidates.append(("the motion itself: the equations do not know the time", rates, True))
+        candidates.append((Message("the motion itself: the equations do not depend on the time"), rates, True))
     if free and conserves_energy(dynamics):
-        candidates.append(("the energy is conserved", _Energy(dynamics).gradient(state), False))
+        candidates.append((Message("the energy is conserved"), _Energy(dynamics).gradient(state), False))
     momenta = compiled_kernel(dynamics, "momenta")
     slopes = _differences(lambda x: momenta(np.concatenate(([0.0], x))), state) if cyclic else None
     for name in cyclic:
         unit = np.zeros(2 * n)
         unit[names.index(name)] = 1.0
-        candidates.append((f"{name} is cyclic", unit, True))
+        candidates.append((Message("[[name]] is cyclic", name=name), unit, True))
         assert slopes is not None
-        candidates.append((f"the momentum of {name} is conserved", slopes[:, names.index(name)], False))
+        candidates.append(
+            (Message("the momentum of [[name]] is conserved", name=name), slopes[:, names.index(name)], False)
+        )
     size = float(np.linalg.norm(phi))
     for reason, vector, is_right in candidates:
         across = float(np.linalg.norm(vector - basis @ (basis.T @ vector)))

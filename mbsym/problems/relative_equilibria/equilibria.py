@@ -118,11 +118,15 @@ def _listed(first: Rest, described_by: System, within: float, limits: Limits) ->
     listed = [x for x in listed if x not in singular and x not in beyond]
     if singular or any(x.verdict.coordinates_singular for x in families):
         remarks.append(
-            "where the mass matrix is singular so are the coordinates: such a solution need not be an equilibrium, "
-            "which is to be seen in other coordinates"
+            Message(
+                "where the mass matrix is singular so are the coordinates: such a solution need not be an equilibrium, "
+                "which is to be seen in other coordinates"
+            )
         )
     if families and covering[0].joints:
-        remarks.append("families are listed in coordinates: one set of configurations may be described more than once")
+        remarks.append(
+            Message("families are listed in coordinates: one set of configurations may be described more than once")
+        )
     turning = tuple(
         (name, float(first.ring.evaluate(first.rates[first.ring.index("velocity", name)], {}).mid()))
         for name in first.turning
@@ -254,7 +258,7 @@ class _ChartSearch(SearchInBoxes):
 
     def _add_free_point(self) -> None:
         self._add(self._zero(), EXACT)
-        self.remarks.append("every position is an equilibrium")
+        self.remarks.append(Message("every position is an equilibrium"))
 
     def _add_family(self, table: Unknowns, family: Family) -> None:
         place = self._place(table, family.sample)

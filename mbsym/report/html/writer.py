@@ -72,7 +72,7 @@ class Writer:
         """A sentence in the language of the report, with its gaps filled."""
         return Markup("").join(
             self._notation(piece, sentence) if inside else self._plain(piece, sentence)
-            for inside, piece in pieces(self.language.sentence(sentence.text))
+            for inside, piece in pieces(self.language.text_of(sentence))
         )
 
     def _plain(self, text: str, sentence: Said) -> Markup:
@@ -373,7 +373,7 @@ class Writer:
 
     @block.register
     def _(self, value: content.Table) -> Markup:
-        head = Markup("").join(Markup('<th scope="col">{}</th>').format(self.said(x.title)) for x in value.columns)
+        head = Markup("").join(Markup('<th scope="col">{}</th>').format(self.inline(x.title)) for x in value.columns)
         rows = Markup("\n").join(
             Markup("<tr>{}</tr>").format(
                 Markup("").join(Markup("<td>{}</td>").format(self._joined(cell)) for cell in row)

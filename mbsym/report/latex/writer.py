@@ -64,7 +64,7 @@ class Writer:
 
     def said(self, sentence: Said) -> str:
         """A sentence in the language of the report, with its gaps filled."""
-        parts = pieces(self.language.sentence(sentence.text))
+        parts = pieces(self.language.text_of(sentence))
         return "".join(f"${self._filled(x, sentence, True)}$" if k else self._filled(x, sentence) for k, x in parts)
 
     def _filled(self, text: str, sentence: Said, inside: bool = False) -> str:
@@ -344,7 +344,10 @@ class Writer:
         if title:
             lines += [f"\\multicolumn{{{len(shown)}}}{{@{{}}l}}{{\\textbf{{{title}}}}}\\\\\\midrule"]
         else:
-            lines += ["\\toprule", " & ".join(self.said(value.columns[k].title) for k in shown) + r"\\\midrule\endhead"]
+            lines += [
+                "\\toprule",
+                " & ".join(self.inline(value.columns[k].title) for k in shown) + r"\\\midrule\endhead",
+            ]
         lines += [" & ".join(row) + "\\\\" for row in rows]
         return "\n".join([*lines, "\\bottomrule", "\\end{longtable}"])
 

@@ -414,9 +414,9 @@ def _entries(shown: Sequence[tuple[Map, Mapping[int, str]]], language: Language)
     dashed = numbered = False
     for found, told in shown:
         for one, (area, _) in zip(found.regions, found.areas, strict=True):
-            words = cell_words(found, one, language)
+            words = language.say(cell_words(found, one))
             if isinstance(found, BoxMap) and one.lack is Lack.UNPROVED:
-                words = f"{language.say('white: nothing is proved')} ({percent(found, language)})"
+                words = f"{language.say('white: nothing is proved')} ({language.say(percent(found))})"
             (before, *_), _ = by_words.get(words, ((0.0,), NONE))
             order: tuple[float, ...] = (before - area,)
             if found.of is Of.EQUILIBRIA:
@@ -425,7 +425,7 @@ def _entries(shown: Sequence[tuple[Map, Mapping[int, str]]], language: Language)
         for k, letter in told.items():
             if letter not in named_letters:  # of slices, the first tells what a curve is
                 named_letters.add(letter)
-                words = border_words(found, k, language)
+                words = language.say(border_words(found, k))
                 if isinstance(found.ground, Line):
                     words = f"{float_of(found.corners[k].sample):.6g}   {words}"
                 by_condition.setdefault(words, []).append(letter)

@@ -52,7 +52,7 @@ def map_tex(system: System, found: Map, language: Language) -> str:
     if isinstance(found, BoxMap):
         caption += f" {language.say('Every coloured box is proved as a whole')}"
         if any(one.lack is Lack.UNPROVED for one in found.regions):
-            caption += f"; {language.say('white: nothing is proved')} ({escaped(percent(found, language))})"
+            caption += f"; {language.say('white: nothing is proved')} ({escaped(language.say(percent(found)))})"
         caption += "."
     if found.interrupted:
         caption += f" {language.say(INTERRUPTED)}."
@@ -77,7 +77,7 @@ def _branches(system: System, found: Branches, language: Language) -> str:
         stable = f"{language.say('of them stable')} {counted.stable}"
         stable += f", {language.say('undecided')} {counted.undecided}" if counted.undecided else ""
         numbers.append(rf"\item ${low} < {name} < {high}$: {counted.count}, {stable}{doubt}")
-    told = [(one, words) for one in found.criticals if (words := critical_words(found, one, language))]
+    told = [(one, words) for one in found.criticals if (words := language.say(critical_words(found, one)))]
     critical = [rf"\item ${name} = {number_tex(one.sample)}$: {escaped(words)}" for one, words in told]
     lines = figure_lines(system, "branches", caption, "equilibria --vary")
     lines += listed(language.say("Numbers of equilibria:"), numbers)
@@ -133,7 +133,7 @@ def _marks(found: Map, names: LatexNames, language: Language) -> Iterator[str]:
     file = f"{stem(found)}.json"
     for name, letter in lettered(found).items():
         plane, k = places[name]
-        words = escaped(border_words(plane, k, language))
+        words = escaped(language.say(border_words(plane, k)))
         if isinstance(plane.ground, Line):
             equality = f"${names[plane.axes[0].name]} = {float_of(plane.corners[k].sample):.10g}$"
         else:

@@ -6,7 +6,8 @@ from collections.abc import Iterable, Sequence
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.plane.line import Line
-from mbsym.expressions.counting import counted
+from mbsym.expressions import message
+from mbsym.expressions.message import Message, joined
 from mbsym.maps.boundaries import Condition, Origin
 from mbsym.maps.boxes import BoxMap
 from mbsym.maps.branches_events import Event
@@ -16,9 +17,6 @@ from mbsym.maps.soft_borders import Onset
 from mbsym.maps.verdicts import Judged
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word
-from mbsym.report.language import Language
-
-ENGLISH = Language()
 
 #: Of several conditions that vanish on one curve, the first says most about it.
 _TELLING = (
@@ -82,17 +80,17 @@ def telling(conditions: Sequence[Condition], outside: bool = False) -> Condition
     return min(conditions, key=lambda one: order.index(one.origin))
 
 
-def condition_words(condition: Condition, found: Map, language: Language = ENGLISH) -> str:
+def condition_words(condition: Condition, found: Map) -> Message:
     """``double root: discriminant (psi, phi, sigma)``."""
-    words = language.say(_CONDITIONS[condition.origin])
+    words = Message(_CONDITIONS[condition.origin])
     if condition.origin in (Origin.ASSUMPTION, Origin.SIGN, Origin.INERTIA):
-        return f"{words}: {condition.about}" if condition.about else words
+        return joined((words, condition.about), ": ") if condition.about else words
     if condition.part is None or found.section is None or len(found.section.parts) == 1:
         return words
-    return f"{words} ({', '.join(found.section.coordinates[condition.part])})"
+    return Message("[[words]] ([[names]])", words=words, names=", ".join(found.section.coordinates[condition.part]))
 
 
-def border_words(found: Map, k: int, language: Language = ENGLISH) -> str:
+def border_words(found: Map, k: int) -> Message:
     """What a letter of the picture stands for: curve ``k``, or point ``k`` of a line.
 
     Where drawn borders bound what is not judged it is what parameters have to keep.
@@ -100,7 +98,7 @@ def border_words(found: Map, k: int, language: Language = ENGLISH) -> str:
     borders, conditions = marked(found, k)
     sides = [x for one in borders if found.drawn(one) for x in found.beside(one) if x is not None]
     condition = telling(conditions, outside=any(x.lack is not None for x in sides))
-    return condition_words(condition, found, language) + onset_words(borders, language)
+    return joined((condition_words(condition, found), *onset_words(borders)), ", ")
 
 
 def marked(found: Map, k: int) -> tuple[list[Cell], Sequence[Condition]]:
@@ -110,8 +108,8 @@ def marked(found: Map, k: int) -> tuple[list[Cell], Sequence[Condition]]:
     return [one for one in found.arcs if k in found.place(one).factors], found.boundaries.conditions[k]
 
 
-def onset_words(borders: Sequence[Cell], language: Language = ENGLISH) -> str:
-    """``, soft border`` of a curve's arcs or of points where terms of third order decide that on all of them.
+def onset_words(borders: Sequence[Cell]) -> list[Message]:
+    """``soft border`` of a curve's arcs or of points where terms of third order decide that on all of them.
 
     Nothing where one of them is open, or is decided at its point only.
     """
@@ -120,63 +118,63 @@ def onset_words(borders: Sequence[Cell], language: Language = ENGLISH) -> str:
         if one.soft is not None and one.soft.onset is not Onset.NEITHER:
             stretches = one.soft.stretches
             if one.shape is Shape.ARC and stretches is None:
-                return ""
+                return []
             seen |= {one.soft.onset, *(x.onset for x in stretches or ())}
     if not seen or Onset.OPEN in seen:
-        return ""
+        return []
     only = next(iter(seen)) if len(seen) == 1 else None
     words = {Onset.SOFT: "soft border", Onset.HARD: "hard border", None: "soft border in parts, hard in others"}
-    return f", {language.say(words[only])}"
+    return [Message(words[only])]
 
 
-def cell_words(found: Map, cell: Cell, language: Language = ENGLISH) -> str:
+def cell_words(found: Map, cell: Cell) -> Message:
     """What is said of a cell, for a legend or a table."""
     if (counts := cell.counted) is not None:
-        return counted_words(counts, cell.certainty, language)
+        return counted_words(counts, cell.certainty)
     if (judged := cell.judged) is None:
         assert cell.lack is not None
-        return language.say(LACKS[cell.lack])
-    return signature_words(judged, language) if found.of is Of.SIGNATURE else judged_words(judged, language)
+        return Message(LACKS[cell.lack])
+    return signature_words(judged) if found.of is Of.SIGNATURE else judged_words(judged)
 
 
-def counted_words(found: Counted, certainty: Certainty, language: Language = ENGLISH) -> str:
+def counted_words(found: Counted, certainty: Certainty) -> Message:
     """``24 equilibria, 4 stable``."""
     proved = certainty is Certainty.PROVED
-    stable = "stable" if found.throughout or not proved else "stable at the sample"
-    stable = language.say(stable, "number of equilibria")
-    if language.name == "en":
-        told = f"{counted(found.count, 'equilibrium', 'equilibria')}, {found.stable} {stable}"
-        told += f", {found.undecided} undecided" if found.undecided else ""
-    else:
-        told = f"{language.say('equilibria')}: {found.count}; {stable}: {found.stable}"
-        told += f"; {language.say('undecided')}: {found.undecided}" if found.undecided else ""
-    return told if proved else f"{told} ({language.say('at the sample only')})"
+    text = "[[equilibria]], [[stable]] stable"
+    if proved and not found.throughout:
+        text = "[[equilibria]], [[stable]] stable at the sample"
+    told = Message(text, equilibria=message.Counted(found.count, "equilibrium", "equilibria"), stable=found.stable)
+    if found.undecided:
+        told = Message("[[told]], [[undecided]] undecided", told=told, undecided=found.undecided)
+    return told if proved else Message("[[told]] (at the sample only)", told=told)
 
 
-def judged_words(judged: Judged, language: Language = ENGLISH) -> str:
+def judged_words(judged: Judged) -> Message:
     """``unstable: flutter`` or the verdict's word."""
     word = judged.verdict.word
     if word is not Word.UNSTABLE or not judged.right or judged.real_right is None:
-        return language.say(word)  # unstable by terms of higher order, too
+        return Message(word)  # unstable by terms of higher order, too
     pairs = judged.right - judged.real_right
     how = "divergence" if not pairs else "divergence and flutter" if judged.real_right else "flutter"
-    return f"{language.say(word)}: {language.say(how)}"
+    return joined((Message(word), Message(how)), ": ")
 
 
-def signature_words(judged: Judged, language: Language = ENGLISH) -> str:
+def signature_words(judged: Judged) -> Message:
     """``degree of instability 2``; where K is singular, its nullity as well."""
     if judged.degree is None:
-        return language.say(Word.UNDECIDED)
-    told = f"{language.say('degree of instability')} {judged.degree}"
-    return told + (f", {language.say('null directions')} {judged.null}" if judged.null else "")
+        return Message(Word.UNDECIDED)
+    told = Message("degree of instability [[degree]]", degree=judged.degree)
+    return Message("[[told]], null directions [[null]]", told=told, null=judged.null) if judged.null else told
 
 
-def row_words(found: Map, cell: Cell) -> tuple[str, str]:
+def row_words(found: Map, cell: Cell) -> tuple[Message, str]:
     """(``unstable: flutter, 2 roots to the right``, the theorem), for tables."""
     told, judged = cell_words(found, cell), cell.judged
     if judged is None or found.of is Of.SIGNATURE:
         return told, ""
-    return (f"{told}, {counted(judged.right, 'root')} to the right" if judged.right else told), judged.verdict.theorem
+    if judged.right:
+        told = Message("[[told]], [[roots]] to the right", told=told, roots=message.Counted(judged.right, "root"))
+    return told, joined(map(Message, judged.verdict.theorems), ", ")
 
 
 def share(value: float) -> str:
@@ -184,13 +182,12 @@ def share(value: float) -> str:
     percent = 100 * value
     if value in (0, 1):
         return f"{percent:.0f} %"
-    return "less than 0.01 %" if percent < 0.01 else f"{min(percent, 99.99):.2f} %"
+    return Message("less than 0.01 %") if percent < 0.01 else f"{min(percent, 99.99):.2f} %"
 
 
-def percent(found: BoxMap, language: Language) -> str:
+def percent(found: BoxMap) -> Message:
     """``12.50 % of the area`` are white."""
-    told = share(float(found.subdivision.white)).replace("less than", language.say("less than"))
-    return f"{told} {language.say('of the area')}"
+    return Message("[[share]] of the area", share=share(float(found.subdivision.white)))
 
 
 # --- branches of equilibria -------------------------------------------------------------------------------------------
@@ -220,34 +217,35 @@ _CHANGE = "the verdict of a branch changes"
 _DIFFER = "the verdicts at the samples on both sides differ"
 
 
-def event_words(events: Iterable[Event], language: Language = ENGLISH) -> str:
+def event_words(events: Iterable[Event]) -> Message:
     """``2 x fold, pitchfork``."""
     listed = list(events)
     told = []
     for event in dict.fromkeys(listed):
-        words = language.say(EVENTS[event])
-        told.append(f"{listed.count(event)} x {words}" if listed.count(event) > 1 else words)
-    return ", ".join(told)
+        words, count = Message(EVENTS[event]), listed.count(event)
+        told.append(joined((f"{count} x", words)) if count > 1 else words)
+    return joined(told, ", ")
 
 
-def critical_words(found: Branches, at: Cell, language: Language = ENGLISH) -> str:
+def critical_words(found: Branches, at: Cell) -> str:
     """What happens at a critical value; "" for nothing that is shown."""
     one = found.critical(at)
     if one.balance is False:
-        return language.say(EVENTS[Event.DEGENERATE])
-    parts = [event_words(one.events, language)] if one.events else []
+        return Message(EVENTS[Event.DEGENERATE])
+    parts = [event_words(one.events)] if one.events else []
     if found.leaves(at) and not one.continuum:
-        parts.append(language.say(_BORDER))
+        parts.append(Message(_BORDER))
     if found.verdict_changes(at) and not parts and not found.count_changes(at):
-        parts.append(language.say(_CHANGE if found.certain(at) else _DIFFER))
+        parts.append(Message(_CHANGE if found.certain(at) else _DIFFER))
     if not parts and found.happens(at):
-        parts.append(language.say(EVENTS[Event.DEGENERATE]))
-    return ", ".join(parts)
+        parts.append(Message(EVENTS[Event.DEGENERATE]))
+    return joined(parts, ", ") if parts else ""
 
 
-def remark_words(one: Remark) -> str:
+def remark_words(one: Remark) -> Message:
     """A sentence of the terminal on what is not proved."""
-    return _DOUBTS[one.doubt] + (f" ({one.about})" if one.about else "")
+    told = Message(_DOUBTS[one.doubt])
+    return Message("[[told]] ([[about]])", told=told, about=one.about) if one.about else told
 
 
 def stable_words(verdicts: Iterable[Verdict | None]) -> str:
@@ -255,4 +253,4 @@ def stable_words(verdicts: Iterable[Verdict | None]) -> str:
     known = list(verdicts)
     stable = sum(x is not None and x.stable for x in known)
     open_ = sum(x is None or x.word.open for x in known)
-    return f"{stable}, {open_} undecided" if open_ else f"{stable}"
+    return Message("[[stable]], [[undecided]] undecided", stable=stable, undecided=open_) if open_ else str(stable)

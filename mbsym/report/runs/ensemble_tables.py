@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from msgspec import UNSET
 
-from mbsym.expressions.counting import counted
+from mbsym.expressions.message import Counted, Message
 from mbsym.model.quantities import marked, unit_of
 from mbsym.numerics.ensembles.ensemble import QUANTILES, Ensemble
 from mbsym.numerics.ensembles.variation import Grid, Variation
@@ -136,40 +136,57 @@ def _finite(value: Any) -> float | None:
 
 def sentences(found: Ensemble) -> Iterator[tuple[str, str]]:
     """(title, text): how it went, how good it is, who ended early."""
-    setting = found.setting
-    how = f"tolerance {setting.tolerance:g} per step" if setting.step is None else f"step {setting.step:g}"
-    yield "members", f"{found.count}, {', '.join(found.members.names)} varied"
-    yield "method", f"{found.method}, {how}, float64; each member has steps of its own"
-    rate = found.steps / max(found.seconds, 1e-9)
-    threads = counted(found.threads, "thread", "threads")
-    yield "work", f"{found.steps} steps in {found.seconds:.2f} s, {rate:.2g} a second, {threads}"
-    compared = found.compared
+    setting, compared = found.setting, found.compared
+    varied = Message("[[count]], [[names]] varied", count=found.count, names=", ".join(found.members.names))
+    yield Message("members"), varied
     if compared.members:
-        many = counted(len(compared.members), "member", "members")
-        differ = "differs" if len(compared.members) == 1 else "differ"
-        told = f"integrated more finely, {many} {differ} by {compared.largest:.1e} of a quantity's size at most"
-        yield "error", told + "; of the others nothing is known"
+        told = (
+            "integrated more finely, [[members]]: at most [[size]] of a quantity's size away; of the others nothing is "
+            "known"
+        )
+        members = Counted(len(compared.members), "member")
+        yield Message("error"), Message(told, members=members, size=f"{compared.largest:.1e}")
     elif not found.interrupted:
-        yield "error", "not estimated: nothing finer than this to compare with"
-    if found.members.dynamics.switches.outputs:
-        yield "switches", "steps end where the rates are not smooth, each member's at places of its own"
+        yield Message("error"), Message("not estimated: nothing finer than this to compare with")
     if found.missed:
         member, one = min(found.missed.items())
-        many = counted(len(found.missed), "member", "members")
-        yield (
-            "warning",
-            f"a load that changes within {one.width:.2g} at t = {one.time:.6g} was passed by steps of {one.step:.2g} "
-            f"(member {member}; so in {many}): a step of {one.width / 4:.2g} meets it",
+        told = (
+            "a load that changes within [[width]] at t = [[time]] was passed by steps of [[step]] "
+            "(member [[member]]; so "
+            "in [[members]]): a step of [[needed]] meets it"
         )
+        gaps = {"width": f"{one.width:.2g}", "time": f"{one.time:.6g}", "step": f"{one.step:.2g}"}
+        members = Counted(len(found.missed), "member")
+        yield Message("warning"), Message(told, member=member, members=members, needed=f"{one.width / 4:.2g}", **gaps)
     if found.fates:
-        ended = counted(len(found.fates), "member ended", "members ended")
-        yield "warning", f"{ended} early; from then on the statistics are those of the rest (column alive)"
+        told = "[[ended]] early; from then on the statistics are those of the rest (column alive)"
+        yield Message("warning"), Message(told, ended=Counted(len(found.fates), "member ended", "members ended"))
         for fate in found.fates[:NAMED]:
+            told = "member [[member]] ([[values]]): [[how]] near t = [[time]]"
+            values = found.members.described(fate.member)
             yield (
-                "ended",
-                f"member {fate.member} ({found.members.described(fate.member)}): {fate.kind} near t = {fate.time:.6g}",
+                Message("ended"),
+                Message(told, member=fate.member, values=values, how=Message(fate.kind), time=f"{fate.time:.6g}"),
             )
         if len(found.fates) > NAMED:
-            yield "ended", f"and {len(found.fates) - NAMED} more, in members.csv"
+            yield Message("ended"), Message("and [[count]] more, in members.csv", count=len(found.fates) - NAMED)
     if found.interrupted:
-        yield "warning", f"interrupted: statistics up to t = {found.times[-1]:.9g}"
+        yield Message("warning"), Message("interrupted: statistics up to t = [[time]]", time=f"{found.times[-1]:.9g}")
+    told, gap = "[[method]], step [[setting]], float64; each member has steps of its own", setting.step
+    if gap is None:
+        told, gap = (
+            "[[method]], tolerance [[setting]] per step, float64; each member has steps of its own",
+            setting.tolerance,
+        )
+    yield Message("method"), Message(told, method=found.method, setting=f"{gap:g}")
+    if found.members.dynamics.switches.outputs:
+        told = "steps end where the rates are not smooth, each member's at places of its own"
+        yield Message("switches"), Message(told)
+    work = Message(
+        "[[steps]] in [[seconds]] s, [[rate]] a second, [[threads]]",
+        steps=Counted(found.steps, "step"),
+        seconds=f"{found.seconds:.2f}",
+        rate=f"{found.steps / max(found.seconds, 1e-9):.2g}",
+        threads=Counted(found.threads, "thread"),
+    )
+    yield Message("work"), work

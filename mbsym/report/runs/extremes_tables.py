@@ -10,6 +10,7 @@ from typing import Any
 
 from msgspec import UNSET
 
+from mbsym.expressions.message import Message, joined, worded
 from mbsym.numerics.extremes.extremes import Extremes, Row
 from mbsym.numerics.extremes.extremes_told import sentences
 from mbsym.numerics.extremes.singular import Singularities
@@ -173,15 +174,18 @@ def tables(found: Extremes) -> Iterator[tuple[list[str], list[list[str]]]]:
             cells = [_cell(found.of(kind, subject, quantity)) for quantity in columns]
             if any(cells):
                 own = [v for v in found.verdicts if (v.kind, v.subject) == (kind, subject)]
-                title = f"{subject} times 1e-12 to 1e12" if kind == "ratio" else subject
-                title = "rates 1e-8 to 1e8" if kind == "rates" else title
+                title: str = worded(subject)
+                if kind == "ratio":
+                    title = Message("[[name]] times 1e-12 to 1e12", name=subject)
+                elif kind == "rates":
+                    title = Message("rates 1e-8 to 1e8")
                 rows.append([title, *cells, *([_verdicts(own)] if linear else [])])
         if rows:
-            yield ["extreme", *columns, *([APPROXIMATION] if linear else [])], rows
+            yield [EXTREME, *map(Message, columns), *([APPROXIMATION] if linear else [])], rows
 
 
 #: The title of verdicts: they are those of the linear equations, which problem 6 may know more about.
-APPROXIMATION = "first approximation"
+EXTREME, APPROXIMATION = Message("extreme"), Message("first approximation")
 
 _LINEAR = ("M", "D", "G", "K", "N", "eigenvalues")
 
@@ -200,6 +204,7 @@ def _cell(rows: Sequence[Row]) -> str:
 def _verdicts(own: Sequence[Any]) -> str:
     if not own:
         return ""
-    words = list(dict.fromkeys(str(v.judged.exact.word) for v in own))
+    words = joined(dict.fromkeys(Message(v.judged.exact.word) for v in own), ", ")
     wrong = sum(v.judged.wrong(FLOAT64) for v in own)
-    return ", ".join(words) + (f" (float64 wrong {wrong} of {len(own)})" if wrong else "")
+    text = "[[words]] (float64 wrong [[wrong]] of [[all]])"
+    return Message(text, words=words, wrong=wrong, all=len(own)) if wrong else words

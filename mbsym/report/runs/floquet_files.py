@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from mbsym.expressions.message import Counted, Message, joined
 from mbsym.model.system import System
 from mbsym.numerics.orbits.floquet import Judged, Multiplier, Word
 from mbsym.report.documents import floquet as doc
@@ -14,17 +15,17 @@ from mbsym.source.meaning import meaning
 DIGITS = 12
 
 _SAID = {
-    Word.UNSTABLE: "unstable: a multiplier is outside the unit circle (Lyapunov)",
-    Word.ASYMPTOTICALLY_STABLE: "asymptotically stable: all multipliers are inside the unit circle (Lyapunov)",
-    Word.STABLE: (
+    Word.UNSTABLE: Message("unstable: a multiplier is outside the unit circle (Lyapunov)"),
+    Word.ASYMPTOTICALLY_STABLE: Message("asymptotically stable: all multipliers are inside the unit circle (Lyapunov)"),
+    Word.STABLE: Message(
         "stable: the equations are linear and follow from a Lagrangian, and the multipliers are simple and on the unit "
         "circle"
     ),
-    Word.STABLE_FIRST_APPROXIMATION: (
+    Word.STABLE_FIRST_APPROXIMATION: Message(
         "the first approximation is stable: the equations follow from a Lagrangian, and the multipliers are simple and "
         "on the unit circle; of the motion itself that proves nothing (a critical case)"
     ),
-    Word.UNDECIDED: (
+    Word.UNDECIDED: Message(
         "undecided: no multiplier is proved to be outside the unit circle, and neither are all proved to be inside nor "
         "all to be simple ones on it"
     ),
@@ -61,19 +62,21 @@ def _multiplier(one: Multiplier) -> doc.Multiplier:
 
 def sentences(found: Judged) -> Iterator[tuple[str, str]]:
     """(title, text)."""
-    yield (
-        "period",
-        f"{found.period.str(15, radius=False)} is a period of the coefficients (2 pi over {found.frequency})",
-    )
-    for one in found.multipliers:
-        where = "on the unit circle" if one.on_circle else f"size between {one.least:.12g} and {one.greatest:.12g}"
-        yield "multiplier", f"{_shown(one)}; {where}"
-    if not found.rests:
-        yield "warning", "that the unperturbed motion satisfies the equations is verified numerically, not proved"
-        yield "motion", f"if it does: {_SAID[found.word]}"
+    if found.rests:
+        yield Message("motion"), _SAID[found.word]
     else:
-        yield "motion", _SAID[found.word]
-    yield "how", f"enclosed in balls with proved remainders, {found.steps} steps"
+        told = "that the unperturbed motion satisfies the equations is verified numerically, not proved"
+        yield Message("warning"), Message(told)
+        yield Message("motion"), Message("if it does: [[verdict]]", verdict=_SAID[found.word])
+    period = found.period.str(15, radius=False)
+    told = "[[period]] is a period of the coefficients (2 pi over [[frequency]])"
+    yield Message("period"), Message(told, period=period, frequency=found.frequency)
+    for one in found.multipliers:
+        where = Message("size between [[least]] and [[most]]", least=f"{one.least:.12g}", most=f"{one.greatest:.12g}")
+        told = Message("on the unit circle") if one.on_circle else where
+        yield Message("multiplier"), joined((_shown(one), told), "; ")
+    told = "enclosed in balls with proved remainders, [[steps]]"
+    yield Message("how"), Message(told, steps=Counted(found.steps, "step"))
 
 
 def _shown(one: Multiplier) -> str:

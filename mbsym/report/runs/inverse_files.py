@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from matplotlib.figure import Figure
 
-from mbsym.expressions.counting import counted
+from mbsym.expressions.message import Counted, Message
 from mbsym.model.quantities import marked, unit_of
 from mbsym.model.system import acceleration_name
 from mbsym.numerics.inverse import InverseDynamics
@@ -47,17 +47,36 @@ def inputs_figure(found: InverseDynamics, formats: Sequence[str]) -> dict[str, b
 
 def sentences(found: InverseDynamics) -> Iterator[tuple[str, str]]:
     """(title, text)."""
-    n, k = len(found.system.coordinates), len(found.names)
-    tied = " and the forces of constraints" if found.system.constraints else ""
-    yield "equations", f"{counted(n, 'equation', 'equations')} for {counted(k, 'input', 'inputs')}{tied}"
-    for name, values in zip(found.names, found.inputs, strict=True):
-        yield name, f"from {values.min() + 0.0:.6g} to {values.max() + 0.0:.6g}"
-    left = f"{found.left:.1e} of the size of their terms"
+    left = f"{found.left:.1e}"
     if found.exact:
-        yield "motion", f"these inputs give it at all {len(found.times)} times: what is left of the equations is {left}"
+        told = (
+            "these inputs give it at all [[count]] times: what is left of the equations is [[left]] of the "
+            "size of their terms"
+        )
+        yield Message("motion"), Message(told, count=len(found.times), left=left)
     else:
-        yield "warning", f"no inputs give this motion: in the sense of least squares {left} is left of the equations"
+        told = (
+            "no inputs give this motion: in the sense of least squares [[left]] of the size of their terms "
+            "is left of the equations"
+        )
+        yield Message("warning"), Message(told, left=left)
+    n, k = len(found.system.coordinates), len(found.names)
+    both = {"equations": Counted(n, "equation"), "inputs": Counted(k, "input")}
+    tied = "[[equations]] for [[inputs]] and the forces of constraints"
+    yield Message("equations"), Message(tied if found.system.constraints else "[[equations]] for [[inputs]]", **both)
+    for name, values in zip(found.names, found.inputs, strict=True):
+        yield (
+            name,
+            Message("from [[least]] to [[most]]", least=f"{values.min() + 0.0:.6g}", most=f"{values.max() + 0.0:.6g}"),
+        )
     if not found.unique:
         lacking = found.times[found.rank < k]
-        where = f"at t = {lacking[0]:.6g}" + (f" and {len(lacking) - 1} more times" if len(lacking) > 1 else "")
-        yield "warning", f"other inputs do the same {where}: the smallest are shown"
+        first, more = f"{lacking[0]:.6g}", len(lacking) - 1
+        told = Message("other inputs do the same at t = [[time]]: the smallest are shown", time=first)
+        if more:
+            told = Message(
+                "other inputs do the same at t = [[time]] and [[more]]: the smallest are shown",
+                time=first,
+                more=Counted(more, "more time"),
+            )
+        yield Message("warning"), told

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from mbsym.expressions.message import Message
 from mbsym.model.system import System
 from mbsym.numerics.orbits.lyapunov import Exponents, Parting
 from mbsym.report.documents import lyapunov as doc
@@ -65,49 +66,66 @@ def lyapunov_figure(system: System, found: Exponents, formats: Sequence[str]) ->
 def sentences(found: Exponents) -> Iterator[tuple[str, str]]:
     """(title, text)."""
     if not len(found.times):
-        yield "warning", "nothing was measured"
+        yield Message("warning"), Message("nothing was measured")
         return
+    yield Message("motion"), _judged(found)
     for place, (value, doubt) in enumerate(zip(found.values, found.uncertainty, strict=True)):
-        told = (
-            f" +- {doubt:.2g} (95 %, statistics of this run only)" if isfinite(doubt) else ", uncertainty not estimated"
-        )
-        yield f"lambda {place + 1}", f"{value:.6g}{told}"
-    yield "time", f"{found.time:g}"
+        if isfinite(doubt):
+            told = Message(
+                "[[value]] +- [[doubt]] (95 %, statistics of this run only)", value=f"{value:.6g}", doubt=f"{doubt:.2g}"
+            )
+        else:
+            told = Message("[[value]], uncertainty not estimated", value=f"{value:.6g}")
+        yield f"lambda {place + 1}", told
+    yield Message("time"), f"{found.time:g}"
     if isfinite(found.sum_error):
         yield (
-            "check",
-            (
-                f"the sum is {float(np.sum(found.values)):.3e}, the mean divergence of the equations "
-                f"{found.divergence:.3e}: they differ by {found.sum_error:.1e}"
+            Message("check"),
+            Message(
+                "the sum is [[sum]], the mean divergence of the equations [[divergence]]: they differ by [[error]]",
+                sum=f"{float(np.sum(found.values)):.3e}",
+                divergence=f"{found.divergence:.3e}",
+                error=f"{found.sum_error:.1e}",
             ),
         )
-    yield "motion", _judged(found)
 
 
-def _judged(found: Exponents) -> str:
+def _judged(found: Exponents) -> Message:
     match found.parting:
         case Parting.POSITIVE if found.linear:
-            return (
+            return Message(
                 "neighbouring motions part exponentially over this time; the equations are linear: all of their "
                 "motions part alike, and none is chaotic"
             )
         case Parting.POSITIVE if found.resting:
-            return "the motion is a rest, and neighbouring motions leave it exponentially over this time"
+            return Message("the motion is a rest, and neighbouring motions leave it exponentially over this time")
         case Parting.POSITIVE:
-            return (
+            return Message(
                 "neighbouring motions part exponentially over this time, as chaotic ones do; this is no proof of chaos"
             )
         case Parting.NEGATIVE:
-            return "neighbouring motions come together over this time"
+            return Message("neighbouring motions come together over this time")
+    bound = f"{found.regular:.2g}"
     if found.linear:
-        return (
-            "the largest exponent is not told from zero, which takes three times its uncertainty and three times "
-            f"log(T)/T = {found.regular:.2g}; the equations are linear: none of their motions is chaotic"
+        return Message(
+            "the largest exponent is not distinguishable from zero, which takes three times its "
+            "uncertainty and three times "
+            "log(T)/T = [[bound]]; the equations are linear: none of their motions is chaotic",
+            bound=bound,
         )
-    falling = ", and it is still falling, as that of regular motion does" if found.falling else ""
-    return (
-        "the largest exponent is not told from zero, which takes three times its uncertainty and three times log(T)/T "
-        f"= {found.regular:.2g}{falling}: whether the motion is regular or chaotic is undecided"
+    if found.falling:
+        return Message(
+            "the largest exponent is not distinguishable from zero, which takes three times its "
+            "uncertainty and three times "
+            "log(T)/T = [[bound]], and it is still falling, as that of regular motion does: whether the motion is "
+            "regular or chaotic is undecided",
+            bound=bound,
+        )
+    return Message(
+        "the largest exponent is not distinguishable from zero, which takes three times its uncertainty "
+        "and three times "
+        "log(T)/T = [[bound]]: whether the motion is regular or chaotic is undecided",
+        bound=bound,
     )
 
 

@@ -10,7 +10,7 @@ from math import isfinite
 
 import numpy as np
 
-from mbsym.expressions.counting import counted
+from mbsym.expressions.message import Counted, Message
 from mbsym.model.quantities import marked, unit_of
 from mbsym.numerics.orbits.periodic import Orbit
 from mbsym.report.documents import orbit as doc
@@ -58,32 +58,42 @@ def orbit_json(found: PeriodicMotion) -> str:
 def sentences(found: PeriodicMotion) -> Iterator[tuple[str, str]]:
     """(title, text)."""
     orbit = found.orbit
-    yield "period", f"{orbit.period:.15g}"
-    yield "state", ", ".join(f"{name} = {value:.12g}" for name, value in zip(orbit.names, orbit.state, strict=True))
-    steps = counted(orbit.steps, "Newton step", "Newton steps")
-    yield "closes", f"to {orbit.closure:.1e} of the state's size after {steps}"
+    yield Message("period"), f"{orbit.period:.15g}"
+    yield Message("motion"), _judged(orbit)
+    values = zip(orbit.names, orbit.state, strict=True)
+    yield Message("state"), ", ".join(f"{name} = {value:.12g}" for name, value in values)
+    steps = Counted(orbit.steps, "Newton step")
+    told = "to [[size]] of the state's size after [[steps]]"
+    yield Message("closes"), Message(told, size=f"{orbit.closure:.1e}", steps=steps)
     if isfinite(orbit.verified):
-        yield "verified", f"numerically: by {orbit.verifier} the same motion closes to {orbit.verified:.1e}"
+        told = "numerically: by [[method]] the same motion closes to [[size]]"
+        yield Message("verified"), Message(told, method=orbit.verifier, size=f"{orbit.verified:.1e}")
     else:
-        yield "warning", "no other method could verify it"
-    yield "multiplier", ", ".join(_shown(mu) for mu in orbit.multipliers) + f" (to about {orbit.uncertainty:.0e})"
+        yield Message("warning"), Message("no other method could verify it")
+    listed = ", ".join(_shown(mu) for mu in orbit.multipliers)
+    told = "[[values]] (to about [[error]])"
+    yield Message("multipliers"), Message(told, values=listed, error=f"{orbit.uncertainty:.0e}")
     for one in orbit.reasons:
-        yield "one", f"{one.reason}"
-    yield "motion", _judged(orbit)
+        yield Message("one is 1"), one.reason
 
 
-def _judged(orbit: Orbit) -> str:
+def _judged(orbit: Orbit) -> Message:
     """What the multipliers that are not trivial say; a number is told from 1 if it is farther than its uncertainty."""
     others = np.abs(orbit.others)
     doubt = max(10 * orbit.uncertainty, 1e-9)
     if not len(others):
-        return "all multipliers are 1 for a reason: they tell nothing of stability"
+        return Message("all multipliers are 1 for a reason: they tell nothing of stability")
     largest = float(others[0])
     if largest > 1 + doubt:
-        return f"unstable in floating point: a multiplier of size {largest:.6g}; not proved"
+        told = "unstable in floating point: a multiplier of size [[size]]; not proved"
+        return Message(told, size=f"{largest:.6g}")
     if largest < 1 - doubt:
-        return f"neighbouring motions come nearer, in floating point: the largest other multiplier is {largest:.6g}"
-    return "no multiplier is told from the unit circle outwards: numbers decide nothing about stability here"
+        told = "neighbouring motions come nearer, in floating point: the largest other multiplier is [[size]]"
+        return Message(told, size=f"{largest:.6g}")
+    return Message(
+        "no multiplier is distinguishable from one on the unit circle or inside: numbers decide nothing "
+        "about stability here"
+    )
 
 
 def _shown(mu: complex) -> str:

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from mbsym.expressions.message import Message
 from mbsym.model.quantities import marked, unit_of
 from mbsym.report.runs.trajectory_csv import written
 from mbsym.simulation.sensitivities import Sensitivities
@@ -32,14 +33,13 @@ def sensitivity_csv(found: Sensitivities) -> str:
 def sentences(found: Sensitivities) -> Iterator[tuple[str, str]]:
     """(title, text): the greatest answers at the end, and how good they are."""
     for j, name in enumerate(found.names):
-        last = found.values[j, : len(found.system.coordinates), -1]
-        told = ", ".join(
-            f"d {q}/d {shown(found, name)} = {value:.6g}"
-            for q, value in zip(found.system.coordinates, last, strict=True)
-        )
-        yield f"by {shown(found, name)}", f"{told} at t = {found.times[-1]:g}"
+        last, of = found.values[j, : len(found.system.coordinates), -1], shown(found, name)
+        pairs = zip(found.system.coordinates, last, strict=True)
+        told = ", ".join(f"d {q}/d {of} = {value:.6g}" for q, value in pairs)
+        time = f"{found.times[-1]:g}"
+        yield Message("by [[name]]", name=of), Message("[[values]] at t = [[time]]", values=told, time=time)
+    told = Message("not estimated")
     if np.isfinite(found.error):
-        told = f"{found.error:.1e} of each derivative's largest size"
-        yield "error", f"about {told}: the difference from a finer integration"
-    else:
-        yield "error", "not estimated"
+        text = "about [[size]] of each derivative's largest size: the difference from a finer integration"
+        told = Message(text, size=f"{found.error:.1e}")
+    yield Message("error"), told

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from mbsym.expressions.counting import counted
+from mbsym.expressions.message import Counted, Message
 from mbsym.sweeps.judged import VERDICT
 from mbsym.sweeps.measure import Column
 from mbsym.sweeps.points import Points
@@ -19,36 +19,55 @@ def sentences(
 ) -> Iterator[tuple[str, str]]:
     """(title, text)."""
     random = not points.grids and points.sampling == "random"
-    yield "points", f"{totals.points:,}{_how(points)}"
     if any(column.name == VERDICT.name for column in columns):
         for one in totals.shares(random):
-            yield one.word, _share(one)
+            yield Message(one.word), _share(one)
         if random:
-            yield "P(stable)", f"{_share(totals.stable(random))}; stable means proved to be, and nothing weaker"
+            told = "[[share]]; stable means proved to be, and nothing weaker"
+            yield Message("P(stable)"), Message(told, share=_share(totals.stable(random)))
         if totals.singly:
-            yield "near borders", f"{counted(totals.singly, 'point was', 'points were')} judged singly, exactly"
+            told = "[[points]] decided one by one, exactly"
+            yield Message("near borders"), Message(told, points=Counted(totals.singly, "point"))
     for found in totals.ranges():
-        missing = f"; {counted(found.missing, 'point has', 'points have')} none" if found.missing else ""
-        yield found.column, f"{found.least:.6g} to {found.greatest:.6g}, mean {found.mean:.6g}{missing}"
+        gaps = {"least": f"{found.least:.6g}", "most": f"{found.greatest:.6g}", "mean": f"{found.mean:.6g}"}
+        told = Message("[[least]] to [[most]], mean [[mean]]", **gaps)
+        if found.missing:
+            told = Message("[[range]]; none at [[points]]", range=told, points=Counted(found.missing, "point"))
+        yield found.column, told
+    yield Message("points"), Message("[[count]] [[how]]", count=f"{totals.points:,}", how=_how(points))
     pairs = [(name, value) for name, value in totals.dependence() if abs(value) >= _WORTH_TELLING]
     if pairs and len(points.names) > 1:
-        judged = bool(columns[0].words)
-        kind = "distance of stable points from unstable ones" if judged else f"rank correlation with {columns[0].name}"
-        yield "depends on", ", ".join(f"{name} {value:.2f}" for name, value in pairs) + f" ({kind})"
+        told = "[[values]] (rank correlation with [[column]])"
+        if columns[0].words:
+            told = "[[values]] (distance of stable points from unstable ones)"
+        values = ", ".join(f"{name} {value:.2f}" for name, value in pairs)
+        gaps = {} if columns[0].words else {"column": columns[0].name}
+        yield Message("depends on"), Message(told, values=values, **gaps)
     if left_out:
-        yield "not looked at", ", ".join(left_out)
+        yield Message("not looked at"), ", ".join(left_out)
 
 
 def _how(points: Points) -> str:
     if points.grids:
-        return " (" + " x ".join(str(one.count) for one in points.grids) + ")"
-    how = "drawn at random" if points.sampling == "random" else "of Sobol's sequence"
-    return f" {how}, seed {points.seed}"
+        return f"({' x '.join(str(one.count) for one in points.grids)})"
+    told = "drawn at random, seed [[seed]]" if points.sampling == "random" else "of Sobol's sequence, seed [[seed]]"
+    return Message(told, seed=points.seed)
 
 
 def _share(one: Share) -> str:
-    told = f"{one.count:,} of {one.total:,} ({one.count / max(1, one.total):.4%})"
+    told = Message(
+        "[[count]] of [[total]] ([[share]])",
+        count=f"{one.count:,}",
+        total=f"{one.total:,}",
+        share=f"{one.count / max(1, one.total):.4%}",
+    )
     if one.interval is None:
         return told
-    low, high = one.interval
-    return f"{told}; probability {low:.5f} to {high:.5f} ({LEVEL:.0%} confidence)"
+    low, high = (f"{end:.5f}" for end in one.interval)
+    return Message(
+        "[[share]]; probability [[low]] to [[high]] ([[level]] confidence)",
+        share=told,
+        low=low,
+        high=high,
+        level=f"{LEVEL:.0%}",
+    )

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from markupsafe import escape
 
@@ -33,6 +33,13 @@ BUNDLES = Path(__file__).parents[2] / "serving" / "page"
 Values = Mapping[str, Expression]
 
 
+class Page(NamedTuple):
+    """The file's text, and what is said with it."""
+
+    text: str
+    said: list[str]
+
+
 def viewed(
     system: System,
     overrides: Values,
@@ -40,7 +47,7 @@ def viewed(
     modes: bool = False,
     equilibria: bool = False,
     watch: Callable[[float], None] = lambda t: None,
-) -> tuple[str, list[str]]:
+) -> Page:
     """The page of a system with what is asked for, and the sentences that are told with it.
 
     Modes and equilibria that cannot be had are told of; a motion that cannot is not: raises what ``motion`` and
@@ -52,9 +59,9 @@ def viewed(
         "modes": modes_part(system, overrides) if modes else None,
         "equilibria": equilibria_part(system, overrides) if equilibria else None,
     }
-    said = [f"{system.name}: {sentence}" for sentence in drawn["sentences"]]
+    said = [*drawn["sentences"]]
     said += [f"no {name}: {part['why']}" for name, part in further.items() if part is not None and "why" in part]
-    return view_page(system, drawn, moving, further["modes"], further["equilibria"]), said
+    return Page(view_page(system, drawn, moving, further["modes"], further["equilibria"]), said)
 
 
 def view_page(

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, cast
 from mbsym.maps.axis import Axis
 from mbsym.studies.request import Assignments, Number, Range, formats, language
 from mbsym.studies.section import against_sign, unless_parameter
-from mbsym.studies.study import Answer, Asked, Folder, Refusal, Study, Unfit, Watch, failed, missing
+from mbsym.studies.study import Answer, Asked, Folder, Refusal, Study, Unfit, Watch, failed, missing, refused
 
 if TYPE_CHECKING:
     from mbsym.expressions.tree import Expression
@@ -186,7 +186,7 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     from mbsym.studies.equilibria.branches import Withdrawn
 
     if isinstance(error, Withdrawn):
-        return Refusal(f"no branches: {error}")
+        return refused("no branches", error)
     return failed(error, "no equilibria listed" if request.vary is None else "no branches")
 
 

@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, Any
 from flint import fmpq
 
 from mbsym.algebra.certainty import Certainty
+from mbsym.expressions.message import Message
 from mbsym.model.system import System
-from mbsym.studies.study import Answer, Column, Exit, Line, Rows, Watch, line
+from mbsym.report.content import Block, aligned, column, paragraph
+from mbsym.studies.study import Answer, Exit, Watch
 
 if TYPE_CHECKING:
     from mbsym.maps.axis import Axis
@@ -40,33 +42,35 @@ def answer(system: System, request: Request, found: Branches) -> Answer:
 
     lines, files = _lines(found), files_of(system, found, request.files, request.language or "en")
     if found.interrupted:
-        told = "interrupted; what was proved before that is written"
+        told = Message("interrupted; what was proved before that is written")
         return Answer(lines, files, (told,), Exit.INTERRUPTED)
     unbalanced = any(found.critical(one).balance is False for one in found.criticals)
     return Answer(lines, files, code=Exit.FAILED if unbalanced else Exit.OK)
 
 
-def _lines(found: Branches) -> Iterator[Line | Rows]:
+def _lines(found: Branches) -> Iterator[Block]:
     """Intervals and critical values in their order, then what there is to know besides."""
     from mbsym.report.maps.words import critical_words, remark_words
 
     columns = (
-        Column(found.axes[0].name),
-        Column("equilibria", right=True),
-        Column("stable", right=True),
-        Column("what happens", fold=True),
+        column(found.axes[0].name),
+        column(Message("equilibria"), right=True),
+        column(Message("stable"), right=True),
+        column(Message("what happens"), fold=True),
     )
-    yield Rows(columns, rows(found))
+    yield aligned(columns, rows(found))
     for one in found.criticals:
         if (polynomial := _minimal(one.sample)) and critical_words(found, one):
-            yield line(f"  {value(one.sample)} is a root of {polynomial}")
+            told = Message("[[value]] is a root of [[polynomial]]", value=value(one.sample), polynomial=polynomial)
+            yield paragraph(told)
     for remark in found.remarks:
-        yield line(f"  {remark_words(remark)}")
+        yield paragraph(remark_words(remark))
     lost = sum(not piece.throughout for piece in found.pieces)
     if lost:
-        yield line(f"  verdicts proved at the sample only, not along the whole piece: {lost} of {len(found.pieces)}")
+        text = "verdicts proved at the sample only, not along the whole piece: [[lost]] of [[all]]"
+        yield paragraph(Message(text, lost=lost, all=len(found.pieces)))
     if found.proved:
-        yield line("  the numbers of equilibria are proved in every open interval")
+        yield paragraph(Message("the numbers of equilibria are proved in every open interval"))
 
 
 def rows(found: Branches) -> list[tuple[str, str, str, str]]:
@@ -92,7 +96,8 @@ def _critical_row(found: Branches, at: Cell | None) -> list[tuple[str, str, str,
     one = found.critical(at)
     counted = one.meetings is not None and not one.continuum
     stable = stable_words(x.verdict for x in one.meetings or ())
-    count = "infinitely many" if one.continuum else str(len(one.meetings or ())) if counted else "not counted"
+    count = str(len(one.meetings or ())) if counted else Message("not counted")
+    count = Message("infinitely many") if one.continuum else count
     return [(value(at.sample), count, stable if counted else "", words)]
 
 
@@ -107,7 +112,7 @@ def _minimal(x: Any) -> str:
         return ""
     degree = int(x.polynomial.degree())
     if degree > 4:
-        return f"a polynomial of degree {degree}, in branches.json"
+        return Message("a polynomial of degree [[degree]], in branches.json", degree=degree)
     terms = []
     for power, c in reversed(list(enumerate(x.polynomial.coeffs()))):
         if c:

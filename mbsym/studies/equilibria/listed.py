@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Sequence
 
-from mbsym.expressions.counting import counted
+from mbsym.expressions.message import Counted, Message, joined
 from mbsym.expressions.tree import names
 from mbsym.model.quantities import unit_of, with_unit
 from mbsym.model.system import System
@@ -17,58 +17,73 @@ from mbsym.problems.relative_equilibria.equilibria import (
 )
 from mbsym.problems.relative_equilibria.permanent_rotations import PermanentRotations
 from mbsym.problems.stability.word import Word
+from mbsym.report.content import (
+    Block,
+    Graded,
+    Inline,
+    Strong,
+    Subheading,
+    Table,
+    aligned,
+    column,
+    paragraph,
+)
 from mbsym.report.unit_text import labelled, pretty
-from mbsym.studies.study import Column, Line, Rows, line
 
 #: Longer equations of a family are only counted.
 _LONGEST = 100
 
 
-def lines(system: System, found: Equilibria, permanent: PermanentRotations | None = None) -> Iterator[Line | Rows]:
-    """All that was found, and how far the list is complete."""
-    angles = {name for body in system.bodies for _, angle in body.rotation.turns() for name in names(angle)}
-    for name, rate in found.turning:
-        unit = pretty(system.units.rate_of(name))
-        moves = "turns" if name in angles else "moves"
-        yield line(f"  {name} {moves} at the rate {with_unit(f'{rate:.10g}', unit)}")
+def lines(system: System, found: Equilibria, permanent: PermanentRotations | None = None) -> Iterator[Block]:
+    """How many there are and how far the list is complete, then all that was found."""
+    yield from _summary(found)
     if found.equilibria:
         yield _table(system, found.equilibria)
+    angles = {name for body in system.bodies for _, angle in body.rotation.turns() for name in names(angle)}
+    for name, rate in found.turning:
+        value = with_unit(f"{rate:.10g}", pretty(system.units.rate_of(name)))
+        text = "[[name]] turns at the rate [[rate]]" if name in angles else "[[name]] moves at the rate [[rate]]"
+        yield paragraph(Message(text, name=name, rate=value))
     if found.singular:
-        where = "the coordinates are singular there: equilibria or not is undecided"
-        yield line((f"  {counted(len(found.singular), 'more solution', 'more solutions')}, {where}", "bold"))
+        text = "[[solutions]], the coordinates are singular there: equilibria or not is undecided"
+        solutions = Counted(len(found.singular), "more solution", "more solutions")
+        yield paragraph(Strong(Message(text, solutions=solutions)))
         yield _table(system, found.singular, judged=False)
     if found.beyond:
         lengths = ", ".join(f"{name} < 0" for name in dict.fromkeys(x for one in found.beyond for x in one.beyond))
-        count = counted(len(found.beyond), "more solution", "more solutions")
-        where = "with positive lengths the bodies would be at the same places, but other forces would act"
-        yield line((f"  {count} with {lengths}, not counted: {where}", "bold"))
+        text = (
+            "[[solutions]] with [[lengths]], not counted: with positive lengths the bodies would be at "
+            "the same places, "
+            "but other forces would act"
+        )
+        solutions = Counted(len(found.beyond), "more solution", "more solutions")
+        yield paragraph(Strong(Message(text, solutions=solutions, lengths=lengths)))
         yield _table(system, found.beyond, judged=False)
     for number, family in enumerate(found.families, 1):
         yield from _family(system, number, family)
-    yield from _summary(found)
     if permanent is not None:
         yield from _permanent(permanent)
 
 
-def _table(system: System, listed: Sequence[RelativeEquilibrium], judged: bool = True) -> Rows:
+def _table(system: System, listed: Sequence[RelativeEquilibrium], judged: bool = True) -> Table:
     """A row each; columns that would be empty are left out."""
     names = [name for name in system.coordinates if any(_has(x, name) for x in listed)]
     others = any(x.coordinates_of for x in listed)
     boxes = any(x.proof != "exact" for x in listed)
-    columns = [Column("", right=True, style="dim")]
-    columns += [Column(labelled(name, unit_of(system, name)), right=True) for name in names]
-    columns += [Column("stability"), Column("by", style="dim")] if judged else []
-    columns += [Column("proof", style="dim")] if boxes else []
-    columns += [Column("angles of", style="dim")] if others else []
+    columns = [column("", right=True), *(column(labelled(name, unit_of(system, name)), right=True) for name in names)]
+    columns += [column(Message("stability"), fold=True), column(Message("theorem"), fold=True)] if judged else []
+    columns += [column(Message("proof"))] if boxes else []
+    columns += [column(Message("angles of"))] if others else []
     rows = []
     for number, one in enumerate(listed, 1):
-        cells: list[str | tuple[str, str]] = [str(number), *(_cell(one, name) for name in names)]
+        cells: list[Inline] = [str(number), *(_cell(one, name) for name in names)]
         if judged:
-            cells += [(str(one.verdict.word), _colour(one.verdict.word)), one.verdict.theorem]
-        cells += [one.proof] if boxes else []
+            word = one.verdict.word
+            cells += [Graded(Message(word), _grade(word)), joined(map(Message, one.verdict.theorems), ", ")]
+        cells += [Message(one.proof)] if boxes else []
         cells += [one.coordinates_of] if others else []
         rows.append(cells)
-    return Rows(columns, rows)
+    return aligned(columns, rows)
 
 
 def _has(one: RelativeEquilibrium, name: str) -> bool:
@@ -77,7 +92,7 @@ def _has(one: RelativeEquilibrium, name: str) -> bool:
 
 def _cell(one: RelativeEquilibrium, name: str) -> str:
     if name in one.free:
-        return "any"
+        return Message("any")
     return next((_text(item) for item in one.values if item.name == name), "")
 
 
@@ -85,71 +100,93 @@ def _text(item: CoordinateValue) -> str:
     return item.text if item.exact or item.text == "0" else f"{item.value:.8g}"
 
 
-def _family(system: System, number: int, family: EquilibriumFamily) -> Iterator[Line]:
-    angles = f"; angles of {family.coordinates_of}" if family.coordinates_of else ""
-    title = (
-        f"  family {number}: {counted(family.dimension, 'parameter', 'parameters')} ({', '.join(family.free)}){angles}"
-    )
-    yield line((title, "bold cyan"))
+def _family(system: System, number: int, family: EquilibriumFamily) -> Iterator[Block]:
+    text = "family [[number]]: [[parameters]] ([[names]])"
+    if family.coordinates_of:
+        text = "family [[number]]: [[parameters]] ([[names]]); angles of [[body]]"
+    gaps = {"body": family.coordinates_of} if family.coordinates_of else {}
+    parameters = Counted(family.dimension, "parameter")
+    yield Subheading((Message(text, number=number, parameters=parameters, names=", ".join(family.free), **gaps),))
     for equation in family.equations[:12]:
-        terms = equation.count(" + ") + equation.count(" - ") + 1
-        shown = equation if len(equation) <= _LONGEST else f"(a polynomial of {terms} terms, which --json prints)"
-        yield line(f"    {shown} = 0")
+        yield paragraph("  ", _shortened(equation), " = 0")
     sample = ", ".join(
         f"{item.name} = {with_unit(_text(item), pretty(unit_of(system, item.name)))}" for item in family.sample
     )
-    yield line(f"    for example {sample}: {family.verdict.word}")
+    text = "for example [[values]]: [[verdict]]"
+    yield paragraph("  ", Message(text, values=sample, verdict=family.verdict.word))
 
 
-def _permanent(found: PermanentRotations) -> Iterator[Line]:
+def _shortened(polynomial: str) -> str:
+    """A polynomial, or its length where nobody would read it."""
+    terms = polynomial.count(" + ") + polynomial.count(" - ") + 1
+    told = Message("(a polynomial of [[terms]], which --json prints)", terms=Counted(terms, "term"))
+    return polynomial if len(polynomial) <= _LONGEST else told
+
+
+def _permanent(found: PermanentRotations) -> Iterator[Block]:
     """The family that a steady turn at the description's rate is a member of."""
-    yield line((f"permanent rotations about the fixed axis of {found.angle}, at whatever rate", "bold"))
-    yield line((f"  g: that axis in the axes of {found.body}, g1**2 + g2**2 + g3**2 = 1", "dim"))
+    text = "permanent rotations about the fixed axis of [[angle]], at whatever rate"
+    yield Subheading((Message(text, angle=found.angle),))
+    text = "g: that axis in the axes of [[body]], g1**2 + g2**2 + g3**2 = 1"
+    yield paragraph("  ", Message(text, body=found.body))
     acts = [found.loaded, found.gyrostatic, found.inertial]
+    where = None
     if found.axes:
         polynomial = "*".join(f"({x})" if len(found.axes) > 1 else x for x in found.axes)
-        if len(polynomial) > 3 * _LONGEST:
-            polynomial = "(a long polynomial, which --json prints)"
-        where = "a one-parameter family, the axes on a cone" if found.family else "necessary for an axis"
-        yield line(f"  {where}: {polynomial} = 0")
+        shown = polynomial if len(polynomial) <= 3 * _LONGEST else _shortened(polynomial)
+        text = "necessary for an axis: [[polynomial]] = 0"
+        if found.family:
+            text = "a one-parameter family, the axes on a cone: [[polynomial]] = 0"
+        where = Message(text, polynomial=shown)
     elif acts == [False, False, True]:
-        yield line("  nothing acts at rest: each axis that satisfies these equations, at any rate")
+        where = Message("nothing acts at rest: each axis that satisfies these equations, at any rate")
     elif found.everywhere and not found.gyrostatic:
-        yield line("  a two-parameter family: every axis for which these equations give a real rate")
+        where = Message("a two-parameter family: every axis for which these equations give a real rate")
     elif not any(acts):
-        yield line("  nothing acts: every axis, at any rate")
+        where = Message("nothing acts: every axis, at any rate")
+    if where is not None:
+        yield paragraph("  ", where)
     for row in zip(found.constant, found.linear, found.quadratic, strict=True):
         if any(x != "0" for x in row):
             parts = (("", row[0]), ("rate*", row[1]), ("rate**2*", row[2]))
             terms = [f"{front}({x})" if front else x for front, x in parts if x != "0"]
-            yield line(f"    {' + '.join(terms)} = 0")
+            yield paragraph(f"    {' + '.join(terms)} = 0")
     if found.either and (found.axes or found.everywhere):
-        yield line("  one of g and -g carries a rotation, the other none, unless what acts at rest")
-        yield line("  or what grows with the square of the rate vanishes at g")
+        text = (
+            "one of g and -g carries a rotation, the other none, unless what acts at rest or what grows "
+            "with the square "
+            "of the rate vanishes at g"
+        )
+        yield paragraph("  ", Message(text))
 
 
-def _summary(found: Equilibria) -> Iterator[Line]:
-    count = counted(len(found.equilibria), "relative equilibrium", "relative equilibria")
+def _summary(found: Equilibria) -> Iterator[Block]:
+    count = Counted(len(found.equilibria), "relative equilibrium", "relative equilibria")
     words = Counter(one.verdict.word for one in found.equilibria)
-    kinds = "; ".join(f"{n} {word}" for word, n in words.items())
-    families = f", {counted(len(found.families), 'family', 'families')}" if found.families else ""
-    yield line((count + families, "bold"), f": {kinds}" if kinds else "")
-    twice = {one.described for one in found.equilibria if one.described > 1}
-    if twice:
-        times = " or ".join(str(n) for n in sorted(twice))
-        yield line((f"  counted as configurations: the coordinates describe one in {times} ways", "dim"))
-    if found.charts > 1:
-        yield line((f"  singular angles were replaced by others ({found.charts} sets of angles)", "dim"))
-    for remark in found.remarks:
-        yield line((f"  {remark}", "yellow"))
-    if found.complete:
-        how = "every one exact" if all(x.proof == "exact" for x in found.equilibria) else "every one proved"
-        but = " apart from these" if found.singular or found.beyond else ""
-        yield line((f"  the list is complete{but} ({how})", "green"))
+    kinds = joined((joined((str(n), Message(word))) for word, n in words.items()), "; ")
+    counts = [count, *([Counted(len(found.families), "family", "families")] if found.families else [])]
+    yield paragraph(Strong(joined(counts, ", ")), *([": ", kinds] if words else []))
+    exact = all(x.proof == "exact" for x in found.equilibria)
+    if found.complete and (found.singular or found.beyond):
+        text = "the list is complete apart from the solutions below that are not counted ([[how]])"
+        how = Message("every one exact") if exact else Message("every one proved")
+        yield paragraph(Graded(Message(text, how=how), "good"))
+    elif found.complete:
+        how = Message("every one exact") if exact else Message("every one proved")
+        yield paragraph(Graded(Message("the list is complete ([[how]])", how=how), "good"))
     else:
-        yield line(("  the list may be incomplete", "bold yellow"))
+        yield paragraph(Graded(Message("the list may be incomplete"), "open"))
+    for remark in found.remarks:
+        yield paragraph(Graded(remark, "open"))
+    twice = sorted({one.described for one in found.equilibria if one.described > 1})
+    if twice:
+        text = "counted as configurations: the coordinates describe one in [[ways]] ways"
+        yield paragraph(Message(text, ways="/".join(map(str, twice))))
+    if found.charts > 1:
+        text = "singular angles were replaced by others ([[count]] sets of angles)"
+        yield paragraph(Message(text, count=found.charts))
 
 
-def _colour(word: Word) -> str:
-    """What is neither proved to be stable nor unstable is yellow."""
-    return "green" if word.stable else "red" if word is Word.UNSTABLE else "yellow"
+def _grade(word: Word) -> str:
+    """What is neither proved to be stable nor unstable is open."""
+    return "good" if word.stable else "bad" if word is Word.UNSTABLE else "open"

@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING, Annotated
 
 from mbsym.maps.axis import Axis
 from mbsym.studies.request import Flag, Named, Number, Numbers, Range, Whole
-from mbsym.studies.study import Answer, Asked, Exit, Line, NotFit, Refusal, Study, Unfit, Watch, heading, line, told
+from mbsym.studies.study import Answer, Asked, Exit, Line, NotFit, Refusal, Study, Unfit, Watch, heading, line
 
 if TYPE_CHECKING:
     from mbsym.analysis.invariant_relations import InvariantRelations
     from mbsym.analysis.polynomial import Setting
     from mbsym.model.system import System
     from mbsym.problems.polynomial_integrals import Along, Cases, DarbouxAlong, PolynomialIntegrals
+    from mbsym.report.content import Block
 
 #: For ``--cases``: counted work, worth about so many seconds.
 BUDGET = 60.0
@@ -140,10 +141,10 @@ def _unfit(there: Setting, request: Request) -> Iterator[Unfit]:
 
 
 def answer(asked: Asked, request: Request, found: Found) -> Answer:
-    return Answer(_lines(found, asked.system), code=Exit.OK if found.integrals.complete else Exit.FAILED)
+    return Answer(_lines(found), code=Exit.OK if found.integrals.complete else Exit.FAILED)
 
 
-def _lines(found: Found, system: System) -> Iterator[Line]:
+def _lines(found: Found) -> Iterator[Line | Block]:
     """The integrals, what is known of them as a whole, and what is there besides."""
     from mbsym.report.content import ragged
     from mbsym.report.sections.polynomial_integrals import listed
@@ -151,8 +152,8 @@ def _lines(found: Found, system: System) -> Iterator[Line]:
 
     there, integrals = found.there, found.integrals
     formulas = [there.formula(one.polynomial) for one in integrals.generators]
-    yield from told(listed(integrals, integrals.field.variables, formulas), system)
-    yield from told(map(ragged, sentences(integrals)), system)
+    yield from listed(integrals, integrals.field.variables, formulas)
+    yield from map(ragged, sentences(integrals))
     for head, texts in _sections(found):
         yield heading(head)
         for text in texts:

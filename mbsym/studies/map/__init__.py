@@ -12,6 +12,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.safe import safe
 from mbsym.maps.axis import Axis
 from mbsym.studies.request import ExactSettings, Place, Range, Word, formats, language
@@ -135,7 +136,7 @@ class NoMap(Exception):
 
 def derive(asked: Asked, request: Request, watch: Watch) -> Map:
     """Raises NotFit where the section cannot be made."""
-    from mbsym.algebra.failures import Failure, TooLargeError
+    from mbsym.algebra.failures import Failure, TooLargeError, message_of
     from mbsym.analysis import Analysis
     from mbsym.maps.boxes import box_map
     from mbsym.maps.given import Unfit as Wrong
@@ -166,7 +167,9 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Map:
             try:
                 return box_map(analysis, axes, values, of, watch, str(large))
             except Failure as failure:
-                raise NoMap(f"no map: {large}; no boxes: {failure}") from failure
+                text = "no map: [[large]]; no boxes: [[failure]]"
+                gaps = {"large": message_of(large), "failure": message_of(failure)}
+                raise NoMap(Message(text, **gaps)) from failure
     except Wrong as wrong:
         option = "--x/--y/--z" if len(axes) == 3 else "--x/--y"
         raise NotFit(tuple(unfit_section(wrong.complaints, option))) from wrong
@@ -179,8 +182,10 @@ def answer(asked: Asked, request: Request, found: Map) -> Answer:
 
 
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+    from mbsym.algebra.failures import message_of
+
     if isinstance(error, NoMap):
-        return Refusal(str(error))
+        return Refusal(message_of(error))
     return failed(error, "no map")
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from flint import fmpq
 
 from mbsym.algebra.plane import Point
-from mbsym.expressions.counting import counted
+from mbsym.expressions.message import Counted, Message, joined
 from mbsym.maps.boundaries import Origin
 from mbsym.maps.boxes import BoxMap, Method
 from mbsym.maps.equilibria_map import EquilibriaMap
@@ -18,9 +18,10 @@ from mbsym.maps.slices import Picture, Stack
 from mbsym.maps.soft_borders import Onset
 from mbsym.maps.subdivision import End
 from mbsym.model.system import System
+from mbsym.report.content import Block, Table, aligned, column, paragraph
 from mbsym.report.language import Language
 from mbsym.report.maps.words import LACKS, cell_words, condition_words, row_words, share, stem, telling
-from mbsym.studies.study import Answer, Column, Exit, Line, Rows, line
+from mbsym.studies.study import Answer, Exit
 
 if TYPE_CHECKING:
     from mbsym.report.maps.located import Points
@@ -37,9 +38,12 @@ def answer(system: System, request: Request, found: Map) -> Answer:
         return Answer(lines, files, doubts[:MOST_TOLD], Exit.FAILED)
     if found.interrupted:
         missed = [one for one in found.layers if one.lack is Lack.NOT_REACHED] if isinstance(found, Stack) else []
-        left = f"{counted(len(missed), 'slice')} not reached, " if missed else ""
-        white = "; other boxes are white" if isinstance(found, BoxMap) else ""
-        told = f"interrupted; {left}what was proved before that is written{white}"
+        told = Message("interrupted; what was proved before that is written")
+        if missed:
+            text = "interrupted; [[missed]] not reached, what was proved before that is written"
+            told = Message(text, missed=Counted(len(missed), "slice"))
+        if isinstance(found, BoxMap):
+            told = joined((told, Message("other boxes are white")), "; ")
         return Answer(lines, files, (told,), Exit.INTERRUPTED)
     return Answer(lines, files)
 
@@ -50,25 +54,36 @@ def _doubts(found: Map) -> Iterator[str]:
 
     withdrawn = [one.number for one in found.regions if one.lack is Lack.WITHDRAWN]
     if isinstance(found, EquilibriaMap) and withdrawn:
-        yield f"withdrawn, as another point has another number: region {', '.join(map(str, withdrawn))}"
+        text = "withdrawn, as another point has another number: regions [[regions]]"
+        yield Message(text, regions=", ".join(map(str, withdrawn)))
     if not isinstance(found, Stack):
         yield from _findings(found, "")
         return
     for one in found.layers:
         at = f"{found.axis.name} = {number(one.z)}"
         if not one.confirmed:
-            told = f"the slice at {number(one.second)}, between the same critical values, does not correspond to it"
-            yield f"at {at} the map's own check fails: {told}"
+            text = (
+                "at [[at]] the map's own check fails: the slice at [[second]], between the same critical "
+                "values, does not "
+                "correspond to it"
+            )
+            yield Message(text, at=at, second=number(one.second))
         if one.plane is not None:
-            yield from _findings(one.plane, f" at {at}")
+            yield from _findings(one.plane, at)
 
 
 def _findings(found: Map, at: str) -> Iterator[str]:
     for one in found.check.findings if found.check is not None else ():
-        region = "box" if isinstance(found, BoxMap) else "region"
-        names = ((region, one.region), ("arc", one.arc), ("corner", one.corner))
-        what = next((f"{name} {number}" for name, number in names if number is not None), "the whole")
-        yield f"withdrawn{at}, as the map's own check fails in {what}: {one.mistake}"
+        what = Message("the whole")
+        if one.region is not None:
+            what = Message("box [[number]]" if isinstance(found, BoxMap) else "region [[number]]", number=one.region)
+        elif one.arc is not None:
+            what = Message("arc [[number]]", number=one.arc)
+        elif one.corner is not None:
+            what = Message("corner [[number]]", number=one.corner)
+        text = "withdrawn, as the map's own check fails in [[what]]: [[mistake]]"
+        told = Message(text, what=what, mistake=one.mistake)
+        yield joined((f"{at}:", told)) if at else told
 
 
 def files_of(
@@ -96,38 +111,43 @@ def files_of(
 # --- the terminal -----------------------------------------------------------------------------------------------------
 
 
-def _lines(system: System, found: Map) -> Iterator[Line | Rows]:
+def _lines(system: System, found: Map) -> Iterator[Block]:
     """A row for what is said of cells, or for each picture of a stack, then what there is to know besides."""
     yield _pictures(found) if isinstance(found, Stack) else _table(found)
     for text in remarks(found, system):
-        yield line(f"  {text}")
+        yield paragraph(text)
 
 
-def _table(found: Map) -> Rows:
+#: What is said of cells, by what a map is of.
+HEADS = {
+    Of.STABILITY: Message("verdict"),
+    Of.SIGNATURE: Message("signature of K"),
+    Of.EQUILIBRIA: Message("relative equilibria"),
+}
+
+
+def _table(found: Map) -> Table:
     rows: dict[tuple[str, str], tuple[set[int], float]] = {}
     for cell, place, (area, _) in zip(found.regions, found.together, found.areas, strict=True):
-        parts, total = rows.setdefault(row_words(found, cell), (set(), 0.0))
-        rows[row_words(found, cell)] = parts | {place}, total + area
-    heads = {Of.STABILITY: "verdict", Of.SIGNATURE: "signature of K", Of.EQUILIBRIA: "relative equilibria"}
-    one_axis, boxes = len(found.axes) == 1, isinstance(found, BoxMap)
-    columns = [Column(heads[found.of], fold=True), Column("theorem", style="dim", fold=True)]
-    columns += [
-        Column(name, right=True)
-        for name in ("boxes" if boxes else "intervals" if one_axis else "regions", "length" if one_axis else "area")
-    ]
-    columns.append(Column("of the whole", right=True))
+        words = row_words(found, cell)
+        parts, total = rows.setdefault(words, (set(), 0.0))
+        rows[words] = parts | {place}, total + area
+    line = len(found.axes) == 1
+    pieces = Message("boxes") if isinstance(found, BoxMap) else Message("intervals") if line else Message("regions")
+    size = Message("length") if line else Message("area")
+    heads = (HEADS[found.of], Message("theorem"), pieces, size, Message("of the whole"))
     cells = [
         (*words, str(len(parts)), f"{area:.4g}", share(area / found.whole if len(rows) > 1 else 1))
         for words, (parts, area) in sorted(rows.items(), key=lambda item: -item[1][1])
     ]
-    if not any(theorem for _, theorem in rows):
-        return Rows([columns[0], *columns[2:]], [(words, *others) for words, _, *others in cells])
-    return Rows(columns, cells)
+    shown = [k for k in range(len(heads)) if k != 1 or any(theorem for _, theorem in rows)]
+    columns = (column(heads[k], right=k > 1, fold=k < 2) for k in shown)
+    return aligned(columns, ([row[k] for k in shown] for row in cells))
 
 
-def _pictures(found: Stack) -> Rows:
-    columns = [Column(name, fold=True) for name in (found.axis.name, "shown at", "what is seen, by area")]
-    return Rows(columns, [_picture(found, picture) for picture in found.pictures])
+def _pictures(found: Stack) -> Table:
+    heads = (found.axis.name, Message("shown at"), Message("what is seen, by area"))
+    return aligned((column(name, fold=True) for name in heads), [_picture(found, one) for one in found.pictures])
 
 
 def _picture(found: Stack, picture: Picture) -> tuple[str, str, str]:
@@ -143,17 +163,17 @@ def _picture(found: Stack, picture: Picture) -> tuple[str, str, str]:
         return told, number(shown.z), _seen(shown.plane)
     assert shown.lack is not None
     broken = ", ".join(dict.fromkeys(one.condition.about for one in shown.broken))
-    return told, "", LACKS[shown.lack] + (f": {broken}" if broken else "")
+    return told, "", joined((Message(LACKS[shown.lack]), *([broken] if broken else [])), ": ")
 
 
 def _seen(plane: Map) -> str:
     """What is said, each with what part of the slice it has, the largest first."""
-    rows: dict[str, float] = {}
+    rows: dict[Message, float] = {}
     for one, (area, _) in zip(plane.regions, plane.areas, strict=True):
         words = cell_words(plane, one)
         rows[words] = rows.get(words, 0.0) + area
     largest = sorted(rows.items(), key=lambda item: -item[1])
-    return ", ".join(f"{words} {100 * area / plane.whole:.3g}%" for words, area in largest)
+    return joined((joined((words, f"{100 * area / plane.whole:.3g}%")) for words, area in largest), ", ")
 
 
 # --- remarks ----------------------------------------------------------------------------------------------------------
@@ -171,11 +191,13 @@ def remarks(found: Map, system: System | None = None) -> list[str]:
         case _:
             told = _of_cells(found)
     if found.admissibility.left_out:
-        told.append(f"not expressible in the axes, so not looked at: {', '.join(found.admissibility.left_out)}")
+        text = "not expressible in the axes, so not looked at: [[conditions]]"
+        told.append(Message(text, conditions=", ".join(found.admissibility.left_out)))
     planes = found.planes if isinstance(found, Stack) else [found]
     large = sum(one.lack is Lack.TOO_LARGE for plane in planes for one in plane.cells)
     if large:
-        told.append(f"no verdict at {counted(large, 'exact point')} between regions: too large to be decided")
+        text = "no verdict at [[points]] between regions: too large to be decided"
+        told.append(Message(text, points=Counted(large, "exact point")))
     told += borders_of_slices(planes) if isinstance(found, Stack) else borders(found)
     told += _nonlinear(found, planes)
     return told + list(_checked(found, planes))
@@ -183,54 +205,81 @@ def remarks(found: Map, system: System | None = None) -> list[str]:
 
 def _of_cells(found: Map) -> list[str]:
     if len(found.axes) == 1:
-        told = [f"at {_exactly(one.sample)}: {_why(found, one)}" for one in found.corners if found.drawn(one)]
-    else:
-        told = [
-            f"{counted(len(found.regions), 'region')}, {counted(len(found.arcs), 'arc')} and "
-            f"{counted(len(found.corners), 'corner')} in map.json, each with an exact point"
-            + (", also of curves at which no verdict changes" if len({*found.together}) < len(found.regions) else "")
+        corners = [one for one in found.corners if found.drawn(one)]
+        told: list[str] = [
+            Message("at [[point]]: [[why]]", point=_exactly(x.sample), why=_why(found, x)) for x in corners
         ]
+    else:
+        text = "[[regions]], [[arcs]] and [[corners]] in map.json, each with an exact point"
+        if len({*found.together}) < len(found.regions):
+            text = (
+                "[[regions]], [[arcs]] and [[corners]] in map.json, each with an exact point, also of "
+                "curves at which no "
+                "verdict changes"
+            )
+        regions, arcs, corners_ = (len(x) for x in (found.regions, found.arcs, found.corners))
+        gaps = {
+            "regions": Counted(regions, "region"),
+            "arcs": Counted(arcs, "arc"),
+            "corners": Counted(corners_, "corner"),
+        }
+        told = [Message(text, **gaps)]
     kept = (Origin.SIGN, Origin.ASSUMPTION, Origin.INERTIA)
     if all(one.origin in kept for conditions in found.boundaries.conditions for one in conditions):
-        told.append("no condition of stability depends on the axes")
+        told.append(Message("no condition of stability depends on the axes"))
     if not any(one.judged is not None for one in found.regions):
-        told.append("no verdict anywhere: map.json says at every point what is not kept there")
+        told.append(Message("no verdict anywhere: map.json says at every point what is not kept there"))
     vanishing = dict.fromkeys(condition_words(one, found) for one in found.boundaries.vanishing)
-    return told + [f"an equality everywhere: {words}" for words in vanishing]
+    return told + [Message("an equality everywhere: [[condition]]", condition=words) for words in vanishing]
 
 
 def _of_boxes(found: BoxMap) -> list[str]:
-    told = [f"no exact regions: {found.because}; boxes instead"] if found.because else []
-    told.append(
-        "what is said of a box holds at all of its points: no condition is an equality in it"
-        if found.method is Method.BOUNDARIES
-        else "what is said of a box holds at all of its points, by theorems for enclosures of the matrices; "
-        "these may say less than is true"
-    )
+    told: list[str] = []
+    if found.because:
+        told.append(Message("no exact regions: [[because]]; boxes instead", because=found.because))
+    if found.method is Method.BOUNDARIES:
+        text = "what is said of a box holds at all of its points: no condition is an equality in it"
+    else:
+        text = (
+            "what is said of a box holds at all of its points, by theorems for enclosures of the "
+            "matrices; these may say "
+            "less than is true"
+        )
+    told.append(Message(text))
     if found.subdivision.end is End.BUDGET:
-        told.append(f"{counted(len(found.regions), 'box', 'boxes')}, as many as are made: smaller ones were not tried")
-    return [*told, f"white, nothing proved: {share(float(found.subdivision.white))} of the area"]
+        text = "[[boxes]], as many as are made: smaller ones were not tried"
+        told.append(Message(text, boxes=Counted(len(found.regions), "box", "boxes")))
+    return [*told, Message("white, nothing proved: [[share]] of the area", share=share(float(found.subdivision.white)))]
 
 
 def _of_equilibria(found: EquilibriaMap, system: System | None) -> list[str]:
-    told = [f"{counted(len(found.boundaries.factors), 'curve')}, between which the number is constant"]
+    curves = Counted(len(found.boundaries.factors), "curve")
+    told: list[str] = [Message("[[curves]], between which the number is constant", curves=curves)]
     if found.unfinished:
-        told = [f"not proved between samples: {'; '.join(found.unfinished)}"]
-    told.append("on the curves and where they meet: not counted")
+        told = [Message("not proved between samples: [[what]]", what=joined(found.unfinished, "; "))]
+    told.append(Message("on the curves and where they meet: not counted"))
     if any(one.counted is not None and one.counted.throughout for one in found.regions):
-        told.append("'stable' without 'at the sample': at least so many in the whole region, by the signs of K")
+        text = "'stable' without 'at the sample': at least so many in the whole region, by the signs of K"
+        told.append(Message(text))
     if system is not None and system.assumptions:
-        told.append("the assumptions of the description, and triangle inequalities of inertias, are not looked at")
+        text = "the assumptions of the description, and triangle inequalities of inertias, are not looked at"
+        told.append(Message(text))
     asked = [one.counted for one in found.regions if one.counted is not None and one.counted.confirmed is not None]
     if asked:
-        same = sum(one.confirmed == one.count for one in asked)
-        exact = "the exact numbers agree, and " if not found.unfinished else ""
-        told.append(
-            f"check at another point of {counted(len(asked), 'region')}: {exact}Newton's method from many points finds "
-            f"no more than the list there; as many as at the sample in {counted(same, 'region')}"
+        text = (
+            "check at another point of [[regions]]: Newton's method from many points finds no more than "
+            "the list there; "
+            "as many as at the sample in [[same]]"
         )
+        if not found.unfinished:
+            text = (
+                "check at another point of [[regions]]: the exact numbers agree, and Newton's method from many points "
+                "finds no more than the list there; as many as at the sample in [[same]]"
+            )
+        same = Counted(sum(one.confirmed == one.count for one in asked), "region")
+        told.append(Message(text, regions=Counted(len(asked), "region"), same=same))
     if any(one.lack is Lack.INCOMPLETE for one in found.regions):
-        told.append("where the list is not complete nothing is counted")
+        told.append(Message("where the list is not complete nothing is counted"))
     return told
 
 
@@ -238,17 +287,23 @@ def _of_stack(found: Stack) -> list[str]:
     name = found.axis.name
     critical = [one for one in found.layers if one.critical]
     unseen = [one for one in critical if one.lack is not None and not one.broken]
-    told = [
-        f"{counted(len(critical), 'value')} of {name} at which the curves may be arranged in another way; between them "
-        "regions are deformed into each other with their verdicts"
-        if critical
-        else f"the curves are arranged in one way at all values of {name}, and regions keep their verdicts"
-    ]
+    text = "the curves are arranged in one way at all values of [[name]], and regions keep their verdicts"
+    told: list[str] = [Message(text, name=name)]
+    if critical:
+        text = (
+            "[[values]] of [[name]] at which the curves may be arranged in another way; between them "
+            "regions are deformed "
+            "into each other with their verdicts"
+        )
+        told = [Message(text, values=Counted(len(critical), "value"), name=name)]
     if unseen:
         irrational = sum(not isinstance(one.z, fmpq) for one in unseen)
-        told.append(f"at {len(unseen)} of these values nothing was looked at ({irrational} are irrational)")
+        text = "at [[count]] of these values nothing was looked at ([[irrational]] are irrational)"
+        told.append(Message(text, count=len(unseen), irrational=irrational))
     if any(one.unseen and len(one.layers) > 1 for one in found.pictures):
-        told.append(f"* but for single values of {name} that were not looked at: map.json lists them")
+        told.append(
+            Message(("* but for single values of [[name]] that were not looked at: map.json lists them"), name=name)
+        )
     return told
 
 
@@ -267,7 +322,8 @@ def _nonlinear(found: Map, planes: Sequence[Map]) -> Iterator[str]:
                 decided.setdefault(one.nonlinear.word.value, []).append(at)
     for word, places in decided.items():
         where = "; ".join(places[:MOST_POINTS]) + ("; ..." if len(places) > MOST_POINTS else "")
-        yield f"{word} by the nonlinear system, at the exact point alone: {where}"
+        text = "[[verdict]] by the nonlinear system, at the exact point alone: [[points]]"
+        yield Message(text, verdict=Message(word), points=where)
 
 
 def _checked(found: Map, planes: Sequence[Map]) -> Iterator[str]:
@@ -277,20 +333,30 @@ def _checked(found: Map, planes: Sequence[Map]) -> Iterator[str]:
     if not found.sound or not points:
         return
     if isinstance(found, BoxMap):
-        yield f"check: at {counted(points, 'random point')} of boxes the verdict at the point alone agrees"
-    elif isinstance(found, Stack):
+        text = "check: at [[points]] of boxes the verdict at the point alone agrees"
+        yield Message(text, points=Counted(points, "random point"))
+        return
+    more = Counted(points, "more point")
+    if isinstance(found, Stack):
         seconds = sum(one.second is not None and one.confirmed for one in found.layers)
-        between = f"between each two of the values, {seconds} in all, " if any(x.critical for x in found.layers) else ""
-        if seconds:
-            told = f"in regions agree; a second slice {between}corresponds to the first"
-            yield f"check: {counted(points, 'more point')} {told}"
-    else:
-        arcs, enclosed = sum(one.arcs for one in checks), sum(one.enclosed for one in checks)
-        by_balls = f"at {enclosed} of them eigenvalues in balls confirm the counts"
-        if not enclosed:
-            by_balls = "eigenvalues in balls exclude none of the counts, and decide none"
-        beside = f" and {counted(arcs, 'arc')}" if arcs else ""
-        yield f"check: {counted(points, 'more point')} in regions{beside} agree; {by_balls}"
+        if seconds and any(x.critical for x in found.layers):
+            text = (
+                "check: [[points]] in regions agree; a second slice between each two of the values, "
+                "[[seconds]] in all, "
+                "corresponds to the first"
+            )
+            yield Message(text, points=more, seconds=seconds)
+        elif seconds:
+            yield Message("check: [[points]] in regions agree; a second slice corresponds to the first", points=more)
+        return
+    arcs, enclosed = sum(one.arcs for one in checks), sum(one.enclosed for one in checks)
+    told = Message("check: [[points]] in regions agree", points=more)
+    if arcs:
+        told = Message("check: [[points]] in regions and [[arcs]] agree", points=more, arcs=Counted(arcs, "arc"))
+    by_balls = Message("eigenvalues in balls exclude none of the counts, and decide none")
+    if enclosed:
+        by_balls = Message("at [[count]] of them eigenvalues in balls confirm the counts", count=enclosed)
+    yield joined((told, by_balls), "; ")
 
 
 #: So many points are told; map.json has all.
@@ -298,10 +364,10 @@ MOST_POINTS = 6
 
 #: What a border is called; the reason behind the last one is in map.json.
 ONSETS = {
-    Onset.SOFT: "soft: asymptotically stable at the border, small oscillations arise beyond",
-    Onset.HARD: "hard: unstable at the border already",
-    Onset.OPEN: "open: terms of third order do not decide, or are not at hand",
-    Onset.NEITHER: (
+    Onset.SOFT: Message("soft: asymptotically stable at the border, small oscillations arise beyond"),
+    Onset.HARD: Message("hard: unstable at the border already"),
+    Onset.OPEN: Message("open: terms of third order do not decide, or are not at hand"),
+    Onset.NEITHER: Message(
         "neither soft nor hard: roots are to the right on both sides or on none, one side is not judged, or the "
         "equations are exactly linear"
     ),
@@ -314,10 +380,11 @@ def borders_of_slices(planes: Sequence[Map]) -> Iterator[str]:
     for onset, words in ONSETS.items():
         alike = sum(_onset(one) is onset for one in arcs)
         if alike:
-            yield f"imaginary pair, {counted(alike, 'arc')} of slices: {words}"
+            yield Message("imaginary pair, [[arcs]] of slices: [[onset]]", arcs=Counted(alike, "arc"), onset=words)
     changing = sum(_onset(one) is None for one in arcs)
     if changing:
-        yield f"imaginary pair, {counted(changing, 'arc')} of slices: soft in parts, hard in others"
+        text = "imaginary pair, [[arcs]] of slices: soft in parts, hard in others"
+        yield Message(text, arcs=Counted(changing, "arc"))
 
 
 def borders(found: Map) -> Iterator[str]:
@@ -326,13 +393,16 @@ def borders(found: Map) -> Iterator[str]:
     for onset, words in ONSETS.items():
         alike = [_place(found, one) for one in soft if _onset(one) is onset]
         if alike:
-            yield f"imaginary pair, {', '.join(alike)}: {words}"
+            yield Message("imaginary pair, [[places]]: [[onset]]", places=joined(alike, ", "), onset=words)
     for one in soft:
         stretches = one.soft.stretches or () if one.soft is not None else ()
         if len(stretches) > 1:
             name = found.axes[stretches[0].axis].name
-            parts = [f"{x.onset} for {name} from {float_of(x.start):.6g} to {float_of(x.end):.6g}" for x in stretches]
-            yield f"imaginary pair, {_place(found, one)}: {'; '.join(parts)}"
+            ends = [(x.onset, f"{float_of(x.start):.6g}", f"{float_of(x.end):.6g}") for x in stretches]
+            text = "[[onset]] for [[name]] from [[start]] to [[end]]"
+            parts = [Message(text, onset=Message(o), name=name, start=start, end=end) for o, start, end in ends]
+            told = joined(parts, "; ")
+            yield Message("imaginary pair, [[places]]: [[onset]]", places=_place(found, one), onset=told)
 
 
 def _onset(one: Cell) -> Onset | None:
@@ -342,23 +412,24 @@ def _onset(one: Cell) -> Onset | None:
     return one.soft.onset
 
 
-def _place(found: Map, one: Cell) -> str:
+def _place(found: Map, one: Cell) -> Message:
     if len(found.axes) == 1:
-        return f"at {float_of(one.sample):.10g}"
+        return Message("at [[point]]", point=f"{float_of(one.sample):.10g}")
     partial = one.soft is not None and one.soft.stretches is None
-    return f"arc {one.number}" + (" (at its point in map.json)" if partial else "")
+    return Message("arc [[number]] (at its point in map.json)" if partial else "arc [[number]]", number=one.number)
 
 
 def _exactly(x: Any) -> str:
     """A rational number, or the first digits of an algebraic one."""
     if isinstance(x, fmpq):
         return str(x)
-    return f"{float(x):.10g} (exactly: a root of a polynomial of degree {int(x.polynomial.degree())}, in map.json)"
+    text = "[[digits]] (exactly: a root of a polynomial of degree [[degree]], in map.json)"
+    return Message(text, digits=f"{float(x):.10g}", degree=int(x.polynomial.degree()))
 
 
-def _why(found: Map, one: Cell) -> str:
+def _why(found: Map, one: Cell) -> Message:
     """The condition that is an equality there, and what is said of the point."""
     of = [found.boundaries.conditions[k] for k in found.place(one).factors]
-    words = "; ".join(dict.fromkeys(condition_words(telling(x), found) for x in of))
+    words = joined(dict.fromkeys(condition_words(telling(x), found) for x in of), "; ")
     border = one.judged.border if one.judged is not None else None
-    return words + (f": {border}" if border is not None else "")
+    return words if border is None else joined((words, Message(border)), ": ")

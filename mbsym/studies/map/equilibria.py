@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator, Mapping
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from mbsym.expressions.message import Message
 from mbsym.model.system import System
 from mbsym.studies.section import against_sign, unless_parameter
 from mbsym.studies.study import Unfit, Watch, missing
@@ -58,5 +59,5 @@ def mapped(system: System, request: Request, watch: Watch) -> EquilibriaMap:
     found = equilibria_map(system, (request.axes[0], request.axes[1]), _numbers(system, request), watch)
     withdrawn = Analysis(system, ()).broken(Analysis.equilibria.stands_on)
     if withdrawn is not None:
-        raise NoMap(f"no map: {withdrawn.reason}")
+        raise NoMap(Message("no map: [[reason]]", reason=withdrawn.reason))
     return found

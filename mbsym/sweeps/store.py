@@ -8,7 +8,7 @@ A file is whole or not there.  Another description, request or version has other
 from __future__ import annotations
 
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -16,15 +16,15 @@ from typing import Any
 import numpy as np
 
 from mbsym.sweeps.sweep import Chunk
-from mbsym_cli.files import write_whole
 
 
 class Folder:
-    """The chunks of one sweep in ``folder/chunks``."""
+    """The chunks of one sweep in ``folder/chunks``; ``write`` writes a file that is whole or not there."""
 
-    def __init__(self, folder: Path, digest: str, columns: tuple[str, ...]) -> None:
-        self.folder, self.digest, self.columns = folder / "chunks", digest[:16], columns
-        self.found = 0  # of chunks that an earlier run, or another shard, has measured
+    def __init__(
+        self, folder: Path, digest: str, columns: tuple[str, ...], write: Callable[[Path, bytes], object]
+    ) -> None:
+        self.folder, self.digest, self.columns, self.write = folder / "chunks", digest[:16], columns, write
 
     def path(self, chunk: Chunk) -> Path:
         return self.folder / f"{self.digest}-{chunk.number:06d}.npz"
@@ -38,10 +38,9 @@ class Folder:
             return None
         if any(values.shape != (chunk.stop - chunk.start,) for values in found.values()):
             return None
-        self.found += 1
         return found
 
     def save(self, chunk: Chunk, columns: Mapping[str, Any]) -> None:
         stream = BytesIO()
         np.savez_compressed(stream, **{name: columns[name] for name in self.columns})
-        write_whole(self.path(chunk), stream.getvalue())
+        self.write(self.path(chunk), stream.getvalue())

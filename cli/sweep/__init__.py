@@ -1,1 +1,0 @@
-"""``mbsym sweep``: its options, chunks that are kept, what is written."""

@@ -1,0 +1,116 @@
+"""``NAME=RANGE``: grids, tolerances and draws of what varies, of sweeps and of ensembles."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from mbsym.expressions.parser import ascii_safe, parse_expression
+from mbsym.expressions.place import Complaints, Span
+from mbsym.model.system import rational
+from mbsym.source import render_option
+from mbsym.studies.request import Ranges, Varied
+from mbsym_cli.options import MAX_LENGTH, Options
+from mbsym_cli.section_options import read_rational
+
+if TYPE_CHECKING:
+    from mbsym.model.system import System
+    from mbsym.numerics.scenario import Scenario
+
+#: Reads a number for an option, exact or not: (text, option); None where that is none.
+Read: TypeAlias = Callable[[str, str], Any]
+
+_DRAW = re.compile(r"\s*(normal|uniform)\s*\((.*)\)\s*", re.DOTALL)
+_TOLERANCE = re.compile(r"(?P<middle>.*?)\s*\+-\s*(?P<size>[^%]+?)\s*(?P<percent>%?)\s*", re.DOTALL)
+_HINT = "write name=0:1:1000, name=1 +- 5%, name=uniform(0, 1) or name=normal(1, 0.05)"
+
+
+def read_variations(
+    option: str, texts: Sequence[str], kind: Ranges, system: System | None, motion: Scenario | None, options: Options
+) -> tuple[Varied, ...] | None:
+    """What varies; None where it cannot be read, or nothing does, which joins the complaints."""
+    if not texts:
+        options.complain(option, "missing-option", "what varies is not said", _HINT)
+    if len(texts) > kind.most:
+        options.complain(option, "too-large", f"at most {kind.most} names vary at once")
+    if not 0 < len(texts) <= kind.most:
+        return None
+    exact = partial(read_rational, options=options)
+    read: Read = exact if kind.exact else partial(_number, motion=motion, options=options)
+    found = [_varied(" ".join(text.splitlines()), option, read, system, options) for text in texts]
+    known = tuple(one for one in found if one is not None)
+    return known if len(known) == len(found) else None
+
+
+def _varied(text: str, option: str, read: Read, system: System | None, options: Options) -> Varied | None:
+    from mbsym.numerics.ensembles.variation import Draw, Grid
+
+    name, equals, right = (part.strip() for part in text.partition("="))
+    if not equals or not name or not right or len(text) > MAX_LENGTH:
+        options.complain(option, "bad-variation", f"{ascii_safe(text[:80])}: this says no range", _HINT)
+        return None
+    option = f"{option} {name if name.isidentifier() else ascii_safe(name)}"
+    tolerance, draw = _TOLERANCE.fullmatch(right), _DRAW.fullmatch(right)
+    if tolerance is not None:
+        about = _about(name, tolerance, option, read, system, options)
+        return None if about is None else Varied(Draw(name, "uniform", float(about[0]), float(about[1])), about)
+    parts = [part.strip() for part in (draw[2].split(",") if draw else right.split(":"))]
+    if len(parts) != (2 if draw else 3):
+        options.complain(option, "bad-variation", "this is no range", _HINT)
+        return None
+    first, second = (read(part, option) for part in parts[:2])
+    count = 0 if draw else options.whole(option, parts[2], 2, 10**12)
+    if first is None or second is None or count is None:
+        return None
+    if draw is None:
+        return Varied(Grid(name, float(first), float(second), count), (min(first, second), max(first, second)))
+    reach = (first, second) if draw[1] == "uniform" else (first - 8 * second, first + 8 * second)
+    return Varied(Draw(name, draw[1], float(first), float(second)), reach)
+
+
+def _about(
+    name: str, tolerance: re.Match[str], option: str, read: Read, system: System | None, options: Options
+) -> tuple[Any, Any] | None:
+    """The ends of ``m = 1 +- 5%``; without a number in front, about the value of the description."""
+    size = read(tolerance["size"], option)
+    if tolerance["middle"]:
+        middle = read(tolerance["middle"], option)
+    else:
+        parameters = () if system is None else system.parameters
+        given = next((one.value for one in parameters if one.name == name), None)
+        middle = None if given is None else rational(given)
+        if middle is None:
+            told = f"{ascii_safe(name)} has no rational number in the description to vary about"
+            options.complain(option, "missing-value", told, f"write {ascii_safe(name)}=1 +- 5%")
+    if middle is None or size is None:
+        return None
+    reach = abs(middle) * size / 100 if tolerance["percent"] else size
+    if reach <= 0:
+        options.complain(option, "bad-variation", "the tolerance must be positive", _HINT)
+        return None
+    return middle - reach, middle + reach
+
+
+def _number(text: str, option: str, motion: Scenario | None, options: Options) -> float | None:
+    """A number made of numbers, pi and parameters, of either sign."""
+    from mbsym.algebra.failures import Failure
+    from mbsym.expressions.tree import names
+    from mbsym.numerics.scenario import exact
+
+    complaints, whole = Complaints(), Span(1, 1, max(1, len(text)))
+    value = parse_expression(text, complaints, lambda start, end: Span(1, start + 1, max(1, end - start)))
+    known = dict(motion.parameters) if motion is not None else {}
+    found = None
+    if value is not None and not complaints.errors:
+        unknown = sorted(names(value) - {*known, "pi"})
+        if unknown and motion is not None:
+            complaints.error("unknown-name", f"unknown name {unknown[0]}", whole, "numbers, pi and parameters")
+        elif not unknown:
+            try:
+                found = float(exact(value, known))
+            except Failure as reason:
+                complaints.error("bad-number", f"it has no value: {reason}", whole)
+    options.complaints += [render_option(one, text, option) for one in complaints.sorted()]
+    return found

@@ -1,0 +1,73 @@
+"""``mbsym view``: a system in three dimensions, as one page."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import KW_ONLY, dataclass, field
+from typing import TYPE_CHECKING, Annotated
+
+from mbsym.studies.request import Flag, Number, Settings, Value
+from mbsym.studies.study import Answer, Asked, Document, Refusal, Single, Study, Watch, line, no_program
+
+if TYPE_CHECKING:
+    from mbsym.report.viewer.page import Page
+
+MODES = "Show the linear modes about the given motion, with its verdict."
+EQUILIBRIA = "List the relative equilibria to click through, with their verdicts."
+SETTINGS = Settings(
+    "NAME=VALUE", "Replace a value; repeatable.", "-s", "--set", whole=lambda texts: texts["time"] is not None
+)
+
+
+@dataclass(frozen=True)
+class Request:
+    """Write FILE's system in three dimensions as one self-contained page, with sliders for its coordinates.
+
+    Bodies with their shapes, or the ellipsoids of their inertia; joints, mass centres, forces.  The page works without
+    network and server, for talks and supplements of papers.  Values that are missing are stood in for, and told so, if
+    no motion is asked for.
+
+    Exit codes: 0 written, 1 not written (the reason is given), 2 something is missing or wrong, 130 interrupted.
+
+    \b
+    Examples:
+      mbsym view systems/double-pendulum.yaml --time 10 --modes
+      mbsym view systems/satellite.yaml -o satellite.html
+    """
+
+    _: KW_ONLY
+    time: Annotated[float | None, Number("T", "Show the motion until T, too (20, 4*pi).", "-t")] = None
+    modes: Annotated[bool, Flag(None, MODES)] = False
+    equilibria: Annotated[bool, Flag(None, EQUILIBRIA)] = False
+    values: Annotated[Mapping[str, Value], SETTINGS] = field(default_factory=dict)
+
+
+def derive(asked: Asked, request: Request, watch: Watch) -> Page:
+    from mbsym.report.viewer.page import viewed
+    from mbsym.simulation.request import read_values
+
+    def at(t: float) -> None:
+        watch("", t, request.time or 1.0)
+
+    values = read_values(asked.system, request.values)
+    return viewed(asked.system, values, request.time, request.modes, request.equilibria, at)
+
+
+def answer(asked: Asked, request: Request, found: Page) -> Answer:
+    return Answer(line(f"  {text}") for text in found.said)
+
+
+def document(asked: Asked, request: Request, found: Page) -> Document:
+    return Document(found.text, told=f"{len(found.text) / 1e6:.1f} MB, opens in a browser without network")
+
+
+def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+    from mbsym.numerics.scenario import Incomplete
+
+    return Refusal(f"cannot be drawn: {error}") if isinstance(error, Incomplete) else no_program(error, asked, request)
+
+
+STUDY = Study(
+    "view", Request, derive, answer, refusal,
+    constraints=True, held=False, out=Single("Default: reports/NAME/view.html", "view.html"), document=document,
+)  # fmt: skip

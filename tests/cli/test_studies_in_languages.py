@@ -1,0 +1,85 @@
+"""What studies print is in the language of the description: nothing of it stays English, the result comes first."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from conftest import SHIPPED
+
+from mbsym.report.messages import messages
+from mbsym_cli.main import main
+
+STUDIES = [
+    ("lyapunov", "double-pendulum", "--time 40 --count 1"),
+    ("orbit", "double-pendulum", "--period 2.6 --set theta1=0.3 --set theta2=0.12"),
+    ("floquet", "shaken-pendulum", "--set nu=40"),
+    ("inverse", "cart-pole", "--motion p=t**2/2 --motion theta=0 --time 1"),
+    ("sweep", "ziegler", "-v P=uniform(0,4) -v k=uniform(1,2) --points 50 --format csv"),
+    ("equilibria", "gravity-gradient", ""),
+    ("equilibria", "bead-on-hoop", "--vary Omega=1:12 --format json"),
+    ("map", "triangular-points", "--x mu=0:1/2 --format json"),
+    ("groups", "double-pendulum", ""),
+    ("extremes", "heavy-top", "--sequences"),
+    ("simulate", "double-pendulum", "--time 1 --vary theta1=uniform(0,1) --members 5 --format csv"),
+]
+#: What is typed, and names of methods and arithmetics, of files and of what the description declares.
+TYPED = {
+    "lambda",
+    "json",
+    "csv",
+    "svg",
+    "png",
+    "map",
+    "sqrt",
+    "taylor",
+    "extended",
+    "yaml",
+    "log",
+    "theta",
+    "det",
+    "float64",
+}
+
+
+def said(command: str, name: str, options: str, language: str, folder: Path) -> str:
+    text = (SHIPPED / f"{name}.yaml").read_text(encoding="utf-8")
+    path = folder / "d.yaml"
+    path.write_text(re.sub(r"^name:", f"language: {language}\nname:", text, count=1, flags=re.M), encoding="utf-8")
+    out = ["--out", str(folder / "out")] if command != "groups" and name != "gravity-gradient" else []
+    asked = [command, str(path), *options.split(), *out]
+    done = CliRunner().invoke(main, asked, env={"COLUMNS": "80"})
+    assert done.exit_code in (0, 3), done.output
+    assert [line for line in done.stdout.splitlines()[1:] if len(line) > 80 and str(folder) not in line] == []
+    return "\n".join(done.stdout.splitlines()[1:]).replace(str(folder), "")
+
+
+@pytest.mark.parametrize(("command", "name", "options"), STUDIES)
+def test_nothing_stays_english(command: str, name: str, options: str, tmp_path: Path) -> None:
+    """In Russian, Latin letters are names, formulas, files and what is typed."""
+    own = {x.lower() for x in re.findall(r"[A-Za-z]+", (SHIPPED / f"{name}.yaml").read_text(encoding="utf-8"))}
+    told = said(command, name, options, "ru", tmp_path)
+    assert re.search(r"[а-я]{4}", told)
+    words = {x for x in re.findall(r"(?<![\w/.-])[A-Za-z]{3,}(?![\w/.])", told) if x.lower() not in own | TYPED}
+    assert not words
+
+
+@pytest.mark.parametrize(("command", "name", "options"), STUDIES[:2])
+def test_spanish_is_spoken(command: str, name: str, options: str, tmp_path: Path) -> None:
+    told = said(command, name, options, "es", tmp_path)
+    english = {text for _, text in messages("es") if len(text) > 12 and "[[" not in text}
+    assert not [text for text in english if text in told]
+    assert "archivos en" in told
+
+
+def test_a_refusal_is_in_the_language(tmp_path: Path) -> None:
+    """No periodic motion near a guess: the reason, and what stands before it."""
+    text = (SHIPPED / "double-pendulum.yaml").read_text(encoding="utf-8")
+    path = tmp_path / "d.yaml"
+    path.write_text(re.sub(r"^name:", "language: ru\nname:", text, count=1, flags=re.M), encoding="utf-8")
+    done = CliRunner().invoke(main, ["orbit", str(path), "--period", "2.6", "--set", "theta1=3"])
+    assert done.exit_code == 1
+    assert "периодическое движение не найдено: нет сходимости; " in done.stderr
+    assert re.search(r"\d шаг", done.stderr)
