@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import asdict
 
-from mbsym.expressions.message import worded
 from mbsym.expressions.rates import is_velocity
 from mbsym.model.system import System
 from mbsym.problems.stabilisation import Feedback, Locus, Rank, Stabilisation
