@@ -233,3 +233,62 @@ def test_a_wheel_that_runs_on_is_judged_alike_in_every_description(described_as:
 def test_a_wheel_that_stands_is_judged_without_a_family_in_the_description() -> None:
     found = described(WHEEL.replace("x: {rate: v}, phi: {rate: -v/r}, ", ""))
     assert found.stability.verdict.word is Word.ASYMPTOTIC_BUT_CYCLIC
+
+
+ROLLS = """
+mbsym: 1
+name: Wheel on a level road
+parameters: {m: {sign: positive, value: 2}, R: {sign: positive, value: 1/5}, J: {sign: positive, value: 1/20}, OTHER}
+bodies:
+  - {name: wheel, attached to: 0, coordinates: [x, phi], connection point: [x, R, 0],
+     rotation: {axes: [3], angles: [phi]}, mass: m, inertia about: mass centre, inertia: [0, 0, J]}
+loads:
+  - uniform gravity: {acceleration: 9.81, direction: [0, -1, 0]}
+  - damper: {coordinate: x, coefficient: c}
+constraints:
+  - rolling: {body: wheel, point: [0, -R, 0], axes: 0, on: ground}
+"""
+
+
+@pytest.mark.parametrize("motion", ["{x: 0, phi: 0}", "{x: {rate: -R*w}, phi: {rate: w}}"])
+def test_a_wheel_that_nothing_holds_does_not_come_to_rest(motion: str) -> None:
+    # (m + J/R^2) x'' = 0: a disturbed velocity stays what it is, for ever.
+    free = ROLLS.replace("  - damper: {coordinate: x, coefficient: c}\n", "")
+    free = free.replace("OTHER", "w: {sign: real, value: 3}")
+    stability = described(free + f"motion: {motion}\n").stability
+    assert stability.numerical is not None
+    assert stability.verdict.word is stability.numerical.word
+    assert not stability.verdict.word.asymptotic
+    if "rate" not in motion:
+        assert stability.verdict.word is Word.STABLE_BUT_CYCLIC
+
+
+PUSHED = """
+mbsym: 1
+name: Pushed by what the relation is
+parameters: {m: {sign: positive, value: 2}, R: {sign: positive, value: 1}, k: {sign: SIGN, value: 1}}
+bodies:
+  - {name: a, attached to: 0, coordinates: [x, y], connection point: [x, y, 0], mass: m}
+constraints:
+  - velocity: x_dot + R*y_dot = 0
+loads:
+  - generalized force: {x: k*(x + R*y)}
+motion: {x: 0, y: 0}
+"""
+
+
+@pytest.mark.parametrize("sign", ["real", "positive"])
+def test_a_force_by_the_value_of_the_relation_lets_no_velocity_stay_near(sign: str) -> None:
+    # x + R y = c is kept: m (1 + 1/R^2) x'' = k c, so x' = k c t/(m (1 + 1/R^2)) grows without bound from rest, however
+    # small c is.  With c = 0 nothing acts.
+    stability = described(PUSHED.replace("SIGN", sign)).stability
+    assert not stability.verdict.word.stable
+    assert stability.numerical is not None
+    assert not stability.numerical.word.stable
+
+
+def test_a_wheel_with_a_damper_comes_to_rest() -> None:
+    # (m + J/R^2) x'' + c x' = 0 with c > 0: the velocity decays, the place where it stops is another.
+    damped = ROLLS.replace("OTHER", "c: {sign: positive, value: 1}")
+    stability = described(damped + "motion: {x: 0, phi: 0}\n").stability
+    assert stability.verdict.word is Word.ASYMPTOTIC_BUT_CYCLIC

@@ -314,7 +314,10 @@ def _analyse(system: LinearSystem, signs: Signs, borders: bool) -> Theory:
     else:
         cases, reduced = _cases(system, found, known), None
     if system.exact and zero_power and not any(case.verdict.word.stable for case in cases):
-        cases = _cases_of_linear(system, found, known) or cases
+        linear = _cases_of_linear(system, found, known)
+        # What changes the relations of a leaf acts like a constant force: along zero roots velocities grow under it.
+        if not (system.leaf and any(case.verdict.word.stable for case in linear)):
+            cases = linear or cases
     verdict, left = _first_certain(cases, known)
     return replace(found, cases=cases, reduced=reduced, verdict=verdict, uncovered=left)
 

@@ -346,8 +346,9 @@ def off_the_leaf(verdict: Verdict) -> Verdict:
 
     K or the roots on the leaf being what they are, an equilibrium near by belongs to every other value (implicit
     functions), and depends on it smoothly: what decays on the leaf decays to that, a minimum of the energy stays one.
+    Where nothing acts on any coordinate nothing decays: on every leaf the velocities stay what they are.
     """
-    if Ground.DECAYS not in verdict.laid:
+    if Ground.DECAYS not in verdict.laid or Ground.IDLE in verdict.laid:
         return verdict
     grounds = {
         ground: tuple(sorted({*names, MALKIN})) if ground is Ground.DECAYS else names
