@@ -61,7 +61,7 @@ COMMANDS = {
 GROUPS = {
     "Start": ("new", "examples", "check", "edit", "explain"),
     "Derive": ("run", "show", "watch", "batch", "diff"),
-    "Motion": ("simulate", "view", "orbit", "inverse", "lyapunov", "regressor"),
+    "Motion": ("simulate", "view", "orbit", "inverse", "regressor", "lyapunov"),
     "Stability": ("equilibria", "map", "sweep", "floquet", "nonlinear"),
     "Integrals, small parameters": ("integrals", "symmetries", "groups", "average", "expand", "oscillations"),
     "Accuracy": ("tradeoff", "extremes"),

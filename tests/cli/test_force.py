@@ -30,6 +30,7 @@ FOLDERS = [
         "orbit.json",
     ),
     ("oscillations", "spring-pendulum", ["--of", "theta", "--format", "svg"], "*.svg"),
+    ("regressor", "spatial-arm", [], "regressor.json"),
     ("tradeoff", "simple-pendulum", ["--time", "0.1", "--budget", "1"], "tradeoff.csv"),
     ("extremes", "simple-pendulum", ["--budget", "1"], "extremes.csv"),
 ]

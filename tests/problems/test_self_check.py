@@ -387,7 +387,7 @@ CAUGHT = [
     # --- the Newton-Euler recursion ---
     Mistake(
         "the Coriolis term 2 w x r' dropped",
-        "mechanics.newton_euler:_Accelerations._step",
+        "mechanics.newton_euler:Accelerations._step",
         " + spin.cross(relative_velocity) * two",
         "",
         "machine",
@@ -395,7 +395,7 @@ CAUGHT = [
     ),
     Mistake(
         "Coriolis without its factor",
-        "mechanics.newton_euler:_Accelerations._step",
+        "mechanics.newton_euler:Accelerations._step",
         "algebra.number(2)",
         "algebra.number(1)",
         "machine",
@@ -403,7 +403,7 @@ CAUGHT = [
     ),
     Mistake(
         "the centripetal term dropped",
-        "mechanics.newton_euler:_Accelerations._step",
+        "mechanics.newton_euler:Accelerations._step",
         " + spin.cross(spin.cross(r))",
         "",
         "spinning",
@@ -411,7 +411,7 @@ CAUGHT = [
     ),
     Mistake(
         "the cross term w x x' e of an angular acceleration",
-        "mechanics.newton_euler:_Accelerations._step",
+        "mechanics.newton_euler:Accelerations._step",
         " + spin.cross(rate)",
         "",
         "machine",
@@ -435,7 +435,7 @@ CAUGHT = [
     ),
     Mistake(
         "the moment that a force has about the previous joint",
-        "mechanics.newton_euler:_Joints.projections",
+        "mechanics.newton_euler:Joints.projections",
         " + motion.offset.cross(carried)",
         "",
         "spinning",
@@ -443,7 +443,7 @@ CAUGHT = [
     ),
     Mistake(
         "the rate of an angle -q in a projection",
-        "mechanics.newton_euler:_Joints._project",
+        "mechanics.newton_euler:Joints._project",
         "lower(differentiate(turn.angle, name))",
         "algebra.one",
         "machine",
