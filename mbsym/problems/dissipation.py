@@ -340,11 +340,10 @@ class Balance:
 
         In a frame with a constant acceleration a, L = T_rel + U - m a x + d/dt (...).  With D what t and prescribed
         quantities change, D L = d/dt phi(q, t) exactly if it is c_i(q, t) q'_i + c_0(q, t) with dc_i/dq_j = dc_j/dq_i
-        and D c_i = dc_0/dq_i.  Nothing is claimed where a coordinate is cyclic: its momentum may know the time.
+        and D c_i = dc_0/dq_i.  Where q_i is cyclic, or turns, c_i = 0 is wanted: there its momentum does not know
+        the time, and phi has no share in what goes on along it.
         """
         ring, system = self.scene.ring, self.scene.system
-        if turning(self.scene) or self.ignorable:
-            return False
 
         def changed(x: Polynomial) -> Polynomial:
             total = ring.derivative(x, "t")
@@ -356,6 +355,8 @@ class Balance:
             left = changed(self._lagrangian)
             slopes = {name: ring.velocity_derivative(left, name) for name in system.coordinates}
             if any(ring.dependencies(x, system.velocities) for x in slopes.values()):
+                return False
+            if any(ring.is_zero(slopes[name]) is not True for name in {*turning(self.scene), *self.ignorable}):
                 return False
             still = {ring.index("velocity", name): ring.zero for name in system.coordinates}
             rest = ring.substitute(left, still)

@@ -15,6 +15,7 @@ from mbsym.expressions.table import Table
 from mbsym.expressions.tree import text
 from mbsym.formulas.formula import Formula
 from mbsym.model.quantities import energy_unit, unit_of, units_by_name
+from mbsym.model.small import SmallParameter
 from mbsym.model.system import System
 from mbsym.problems.claims import ClaimResult
 from mbsym.report.canonical import data as canonical_data
@@ -66,6 +67,7 @@ def results_document(analysis: Analysis, problems: Sequence[int]) -> doc.Results
             doc.Assumption(left=text(x.left), relation=x.relation, right=text(x.right)) for x in system.assumptions
         ]
         or UNSET,
+        small_parameter=_small(system.small) if system.small else UNSET,
         tables=[_table(one) for one in system.tables] or UNSET,
         checks=[doc.SelfCheck(**vars(check)) for check in analysis.checks],
         units=units_by_name(system, [("energy", energy_unit(system))]) or UNSET,
@@ -132,6 +134,11 @@ def _sections(analysis: Analysis, problems: Sequence[int], unavailable: dict[str
 def _state_space(found: StateSpace, write: Callable[[Formula], Written]) -> linearisation.StateSpace:
     matrices = {name: matrix_text(getattr(found, name), write) for name in "ABCD"}
     return linearisation.StateSpace(states=list(found.states), **matrices)
+
+
+def _small(small: SmallParameter) -> doc.SmallParameter:
+    named = small.leading or UNSET
+    return doc.SmallParameter(small.name, dict(small.powers), list(small.fast), list(small.slow), named)
 
 
 def _table(table: Table) -> doc.Table:

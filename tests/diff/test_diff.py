@@ -369,3 +369,20 @@ def test_formulas_with_tables_are_compared_like_others(shape: str) -> None:
         x for x in diff(one, of("m: positive, k: positive, l: positive", "m*x + 2*l")).changes if "forcing" in x.path
     ]
     assert [change.kind for change in forced] == [Kind.FORMULA]
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "path"),
+    [
+        ("{c: 1}", "{c: 2}", ("small_parameter", "powers", "c")),
+        ("powers: {c: 1}", "powers: {g: 1}", ("small_parameter",)),
+    ],
+)
+def test_what_is_small_is_part_of_what_is_compared(before: str, after: str, path: tuple[str, ...]) -> None:
+    # Problem 12 is not among these results, but what it expands in is another parameter, or power: it is not the same.
+    text = WHOLE.replace("claims:", "small parameter: {eps: {powers: {c: 1}}}\nclaims:").replace(
+        "relations: {k: g*c}\n", ""
+    )
+    found = diff(results(text), results(text.replace(before, after)))
+    assert not found.same
+    assert all(change.path[: len(path)] == path for change in found.changes)

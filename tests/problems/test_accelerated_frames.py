@@ -67,3 +67,23 @@ def test_a_damper_in_a_lift_makes_rest_asymptotically_stable() -> None:
     found = told("[0, 0, b*t**2/2]", load="  - damper: {coordinate: th, coefficient: c}\n")
     assert found.integrals == ()
     assert found.stability.verdict.word.asymptotic
+
+
+def conical(pivot: str) -> Analysis:
+    text = TEXT.replace("{axes: [2], angles: [th]}", "{axes: [3, 2], angles: [ps, th]}")
+    return mbsym.loads(
+        text.replace("PIVOT", pivot).replace("{th: REST}", "{th: pi/3, ps: {rate: sqrt(2*(g + b)/l)}}"), (4, 6, 7)
+    )
+
+
+def test_a_conical_pendulum_in_a_lift_is_stable_after_routh() -> None:
+    """th = pi/3, ps'^2 = 2 (g + b)/l: the weight is m (g + b), and with p = m l^2 ps' sin(th)^2 constant
+
+        W = p^2/(2 m l^2 sin(th)^2) - m l (g + b) cos(th),     W'' = 7 m l (g + b)/2 > 0 there (w^2 = (g + b)(7/2)/l):
+
+    as in a building.  "No energy integral of the nonlinear system is known" was said beside that integral, proved.
+    """
+    found = conical("[0, 0, b*t**2/2]")
+    assert {integral.status for integral in found.integrals} == {"proved"}
+    assert len(found.integrals) == 2
+    assert found.stability.verdict.word is Word.STABLE_BUT_CYCLIC

@@ -52,6 +52,16 @@ class Assumption(Part, frozen=True):
     right: Annotated[Formula, "its right side"]
 
 
+class SmallParameter(Part, frozen=True):
+    """what expansions are made in the powers of"""
+
+    name: Annotated[str, "a parameter, or with powers a name of its own"]
+    powers: Annotated[dict[str, int], "parameters and variables that hold it, each with its power; or none"]
+    fast: Annotated[list[str], "variables that a slow manifold expresses by the others; none: they are found"]
+    slow: Annotated[list[str], "variables that are not among the fast ones"]
+    leading: Annotated[str | UnsetType, "the variable whose oscillation is followed, where it is given"] = UNSET
+
+
 class Table(Part, frozen=True):
     """a function that is given by points"""
 
@@ -217,6 +227,9 @@ class Results(Part, frozen=True, kw_only=True):
     ] = UNSET
     assumptions: Annotated[
         list[Assumption] | UnsetType, "what is assumed of parameters beside their signs, where anything is"
+    ] = UNSET
+    small_parameter: Annotated[
+        SmallParameter | UnsetType, "in whose powers expansions are made, where the description names one"
     ] = UNSET
     tables: Annotated[
         list[Table] | UnsetType, "functions given by points, where the description has any", told_apart_by("name")
