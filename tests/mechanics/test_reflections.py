@@ -106,4 +106,4 @@ def test_the_command_says_what_is_left_out() -> None:
     assert result.exit_code == 0
     assert "1 relative equilibrium: 1 stable" in result.output
     assert "1 more solution with r < 0, not counted" in result.output
-    assert "complete apart from these" in result.output
+    assert "complete apart from the solutions below that are not counted" in result.output
