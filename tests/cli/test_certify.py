@@ -14,8 +14,8 @@ import mpmath
 import pytest
 from click.testing import CliRunner, Result
 
+from mbsym.expressions.counting import duration
 from mbsym.numerics.enclosure.enclose import OUT_OF_TIME, Enclosure
-from mbsym.report.runs.certificate import spelled
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main
 
@@ -117,7 +117,7 @@ def test_the_pace_is_that_of_the_steps_taken() -> None:
     found = Enclosure((), 50, 2.0, OUT_OF_TIME, 3.0, 600.0)
     assert found.whole_seconds == 900.0
     assert Enclosure((), 50, 0.0, OUT_OF_TIME, 3.0, 600.0).whole_seconds == math.inf
-    assert [spelled(x) for x in (40.0, 600.0, 10800.0, 864000.0)] == ["40 s", "10 min", "3 h", "10 days"]
+    assert [duration(x) for x in (40.0, 600.0, 10800.0, 864000.0)] == ["40 s", "10 min", "3 h", "10 days"]
 
 
 @pytest.mark.parametrize("accuracy", [1e-4, 1e-8])

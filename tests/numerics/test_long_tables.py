@@ -167,7 +167,7 @@ def test_a_run_ends_where_a_table_ends() -> None:
         run.fill(np.linspace(0.1, 5, 50))
     assert float(found.value.state[0]) == pytest.approx(1.0, abs=1e-9)
     run = run_of([(1, 1), (2, 3)], "generalized force: {x: push(t)}", "outside: error")
-    with pytest.raises(Breakdown, match="begins at 1, and its argument is 0"):
+    with pytest.raises(Breakdown, match="begins at 1, its argument is 0"):
         run.advance(1.0)
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mbsym.numerics.ensembles.variation import Draw, Grid
-from mbsym.sweeps.points import Points, complaints
+from mbsym.numerics.ensembles.variation import Draw, Grid, complaints
+from mbsym.sweeps.points import Points
 from mbsym.sweeps.statistics import interval
 from mbsym.sweeps.sweep import chunks, shard
 
