@@ -86,7 +86,8 @@ def _velocities(k: int, body: BodyKinematics | ToldKinematics) -> Iterator[Block
 
 def _named(value: Column, letter: str) -> bool:
     """Whether each component is an intermediate quantity with its own name, which says all of it."""
-    return [str(x) for x in value] == [f"{letter}_{i}" for i in (1, 2, 3)]
+    names = [f"{letter}_{i}" for i in (1, 2, 3)]
+    return all(x.terms == 1 for x in value) and [str(x) for x in value] == names  # long ones are not written for it
 
 
 def _terms(body: BodyKinematics | ToldKinematics) -> int:
