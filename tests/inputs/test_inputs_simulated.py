@@ -77,7 +77,7 @@ def test_the_command_tells_and_agrees_with_the_generated_module(tmp_path: Path) 
     words = ["--time", "1", "--set", "p=0", "--input", "F=20*sin(3*t) - p_dot", "--format", "csv"]
     done = CliRunner().invoke(main, ["simulate", str(POLE), *words, "--out", str(tmp_path / "s")])
     assert done.exit_code == 0, done.output
-    assert "inputs    F = 20*sin(3*t) - p_dot\n" in done.output
+    assert "inputs  F = 20*sin(3*t) - p_dot\n" in done.output
     assert '"inputs": {\n    "F": "20*sin(3*t) - p_dot"\n  }' in (tmp_path / "s" / "simulation.json").read_text()
     rows = np.genfromtxt(tmp_path / "s" / "trajectory.csv", delimiter=",", names=True)
     module = _module(tmp_path / "r" / "model.py")

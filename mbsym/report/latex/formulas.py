@@ -37,7 +37,7 @@ def width(latex: str) -> float:
     """A rough estimate in ems."""
     letters = re.sub(r"\\(frac|left|right|bigl|bigr|Bigl|Bigr|dot|ddot|mathrm|mathit|penalty\d+)", "", latex)
     functions = len(re.findall(r"\\(sin|cos|exp|ln)", letters))
-    symbols = re.sub(r"\\[A-Za-z]+|[A-Za-z0-9]", "x", letters)
+    symbols = re.sub(r"\\[A-Za-z]+|[^\W_]", "x", letters)
     return 0.55 * symbols.count("x") + functions + 1.3 * len(re.findall(r" [+-] ", symbols))
 
 

@@ -60,7 +60,7 @@ def _gyroscopic(part: Gyroscopic) -> Iterator[Said]:
         return
     if part.free:
         yield Said(
-            "$K$ does not hold all of [[names]]: so many zero eigenvalues: [[free]].", {**names, "free": str(part.free)}
+            "$K$ does not contain all of [[names]]; zero eigenvalues: [[free]].", {**names, "free": str(part.free)}
         )
     if part.degree is not None:
         yield Said(
