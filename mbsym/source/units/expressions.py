@@ -55,15 +55,7 @@ class Dimensions:
         """Two expressions must have the same dimension; a number alone goes with anything."""
         one, other = (self.of(side) if names(side) else None for side in (left, right))
         if one is not None and other is not None and not self.inference.equate(one, other):
-            message = Message(
-                "[[shown]] is [[told]], [[shown2]] is [[told2]]: they cannot be [[how]]",
-                shown=_shown(left),
-                told=self.told(one),
-                shown2=_shown(right),
-                told2=self.told(other),
-                how=how,
-            )
-            self.complain(message, _place(right) or _place(left), None)
+            self.complain(self._apart(left, one, right, other, how), _place(right) or _place(left), None)
 
     def of(self, expression: Expression) -> Form | None:
         """The dimension; None of a zero, which goes with every one."""
@@ -139,14 +131,7 @@ class Dimensions:
         if self.inference.equate(one, other):
             return one
         how = "added" if whole.operator == "+" else "subtracted"
-        message = Message(
-            "[[shown]] is [[told]], [[shown2]] is [[told2]]: they cannot be [[how]]",
-            shown=_shown(left),
-            told=self.told(one),
-            shown2=_shown(right),
-            told2=self.told(other),
-            how=how,
-        )
+        message = self._apart(left, one, right, other, how)
         number = next((side for side in (left, right) if not names(side)), None)
         hint = None if number is None else "give the number a name and a unit under 'parameters'"
         self.complain(message, _place(right) or whole.span, hint)
@@ -160,6 +145,17 @@ class Dimensions:
                 "[[shown]] is [[told]]; [[rule]]", shown=_shown(expression), told=self.told(found), rule=rule
             )
             self.complain(message, _place(expression), None)
+
+    def _apart(self, left: Expression, one: Form, right: Expression, other: Form, how: str) -> Message:
+        """That two expressions have different dimensions, and so cannot be added, compared, ..."""
+        return Message(
+            "[[shown]] is [[told]], [[shown2]] is [[told2]]: they cannot be [[how]]",
+            shown=_shown(left),
+            told=self.told(one),
+            shown2=_shown(right),
+            told2=self.told(other),
+            how=how,
+        )
 
     def told(self, form: Form) -> str:
         """A dimension in words and SI units."""
