@@ -6,10 +6,11 @@ all deviations from the unperturbed motion are small themselves, the field is th
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import pairwise
+from functools import cached_property
+from itertools import count, pairwise
 from typing import TYPE_CHECKING, Any
 
 from flint import acb
@@ -64,17 +65,51 @@ class Oscillating:
     real_amplitude: bool = True
     velocities: tuple[str, ...] = ()
 
-    def formula(self, x: Element) -> Formula:
-        return Formula(self.ring, in_letters(self.found.tower, self.ring, self.symbols, x))
+    def formula(self, x: Element, ring: Ring | None = None) -> Formula:
+        """An element; in ``told_ring`` with letters for common denominators."""
+        letters = () if ring is None else self.denominators
+        whole = self.ring if ring is None else ring
+        return Formula(whole, in_letters(self.found.tower, whole, self.symbols, x, letters))
 
-    def wave(self, one: Harmonics) -> Formula:
+    @cached_property
+    def denominators(self) -> tuple[tuple[Any, str], ...]:
+        """Letters D1, D2, ... for irreducible factors with several terms that divide more than one coefficient."""
+        found = self.found
+        waves = [one for series in found.series for one in series] + [x for one in found.drifts for x in one.waves]
+        values = [x for one in waves for pair in one.waves.values() for x in pair if not x.is_zero()]
+        factors: list[Any] = []
+        often: list[int] = []
+        for x in [*values, *found.corrections]:
+            for factor, _ in x.bottom.factor()[1]:
+                if len(factor) > 1 and not any(factor.degrees()[:MOST_ROOTS]):
+                    if factor not in factors:
+                        factors.append(factor)
+                        often.append(0)
+                    often[factors.index(factor)] += 1
+        taken = set(self.ring.names()) | set(self.symbols.values())
+        names = (name for k in count(1) if (name := f"D{k}") not in taken)
+        return tuple(zip((x for x, times in zip(factors, often, strict=True) if times > 1), names, strict=False))
+
+    @cached_property
+    def told_ring(self) -> Ring:
+        """The ring of the result with the letters of ``denominators``."""
+        if not self.denominators:
+            return self.ring
+        names = [g.name for g in self.ring.generators if g.kind == "parameter" and g.name != "pi"]
+        positive = [name for name in names if self.ring.is_positive(self.ring.generator("parameter", name))]
+        return Ring(
+            (), (self.phase,), [*names, *(name for _, name in self.denominators)], {self.phase: 1}, positive, spare=40
+        )
+
+    def wave(self, one: Harmonics, told: Ring | None = None) -> Formula:
         """A trigonometric polynomial of the phase."""
-        ring, total = self.ring, self.ring.zero
+        ring = self.ring if told is None else told
+        total = ring.zero
         s, c = (ring.generator(kind, self.phase) for kind in ("sine", "cosine"))
         for k, (a, b) in one.waves.items():
             sine, cosine = ring.multiple_angle(s, c, k) if k else (ring.zero, ring.one)
-            total = total + ring.times(self.formula(a).polynomial, cosine)
-            total = total + ring.times(self.formula(b).polynomial, sine)
+            total = total + ring.times(self.formula(a, told).polynomial, cosine)
+            total = total + ring.times(self.formula(b, told).polynomial, sine)
         return Formula(ring, ring.reduce(total))
 
     def written(self, one: Harmonics) -> str:
@@ -277,8 +312,13 @@ def _letters(system: System, kept: list[str], phase: str, symbols: Mapping[str, 
     return Ring((), (phase,), [*kept, *symbols.values()], {phase: 1}, [*positive, symbols[AMPLITUDE]], spare=40)
 
 
-def in_letters(tower: Tower, ring: Ring, symbols: Mapping[str, str], x: Element) -> Polynomial:
-    """An element as a polynomial of the ring of a result; symbols that no result holds are left as they are."""
+def in_letters(
+    tower: Tower, ring: Ring, symbols: Mapping[str, str], x: Element, denominators: Sequence[tuple[Any, str]] = ()
+) -> Polynomial:
+    """An element as a polynomial of the ring of a result; symbols that no result holds are left as they are.
+
+    ``denominators``: letters for factors of denominators.
+    """
 
     def generator(index: int) -> Polynomial:
         if index >= MOST_ROOTS:
@@ -299,4 +339,12 @@ def in_letters(tower: Tower, ring: Ring, symbols: Mapping[str, str], x: Element)
     top = carried(x.top)
     if x.bottom.is_constant():
         return top  # the leading coefficient of every denominator is 1
-    return ring.reduce(ring.times(top, ring.reciprocal(carried(x.bottom))))
+    if not denominators:
+        return ring.reduce(ring.times(top, ring.reciprocal(carried(x.bottom))))
+    constant, factors = x.bottom.factor()
+    below = ring.number(rationals.fraction(constant))
+    for factor, power in factors:
+        name = next((name for one, name in denominators if one == factor), None)
+        own = carried(factor) if name is None else ring.generator("parameter", name)
+        below = ring.times(below, own ** int(power))
+    return ring.reduce(ring.times(top, ring.reciprocal(below)))

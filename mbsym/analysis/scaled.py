@@ -271,16 +271,16 @@ def _renamed(part: Any, every: Mapping[str, str], vectors: Mapping[str, str]) ->
     if isinstance(part, (UnitVector, Quaternion)):
         to = vectors.get(part.name, part.name)
         wanted = tuple(every.get(name, name) for name in part.components)
-        changed = replace(part, name=to)
-        if changed.components != wanted:
+        vector = replace(part, name=to)
+        if vector.components != wanted:
             told = Message(
                 "components of one vector have the names of one vector: [[names]]", names=", ".join(part.components)
             )
             raise NoDescription(told)
-        return changed
+        return vector
     if not is_dataclass(part) or isinstance(part, type):
         return part
-    changed = {}
+    changed: dict[str, Any] = {}
     for item in fields(part):
         old = getattr(part, item.name)
         if item.name in _NAMED or (item.name == "name" and isinstance(part, (Speed, WrittenSymbol))):
@@ -405,8 +405,8 @@ class Formulas:
         )
         ring = self.analysis.equations.forcing[0].ring
         self.ring = _ring(self.system, self.analysis.system, scaling)
-        own = ring_environment(self.system, self.ring)
-        self.carry = _Put(ring, self.ring, *_environment(self.analysis.system, own, self.ring, scaling, None))
+        there = ring_environment(self.system, self.ring)
+        self.carry = _Put(ring, self.ring, *_environment(self.analysis.system, there, self.ring, scaling, None))
 
     def formula(self, x: Formula) -> Formula:
         return Formula(self.ring, self.carry(x.polynomial))
@@ -502,8 +502,9 @@ def _environment(
 
 def _following(system: System, ring: Ring, found: dict[str, Any]) -> dict[str, Any]:
     """With what relations and the notation give."""
-    for one in (*system.relations, *system.notation):
-        found[one.name] = Lowering(ring, found)(one.value)
+    given = [(one.name, one.value) for one in system.relations] + [(one.name, one.value) for one in system.notation]
+    for name, value in given:
+        found[name] = Lowering(ring, found)(value)
     return found
 
 

@@ -9,7 +9,7 @@ places of a description demand one.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from mbsym.expressions.message import Message
@@ -32,7 +32,15 @@ from mbsym.source.units.expressions import Dimensions
 from mbsym.source.units.inference import Form
 from mbsym.source.units.system import dimensions_of
 
-Place = Callable[[int, int], Span]
+
+@dataclass(frozen=True)
+class _Places:
+    """Offsets in what is right of a sign of equality to places."""
+
+    offset: int
+
+    def __call__(self, start: int, end: int) -> Span:
+        return Span(1, self.offset + start + 1, max(1, end - start))
 
 
 @dataclass(frozen=True)
@@ -70,7 +78,8 @@ def read_scaling(text: str, system: System, complaints: Complaints) -> Scaling |
                     complaints.error("bad-name", told, node.span, reason[1])
     if complaints.errors:
         return None
-    variables, time = [], None
+    variables: list[Scaled] = []
+    time: Scaled | None = None
     for one in items:
         if one.name != "t" and one.name not in moving:
             continue
@@ -83,11 +92,11 @@ def read_scaling(text: str, system: System, complaints: Complaints) -> Scaling |
             example = "t=tau/omega0" if one.name == "t" else f"{one.name}=L*{one.name}1"
             complaints.error("bad-scale", told, one.span, Message("for example [[example]]", example=example))
             continue
-        found = Scaled(one.name, linear[-1], factor_of(one.value, linear[-1]) or ONE)
+        told_as = Scaled(one.name, linear[-1], factor_of(one.value, linear[-1]) or ONE)
         if one.name == "t":
-            time = found
+            time = told_as
         else:
-            variables.append(found)
+            variables.append(told_as)
     images = _resolved({one.name: one.value for one in items if one.name in system.parameter_names}, items, complaints)
     if complaints.errors:
         return None
@@ -128,7 +137,7 @@ def _items(text: str, system: System, complaints: Complaints) -> Iterator[_Item]
             continue
         done.add(name)
         at = offset + len(left) + 1
-        value = parse_expression(right, complaints, lambda a, b, at=at: Span(1, at + a + 1, max(1, b - a)))
+        value = parse_expression(right, complaints, _Places(at))
         if value is not None:
             yield _Item(name, span, value, at)
 
