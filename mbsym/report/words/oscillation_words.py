@@ -125,15 +125,16 @@ def coefficients(told: Oscillating) -> Iterator[Coefficient]:
 
 def collected(told: Oscillating) -> Iterator[Relation]:
     """The same for people: factors that divide several coefficients have letters (``denominators``)."""
-    found, ring = told.found, told.told_ring
+    found = told.found
     for name, series in zip(found.names, found.series, strict=True):
         plain = without_velocity(name) if name in told.velocities else name
         for order, one in enumerate(series):
             if not one.is_zero:
-                yield Coefficient(plain, plain != name, order, told.wave(one, ring)).equation
+                yield Coefficient(plain, plain != name, order, told.shortest(one)).equation
     for order, x in enumerate((found.tower.one, *found.corrections)):
         if not x.is_zero():
-            yield Coefficient(told.phase, True, order, told.formula(found.frequency * x, ring)).equation
+            value = told.shortest(Harmonics.constant(found.tower, found.frequency * x))
+            yield Coefficient(told.phase, True, order, value).equation
 
 
 def denominators(told: Oscillating) -> Definitions | None:
@@ -151,9 +152,12 @@ def drifting(told: Oscillating) -> Iterator[Relation]:
         for order, (rate, wave) in enumerate(zip_longest(one.rates, one.waves)):
             parts: list[Math | str] = []
             if rate is not None and not rate.is_zero():
-                parts += [Notation("t"), Listed((told.formula(rate, told.told_ring),), brackets=True)]
+                parts += [
+                    Notation("t"),
+                    Listed((told.shortest(Harmonics.constant(told.found.tower, rate)),), brackets=True),
+                ]
             if wave is not None and not wave.is_zero:
-                parts += [*(["+"] if parts else []), told.wave(wave, told.told_ring)]
+                parts += [*(["+"] if parts else []), told.shortest(wave)]
             if parts:
                 yield Relation(Raised(Name(plain, int(plain != one.variable)), order), "=", *parts)
 
