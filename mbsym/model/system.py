@@ -224,8 +224,9 @@ class System(GuessesNames):
     """A whole description.
 
     ``time_scale`` (a rate) makes time dimensionless in problems 5 and 6: tau = time_scale * t.  ``source`` says where
-    the system is from; ``symbols`` how names are written in LaTeX, ``language`` in which language ("" is English),
-    ``order`` in which order the subsystems of problems 5 and 6 are told: by these coordinates, then by the others.
+    the system is from; ``label`` what LaTeX labels have of it in them ("": its name); ``symbols`` how names are written
+    in LaTeX, ``language`` in which language ("" is English), ``order`` in which order the subsystems of problems 5 and
+    6 are told: by these coordinates, then by the others.
     ``reactions`` are the bodies whose joints' forces and moments are wanted.
     ``start`` are initial values of declared variables, speeds and components of unit vectors and quaternions, as
     ``initial`` are of coordinates.
@@ -252,6 +253,7 @@ class System(GuessesNames):
     units: Units = Units()
     limits: tuple[Limit, ...] = ()
     source: str = ""
+    label: str = ""
     symbols: tuple[WrittenSymbol, ...] = ()
     language: str = ""
     order: tuple[str, ...] = ()

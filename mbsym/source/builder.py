@@ -108,6 +108,7 @@ def build(node: Node, complaints: Complaints, editor: bool = False, folder: Path
         abbreviations=read_abbreviations(fields.get("abbreviations"), reading),
         limits=read_limits(fields.get("limits"), reading),
         source=fields.text("source"),
+        label=fields.text("label"),
         symbols=read_symbols(fields.get("latex"), reading),
         language=fields.word("language"),
         order=_coordinates(fields, "order", "an order of coordinates", reading),

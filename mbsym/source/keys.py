@@ -662,6 +662,7 @@ SYSTEM = {
         "a publication's own symbols for use in claims, in order: {c1: mA + mB, ...}", Named(_FORMULA)
     ),
     "source": Key("where the system is from: a publication, for the references of reports", _TEXT),
+    "label": Key("what labels in LaTeX have of this system in them, in place of its name: mbsym:LABEL:eq:M", _TEXT),
     "latex": Key(
         "how names are written in LaTeX: {d_Ccm1: 'd_{C1}', phi: '\\phi'}: letters, accents, fonts and an index",
         Named(String(LONGEST)),

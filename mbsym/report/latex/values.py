@@ -55,7 +55,7 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
     system, once = analysis.system, _PRINTED.setdefault(analysis, Printed())
     names = latex_names(analysis.ring)
     tongue = Language(analysis.language or system.language)
-    labels = Labels(prefix_of(system.name))
+    labels = Labels(prefix_of(system))
     known = results(analysis, problems)
     long = withheld([known.found[number] for number in COUNTED if number in known.found], PAPER)
     long |= withheld(known.forms.forms.results, PAPER_FORMS)
