@@ -20,7 +20,7 @@ Spans point back into the description; they take no part in equality, so two spe
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -38,12 +38,12 @@ from mbsym.model.claims import Abbreviation, Claim
 from mbsym.model.inputs import Input, Output
 from mbsym.model.linear import LinearModel
 from mbsym.model.loads import Load, NewtonianGravity, UniformGravity
-from mbsym.model.small import SmallParameter
 from mbsym.model.speeds import Quaternion, Speed, UnitVector
 from mbsym.model.units import Units
 
 if TYPE_CHECKING:
     from mbsym.model.constraints import Constraint
+
 
 Tensor = tuple[Vector, Vector, Vector]
 
@@ -366,3 +366,24 @@ def overruled(system: System, overrides: Iterable[str]) -> set[str]:
     for _ in system.relations:
         found |= {x.name for x in system.relations if x.name not in given and names(x.value) & (given | found)}
     return found
+
+
+# A small parameter: what is expanded in its powers, and which variables are fast, which oscillates.
+
+
+@dataclass(frozen=True)
+class SmallParameter:
+    """``name`` is a parameter, or with ``powers`` a name of its own: each P there, a parameter or
+    a variable, stands for P name^power.
+
+    ``fast`` are the variables that a slow manifold expresses by the others (empty: they are found), ``slow`` those
+    that are not among them.  ``leading`` is the variable whose oscillation a periodic solution belongs to ("": it is
+    found).
+    """
+
+    name: str
+    powers: tuple[tuple[str, int], ...] = ()
+    fast: tuple[str, ...] = ()
+    slow: tuple[str, ...] = ()
+    leading: str = ""
+    span: Span | None = field(default=None, compare=False, repr=False)

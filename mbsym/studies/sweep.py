@@ -37,8 +37,7 @@ from mbsym.studies.study import (
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
-    from mbsym.sweeps.measure import Measure
-    from mbsym.sweeps.points import Points
+    from mbsym.sweeps.points import Measure, Points
     from mbsym.sweeps.request import Asked as Wanted
     from mbsym.sweeps.store import Folder as Store
     from mbsym.sweeps.sweep import Chunk, Executor
