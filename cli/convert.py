@@ -41,10 +41,10 @@ def command(
     """Convert a description between YAML and the editor's plain text, or make one of a robot's URDF or MJCF.
 
     Between the two spellings comments are not kept; everything that has a meaning is.  Of a robot, what rigid bodies
-    have no place for (contacts, sensors, ...) is left out, and listed, on the terminal and in every
-    report; a link that hangs on two joints is an error.  In joints that an actuator drives, and in every joint of a URDF,
-    which does not tell, the torque or force is an input, tau_NAME; joints that mimic others follow them exactly.
-    Links and named sites without mass are frames: massless bodies.
+    have no place for (contacts, sensors, ...) is left out, and listed, on the terminal and in every report; a link
+    that hangs on two joints is an error.  In joints that an actuator drives, and in every joint of a URDF, which does
+    not tell, the torque or force is an input, tau_NAME; joints that mimic others follow them exactly.  Links and named
+    sites without mass are frames: massless bodies.
 
     \b
     Examples:
