@@ -24,7 +24,7 @@ from mbsym_cli.options import Options
 @click.option("--floating", is_flag=True, help="Of a robot: its first link moves freely, by six coordinates.")
 @click.option("--symbols", is_flag=True, help="Of a robot: masses, lengths, moments are parameters with values.")
 @click.option("--no-damping", is_flag=True, help="Of a robot: without dampers and springs of joints.")
-@click.option("--no-inputs", is_flag=True, help="Of a robot: without an input, torque or force, in driven joints.")
+@click.option("--no-inputs", is_flag=True, help="Of a robot: without inputs, torques or forces, in joints.")
 @click.option(
     "--angles",
     type=click.Choice(["snap", "exact"]),
@@ -44,9 +44,10 @@ def command(
     """Convert a description between YAML and the editor's plain text, or make one of a robot's URDF or MJCF.
 
     Between the two spellings comments are not kept; everything that has a meaning is.  Of a robot, what rigid bodies
-    have no place for (contacts, sensors, ...) is left out, and listed, on the terminal and in every
-    report; a link that hangs on two joints is an error.  In driven joints the torque or force is an input, tau_NAME;
-    joints that mimic others follow them exactly.  Links and named sites without mass are frames: massless bodies.
+    have no place for (contacts, sensors, ...) is left out, and listed, on the terminal and in every report; a link
+    that hangs on two joints is an error.  In joints that an actuator drives, and in every joint of a URDF, which does
+    not tell, the torque or force is an input, tau_NAME; joints that mimic others follow them exactly.  Links and named
+    sites without mass are frames: massless bodies.
 
     \b
     Examples:

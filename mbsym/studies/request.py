@@ -217,6 +217,9 @@ class Share(Kind):
 
 #: ``--set`` of studies of one motion, and of exact ones.
 Values = Annotated[Mapping[str, Value], Settings("NAME=VALUE", "Replace a value; repeatable.", "-s", "--set")]
+Stateless = Annotated[
+    Mapping[str, Value], Settings("NAME=VALUE", "Replace a value; repeatable.", "-s", "--set", state=False)
+]
 Numbers = Annotated[Mapping[str, Fraction], ExactSettings("NAME=VALUE", "Put in a number; repeatable.", "-s", "--set")]
 
 #: The same as signatures show them.
