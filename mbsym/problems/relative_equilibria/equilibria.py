@@ -198,13 +198,18 @@ def _searches(chart: Chart, within: float, limits: Limits, rank: int | None) -> 
 
 
 def _counted_once(searches: Sequence[_ChartSearch]) -> None:
-    """What in one case of the rank is only the limit of a family of another is left out."""
-    closures = [equations for search in searches for equations in search.closures()]
+    """What in one case of the rank is only the limit of a larger set of another is left out."""
+    closures = [closure for search in searches for closure in search.closures()]
     for search in searches:
-        if search.case.zero:
-            search.points = [x for x in search.points if not _on_any(x.place, closures)]
-            kept = [not _on_any(place, closures) for place in search.family_places]
-            search.families = [x for x, keep in zip(search.families, kept, strict=True) if keep]
+        if len(searches) == 1 or not search.case.zero:
+            continue
+        search.points = [x for x in search.points if not _on_any(x.place, [y for _, y in closures])]
+        kept = [
+            not _on_any(place, [y for dimension, y in closures if dimension > x.dimension])
+            for x, place in zip(search.families, search.family_places, strict=True)
+        ]
+        for name in ("families", "family_places", "family_equations"):
+            setattr(search, name, [x for x, keep in zip(getattr(search, name), kept, strict=True) if keep])
 
 
 def _on_any(place: Place, closures: Sequence[Sequence[Polynomial]]) -> bool:
@@ -261,15 +266,11 @@ class _ChartSearch(SearchInBoxes):
             return
         self._solve_exactly()
 
-    def closures(self) -> list[list[Polynomial]]:
-        """Equations of sets that other cases of the rank touch: of families, and where coordinates may have any value.
-
-        Families of the same case stand among those of no other.
-        """
-        if self.case.zero or self.impossible:
-            return []
+    def closures(self) -> list[tuple[int, list[Polynomial]]]:
+        """Dimensions and equations of sets that other cases touch: of families, and where coordinates are any."""
+        found = [(x.dimension, y) for x, y in zip(self.families, self.family_equations, strict=True)]
         open_ = any(self.ring.dependencies(x, self.free) for x in self.case.nonzero)
-        return [*self.family_equations, *([self.equations] if open_ else [])]
+        return [*found, *([(len(self.free), self.equations)] if open_ and not self.impossible else [])]
 
     def leaves_out_singular(self) -> None:
         """Says that positions in which the constraints may be singular are not searched."""
