@@ -65,7 +65,6 @@ def check_constrained(system: System | None, wanted: Asked, many: Many, asked: O
         "--sensitivity": many.sensitivity is not None,
         "--certify": request.certify is not None,
         "--linear": request.model.linear,
-        "--accuracy": wanted.goal is not None,
     }
     for option, there in options.items():
         if there:

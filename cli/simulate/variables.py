@@ -81,11 +81,8 @@ def check_states(system: System | None, wanted: Asked, many: Many, asked: Option
         "--vary": bool(many.vary),
         "--sensitivity": many.sensitivity is not None,
         "--certify": request.certify is not None,
-        "--accuracy": wanted.goal is not None,
         "--continue": request.earlier is not None,
-        "--gravity": request.model.gravity is not None,
         "--linear": request.model.linear,
-        "--without": bool(request.model.without),
         **{option: kind in wanted.formats for kind, option in OF_BODIES.items()},
     }
     for option, there in options.items():

@@ -17,7 +17,7 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 
 from mbsym.expressions.message import Message
-from mbsym.model.states import InStates, described, in_states
+from mbsym.model.states import described, in_states
 from mbsym.numerics import simulate as integration
 from mbsym.numerics.accuracy import ErrorEstimate, Lacking, NoEstimate, contradicted, estimated
 from mbsym.numerics.columns import columns
@@ -38,12 +38,12 @@ from mbsym.numerics.invariants import along, invariants, values
 from mbsym.numerics.linearised import LinearisedDynamics
 from mbsym.numerics.methods.interface import Method, Unusable
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.planning.models import Model, scenario_of
+from mbsym.numerics.planning.models import droppable, scenario_of
 from mbsym.numerics.planning.prices import cost
 from mbsym.numerics.planning.reduced import reduced
 from mbsym.numerics.planning.sizes import kinetic_between
 from mbsym.numerics.scenario import Scenario
-from mbsym.numerics.states import StateDynamics, scenario_in_states, state_names
+from mbsym.numerics.states import dynamics_of, scenario_in_states, state_names
 from mbsym.numerics.unseen import between_rows, nearest_to_singular
 from mbsym.simulation.choosing import chosen_for
 from mbsym.simulation.request import COORDINATES, DECLARED, Request, wrong_with
@@ -89,26 +89,16 @@ def simulate(
     wrong = list(wrong_with(request))
     if wrong:
         raise ValueError("; ".join(wrong))
-    given, scenario = scenario, scenario_of(scenario, request.model)
-    declared = runs_in_states(scenario.system, request)
-    if declared:
-        refuse_in_states(scenario.system, request)
-    elif scenario.system.speeds:  # what is integrated are coordinates and their derivatives
-        scenario = replace(scenario, system=scenario.system.without_speeds)
-    in_declared = declared and bool(scenario.declared)  # what is given in these is fitted in these
-    scenario = scenario_in_states(scenario) if in_declared else scenario
-    closed = _closed(scenario, request)
-    scenario = scenario if closed is None else closed.scenario
+    given = scenario
+    scenario, closed = prepared(scenario, request)
     with stage(COMPILING):
         analysis = _analysis(scenario) if request.invariants else None
         integrals, missing = _integrals(analysis, scenario)
         ring = analysis.ring if analysis is not None and not missing else None
-        if declared and not in_declared:
-            scenario = scenario_in_states(scenario)
         dynamics = _dynamics(scenario, ring, request)
         if request.certify is not None:
             analytic(dynamics)
-        resting = None if request.model.linear or declared else reduced(dynamics)
+        resting = None if request.model.linear else reduced(dynamics)
         chosen = chosen_for(dynamics, request, None if request.whole else resting)
         watching = Watching(dynamics, chosen.method, request.events) if request.events else None
     method = chosen.method if watching is None else watching.method
@@ -146,6 +136,28 @@ def simulate(
     )
 
 
+def prepared(scenario: Scenario, request: Request) -> tuple[Scenario, Closed | None]:
+    """The scenario in the variables of its run, of the request's model, on its constraints; and how it was led there.
+
+    A model that leaves out what constraints and speeds do not hold begins where the whole one does.  Raises as
+    ``simulate``.
+    """
+    system, model = scenario.system, request.model
+    later = set(model.without) <= set(droppable(system))
+    scenario = scenario if later else scenario_of(scenario, model)
+    declared = runs_in_states(system, request)
+    if declared:
+        refuse_in_states(system, request)
+    elif system.speeds:  # what is integrated are coordinates and their derivatives
+        scenario = replace(scenario, system=scenario.system.without_speeds)
+    in_declared = declared and bool(scenario.declared)  # what is given in these is fitted in these
+    scenario = scenario_in_states(scenario) if in_declared else scenario
+    closed = _closed(scenario, request)
+    scenario = scenario if closed is None else closed.scenario
+    scenario = scenario_in_states(scenario) if declared and not in_declared else scenario
+    return scenario_of(scenario, model) if later else scenario, closed
+
+
 def runs_in_states(system: System, request: Request) -> bool:
     """Whether a run integrates the variables that a description declares."""
     return bool(system.speeds) and request.variables == DECLARED
@@ -166,7 +178,7 @@ def refuse_in_states(system: System, request: Request) -> None:
     """Raises ValueError for what goes with coordinates only, Unusable for a method that does."""
     asked = {
         "certify": request.certify is not None,
-        "a model": request.model != Model(),
+        "the linearised equations": request.model.linear,
         "going on from an earlier run": request.earlier is not None,
     }
     wrong = [f"{what} {NOT_IN_STATES}: take variables='{COORDINATES}'" for what, there in asked.items() if there]
@@ -178,9 +190,7 @@ def refuse_in_states(system: System, request: Request) -> None:
 
 
 def _dynamics(scenario: Scenario, ring: Ring | None, request: Request) -> Dynamics:
-    if isinstance(scenario.system, InStates):
-        return StateDynamics(scenario, ring)
-    return LinearisedDynamics(scenario, ring) if request.model.linear else Dynamics(scenario, ring, request.whole)
+    return LinearisedDynamics(scenario, ring) if request.model.linear else dynamics_of(scenario, ring, request.whole)
 
 
 def _closed(scenario: Scenario, request: Request) -> Closed | None:
