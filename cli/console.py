@@ -311,7 +311,7 @@ def read_held(file: Path, command: str, constrained: bool = False, moving: bool 
     takes systems that are given by their matrices, too.
     """
     from mbsym.expressions.tree import text
-    from mbsym.model.driven import held
+    from mbsym.model.substitution import held
 
     system = read_description(file, "" if constrained else command, command if moving else "")
     if system is None or not system.inputs:

@@ -39,8 +39,8 @@ if TYPE_CHECKING:
     from mbsym.model.system import System
     from mbsym.sweeps.points import Measure, Points
     from mbsym.sweeps.request import Asked as Wanted
-    from mbsym.sweeps.store import Folder as Store
     from mbsym.sweeps.sweep import Chunk, Executor
+    from mbsym.sweeps.sweep import Folder as Store
 
 KINDS = ("csv", "parquet", "svg", "png", "pdf")
 #: A picture holds all points: of more there is none.
@@ -173,9 +173,9 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Swept:
     from mbsym.batch.digests import derivation
     from mbsym.maps.given import Unfit as Wrong
     from mbsym.numerics.scenario import Incomplete
-    from mbsym.source.meaning import meaning
+    from mbsym.source.yaml_writer import meaning
     from mbsym.studies.section import unfit_section
-    from mbsym.sweeps import store, sweep
+    from mbsym.sweeps import sweep
     from mbsym.sweeps.request import measure_of
 
     watch("deriving")
@@ -188,7 +188,7 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Swept:
         raise NotFit(tuple(unfit_section(error.complaints, "--vary"))) from error
     every = sweep.chunks(wanted.points.count)
     digest = wanted.digest(meaning(system), derivation())
-    kept = store.Folder(asked.folder, digest, tuple(column.name for column in measure.columns), asked.write)
+    kept = sweep.Folder(asked.folder, digest, tuple(column.name for column in measure.columns), asked.write)
     mine = every if request.shard is None else sweep.shard(every, *request.shard)
     executor, done, cut = _executor(system, request, wanted, measure), 0, False
     try:

@@ -6,8 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
-from mbsym.expressions.counting import duration
-from mbsym.expressions.message import Message, joined
+from mbsym.expressions.message import Message, duration, joined
 from mbsym.report.language import Language
 from mbsym.studies.closing import closed_motion, not_closed
 from mbsym.studies.request import Flag, Number, Values, Words

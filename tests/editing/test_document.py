@@ -13,7 +13,7 @@ import yaml
 from mutants import mutant
 
 from mbsym.editing.document import changes, formula, look
-from mbsym.editing.document.pieces import Edit, Pieces, applied
+from mbsym.editing.document.meaning import Edit, Pieces, applied
 from mbsym.editing.document.written import data_of, written
 from mbsym.source import read, to_text
 from mbsym.source.document import read_placed

@@ -24,11 +24,10 @@ from mbsym.mechanics import articulated, factorisation
 from mbsym.mechanics.articulation import Articulation, articulation
 from mbsym.mechanics.bias_forces import bias_forces, forcing
 from mbsym.mechanics.composite import mass_matrix
-from mbsym.mechanics.forward_dynamics import ARTICULATED, FACTORISED, forward_dynamics
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.newton_euler import residuals
 from mbsym.mechanics.oracle import Oracle, State
-from mbsym.mechanics.programs import accelerated, scene_without_accelerations
+from mbsym.mechanics.programs import ARTICULATED, FACTORISED, accelerated, forward_dynamics, scene_without_accelerations
 from mbsym.mechanics.states import rational_states
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import acceleration_name, velocity_name

@@ -22,7 +22,7 @@ from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import NoClosedForm, NoValue, message_of
 from mbsym.analysis.stages import NoResult
 from mbsym.expressions.message import GAP, Counted, Message
-from mbsym.mechanics.forward_dynamics import ARTICULATED, FACTORISED
+from mbsym.mechanics.programs import ARTICULATED, FACTORISED
 from mbsym.model.claims import CLAIMS, SUMS
 from mbsym.model.constraints import KIND_NAMES
 from mbsym.numerics.accuracy import Lacking

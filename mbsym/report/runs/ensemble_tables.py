@@ -18,10 +18,10 @@ from mbsym.model.quantities import marked, unit_of
 from mbsym.numerics.ensembles.ensemble import QUANTILES, Ensemble
 from mbsym.numerics.ensembles.variation import Grid, Variation
 from mbsym.report.documents import ensemble as doc
-from mbsym.report.documents.writer import written as document
+from mbsym.report.documents.base import written as document
 from mbsym.report.runs.simulation_words import laws_json
 from mbsym.report.runs.trajectory_csv import written
-from mbsym.source.meaning import meaning
+from mbsym.source.yaml_writer import meaning
 
 #: So many members that ended early are named one by one in sentences.
 NAMED = 5

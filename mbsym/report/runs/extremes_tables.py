@@ -18,7 +18,7 @@ from mbsym.numerics.extremes.singular_positions import SingularPositions
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
 from mbsym.numerics.trade.digits import FULL
 from mbsym.report.documents import extremes as doc
-from mbsym.report.documents.writer import written
+from mbsym.report.documents.base import written
 
 HEADER = (
     "kind",

@@ -16,10 +16,10 @@ from mbsym.expressions.message import Message
 from mbsym.model.system import System
 from mbsym.numerics.orbits.lyapunov import Exponents, Parting
 from mbsym.report.documents import lyapunov as doc
-from mbsym.report.documents.writer import written as document
+from mbsym.report.documents.base import written as document
 from mbsym.report.figures.drawing import BLUE, GREY, pictures
 from mbsym.report.runs.trajectory_csv import written
-from mbsym.source.meaning import meaning
+from mbsym.source.yaml_writer import meaning
 
 
 def lyapunov_csv(found: Exponents) -> str:

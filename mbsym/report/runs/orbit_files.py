@@ -14,10 +14,10 @@ from mbsym.expressions.message import Counted, Message
 from mbsym.model.quantities import marked, unit_of
 from mbsym.numerics.orbits.periodic import Orbit
 from mbsym.report.documents import orbit as doc
-from mbsym.report.documents.writer import written as document
+from mbsym.report.documents.base import written as document
 from mbsym.report.runs.trajectory_csv import written
 from mbsym.simulation.motions import PeriodicMotion
-from mbsym.source.meaning import meaning
+from mbsym.source.yaml_writer import meaning
 
 
 def orbit_csv(found: PeriodicMotion) -> str:

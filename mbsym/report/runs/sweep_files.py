@@ -15,9 +15,9 @@ import numpy as np
 from mbsym.model.system import System
 from mbsym.numerics.ensembles.variation import Grid, Variation
 from mbsym.report.documents import sweep as doc
-from mbsym.report.documents.writer import written
+from mbsym.report.documents.base import written
 from mbsym.report.runs.trajectory_csv import header, rows
-from mbsym.source.meaning import meaning
+from mbsym.source.yaml_writer import meaning
 from mbsym.sweeps.judged import VERDICT
 from mbsym.sweeps.points import Column, Points
 from mbsym.sweeps.statistics import LEVEL, Share, Totals

@@ -8,8 +8,7 @@ from io import StringIO
 from math import inf, isfinite
 from typing import Any
 
-from mbsym.expressions.counting import duration
-from mbsym.expressions.message import Message, joined, worded
+from mbsym.expressions.message import Message, duration, joined, worded
 from mbsym.model.quantities import marked
 from mbsym.numerics.kernels.interface import FLOAT64
 from mbsym.numerics.trade.fidelity import RESOLVED, ModelError
