@@ -20,7 +20,7 @@ from mbsym.report.content import Block, titled
 from mbsym.report.language import Language
 from mbsym.report.plain_writer import Writer
 from mbsym.studies.request import fields_of
-from mbsym.studies.study import Answer, Asked, Document, Folder, Line, NotFit, Rows, Single, Study, Unfit
+from mbsym.studies.study import Answer, Asked, Document, Folder, Line, NotFit, Single, Study, Unfit
 from mbsym_cli.console import (
     BAD_INPUT,
     FAILED,
@@ -33,7 +33,6 @@ from mbsym_cli.console import (
     read_description,
     read_held,
     reason_of,
-    show_rows,
     tell,
 )
 from mbsym_cli.files import deliver, folder_for, obstacle, write_whole
@@ -186,9 +185,7 @@ class _Run:
         for one in answer.lines if loud or not answer.brief else answer.brief:
             if isinstance(one, Line) and (loud or one.always):
                 tell(*one.parts, whole=one.whole)
-            elif isinstance(one, Rows) and loud:
-                show_rows(one)
-            elif not isinstance(one, Line | Rows) and (loud or answer.brief):
+            elif not isinstance(one, Line) and (loud or answer.brief):
                 show([one], asked.system.language)
         if answer.files and loud:
             show_files(folder_for(self.file, self.out), answer.files, asked.system.language)

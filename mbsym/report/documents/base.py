@@ -14,7 +14,8 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from enum import Enum
-from typing import Annotated, Any, Literal, TypeVar
+from math import isfinite
+from typing import Annotated, Any, Literal, SupportsFloat, TypeVar
 
 from msgspec import Meta, Struct, field, to_builtins
 
@@ -49,6 +50,11 @@ def written(document: Struct, indent: int = 1, sort_keys: bool = False) -> str:
     """The text of a file: keys in a fixed order, the same text for the same document."""
     content = headed(plain(document))
     return json.dumps(content, indent=indent, sort_keys=sort_keys, ensure_ascii=False) + "\n"
+
+
+def finite(value: SupportsFloat) -> float | None:
+    """A number of a file; null in place of one that is infinite or none."""
+    return float(value) if isfinite(float(value)) else None
 
 
 def _plain(value: object) -> object:
