@@ -16,7 +16,7 @@ import click
 
 from mbsym.expressions.message import Message
 from mbsym.model.system import System
-from mbsym.report.content import Block, titled
+from mbsym.report.content import Block, facts
 from mbsym.report.language import Language
 from mbsym.report.plain_writer import Writer
 from mbsym.studies.request import fields_of
@@ -279,5 +279,5 @@ def told(
     """Prints lines with titles beneath the name of the system, ``after`` which stands what they are about."""
     about = f": {Language(system.language).say(after)}" if after else ""
     tell((f"{system.name}{about}", "bold"), (f"  {printable(file)}", "dim"))
-    show(titled(lines), system.language)
+    show([facts(lines)], system.language)
     show_files(folder, names, system.language)

@@ -223,7 +223,7 @@ def answer(asked: Asked, request: Request, found: Swept) -> Answer:
         number, of = request.shard
         told = f"shard {number} of {of}: {found.asked} chunks are done; without --shard all are put together"
         return Answer((line(f"  {told}"),))
-    from mbsym.report.content import titled
+    from mbsym.report.content import facts
     from mbsym.report.runs.sweep_files import sweep_csv, sweep_json, sweep_parquet
     from mbsym.report.runs.sweep_words import sentences
     from mbsym.sweeps.statistics import total
@@ -250,7 +250,7 @@ def answer(asked: Asked, request: Request, found: Swept) -> Answer:
     files["sweep.json"] = sweep_json(
         asked.system, points, settings, request.wanted.name, columns, totals, table, left_out
     )
-    return Answer(titled(sentences(points, columns, totals, left_out)), files)
+    return Answer([facts(sentences(points, columns, totals, left_out))], files)
 
 
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:

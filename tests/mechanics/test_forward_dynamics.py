@@ -331,7 +331,7 @@ MISTAKES = [
     ("mechanics.articulation:turned_symmetric", "p - across", "p + across"),
     ("mechanics.articulation:shifted", "- mixed", "+ mixed"),
     ("mechanics.articulation:shifted", "twice = h + moved", "twice = h + h"),
-    ("mechanics.articulation:_split", "algebra.zero, Vector", "own.mass, Vector"),
+    ("mechanics.articulation:split", "algebra.zero, Vector", "own.mass, Vector"),
     ("mechanics.bias_forces:_w_tensor", "p[0][1] - c", "p[0][1] + c"),
     ("mechanics.bias_forces:_rotational", "tensor[k][k] - tensor[j][j]", "tensor[j][j] - tensor[k][k]"),
     ("mechanics.bias_forces:_moved", "algebra.number(2)", "algebra.number(1)"),

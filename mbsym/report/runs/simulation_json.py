@@ -23,7 +23,7 @@ from mbsym.report.documents.base import plain, written
 from mbsym.report.runs.between_steps import between_steps_json
 from mbsym.report.runs.certificate import certificate_json
 from mbsym.report.runs.constrained_run_words import constraints_json
-from mbsym.report.runs.events_json import events_json
+from mbsym.report.runs.events import events_json
 from mbsym.report.runs.plan_words import model_json, plan_json
 from mbsym.report.runs.simulation_words import conservation_json, error_json, laws_json
 from mbsym.report.runs.state_run_words import states_json

@@ -1,4 +1,4 @@
-"""What ``simulation.json`` says of events and of a section; the occurrences themselves are in the tables."""
+"""Events and sections of a run: what ``simulation.json`` and the terminal say of them, and their tables."""
 
 from __future__ import annotations
 
