@@ -14,7 +14,7 @@ from mutants import mutant
 
 import mbsym
 from mbsym.editing.document import changes, formula, look
-from mbsym.editing.document.pieces import Edit, Pieces, applied
+from mbsym.editing.document.meaning import Edit, Pieces, applied
 from mbsym.editing.document.written import data_of, written
 from mbsym.problems.claims import EXACT
 from mbsym.source import read, to_text
