@@ -3,8 +3,8 @@
 Ideal constraints do no work in displacements that they allow at an instant; so the balance of the energy is that of the
 open tree if every velocity row is homogeneous, J q' = 0: then the actual velocity is such a displacement.  With a part
 j(q, t) besides (a wall that moves, a table that turns) constraint forces take power from outside, and nothing is
-claimed but of equations that are exactly linear: deviations from their motions obey J q' = 0.  The momentum of a cyclic coordinate is constant where no row knows the coordinate or its velocity: constraint
-forces do not act on it.
+claimed but of equations that are exactly linear, where deviations from the motion obey J q' = 0.  The momentum of a
+cyclic coordinate is constant where no row knows the coordinate or its velocity: constraint forces do not act on it.
 """
 
 from __future__ import annotations
