@@ -88,7 +88,7 @@ def _with_letters(system: System, solve: Collection[str]) -> Analysis:
     """The system whose inputs are parameters, but for those that are held and not asked for."""
     from mbsym.analysis import Analysis
     from mbsym.expressions.tree import Name
-    from mbsym.model.driven import driven
+    from mbsym.model.substitution import driven
     from mbsym.model.system import Parameter
 
     asked = [one for one in system.inputs if not solve or one.name in solve]
