@@ -79,7 +79,6 @@ def check_states(system: System | None, wanted: Asked, many: Many, asked: Option
 
     request = wanted.request
     options = {
-        "--vary": bool(many.vary),
         "--sensitivity": many.sensitivity is not None,
         "--certify": request.certify is not None,
         "--continue": request.earlier is not None,

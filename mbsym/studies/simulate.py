@@ -210,7 +210,7 @@ def ensemble(
     read = simulation.read_values(system, values or {})
     request = simulation.Request(time, samples, every, method, tolerance, step)
     asked = Spread(request, [variation(name, given) for name, given in vary.items()], members, seed, sampling)
-    return simulate_many(scenario(system, read), asked, read, threads)
+    return simulate_many(scenario(system, read, declared=True), asked, read, threads)
 
 
 def sensitivities(

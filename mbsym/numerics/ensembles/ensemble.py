@@ -20,6 +20,8 @@ from mbsym.numerics.ensembles.side_by_side import TABLEAUX, Fate, SideBySide, co
 from mbsym.numerics.ensembles.variation import Members
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.passed import Narrow
+from mbsym.numerics.planning.sizes import scaled, sizes_of_scene
+from mbsym.numerics.states import dynamics_of
 
 #: Quantiles of the statistics: the median, and the bands of 50 % and 90 % about it.
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
@@ -149,7 +151,7 @@ def ensemble(
     Ctrl-C ends it: what has been computed is kept.  Memory is needed for the members' states and a block of times.
     """
     times = np.asarray(times, float)
-    begin = _beginning(found, method, threads)
+    begin = beginning(found, method, threads)
     run = begin(setting, slice(None))
     started = time.perf_counter()
     parts = [statistics(found.starts[None])]
@@ -191,19 +193,19 @@ def ensemble(
 
 
 #: Runs of some members at a setting, from the start.
-_Beginning = Callable[[Setting, Any], "SideBySide | OneByOne"]
+Beginning = Callable[[Setting, Any], "SideBySide | OneByOne"]
 
 
-def _beginning(found: Members, method: str, threads: int | None) -> _Beginning:
-    """Side by side; one by one where steps have to end at switches, or be short beside what is narrow."""
-    if not found.dynamics.features.none:
+def beginning(found: Members, method: str, threads: int | None) -> Beginning:
+    """Side by side; one by one where steps have to end at switches, be short beside what is narrow, or be led back."""
+    if not found.dynamics.features.none or found.dynamics.correction is not None:
         whole = WithParameters(found.dynamics)
         return lambda setting, some: OneByOne(whole, method, setting, found.starts[:, some], found.parameters[:, some])
     made = compiled(found.dynamics.right_hand_side, TABLEAUX[method], len(found.starts))
     return lambda setting, some: SideBySide(made, setting, found.starts[:, some], found.parameters[:, some], threads)
 
 
-def _compared(found: Members, begin: _Beginning, setting: Setting, times: Any, run: SideBySide | OneByOne) -> Compared:
+def _compared(found: Members, begin: Beginning, setting: Setting, times: Any, run: SideBySide | OneByOne) -> Compared:
     """Some members, those with the most steps among them, once more: a hundredth of the tolerance, half the step."""
     whole = [member for member in range(run.members) if member not in run.fates]
     clamped = setting.tolerance is not None and setting.tolerance < FINEST
@@ -223,5 +225,6 @@ def _compared(found: Members, begin: _Beginning, setting: Setting, times: Any, r
     ends = times[1:] if len(times) * len(places) * len(found.starts) <= BLOCK else times[-1:]
     states = [begin(one, places).block(ends) for one in (setting, finer)]
     differences = np.max(np.abs(states[0] - states[1]), axis=(0, 2))
-    sizes = np.max(np.abs(states[1]), axis=(0, 2))
-    return Compared(chosen, differences, sizes)
+    own = np.max(np.abs(states[1]), axis=(0, 2))
+    usual = sizes_of_scene(dynamics_of(found.dynamics.scenario), ends, states[1][:, :, 0].T)
+    return Compared(chosen, differences, scaled(own, usual, differences))

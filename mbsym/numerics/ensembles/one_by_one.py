@@ -1,7 +1,8 @@
 """Members of an ensemble one after the other, where steps have to end at switches and be short beside narrow loads.
 
 Side by side all members take the steps of their error estimates alone, which may pass over a push without a sign of it.
-Here each is a run of its own (``mbsym.numerics.methods.landing``), with the parameters behind its state,
+The same holds of states that have to be led back: to constraints, to quaternions of length 1.  Here each is a run of
+its own (``mbsym.numerics.methods.landing``, ``led``), with the parameters behind its state,
 
     x = (q, q', p),    x' = (rhs(t, q, q', p), 0),
 
@@ -16,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from mbsym.algebra.program import Node
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.ensembles.parametrised import Parametrised
 from mbsym.numerics.ensembles.side_by_side import Fate
@@ -28,14 +30,19 @@ from mbsym.numerics.specialise import Specialised
 
 
 class WithParameters(Dynamics):
-    """A scenario whose free parameters are constant components of the state; zeros make their number even."""
+    """A scenario whose free parameters are constant components of the state."""
 
     def __init__(self, base: Parametrised) -> None:
         values = [Fraction(base.scenario.parameters[name]) for name in base.free]
-        super().__init__(extended(base.scenario, values + [Fraction(0)] * (len(values) % 2)), base.ring)
+        super().__init__(extended(base.scenario, values), base.ring)
         self.base = base
-        self.inputs = (*base.inputs, *(["constant~"] if len(values) % 2 else []))
-        self.size = (len(self.inputs) - 1) // 2
+        self.inputs = base.inputs
+        self.__dict__["constraints"] = base.constraints
+
+    @property
+    def dimension(self) -> int:
+        """Of (q, q', p)."""
+        return len(self.inputs) - 1
 
     @cached_property
     def _specialised(self) -> Specialised:
@@ -45,8 +52,25 @@ class WithParameters(Dynamics):
     def right_hand_side(self) -> Code:
         """(t, q, q', p) -> (q', q'', 0)."""
         rates = self.base.right_hand_side
-        still = [rates.program.zero] * (len(self.inputs) - 1 - len(rates.outputs))
-        return Code(rates.program, self.inputs, (*rates.outputs, *still))
+        return Code(rates.program, self.inputs, (*rates.outputs, *self._still))
+
+    @property
+    def _still(self) -> list[Node]:
+        return [self._specialised.zero] * len(self.base.free)
+
+    @cached_property
+    def correction(self) -> Code | None:
+        """Of the state; parameters stay."""
+        found = self.base.correction
+        if found is None:
+            return None
+        *moved, nearness = found.outputs
+        return Code(found.program, self.inputs, (*moved, *self._still, nearness))
+
+    @cached_property
+    def pivots(self) -> Code:
+        """(t, q, q', p) -> those of the matrices."""
+        return self.base.pivots
 
 
 class OneByOne:
@@ -57,8 +81,7 @@ class OneByOne:
     def __init__(self, whole: WithParameters, method: str, setting: Setting, starts: Any, parameters: Any) -> None:
         self._dynamics, self._method, self._setting = whole, method, setting
         self._size, self.members = starts.shape
-        more = np.zeros((len(whole.inputs) - 1 - self._size - len(parameters), self.members))
-        self._states = np.vstack([starts, parameters, more]).astype(float)
+        self._states = np.vstack([starts, parameters]).astype(float)
         self._runs: list[Run | None] = [None] * self.members
         self._bound = LARGEST * np.maximum(1.0, np.max(np.abs(starts), axis=0, initial=0.0))
         self.fates: dict[int, Fate] = {}

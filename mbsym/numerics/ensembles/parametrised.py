@@ -15,11 +15,13 @@ from typing import TYPE_CHECKING
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.program import Node
 from mbsym.expressions.tree import Expression, names
-from mbsym.model.states import InStates
+from mbsym.model.states import InStates, described
 from mbsym.model.system import System, velocity_name
+from mbsym.numerics.closing import begun
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.scenario import Scenario, initial_values
+from mbsym.numerics.scenario import scenario as scenario_of_run
 from mbsym.numerics.specialise import Names, Specialised, bound
 from mbsym.numerics.states import StateDynamics, dynamics_of
 
@@ -28,10 +30,13 @@ if TYPE_CHECKING:
 
 
 class Parametrised(Dynamics):
-    """The codes of a scenario with the parameters ``free`` as inputs behind (t, q, q'); of one in states ``parametrised``.
+    """The codes of a scenario with the parameters ``free`` as inputs behind (t, q, q').
+
+    Of one in declared variables it is ``ParametrisedStates``: see ``parametrised``.
 
     ``overrides`` are those of which the scenario was made: an initial state may be an expression in free parameters.
-    Which rows of constraints follow from others is told at the scenario's own values.
+    ``fixed`` are initial values that stay while others are fitted to constraints.  Which rows of constraints follow
+    from others is told at the scenario's own values.
     """
 
     def __init__(
@@ -39,10 +44,11 @@ class Parametrised(Dynamics):
         scenario: Scenario,
         free: Sequence[str],
         overrides: Mapping[str, Expression] | None = None,
+        fixed: Sequence[str] = (),
     ) -> None:
         super().__init__(scenario)
         self.free = tuple(free)
-        self.overrides = dict(overrides or {})
+        self.overrides, self.fixed = dict(overrides or {}), tuple(fixed)
         self.inputs = (*self.inputs, *self.free)
 
     @cached_property
@@ -71,6 +77,11 @@ class Parametrised(Dynamics):
         order = (*self.system.coordinates, *self.system.velocities)
         return Code(fresh, (*self.free, *order), tuple(outputs[name] for name in order))
 
+    def begun(self, values: Mapping[str, Expression]) -> Scenario:
+        """The scenario of a run of its own with ``values`` in the place of others.  Raises Incomplete, Failure."""
+        given = scenario_of_run(described(self.system), self.overrides | dict(values), declared=self.in_states)
+        return begun(given, self.fixed, self.in_states).scenario
+
     @cached_property
     def parameters(self) -> Code:
         """(p) -> all parameters that move with p, themselves first, then those of ``dependent``."""
@@ -89,11 +100,14 @@ class ParametrisedStates(Parametrised, StateDynamics):
 
 
 def parametrised(
-    scenario: Scenario, free: Sequence[str], overrides: Mapping[str, Expression] | None = None
+    scenario: Scenario,
+    free: Sequence[str],
+    overrides: Mapping[str, Expression] | None = None,
+    fixed: Sequence[str] = (),
 ) -> Parametrised:
     """The codes of a scenario, in what it is told in, with some parameters as inputs."""
     kind = ParametrisedStates if isinstance(scenario.system, InStates) else Parametrised
-    return kind(scenario, free, overrides)
+    return kind(scenario, free, overrides, fixed)
 
 
 def dependent(system: System, free: Iterable[str]) -> tuple[str, ...]:
