@@ -10,8 +10,7 @@ import click
 from mbsym.expressions.safe import quoted
 from mbsym.model.constraints import listed as constraints_listed
 from mbsym.source.scope import did_you_mean, listed
-from mbsym_cli.option_groups import group
-from mbsym_cli.options import Options
+from mbsym_cli.options import Options, group
 
 if TYPE_CHECKING:
     from mbsym.model.system import System

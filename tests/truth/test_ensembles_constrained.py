@@ -90,7 +90,17 @@ def test_a_sweep_of_motions_knows_constraints(tmp_path) -> None:  # type: ignore
         "bodies:", "parameters: {J: {sign: positive, value: 0.5}}\nbodies:"
     )
     (tmp_path / "sleigh.yaml").write_text(told, encoding="utf-8")
-    more = ["-v", "J=0.2:0.8:3", "--measure", "simulate:theta_dot", "--time", "2", "-q", "--out", str(tmp_path / "o")]
+    more = [
+        "--vary",
+        "J=0.2:0.8:3",
+        "--measure",
+        "simulate:theta_dot",
+        "--time",
+        "2",
+        "-q",
+        "--out",
+        str(tmp_path / "o"),
+    ]
     done = CliRunner().invoke(main, ["sweep", str(tmp_path / "sleigh.yaml"), *more])
     assert done.exit_code == 0, done.output
     rows = np.genfromtxt(tmp_path / "o" / "sweep.csv", delimiter=",", names=True)
