@@ -61,7 +61,6 @@ def check_constrained(system: System | None, wanted: Asked, many: Many, asked: O
     request = wanted.request
     told = constraints_listed(system.constraints)
     options = {
-        "--sensitivity": many.sensitivity is not None,
         "--certify": request.certify is not None,
         "--linear": request.model.linear,
     }

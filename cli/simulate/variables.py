@@ -78,7 +78,6 @@ def check_states(system: System | None, wanted: Asked, many: Many, asked: Option
 
     request = wanted.request
     options = {
-        "--sensitivity": many.sensitivity is not None,
         "--certify": request.certify is not None,
         "--continue": request.earlier is not None,
         "--linear": request.model.linear,

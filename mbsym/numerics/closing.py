@@ -142,14 +142,23 @@ def begun(scenario: Scenario, fixed: Collection[str] = (), declared: bool = True
     ``declared``: those that a description with speeds declares; else coordinates and their velocities.  Raises
     NotClosed, Failure.
     """
+    found = closed(fitted(scenario, declared), fixed)
+    return replace(found, scenario=shown(found.scenario, declared))
+
+
+def fitted(scenario: Scenario, declared: bool) -> Scenario:
+    """The scenario in the variables in which it is fitted to constraints: what is given in declared ones, in these."""
     if not scenario.system.speeds or isinstance(scenario.system, InStates):
-        return closed(scenario, fixed)
+        return scenario
     if not declared:
-        return closed(replace(scenario, system=scenario.system.without_speeds), fixed)
-    if scenario.declared:  # what is given in these is fitted in these
-        return closed(scenario_in_states(scenario), fixed)
-    found = closed(scenario, fixed)
-    return replace(found, scenario=scenario_in_states(found.scenario))
+        return replace(scenario, system=scenario.system.without_speeds)
+    return scenario_in_states(scenario) if scenario.declared else scenario
+
+
+def shown(scenario: Scenario, declared: bool) -> Scenario:
+    """In the variables of the run."""
+    own = declared and bool(scenario.system.speeds) and not isinstance(scenario.system, InStates)
+    return scenario_in_states(scenario) if own else scenario
 
 
 def closed(scenario: Scenario, fixed: Collection[str] = ()) -> Closed:

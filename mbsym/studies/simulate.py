@@ -240,7 +240,7 @@ def sensitivities(
     system = moving_system(source)
     read = simulation.read_values(system, values or {})
     request = simulation.Request(time, samples, every, method, tolerance)
-    return derived(scenario(system, read), request, tuple(names), read)
+    return derived(scenario(system, read, declared=True), request, tuple(names), read)
 
 
 def gradient(

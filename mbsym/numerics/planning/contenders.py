@@ -41,7 +41,7 @@ def contenders(
 
     A step of one length ends at every row: such a method is tried where rows are many anyway.  Implicit midpoints are
     not: no scene was found where they reach an error over the whole time for less than explicit steps of high order.
-    Numbers of 24 bits are not where states are led back: their rounding takes them off constraints and lengths of 1, and
+    Numbers of 24 bits are not, where states are led back: rounding takes them off constraints and lengths of 1, and
     energies with them.
     """
     names = ["dop853"]
