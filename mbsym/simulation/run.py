@@ -172,14 +172,11 @@ NOT_IN_STATES = "integrates coordinates and their velocities only; this system h
 def refuse_in_run(system: System, request: Request) -> None:
     """Raises Constrained for what leaves constraints out; with speeds ValueError and Unusable for what does not know
     them."""
-    if request.certify is not None:
-        refuse_constraints(system, "enclosures of the solution")
     if request.model.linear:
         refuse_constraints(system, "linearised equations in numbers")
     if not runs_in_states(system, request):
         return
     asked = {
-        "certify": request.certify is not None,
         "the linearised equations": request.model.linear,
         "going on from an earlier run": request.earlier is not None,
     }

@@ -50,7 +50,6 @@ def test_coordinates_are_integrated_where_they_are_asked_for(tmp_path: Path) -> 
 @pytest.mark.parametrize(
     ("option", "words"),
     [
-        ("--certify", ("--certify", "1e-6")),
         ("--linear", ("--linear",)),
         ("--bodies", ("--bodies",)),
         ("--animate", ("--animate",)),

@@ -464,7 +464,7 @@ def test_an_open_loop_ends_with_the_closest_configuration(tmp_path: Path) -> Non
 
 @pytest.mark.parametrize(
     "option",
-    [("--certify", "1e-6"), ("--linear",), ("--method", "lsoda")],
+    [("--linear",), ("--method", "lsoda")],
 )
 def test_what_does_not_know_constraints_refuses_by_name(option: tuple[str, ...], tmp_path: Path) -> None:
     result = called(tmp_path, FOUR_BAR + FOUR_BAR_START, *option)
