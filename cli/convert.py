@@ -10,7 +10,7 @@ from pathlib import Path
 
 import click
 
-from mbsym.expressions.counting import counted
+from mbsym.expressions.message import counted
 from mbsym.expressions.place import Complaints
 from mbsym.source import read, render, to_text, to_yaml
 from mbsym_cli.console import BAD_INPUT, FAILED, OutPath, complain, diagnose, printable, read_description

@@ -47,9 +47,9 @@ from mbsym.numerics.planning.sizes import kinetic_between
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.states import dynamics_of, state_names
 from mbsym.numerics.unseen import between_rows, nearest_to_singular
-from mbsym.simulation.choosing import chosen_for
 from mbsym.simulation.request import COORDINATES, DECLARED, Request, wrong_with
 from mbsym.simulation.result import Chosen, Kept, Simulation
+from mbsym.simulation.sampling import chosen_for
 from mbsym.simulation.watching import Watching
 
 if TYPE_CHECKING:

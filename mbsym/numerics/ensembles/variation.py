@@ -19,7 +19,7 @@ from mbsym.algebra.failures import Failure
 from mbsym.expressions.guessing import guess
 from mbsym.expressions.tree import names, number
 from mbsym.expressions.tree import text as spelled
-from mbsym.model.comparison import has_sign, holds
+from mbsym.model.assumptions import has_sign, holds
 from mbsym.model.system import System
 from mbsym.numerics.ensembles.parametrised import Parametrised, dependent, released
 from mbsym.numerics.kernels import arrays

@@ -4,7 +4,7 @@ Energies, places and velocities are those of the bodies; a claimed one that diff
 wherever the constraints hold.  An equation of motion is an expression that vanishes on every motion, so that neither
 multipliers nor a choice of independent velocities matter; a first integral one whose rate does.  Both are tried at
 exact states on the constraints with the accelerations of the equations without multipliers, and proved in the ring
-(``mbsym.problems.constraints.along``).
+(``mbsym.problems.constraints.integrals``).
 
 The first approximation is that of the independent coordinates; conditions are judged as those of other systems.
 """
@@ -44,7 +44,7 @@ from mbsym.problems.claims.result import (
     Derived,
 )
 from mbsym.problems.claims.symbols import Symbols
-from mbsym.problems.constraints.along import STATES, AlongMotion
+from mbsym.problems.constraints.integrals import STATES, AlongMotion
 from mbsym.problems.constraints.result import Constraints
 from mbsym.problems.integrals import total_rate
 

@@ -39,13 +39,12 @@ from mbsym.problems.linearisation import Linearisation, Subsystem, first_symbols
 from mbsym.problems.stability import nonholonomic
 from mbsym.problems.stability.algebraic_values import algebraic_point
 from mbsym.problems.stability.covering import Cell, Lift, cells_of, everywhere, joined
-from mbsym.problems.stability.enclosed import enclosed_verdict_with_cyclic
+from mbsym.problems.stability.enclosed import Spectrum, enclosed_verdict_with_cyclic, from_characteristic, from_matrices
 from mbsym.problems.stability.exact import verdict_at, verdict_over
 from mbsym.problems.stability.linear_form import LinearSystem, NonholonomicForm, null_rows
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.requirements import Requirement
 from mbsym.problems.stability.sentences import named
-from mbsym.problems.stability.spectrum import Spectrum, from_characteristic, from_matrices
 from mbsym.problems.stability.symbolic import Theory, analyse
 from mbsym.problems.stability.verdict import Verdict, combine, displaced, exactly, off_the_leaf, undecided
 from mbsym.problems.stability.word import Word
