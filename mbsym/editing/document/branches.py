@@ -60,7 +60,7 @@ def add_body(found: Written, operation: Json) -> Meant:
     Its parameters are positive, of value 1, and have names that nothing else has.
     """
     name, parent = _new_name(found, word_of(operation, "name")), _parent(found, operation)
-    data: Data = {"name": name, "attached to": parent}
+    data: dict[str, Data] = {"name": name, "attached to": parent}
     path = ("bodies", len(bodies_of(found)))
     if "joint" not in operation:
         return Meant([setting(found, path, {**data, "mass": "0"}, None)], select=path)
@@ -68,8 +68,9 @@ def add_body(found: Written, operation: Json) -> Meant:
     if joint not in JOINTS or axis not in (None, 1, 2, 3):
         raise Refused("bad-operation", f"a joint is one of {', '.join(JOINTS)}, its axis 1, 2 or 3")
     body, known = NewBody(name, parent, joint, axis), words_of(found)
-    for index, _ in enumerate(bodies_of(found)):
-        known |= set(own_names(found, found.tree, index))
+    if isinstance(found.tree, Mapping):
+        for index, _ in enumerate(bodies_of(found)):
+            known |= set(own_names(found, found.tree, index))
     number = next(k for k in count(path[1] + 1) if known.isdisjoint(_names(k, body)))
     meanings = parameters_of(number, body)
     below = "0" if parent == "0" else f"d{number}"
@@ -88,7 +89,7 @@ def _declared(found: Written, meanings: dict[str, str]) -> list[Primitive]:
     new: dict[str, Data] = {
         name: {"sign": "positive", "value": "1", "meaning": meaning} for name, meaning in meanings.items()
     }
-    node = child(found.tree, "parameters")
+    node = None if found.tree is None else child(found.tree, "parameters")
     if isinstance(node, Mapping) and node.entries:
         return [setting(found, ("parameters", name), one, None) for name, one in new.items()]
     plain = node.items if isinstance(node, Sequence) else ()
