@@ -212,6 +212,7 @@ def test_the_flat_parallelogram_is_singular() -> None:
     assert stage.failure is not None
     assert stage.failure.code == "singular"
 
+
 OUTSIDE = """
 mbsym: 1
 name: Three masses, the velocity of the first one given by the place of the second
