@@ -25,12 +25,10 @@ from mbsym.expressions.safe import safe as escaped
 if TYPE_CHECKING:
     from rich.console import Console
     from rich.status import Status
-    from rich.table import Table
     from rich.text import Text
 
     from mbsym.model.system import System
     from mbsym.report.plain_writer import Line
-    from mbsym.studies.study import Rows
 
 #: Exit codes: everything held; a result failed its self-check, or is missing; the input is wrong.
 OK, FAILED, BAD_INPUT = 0, 1, 2
@@ -202,36 +200,6 @@ def show(lines: Iterable[Line], indent: int = 2) -> None:
         tell(" " * indent, *parts, whole=whole, margin=None if margin is None else margin + indent)
 
 
-#: Columns of a wide table that does not go to a terminal.
-WIDE = 400
-
-
-def show_rows(table: Rows) -> None:
-    """A table as wide as it must be where nobody's screen is the limit, if it is a wide one."""
-    from rich.console import Console
-
-    out = console()
-    (Console(width=WIDE, highlight=False) if table.wide and not out.is_terminal else out).print(rich_table(table))
-
-
-def rich_table(table: Rows) -> Table:
-    """Numbers of a wide table never fold; what else it holds does."""
-    from rich.table import Table
-    from rich.text import Text
-
-    shown = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold cyan")
-    for place, one in enumerate(table.columns):
-        whole = table.wide and one.right
-        width = max((len(Text.assemble(row[place])) for row in table.rows), default=0)
-        shown.add_column(
-            Text(one.name), justify="right" if one.right else "left", style=one.style,
-            overflow="fold" if one.fold or whole else "ellipsis", min_width=width if whole else None,
-        )  # fmt: skip
-    for row in table.rows:
-        shown.add_row(*(Text.assemble(cell) for cell in row))
-    return shown
-
-
 def indented(text: Text, indent: int) -> None:
     """Wrapped with a hanging indent on a terminal; one line elsewhere, so that nothing is cut from a log."""
     from rich.padding import Padding
@@ -311,7 +279,7 @@ def read_held(file: Path, command: str, constrained: bool = False, moving: bool 
     takes systems that are given by their matrices, too.
     """
     from mbsym.expressions.tree import text
-    from mbsym.model.driven import held
+    from mbsym.model.substitution import held
 
     system = read_description(file, "" if constrained else command, command if moving else "")
     if system is None or not system.inputs:

@@ -140,7 +140,7 @@ def _figures(folder: Path, system: System) -> tuple[MadeFigure, ...]:
     if not (folder / "simulation.json").is_file():
         return ()
     from mbsym.report.figures.made_figures import made_figures
-    from mbsym.source.meaning import meaning
+    from mbsym.source.yaml_writer import meaning
 
     sums = delivered(folder, "simulate")
     unchanged = [name for name, digest in sums.items() if digest_of(folder / name) == digest]

@@ -18,9 +18,16 @@ from mbsym_cli.files import room_beside
 from mbsym_cli.options import Options
 from mbsym_cli.progress import progress
 from mbsym_cli.simulate.files import write_files
-from mbsym_cli.simulate.planned import InterruptedPlanning, only_planned, planning, print_repeat, simulated_to
 from mbsym_cli.simulate.request import Asked
-from mbsym_cli.simulate.summary import broken, print_summary
+from mbsym_cli.simulate.summary import (
+    InterruptedPlanning,
+    broken,
+    only_planned,
+    planning,
+    print_repeat,
+    print_summary,
+    simulated_to,
+)
 
 if TYPE_CHECKING:
     from mbsym.algebra.failures import Failure

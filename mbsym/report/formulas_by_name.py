@@ -14,7 +14,7 @@ from mbsym.expressions.rates import ENDINGS, acceleration_name
 from mbsym.formulas.formula import Column, Formula, Matrix, column
 from mbsym.formulas.latex import latex_symbol
 from mbsym.formulas.wolfram import wolfram_name
-from mbsym.problems.stability.spectrum import RootNumbers, numbers
+from mbsym.problems.stability.enclosed import RootNumbers, numbers
 from mbsym.report.conditions import Statement, label_meanings, statements
 from mbsym.report.content import Number
 

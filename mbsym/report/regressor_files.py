@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.program import Node, Program
-from mbsym.expressions.counting import counted
+from mbsym.expressions.message import counted
 from mbsym.mechanics.regressor import KINDS, Standard
 from mbsym.mechanics.variables import program_environment
 from mbsym.report.documents import regressor as doc
-from mbsym.report.documents.writer import written
-from mbsym.source.meaning import meaning
+from mbsym.report.documents.base import written
+from mbsym.source.yaml_writer import meaning
 
 if TYPE_CHECKING:
     from mbsym.problems.regressor import Base, Regressor

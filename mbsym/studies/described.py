@@ -62,7 +62,7 @@ def moving_system(source: Source) -> System:
     Raises GivenByMatrices where there are no bodies that could move.
     """
     from mbsym.analysis.given import refuse_matrices
-    from mbsym.model.driven import held
+    from mbsym.model.substitution import held
 
     system = analysis_of(source).system
     refuse_matrices(system, "no motion is integrated or searched for")

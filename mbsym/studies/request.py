@@ -234,7 +234,7 @@ def duration(help: str, usual: str = "") -> Number:
 
 def formats(help: str, choices: tuple[str, ...], usual: str = "") -> Words:
     """``--format``: which files."""
-    return Words("LIST", help, usual=usual, choices=choices, what="format")
+    return Words("LIST", help, "-f", usual=usual, choices=choices, what="format")
 
 
 def language(help: str) -> Word:

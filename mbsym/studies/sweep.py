@@ -37,11 +37,10 @@ from mbsym.studies.study import (
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
-    from mbsym.sweeps.measure import Measure
-    from mbsym.sweeps.points import Points
+    from mbsym.sweeps.points import Measure, Points
     from mbsym.sweeps.request import Asked as Wanted
-    from mbsym.sweeps.store import Folder as Store
     from mbsym.sweeps.sweep import Chunk, Executor
+    from mbsym.sweeps.sweep import Folder as Store
 
 KINDS = ("csv", "parquet", "svg", "png", "pdf")
 #: A picture holds all points: of more there is none.
@@ -82,11 +81,11 @@ class Request:
 
     \b
     Examples:
-      mbsym sweep systems/satellite.yaml -v alpha=-0.9:0.9:400 -v gamma=-0.9:0.9:400 -s p1=2/5 -s p2=1/5
-      mbsym sweep systems/spring-pendulum.yaml -v "m=1 +- 5%" -v "k=+-10%" --points 10000 --measure frequency
+      mbsym sweep systems/satellite.yaml --vary alpha=-0.9:0.9:400 --vary gamma=-0.9:0.9:400 -s p1=2/5 -s p2=1/5
+      mbsym sweep systems/spring-pendulum.yaml --vary "m=1 +- 5%" --vary "k=+-10%" --points 10000 --measure frequency
     """
 
-    vary: Annotated[tuple[Varied, ...], Ranges("NAME=RANGE", VARY, "-v", most=64, exact=True)]
+    vary: Annotated[tuple[Varied, ...], Ranges("NAME=RANGE", VARY, most=64, exact=True)]
     _: KW_ONLY
     values: Annotated[
         Mapping[str, Fraction], ExactSettings("NAME=VALUE", "Replace a value; repeatable.", "-s", "--set")
@@ -99,7 +98,7 @@ class Request:
     ] = None
     seed: Annotated[int, Whole("N", "Of what is drawn at random.", least=0, most=2**63 - 1)] = 1
     sampling: Annotated[str, Word("[random|sobol]", "", choices=("random", "sobol"), what="sampling")] = "random"
-    time: Annotated[float | None, Number("T", f"How long to simulate, with --measure {MOTION}FORMULA.")] = None
+    time: Annotated[float | None, Number("T", f"How long to simulate, with --measure {MOTION}FORMULA.", "-t")] = None
     format: Annotated[tuple[str, ...], formats("csv, parquet, svg, png, pdf.", KINDS)] = ("csv", "svg", "png")
     jobs: Annotated[int | None, Whole("N", "Threads.", "-j", usual="as many as there are processors", most=1000)] = None
     cluster: Annotated[str | None, Text("ADDRESS", "A Dask scheduler, tcp://host:8786, or 'local'.")] = None
@@ -174,9 +173,9 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Swept:
     from mbsym.batch.digests import derivation
     from mbsym.maps.given import Unfit as Wrong
     from mbsym.numerics.scenario import Incomplete
-    from mbsym.source.meaning import meaning
+    from mbsym.source.yaml_writer import meaning
     from mbsym.studies.section import unfit_section
-    from mbsym.sweeps import store, sweep
+    from mbsym.sweeps import sweep
     from mbsym.sweeps.request import measure_of
 
     watch("deriving")
@@ -189,7 +188,7 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Swept:
         raise NotFit(tuple(unfit_section(error.complaints, "--vary"))) from error
     every = sweep.chunks(wanted.points.count)
     digest = wanted.digest(meaning(system), derivation())
-    kept = store.Folder(asked.folder, digest, tuple(column.name for column in measure.columns), asked.write)
+    kept = sweep.Folder(asked.folder, digest, tuple(column.name for column in measure.columns), asked.write)
     mine = every if request.shard is None else sweep.shard(every, *request.shard)
     executor, done, cut = _executor(system, request, wanted, measure), 0, False
     try:
@@ -224,7 +223,7 @@ def answer(asked: Asked, request: Request, found: Swept) -> Answer:
         number, of = request.shard
         told = f"shard {number} of {of}: {found.asked} chunks are done; without --shard all are put together"
         return Answer((line(f"  {told}"),))
-    from mbsym.report.content import titled
+    from mbsym.report.content import facts
     from mbsym.report.runs.sweep_files import sweep_csv, sweep_json, sweep_parquet
     from mbsym.report.runs.sweep_words import sentences
     from mbsym.sweeps.statistics import total
@@ -251,7 +250,7 @@ def answer(asked: Asked, request: Request, found: Swept) -> Answer:
     files["sweep.json"] = sweep_json(
         asked.system, points, settings, request.wanted.name, columns, totals, table, left_out
     )
-    return Answer(titled(sentences(points, columns, totals, left_out)), files)
+    return Answer([facts(sentences(points, columns, totals, left_out))], files)
 
 
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:

@@ -6,8 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
-from mbsym.expressions.counting import duration
-from mbsym.expressions.message import Message, joined
+from mbsym.expressions.message import Message, duration, joined
 from mbsym.report.language import Language
 from mbsym.studies.closing import closed_motion, not_closed
 from mbsym.studies.request import Flag, Number, Values, Words
@@ -15,12 +14,10 @@ from mbsym.studies.request import duration as length
 from mbsym.studies.study import (
     Answer,
     Asked,
-    Column,
     Exit,
     Folder,
     Line,
     Refusal,
-    Rows,
     Study,
     Watch,
     failed,
@@ -31,6 +28,7 @@ if TYPE_CHECKING:
     from mbsym.numerics.methods.interface import Breakdown
     from mbsym.numerics.trade import trade_study
     from mbsym.numerics.trade.tradeoff import Measured
+    from mbsym.report.content import Block
 
 
 def _methods() -> tuple[str, ...]:
@@ -122,7 +120,7 @@ def _files(asked: Asked, request: Request, found: trade_study.Study) -> dict[str
     return files | {name.replace(".", f"{mark}."): content for name, content in pictures.items()}
 
 
-def _lines(request: Request, found: trade_study.Study, say: Callable[[str], str]) -> Iterator[Line | Rows]:
+def _lines(request: Request, found: trade_study.Study, say: Callable[[str], str]) -> Iterator[Line | Block]:
     from mbsym.numerics.trade.fidelity import model_advice
     from mbsym.numerics.trade.tradeoff import advice
 
@@ -131,7 +129,7 @@ def _lines(request: Request, found: trade_study.Study, say: Callable[[str], str]
     text = "reference: [[method]], estimated error [[error]], [[time]]; errors below [[least]] are not told apart"
     error, least, time = f"{truth.error:.1e}", f"{trade.smallest_judged:.0e}", duration(truth.seconds)
     yield line("  ", say(Message(text, method=truth.method, error=error, time=time, least=least)))
-    yield _runs(request, found, say)
+    yield _runs(request, found)
     for order in trade.orders:
         if order.pairs > 1:
             text = "measured order [[order]], nominal [[nominal]] (halvings of the step: [[count]])"
@@ -146,34 +144,35 @@ def _lines(request: Request, found: trade_study.Study, say: Callable[[str], str]
     costs = {"reference": f"{truth.cost:.2g}", "runs": f"{trade.spent:.2g}"}
     yield line("  ", say(Message(text, budget=f"{request.budget:g}", **costs)))
     if models:
-        yield _models(found, say)
+        yield _models(found)
     advised = joined(filter(None, (advice(trade, target), model_advice(models, target))))
     yield line((say(advised), "bold"), always=True)
 
 
-def _runs(request: Request, found: trade_study.Study, say: Callable[[str], str]) -> Rows:
+def _runs(request: Request, found: trade_study.Study) -> Block:
     """Runs on the front and near the target, or every one."""
+    from mbsym.report.content import aligned, column
     from mbsym.report.runs.tradeoff_table import constrained, shown
 
     near = [row for row in found.trade.rows if row.front or _near(row, request.target)]
     rows = found.trade.rows if request.all_rows else near
     strayed = ("constraints",) if constrained(rows) else ()
     names = ("method", "setting", "error", "drift", *strayed, "evaluations", "steps", "time", "cost", "front")
-    columns = [Column(say(name), right=name not in ("method", "setting", "front")) for name in names]
-    told = shown(rows, found.trade.smallest_judged)
-    return Rows(columns, [[(say(cell), "" if cells[-1] else "dim") for cell in cells] for cells in told])
+    columns = [column(Message(name), right=name not in ("method", "setting", "front")) for name in names]
+    return aligned(columns, shown(rows, found.trade.smallest_judged))
 
 
 def _near(row: Measured, target: float) -> bool:
     return target / 10 < row.error < target * 10
 
 
-def _models(found: trade_study.Study, say: Callable[[str], str]) -> Rows:
+def _models(found: trade_study.Study) -> Block:
+    from mbsym.report.content import aligned, column
     from mbsym.report.runs.tradeoff_table import models_shown
 
     names = ("model", "what it neglects", "error", "operations", "time")
-    columns = [Column(say(name), right=place > 1, fold=place < 2) for place, name in enumerate(names)]
-    return Rows(columns, [[say(cell) for cell in row] for row in models_shown(found.models)])
+    columns = [column(Message(name), right=place > 1, fold=place < 2) for place, name in enumerate(names)]
+    return aligned(columns, models_shown(found.models))
 
 
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:

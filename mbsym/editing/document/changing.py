@@ -9,8 +9,8 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path as Folder
 from typing import Any
 
+from mbsym.editing.document.meaning import Edit, Pieces, applied
 from mbsym.editing.document.operations import Meant, meant
-from mbsym.editing.document.pieces import Edit, Pieces, applied
 from mbsym.editing.document.primitives import Remove, applied_to
 from mbsym.editing.document.text_edits import text_edits
 from mbsym.editing.document.view import complaint_view

@@ -18,7 +18,7 @@ from mbsym.algebra.base import Lowering
 from mbsym.expressions.guessing import guess
 from mbsym.expressions.tree import names
 from mbsym.expressions.tree import text as spelled
-from mbsym.model.comparison import has_sign, holds
+from mbsym.model.assumptions import has_sign, holds
 from mbsym.model.system import System
 from mbsym.numerics.ensembles.parametrised import Parametrised, dependent, released
 from mbsym.numerics.kernels import arrays

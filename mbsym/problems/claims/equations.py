@@ -25,10 +25,9 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.speeds import SpeedForm
+from mbsym.problems.claims.comparison import closest_multiple, differing, exceptions
 from mbsym.problems.claims.counterexample import rate_at_states
-from mbsym.problems.claims.differences import differing
 from mbsym.problems.claims.forms import by_place, in_parameters, on_relations
-from mbsym.problems.claims.multiples import closest_multiple, exceptions
 from mbsym.problems.claims.result import (
     ALONG,
     DIFFERS,

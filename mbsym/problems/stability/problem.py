@@ -15,8 +15,8 @@ from mbsym.algebra.base import Lowering
 from mbsym.algebra.characteristic import Matrix as Polynomials
 from mbsym.algebra.elimination import Elimination, eliminate
 from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import NOT_THERE, Failure
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.matrices import added
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.ring import ParameterRing, Polynomial, Ring
@@ -39,13 +39,12 @@ from mbsym.problems.linearisation import Linearisation, Subsystem, first_symbols
 from mbsym.problems.stability import nonholonomic
 from mbsym.problems.stability.algebraic_values import algebraic_point
 from mbsym.problems.stability.covering import Cell, Lift, cells_of, everywhere, joined
-from mbsym.problems.stability.enclosed import enclosed_verdict_with_cyclic
+from mbsym.problems.stability.enclosed import Spectrum, enclosed_verdict_with_cyclic, from_characteristic, from_matrices
 from mbsym.problems.stability.exact import on_the_motion, verdict_at, verdict_over
 from mbsym.problems.stability.linear_form import LinearSystem, NonholonomicForm, null_rows
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.requirements import Requirement
 from mbsym.problems.stability.sentences import named
-from mbsym.problems.stability.spectrum import Spectrum, from_characteristic, from_matrices
 from mbsym.problems.stability.symbolic import Theory, analyse
 from mbsym.problems.stability.verdict import Verdict, combine, exactly, undecided
 from mbsym.problems.stability.word import Word

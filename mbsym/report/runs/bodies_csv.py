@@ -28,7 +28,6 @@ from mbsym.model.quantities import (
 )
 from mbsym.model.system import System
 from mbsym.numerics.body_motion import BodyMotions
-from mbsym.report.runs.events_csv import cell
 from mbsym.report.runs.trajectory_csv import parts
 
 _VECTORS = (
@@ -55,7 +54,7 @@ def _table(found: BodyMotions, system: System | None) -> tuple[list[str], list[A
     energies = {"kinetic_energy": kinetic, "force_function": found.force_function}
     table = {"t": found.times, **dict(_columns(found)), **energies, "energy": kinetic - found.force_function}
     units = {} if system is None else _units(system)
-    return [cell(marked(name, units.get(_quantity(name)))) for name in table], list(table.values())
+    return [marked(name, units.get(_quantity(name))) for name in table], list(table.values())
 
 
 def _units(system: System) -> dict[str, str | None]:

@@ -11,7 +11,9 @@ unit does not follow from the description.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import csv
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from io import StringIO
 from typing import Any
 
 import numpy as np
@@ -67,9 +69,18 @@ def parts(names: Sequence[str], table: Sequence[Any]) -> Iterator[str]:
         yield rows([column[start : start + BLOCK] for column in table], many)
 
 
+def text_table(names: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    """A table with words among its cells, in quotes where one holds a comma, a quote or a line break."""
+    stream = StringIO(newline="")
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(names)
+    writer.writerows(rows)
+    return stream.getvalue()
+
+
 def header(names: Sequence[str]) -> str:
     """The line of names."""
-    return ",".join(names) + "\n"
+    return text_table(names, ())
 
 
 def rows(table: Sequence[Any], many: bool) -> str:
