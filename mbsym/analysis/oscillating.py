@@ -32,8 +32,7 @@ from mbsym.model.system import SmallParameter, System, velocity_name
 from mbsym.problems.angle_field import in_angles
 from mbsym.problems.normal_forms.dissipative import taylor_field
 from mbsym.problems.small_parameter.graded_rows import graded_rows
-from mbsym.problems.small_parameter.harmonics import Harmonics
-from mbsym.problems.small_parameter.oscillation_result import Amplitude, Divisor, Oscillation
+from mbsym.problems.small_parameter.oscillation_result import Amplitude, Divisor, Harmonics, Oscillation
 from mbsym.problems.small_parameter.oscillations import (
     AMPLITUDE,
     LATEST,
