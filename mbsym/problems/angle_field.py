@@ -13,8 +13,8 @@ from typing import Any
 
 from flint import fmpq
 
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import NoClosedForm
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.matrices import determinant
 from mbsym.algebra.polynomial_field import PolynomialField, in_lowest_terms
 from mbsym.algebra.ring import Polynomial, Ring

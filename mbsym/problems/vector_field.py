@@ -7,8 +7,8 @@ from typing import Any
 
 from flint import Ordering, fmpq_mpoly_ctx
 
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import NoClosedForm
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.polynomial_field import PolynomialField, in_lowest_terms
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message
