@@ -28,10 +28,12 @@ def command(file: Path, names: tuple[str, ...], language: str | None, settings: 
     accelerations   solved for q''             M f           of M q'' = f
     motion          does it satisfy them       constraints   in velocities
     M0 D G K N B    first approximation
-    characteristic  polynomials                conditions    of stability
-    eigenvalues     at the given values        integrals     first integrals
+    characteristic  polynomials                determinants  and what they come from
+    conditions      of stability               integrals     first integrals
+    eigenvalues     at the given values
 
-    The name of a body prints its kinematics.  Without --latex, --wolfram or --python formulas are written as people
+    The name of a body prints its kinematics and its part of T, that of a coordinate (a speed) its equation, terms with
+    accelerations first.  Without --latex, --wolfram or --python formulas are written as people
     write them: theta'' is the second derivative, a space multiplies.  Exit codes: 0 printed, 1 there is no such result,
     2 something is wrong.
 
@@ -40,6 +42,7 @@ def command(file: Path, names: tuple[str, ...], language: str | None, settings: 
       mbsym show systems/simple-pendulum.yaml
       mbsym show systems/double-pendulum.yaml T U equations
       mbsym show systems/satellite.yaml conditions --latex
+      mbsym show systems/satellite.yaml determinants theta
     """
     system = read_description(file)
     asked = Options()
