@@ -56,14 +56,23 @@ def test_bad_input_is_complained_about(words, told):
 
 #: Table 1 of Amer, Amer & Galal in kg, m, s: A and B follow from its A0, delta1, delta2 and (4).
 TABLE_1 = {
-    **{"R": "1000", "g": "9.81", "M": "300", "A": "82.999082116765608446", "B": "76.199173905089047602", "C": "11"},
-    **{"x0": "0.7", "y0": "0.3", "z0": "0.1", "lx": "30", "lz": "30"},
+    "R": "1000",
+    "g": "9.81",
+    "M": "300",
+    "A": "82.999082116765608446",
+    "B": "76.199173905089047602",
+    "C": "11",
+    "x0": "0.7",
+    "y0": "0.3",
+    "z0": "0.1",
+    "lx": "30",
+    "lz": "30",
 }
 
 
 def test_numbers_that_no_body_has_and_numbers_of_what_is_small_are_put_in(tmp_path):
-    """p in the lowest order is r0 lx/((C - A) r0 + lz); the frequency that is left out (C - A + lz/r0)(C - B + lz/r0)/(A B)
-    r0^2: 0.61777 r0^2 at r0 = 5 (references/gyrostat, notes 2.2 and 2.4)."""
+    """p in the lowest order is r0 lx/((C - A) r0 + lz); that of the free oscillation (C - A + lz/r0)(C - B + lz/r0)/(A B) r0^2:
+    0.61777 r0^2 at r0 = 5 (references/gyrostat, notes 2.2 and 2.4)."""
     text = Path(FAST).read_text(encoding="utf-8").partition("# The symbols")[0]
     text = text.replace("inertia: [A, B, C]", "inertia: {tensor: [A, B, C], accept: true}").replace("200", "5")
     values = ", ".join(f"{name}: {value}" for name, value in TABLE_1.items())
