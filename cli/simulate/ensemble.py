@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -75,6 +75,61 @@ def spread(
         print(f"{printable(file)}: {len(found.fates)} of {found.count} members ended early.", file=sys.stderr)
         return BROKEN_DOWN
     return OK
+
+
+def beside(
+    file: Path,
+    folder: Path,
+    read: Callable[[tuple[str, ...]], Scenario | None],
+    varied: Varied,
+    wanted: Asked,
+    options: Options,
+) -> int:
+    """A few motions, each a run of its own, in one picture; ``read`` makes a scenario with more settings."""
+    from mbsym.report.figures.figures import Curve, curves
+    from mbsym.report.runs.summary import result_lines
+    from mbsym.report.runs.trajectory_csv import trajectory_parts
+    from mbsym.simulation import Simulation, simulate
+    from mbsym_cli.simulate.files import rates_along
+
+    texts: dict[str, str | bytes] = {}
+    members = tuple(varied.few)
+    given = [read(tuple(f"{name}={value}" for name, value in one)) for one in members]
+    if options.refused(file):
+        return BAD_INPUT
+    names = [", ".join(f"{name} = {value:.12g}" for name, value in one) for one in members]
+
+    def work() -> list[Simulation]:
+        found = []
+        for name, one in zip(names, given, strict=True):
+            assert one is not None
+            with progress(wanted.quiet, f"{file.name}: {name}", wanted.request.time) as watch:
+                found.append(simulate(one, wanted.request, watch))
+        with status(wanted.quiet, "drawing"):
+            if "csv" in wanted.formats:
+                rows = {f"trajectory-{k}.csv": trajectory_parts(run.trajectory) for k, run in enumerate(found, start=1)}
+                texts.update({name: "".join(parts) for name, parts in rows.items()})
+            kinds = [kind for kind in wanted.formats if kind != "csv"]
+            drawn = [Curve(run.trajectory, rates_along(run), name) for run, name in zip(found, names, strict=True)]
+            texts.update(curves(drawn, kinds) if kinds and all(len(run.times) > 1 for run in found) else {})
+            deliver(folder, texts, "ensemble")
+        return found
+
+    found = attempted(file, work)
+    if found is None:
+        return FAILED
+    if not wanted.quiet:
+        lines = [
+            (name, text)
+            for name, run in zip(names, found, strict=True)
+            for title, text in result_lines(run, file.name)
+            if str(title) == "error"
+        ]
+        told(file, found[0].system, lines, folder, texts)
+    ended = [(name, run) for name, run in zip(names, found, strict=True) if run.ended is not None]
+    for name, run in ended:
+        print(f"{printable(file)}: {name} ended early at t = {run.times[-1]:.9g}.", file=sys.stderr)
+    return BROKEN_DOWN if ended else OK
 
 
 def answers(

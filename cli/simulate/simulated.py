@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from mbsym.model.states import InStates
 from mbsym_cli.assignments import given_numbers
 from mbsym_cli.console import BAD_INPUT, FAILED, complain, read_description
 from mbsym_cli.files import obstacle
@@ -16,7 +17,7 @@ from mbsym_cli.options import Options
 from mbsym_cli.simulate.choice import with_goal
 from mbsym_cli.simulate.closing import begun_at, check_constrained
 from mbsym_cli.simulate.continuing import going_on
-from mbsym_cli.simulate.ensemble import answers, spread
+from mbsym_cli.simulate.ensemble import answers, beside, spread
 from mbsym_cli.simulate.inputs import read_laws
 from mbsym_cli.simulate.many import Many, read_many
 from mbsym_cli.simulate.options import Group, Output
@@ -24,6 +25,9 @@ from mbsym_cli.simulate.request import check_held, read_request
 from mbsym_cli.simulate.run import run
 from mbsym_cli.simulate.together import carried, complain_of_names, complain_of_pairs, typed_options
 from mbsym_cli.simulate.variables import Variables, check_states
+
+if TYPE_CHECKING:
+    from mbsym.numerics.scenario import Scenario
 
 
 def simulated(
@@ -57,13 +61,21 @@ def simulated(
     varied, sensitive = read_many(many, given, wanted, typed, asked)
     wanted = with_goal(further["choosing"], seen, wanted, settings, typed, carried(context), asked)
     check_constrained(system, wanted, many, asked)
-    check_states(seen, wanted, many, asked)
+    few = varied is not None and bool(varied.few) and isinstance(seen, InStates)
+    check_states(seen, wanted, many, asked, few)
     if asked.refused(None if system is None else file) or given is None:
         return BAD_INPUT
     reason = obstacle(folder)
     if reason:
         complain(file, f"the results cannot be written: {reason}")
         return FAILED
+    if varied is not None and few:
+
+        def read(more: tuple[str, ...]) -> Scenario | None:
+            assert system is not None
+            return given_numbers(file, system, (*settings, *more), asked, laws, own)[0]
+
+        return beside(file, folder, read, varied, wanted, asked)
     if varied is not None:
         return spread(file, folder, given, overrides, varied, wanted, asked)
     code = run(file, folder, given, wanted, asked)

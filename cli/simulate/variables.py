@@ -68,9 +68,13 @@ variables_options = group(
 )
 
 
-def check_states(system: System | None, wanted: Asked, many: Many, asked: Options) -> None:
-    """Complains about every option that goes with coordinates only, where a run has other variables."""
+def check_states(system: System | None, wanted: Asked, many: Many, asked: Options, few: bool = False) -> None:
+    """Complains about every option that goes with coordinates only, where a run has other variables.
+
+    ``few``: what varies are so few motions that each is a run of its own.
+    """
     from mbsym.model.states import InStates
+    from mbsym_cli.simulate.many import MOST_BESIDE
 
     if not isinstance(system, InStates):
         return
@@ -78,7 +82,7 @@ def check_states(system: System | None, wanted: Asked, many: Many, asked: Option
 
     request = wanted.request
     options = {
-        "--vary": bool(many.vary),
+        "--vary": bool(many.vary) and not few,
         "--sensitivity": many.sensitivity is not None,
         "--certify": request.certify is not None,
         "--continue": request.earlier is not None,
@@ -87,7 +91,8 @@ def check_states(system: System | None, wanted: Asked, many: Many, asked: Option
     }
     for option, there in options.items():
         if there:
-            message = f"{option} knows coordinates and their velocities only, and this system has speeds"
+            of = f"{option} of more than {MOST_BESIDE} motions" if option == "--vary" else option
+            message = f"{of} knows coordinates and their velocities only, and this system has speeds"
             asked.complain(option, "variables", message, WAY_OUT)
     if request.method == "lsoda" and any(body.orientation for body in system.bodies):
         message = "lsoda does not keep quaternions and unit vectors at their lengths"
