@@ -71,7 +71,7 @@ TABLE_1 = {
 
 
 def test_numbers_that_no_body_has_and_numbers_of_what_is_small_are_put_in(tmp_path):
-    """p in the lowest order is r0 lx/((C - A) r0 + lz); that of the free oscillation (C - A + lz/r0)(C - B + lz/r0)/(A B) r0^2:
+    """p of order 0 is r0 lx/((C - A) r0 + lz), the free frequency squared (C - A + lz/r0)(C - B + lz/r0)/(A B) r0^2,
     0.61777 r0^2 at r0 = 5 (references/gyrostat, notes 2.2 and 2.4)."""
     text = Path(FAST).read_text(encoding="utf-8").partition("# The symbols")[0]
     text = text.replace("inertia: [A, B, C]", "inertia: {tensor: [A, B, C], accept: true}").replace("200", "5")
