@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mbsym.expressions.message import Message
-from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, complain, printable, status
+from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, complain, printable, progress, status
 from mbsym_cli.files import deliver
 from mbsym_cli.options import Options
-from mbsym_cli.progress import progress
-from mbsym_cli.study import attempted
-from mbsym_cli.telling import told
+from mbsym_cli.study import attempted, told
 
 if TYPE_CHECKING:
     from mbsym.expressions.tree import Expression
@@ -30,8 +29,9 @@ def spread(
     varied: Varied,
     wanted: Asked,
     options: Options,
+    read: Callable[[tuple[str, ...]], Scenario | None],
 ) -> int:
-    """Many motions; the exit code."""
+    """Many motions; the exit code.  ``read`` makes the scenario of one member, from its settings."""
     from mbsym.numerics.ensembles.ensemble import Ensemble
     from mbsym.numerics.ensembles.variation import Unvaried
     from mbsym.report.figures.ensemble_figure import fan_charts
@@ -44,11 +44,12 @@ def spread(
     def work() -> Ensemble:
         with progress(wanted.quiet, file.name, wanted.request.time) as watch:
             found = simulate_many(given, request, overrides, watch=watch)
+        kinds = [kind for kind in wanted.formats if kind != "csv"]
+        several = _beside(file, read, varied, wanted, kinds) if kinds and not found.interrupted else {}
         with status(wanted.quiet, "drawing"):
             if "csv" in wanted.formats:
                 texts.update({"ensemble.csv": ensemble_csv(found), "members.csv": members_csv(found)})
-            kinds = [kind for kind in wanted.formats if kind != "csv"]
-            texts.update(fan_charts(found, kinds) if kinds and len(found.times) > 1 else {})
+            texts.update(several or (fan_charts(found, kinds) if kinds and len(found.times) > 1 else {}))
             files = list(texts)
             texts["ensemble.json"] = ensemble_json(found, varied.variations, varied.seed, varied.sampling, files)
             deliver(folder, texts, "ensemble")
@@ -77,59 +78,27 @@ def spread(
     return OK
 
 
-def beside(
-    file: Path,
-    folder: Path,
-    read: Callable[[tuple[str, ...]], Scenario | None],
-    varied: Varied,
-    wanted: Asked,
-    options: Options,
-) -> int:
-    """A few motions, each a run of its own, in one picture; ``read`` makes a scenario with more settings."""
+def _beside(
+    file: Path, read: Callable[[tuple[str, ...]], Scenario | None], varied: Varied, wanted: Asked, kinds: Sequence[str]
+) -> dict[str, bytes]:
+    """Curves of a few members in one picture, each from a run of its own; ``read`` makes a scenario with more settings.
+
+    Nothing where one has no such scenario: the ensemble has said so.
+    """
     from mbsym.report.figures.figures import Curve, curves
-    from mbsym.report.runs.summary import result_lines
-    from mbsym.report.runs.trajectory_csv import trajectory_parts
-    from mbsym.simulation import Simulation, simulate
+    from mbsym.simulation import simulate
     from mbsym_cli.simulate.files import rates_along
 
-    texts: dict[str, str | bytes] = {}
-    members = tuple(varied.few)
-    given = [read(tuple(f"{name}={value}" for name, value in one)) for one in members]
-    if options.refused(file):
-        return BAD_INPUT
-    names = [", ".join(f"{name} = {value:.12g}" for name, value in one) for one in members]
-
-    def work() -> list[Simulation]:
-        found = []
-        for name, one in zip(names, given, strict=True):
-            assert one is not None
-            with progress(wanted.quiet, f"{file.name}: {name}", wanted.request.time) as watch:
-                found.append(simulate(one, wanted.request, watch))
-        with status(wanted.quiet, "drawing"):
-            if "csv" in wanted.formats:
-                rows = {f"trajectory-{k}.csv": trajectory_parts(run.trajectory) for k, run in enumerate(found, start=1)}
-                texts.update({name: "".join(parts) for name, parts in rows.items()})
-            kinds = [kind for kind in wanted.formats if kind != "csv"]
-            drawn = [Curve(run.trajectory, rates_along(run), name) for run, name in zip(found, names, strict=True)]
-            texts.update(curves(drawn, kinds) if kinds and all(len(run.times) > 1 for run in found) else {})
-            deliver(folder, texts, "ensemble")
-        return found
-
-    found = attempted(file, work)
-    if found is None:
-        return FAILED
-    if not wanted.quiet:
-        lines = [
-            (name, text)
-            for name, run in zip(names, found, strict=True)
-            for title, text in result_lines(run, file.name)
-            if str(title) == "error"
-        ]
-        told(file, found[0].system, lines, folder, texts)
-    ended = [(name, run) for name, run in zip(names, found, strict=True) if run.ended is not None]
-    for name, run in ended:
-        print(f"{printable(file)}: {name} ended early at t = {run.times[-1]:.9g}.", file=sys.stderr)
-    return BROKEN_DOWN if ended else OK
+    drawn = []
+    for member in varied.few:
+        name = ", ".join(f"{one} = {value:.12g}" for one, value in member)
+        given = read(tuple(f"{one}={value}" for one, value in member))
+        if given is None:
+            return {}
+        with progress(wanted.quiet, f"{file.name}: {name}", wanted.request.time) as watch:
+            run = simulate(given, replace(wanted.request, estimate=False), watch)
+        drawn.append(Curve(run.trajectory, rates_along(run), name))
+    return curves(drawn, kinds) if drawn and all(len(one.found.times) > 1 for one in drawn) else {}
 
 
 def answers(

@@ -12,7 +12,6 @@ from mbsym_cli.options import Options, group
 if TYPE_CHECKING:
     from mbsym.model.system import System
     from mbsym.simulation import Request
-    from mbsym_cli.simulate.many import Many
     from mbsym_cli.simulate.request import Asked
 
 #: What an option that goes with coordinates only is answered with.
@@ -68,13 +67,9 @@ variables_options = group(
 )
 
 
-def check_states(system: System | None, wanted: Asked, many: Many, asked: Options, few: bool = False) -> None:
-    """Complains about every option that goes with coordinates only, where a run has other variables.
-
-    ``few``: what varies are so few motions that each is a run of its own.
-    """
+def check_states(system: System | None, wanted: Asked, asked: Options) -> None:
+    """Complains about every option that goes with coordinates only, where a run has other variables."""
     from mbsym.model.states import InStates
-    from mbsym_cli.simulate.many import MOST_BESIDE
 
     if not isinstance(system, InStates):
         return
@@ -82,17 +77,13 @@ def check_states(system: System | None, wanted: Asked, many: Many, asked: Option
 
     request = wanted.request
     options = {
-        "--vary": bool(many.vary) and not few,
-        "--sensitivity": many.sensitivity is not None,
-        "--certify": request.certify is not None,
         "--continue": request.earlier is not None,
         "--linear": request.model.linear,
         **{option: kind in wanted.formats for kind, option in OF_BODIES.items()},
     }
     for option, there in options.items():
         if there:
-            of = f"{option} of more than {MOST_BESIDE} motions" if option == "--vary" else option
-            message = f"{of} knows coordinates and their velocities only, and this system has speeds"
+            message = f"{option} knows coordinates and their velocities only, and this system has speeds"
             asked.complain(option, "variables", message, WAY_OUT)
     if request.method == "lsoda" and any(body.orientation for body in system.bodies):
         message = "lsoda does not keep quaternions and unit vectors at their lengths"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import reduce
 from typing import TYPE_CHECKING, cast
 
@@ -17,13 +17,14 @@ from mbsym.formulas.formula import Column, Formula, Matrix, column
 from mbsym.formulas.latex import latex_symbol
 from mbsym.formulas.wolfram import wolfram_name
 from mbsym.mechanics.energy import body_energy
-from mbsym.problems.stability.spectrum import RootNumbers, numbers
+from mbsym.problems.stability.enclosed import RootNumbers, numbers
 from mbsym.report.conditions import Statement, label_meanings, statements
 from mbsym.report.content import Number
 
 if TYPE_CHECKING:
     from mbsym.algebra.signs import Signs
     from mbsym.analysis import Analysis
+    from mbsym.analysis.scaled import Formulas
     from mbsym.problems.in_speeds.speeds import SpeedEquations
     from mbsym.problems.stability.problem import SubsystemStability
 
@@ -289,6 +290,27 @@ def lines(analysis: Analysis, name: str) -> Iterator[Line]:
         raise KeyError(name)
     bodies = {body.name for body in analysis.system.bodies}
     return _of_body(analysis, name) if name in bodies else _of_equation(analysis, name)
+
+
+def carried_lines(formulas: Formulas, name: str) -> Iterator[Line]:
+    """The same in the new variables of ``formulas``.  Raises Failure for what is no formula of one row."""
+    if name not in CARRIED:
+        raise NoClosedForm(f"no description has these variables, in which there are only {', '.join(CARRIED)}")
+    for line in lines(formulas.analysis, name):
+        if not isinstance(line.value, Formula):
+            continue
+        if isinstance(line.name, Formula):
+            yield replace(line, name=formulas.moving(line.name), value=formulas.rate(line.name, line.value))
+        elif line.relation and not line.name:
+            free = "const" in line.relation
+            value = formulas.formula(line.value) if line.right else formulas.row(line.value, free)
+            yield replace(line, value=value, right=tuple((formulas.formula(x), to) for x, to in line.right))
+        else:
+            yield replace(line, value=formulas.formula(line.value))
+
+
+#: What can be told in variables that no description has.
+CARRIED = ("equations", "T", "U", "L", "integrals")
 
 
 def written(line: Line, language: str) -> str:

@@ -52,13 +52,7 @@ def test_coordinates_are_integrated_where_they_are_asked_for(tmp_path: Path) -> 
 @pytest.mark.parametrize(
     ("option", "words"),
     [
-        ("--vary", ("--vary", "A=11:12:7")),
-        ("--sensitivity", ("--sensitivity", "A")),
-        ("--certify", ("--certify", "1e-6")),
-        ("--accuracy", ("--accuracy", "1e-3")),
-        ("--gravity", ("--gravity", "3")),
         ("--linear", ("--linear",)),
-        ("--without", ("--without", "A")),
         ("--bodies", ("--bodies",)),
         ("--animate", ("--animate",)),
         ("--method", ("--method", "midpoint", "--step", "0.1")),
@@ -101,14 +95,11 @@ def test_a_few_motions_of_a_grid_are_drawn_beside_each_other(tmp_path: Path) -> 
     words = ("--time", "1/2", "--samples", 51, "--vary", "lx=30:90:3", "-f", "csv,svg", "--out", tmp_path / "out")
     result = called(tmp_path / "table-1.yaml", *words)
     assert result.exit_code == 0, result.output
-    assert [line.split("  ")[1] for line in result.stdout.splitlines() if line.startswith("  lx =")] == [
-        "lx = 30", "lx = 60", "lx = 90"
-    ]  # fmt: skip
     pictures = (tmp_path / "out" / "phase-planes-2.svg").read_text(encoding="utf-8")
     assert all(f"lx = {value}" in pictures for value in (30, 60, 90))
-    lines = (tmp_path / "out" / "trajectory-1.csv").read_text(encoding="utf-8").splitlines()
-    last = dict(zip(lines[0].split(","), map(float, lines[-1].split(",")), strict=True))
+    with (tmp_path / "out" / "members.csv").open(encoding="utf-8") as file:
+        (last, _, _) = csv.DictReader(file)
     (row,) = [one for one in truth["rows"] if Fraction(one["t"]) == Fraction(1, 2)]
     ours = {"p": "p", "q": "q", "r": "r", "gamma": "gamma1", "gammap": "gamma2", "gammapp": "gamma3"}
     wanted = {name: float(row[key]) for key, name in ours.items()}
-    assert max(abs(last[name] - value) for name, value in wanted.items()) < 1e-8
+    assert max(abs(float(last[f"{name}_final"]) - value) for name, value in wanted.items()) < 1e-8

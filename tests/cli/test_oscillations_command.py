@@ -82,9 +82,11 @@ def test_numbers_that_no_body_has_and_numbers_of_what_is_small_are_put_in(tmp_pa
     done = run(str(tmp_path / "table-1.yaml"), "--order", "1", *put)
     assert done.exit_code == 0, done.stderr
     told = " ".join(done.stdout.split())
-    constant = eval(re.search(r"p\(0\) = (.*?) p\(1\)", told)[1], {"r_0": 5})
+    at = {"r_0": 5}
+    at |= {name: eval(text, at) for name, text in re.findall(r"\b(D\d) = (.*?) (?=D\d = |Secular)", told)}
+    constant = eval(re.search(r"p\(0\) = (.*?) p\(1\)", told)[1], at)
     assert abs(constant - 5 * 30 / ((11 - float(TABLE_1["A"])) * 5 + 30)) < 1e-12
-    square = eval(re.search("has the square (.*?), are left out", told)[1], {"r_0": 5})
+    square = eval(re.search("has the square (.*?), are left out", told)[1], at)
     assert abs(square / 25 - 0.61777) < 5e-6
 
 
