@@ -178,6 +178,8 @@ def oscillating(
 ) -> Oscillating:
     """The periodic solution up to eps^order, checked.  ``values`` of parameters and of symbols of the result.
 
+    A number of a parameter that is scaled stands before its power of eps, as the symbol would.
+
     ``leading`` names the variable that leads, ``which`` says which frequency it has, where it shares several.
 
     Raises NoClosedForm where there is none, or it cannot be had; ZeroDivisionError where numbers make it singular.
@@ -193,9 +195,10 @@ def oscillating(
                 remedy="solve the relation for another parameter",
             )
     whole, taylor = _field(analysis, small, order)
-    if small.name in given or any(given.get(name) for name, _ in small.powers):
-        raise NoClosedForm("what depends on the small parameter cannot be a number")
+    if small.name in given:
+        raise NoClosedForm("the small parameter cannot be a number")
     numbers = {n: rationals.exact(x) for n, x in given.items() if n in whole.parameters}
+    scaled = {n: numbers.pop(n) for n, _ in small.powers if numbers.get(n)}  # zero has no power
     field = whole.at(numbers) if numbers else whole
     powers = {n: p for n, p in small.powers if n in field.parameters or n in field.variables}
     for name in system.coordinates:
@@ -203,12 +206,12 @@ def oscillating(
             powers[velocity_name(name)] = powers[name]
     if small.name not in field.parameters and not powers:
         raise NoClosedForm(Message("the equations do not depend on [[name]]", name=small.name))
-    kept = [name for name in field.parameters if name != small.name]
+    kept = [name for name in field.parameters if name != small.name and name not in scaled]
     most = order if taylor else order + LATEST
     left = {*kept, small.name, *related, *given}
     others = [name for name in system.parameter_names if name not in left]
     tower = tower_over(kept, field.variables, order, others)
-    rows = graded_rows(tower, field, small.name, powers, most)
+    rows = graded_rows(tower, field, small.name, powers, most, scaled)
     phase, symbols = names_of(system, field)
     ring = _letters(system, [*kept, *others], phase, symbols)
     constants = {internal: tower.number(given[shown]) for internal, shown in symbols.items() if shown in given}

@@ -192,7 +192,8 @@ _TENSOR: tuple[Type, ...] = (_VECTOR, Listed(_VECTOR, 3, 3))
 INERTIA = {
     "tensor": Key("three principal moments, or three rows", Either(_TENSOR), required=True, label="tensor of inertia"),
     "accept": Key(
-        "true: taken as given although the triangle inequality of its principal moments does not hold",
+        "true: taken as given although no body has it: the triangle inequality of its principal moments does not hold, "
+        "or about a fixed point they are smaller than those of the mass in its centre",
         Flag(false=True),
         label="accept tensor of inertia",
     ),

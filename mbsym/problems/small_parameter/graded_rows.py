@@ -15,14 +15,20 @@ _Graded = dict[int, dict[tuple[int, ...], Element]]
 
 
 def graded_rows(
-    tower: Tower, field: PolynomialField, small: str, powers: Mapping[str, int], most: int
+    tower: Tower,
+    field: PolynomialField,
+    small: str,
+    powers: Mapping[str, int],
+    most: int,
+    numbers: Mapping[str, Any] | None = None,
 ) -> list[Mapping[int, Terms]]:
-    """Up to eps^most.  The parameters of ``field`` but ``small`` are among those of the tower.
+    """Up to eps^most.  The parameters of ``field`` but ``small`` are among those of the tower, or have ``numbers``.
 
     Raises NoClosedForm where a right side grows without bound as eps tends to 0, or the denominator of lowest order
     depends on the state.
     """
-    below = _graded(tower, field, field.denominator, small, powers)
+    put = numbers or {}
+    below = _graded(tower, field, field.denominator, small, powers, put)
     least = min(below)
     below = {k - least: part for k, part in below.items() if k - least <= most}
     zero = (0,) * len(field.variables)
@@ -39,7 +45,7 @@ def graded_rows(
     back = tower.reciprocal(below.pop(0)[zero])
     rows: list[Mapping[int, Terms]] = []
     for name, numerator in zip(field.variables, field.numerators, strict=True):
-        above = _graded(tower, field, numerator, small, powers)
+        above = _graded(tower, field, numerator, small, powers, put)
         shift = least + powers.get(name, 0)
         above = {k - shift: part for k, part in above.items()}
         if any(k < 0 for k in above):
@@ -69,19 +75,24 @@ def _subtract(total: dict[tuple[int, ...], Element], a: Terms, b: Terms) -> None
             total[key] = total[key] - x * y if key in total else -(x * y)
 
 
-def _graded(tower: Tower, field: PolynomialField, p: Any, small: str, powers: Mapping[str, int]) -> _Graded:
+def _graded(
+    tower: Tower, field: PolynomialField, p: Any, small: str, powers: Mapping[str, int], numbers: Mapping[str, Any]
+) -> _Graded:
     names = field.context.names()
     first = len(field.parameters)
-    places = [None if n == small else MOST_ROOTS + tower.parameters.index(n) for n in field.parameters]
+    aside = {small, *numbers}
+    places = [None if n in aside else MOST_ROOTS + tower.parameters.index(n) for n in field.parameters]
     weights = [1 if n == small else powers.get(n, 0) for n in names]
     parts: dict[int, dict[tuple[int, ...], dict[tuple[int, ...], Any]]] = {}
     width = len(tower.context.names())
     for monomial, c in p.to_dict().items():
         order = sum(w * int(e) for w, e in zip(weights, monomial, strict=True) if e)
         exponents = [0] * width
-        for place, e in zip(places, monomial, strict=False):
+        for name, place, e in zip(names, places, monomial, strict=False):
             if place is not None:
                 exponents[place] = int(e)
+            elif name in numbers and e:
+                c = c * numbers[name] ** int(e)
         state = tuple(int(e) for e in monomial[first:])
         terms = parts.setdefault(order, {}).setdefault(state, {})
         terms[tuple(exponents)] = terms.get(tuple(exponents), 0) + c
