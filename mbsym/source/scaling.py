@@ -28,8 +28,7 @@ from mbsym.expressions.tree import (
 from mbsym.model.scaling import Scaled, Scaling, Weights, factor_of
 from mbsym.model.system import System
 from mbsym.source.scope import did_you_mean, listed, why_no_name
-from mbsym.source.units.expressions import Dimensions
-from mbsym.source.units.inference import Form
+from mbsym.source.units.expressions import Dimensions, Form
 from mbsym.source.units.system import dimensions_of
 
 
