@@ -34,10 +34,10 @@ from mbsym_cli.console import (
     read_held,
     reason_of,
     tell,
+    watching,
 )
 from mbsym_cli.files import deliver, folder_for, obstacle, write_whole
 from mbsym_cli.options import Options
-from mbsym_cli.progress import watching
 from mbsym_cli.requests import option_of, read_fields
 
 Found = TypeVar("Found")

@@ -30,8 +30,7 @@ from mbsym.mechanics.charts import Chart, charts
 from mbsym.mechanics.rest import at_numbers, rest
 from mbsym.model.system import System
 from mbsym.problems.relative_equilibria.equilibria import EXACT, WITHIN, _ChartSearch
-from mbsym.problems.relative_equilibria.place import PRECISION, Place
-from mbsym.problems.relative_equilibria.unknowns import Unknowns
+from mbsym.problems.relative_equilibria.place import PRECISION, Place, Unknowns
 
 # Relative equilibria over parameters: f(q, p) = 0 in one set of angles, the parameters p among the unknowns.
 

@@ -23,8 +23,7 @@ from mbsym.numerics.ensembles.parametrised import Parametrised
 from mbsym.numerics.ensembles.side_by_side import TABLEAUX, Fate, SideBySide, compiled
 from mbsym.numerics.ensembles.variation import Members
 from mbsym.numerics.kernels.interface import Code
-from mbsym.numerics.methods.interface import BLOW_UP, LARGEST, Breakdown, Run, Setting
-from mbsym.numerics.methods.passed import Narrow, met_by
+from mbsym.numerics.methods.interface import BLOW_UP, LARGEST, Breakdown, Narrow, Run, Setting, met_by
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.orbits.variational import extended
 from mbsym.numerics.planning.sizes import scaled, sizes_of_scene

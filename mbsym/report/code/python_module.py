@@ -34,13 +34,16 @@ from mbsym.report.code.functions import (
     Function,
     Functions,
     identifier,
+    initial_values,
+    ordered,
+    parameters_of,
     prescribed_value,
     python_definition,
+    starting,
     words_of_inputs,
 )
 from mbsym.report.code.identifiers import prefix_of
 from mbsym.report.code.model_code import Solved, first_integrals, programs_of, solved, undetermined
-from mbsym.report.code.model_values import initial_values, ordered, parameters_of, starting
 from mbsym.report.code.named_dynamics import bodies, named_dynamics
 from mbsym.report.environment import rendered
 from mbsym.report.sections import section_of
