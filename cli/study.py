@@ -107,10 +107,10 @@ class _Run:
     def _described(self) -> System | None:
         """The system, None after complaints; inputs are held, which is said, where the study does so."""
         study, bodies = self.study, self.study.bodies(self.texts)
-        constraints, matrices = study.constraints and not bodies, study.matrices and not bodies
+        matrices = study.matrices and not bodies
         if study.held:
-            return read_held(self.file, study.name, constraints, not matrices)
-        return read_description(self.file, "" if constraints else study.name, "" if matrices else study.name)
+            return read_held(self.file, study.name, study.constraints, not matrices)
+        return read_description(self.file, "" if study.constraints else study.name, "" if matrices else study.name)
 
     def _complain(self, request: Any, system: System | None, typed: Collection[str]) -> None:
         """About what does not go together."""

@@ -61,8 +61,8 @@ def simulated(
     check_held(wanted.request, system, bool(many.vary or many.sensitivity), asked)
     varied, sensitive = read_many(many, given, wanted, typed, asked)
     wanted = with_goal(further["choosing"], seen, wanted, settings, typed, carried(context), asked)
-    check_constrained(system, wanted, many, asked)
-    check_states(seen, wanted, many, asked)
+    check_constrained(system, wanted, asked)
+    check_states(seen, wanted, asked)
     if asked.refused(None if system is None else file) or given is None:
         return BAD_INPUT
     reason = obstacle(folder)

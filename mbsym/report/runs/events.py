@@ -88,7 +88,10 @@ def events_lines(run: Simulation) -> Iterator[tuple[str, Message]]:
         yield "event", Message("[[event]]: [[said]]", event=event.name, said=joined(told, "; "))
     if found.ended is not None:
         time = with_unit(f"{found.ended.time:.9g}", unit)
-        yield "stopped", Message("at t = [[time]] by [[event]]", time=time, event=found.events[found.ended.event].name)
+        text = "at t = [[time]] by [[event]]"
+        if found.ended.time <= (0.0 if run.request.earlier is None else run.request.earlier.time):
+            text = "at t = [[time]] by [[event]], which holds at the start: nothing was integrated"
+        yield "stopped", Message(text, time=time, event=found.events[found.ended.event].name)
     for event in found.undecided:
         text = "[[event]]: the two sides were equal all along within the error of a step: nothing can be told"
         yield "warning", Message(text, event=event.name)
