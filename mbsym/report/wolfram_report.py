@@ -37,7 +37,6 @@ if TYPE_CHECKING:
 
 DIALECT = Dialect(
     call=wolfram_call,
-    local=lambda count: f"s{count}",
     number=wolfram_number,
     tables=True,
 )
