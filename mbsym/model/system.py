@@ -302,9 +302,10 @@ class System(GuessesNames):
     def without_speeds(self) -> System:
         """The same system in generalised coordinates and their derivatives; claims and abbreviations left out."""
         bodies = tuple(replace(body, speeds=(), orientation=()) for body in self.bodies)
+        loads = tuple(replace(x, as_written=None) if x.written is not x else x for x in self.loads)
         named = {*self.coordinates}  # a dependent speed is none of the coordinates'
         dependent = tuple(name for name in self.dependent if name in named)
-        return replace(self, bodies=bodies, claims=(), abbreviations=(), dependent=dependent)
+        return replace(self, bodies=bodies, loads=loads, claims=(), abbreviations=(), dependent=dependent)
 
     @property
     def claimable(self) -> tuple[str, ...]:
