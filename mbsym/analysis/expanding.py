@@ -24,7 +24,7 @@ from mbsym.problems.small_parameter.checks import residual_orders
 from mbsym.problems.small_parameter.result import Hurwitz, Outcome, SlowManifold
 from mbsym.problems.small_parameter.scaled import scaled
 from mbsym.problems.small_parameter.steady import steady_states
-from mbsym.problems.vector_field import Transfer, in_speeds
+from mbsym.problems.vector_field import Transfer, vector_field
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
@@ -80,7 +80,7 @@ def expansion(analysis: Analysis, order: int, values: Mapping[str, Fraction] | N
     equations: Any = analysis.equations
     motion = _motion(analysis)
     steady = () if isinstance(motion, str) else tuple(motion.values())
-    whole, transfer = in_speeds(form, equations, steady, images)
+    whole, transfer = vector_field(analysis.system, analysis.ring, form, equations, steady, images)
     for name, _ in small.powers:
         if name in whole.variables:
             raise NoClosedForm(

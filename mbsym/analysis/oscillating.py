@@ -25,7 +25,6 @@ from mbsym.mechanics.motion import relations
 from mbsym.model.oscillation_names import names_in, oscillation_names
 from mbsym.model.small import SmallParameter
 from mbsym.model.system import System, velocity_name
-from mbsym.problems.angle_field import in_angles
 from mbsym.problems.normal_forms.dissipative import taylor_field
 from mbsym.problems.small_parameter.graded_rows import graded_rows
 from mbsym.problems.small_parameter.harmonics import Harmonics
@@ -37,7 +36,7 @@ from mbsym.problems.small_parameter.oscillations import (
     oscillation,
     tower_over,
 )
-from mbsym.problems.vector_field import in_speeds
+from mbsym.problems.vector_field import vector_field
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
@@ -241,18 +240,17 @@ def _field(analysis: Analysis, small: SmallParameter, order: int) -> tuple[Polyn
     """The equations; and whether they are cut off."""
     equations: Any = analysis.equations
     images = relations(analysis.parameters_scene)
-    if analysis.speed_form is not None:
-        return in_speeds(analysis.speed_form, equations, (), images)[0], False
     names = analysis.system.coordinates
     weights = dict(small.powers)
-    if analysis.system.motion and all(weights.get(name, 0) > 0 for name in names):
+    in_coordinates = analysis.speed_form is None
+    if in_coordinates and analysis.system.motion and all(weights.get(name, 0) > 0 for name in names):
         from mbsym.analysis.higher import ignorable
         from mbsym.problems.normal_forms.expansion import expansion
 
         cyclic = ignorable(analysis)[1]
         jets = expansion(analysis.parameters_scene, analysis.system, analysis.equilibrium, order + 2, cyclic)
         return taylor_field(jets, order + 1), True
-    field = in_angles(analysis.ring, names, equations, (), images)[0]
+    field = vector_field(analysis.system, analysis.ring, analysis.speed_form, equations, (), images)[0]
     for name in names:
         if weights.get(name) and any(f"({name}" in one for one in field.variables):
             raise NoClosedForm(
