@@ -18,7 +18,7 @@ from mbsym.algebra import rationals
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
+from mbsym.algebra.tower import MOST_ROOTS, Element, Tower, angle_in
 from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.motion import relations
@@ -26,6 +26,7 @@ from mbsym.model.oscillation_names import names_in, oscillation_names
 from mbsym.model.small import SmallParameter
 from mbsym.model.system import System, velocity_name
 from mbsym.problems.normal_forms.dissipative import taylor_field
+from mbsym.problems.normal_forms.exact import letter
 from mbsym.problems.small_parameter.graded_rows import graded_rows
 from mbsym.problems.small_parameter.harmonics import Harmonics
 from mbsym.problems.small_parameter.oscillation_result import Amplitude, Divisor, Oscillation
@@ -151,12 +152,12 @@ def oscillating(
     numbers = {n: rationals.exact(x) for n, x in given.items() if n in whole.parameters}
     field = whole.at(numbers) if numbers else whole
     powers = {n: p for n, p in small.powers if n in field.parameters or n in field.variables}
-    for name in system.coordinates:
-        if name in powers and velocity_name(name) in field.variables:
-            powers[velocity_name(name)] = powers[name]
+    for name, power in small.powers:  # the velocity of a cyclic coordinate, too
+        if name in system.coordinates and velocity_name(name) in field.variables:
+            powers[velocity_name(name)] = power
     if small.name not in field.parameters and not powers:
         raise NoClosedForm(Message("the equations do not depend on [[name]]", name=small.name))
-    kept = [name for name in field.parameters if name != small.name]
+    kept = [name for name in field.parameters if name != small.name and name not in dict(field.roots)]
     most = order if taylor else order + LATEST
     left = {*kept, small.name, *related, *given}
     others = [name for name in system.parameter_names if name not in left]
@@ -271,8 +272,11 @@ def names_of(system: System, field: PolynomialField) -> tuple[str, dict[str, str
 
 
 def _letters(system: System, kept: list[str], phase: str, symbols: Mapping[str, str]) -> Ring:
-    positive = [one.name for one in system.parameters if one.name in kept and one.sign == "positive"]
-    return Ring((), (phase,), [*kept, *symbols.values()], {phase: 1}, [*positive, symbols[AMPLITUDE]], spare=40)
+    angles = {inside[1]: inside[2] for name in kept if (inside := angle_in(name)) is not None}
+    names = [name for name in dict.fromkeys((*kept, *angles)) if angle_in(name) is None]
+    positive = [one.name for one in system.parameters if one.name in names and one.sign == "positive"]
+    positive.append(symbols[AMPLITUDE])
+    return Ring((), (phase,), [*names, *symbols.values()], {phase: 1} | angles, positive, spare=40)
 
 
 def in_letters(tower: Tower, ring: Ring, symbols: Mapping[str, str], x: Element) -> Polynomial:
@@ -281,8 +285,9 @@ def in_letters(tower: Tower, ring: Ring, symbols: Mapping[str, str], x: Element)
     def generator(index: int) -> Polynomial:
         if index >= MOST_ROOTS:
             name = tower.parameters[index - MOST_ROOTS]
-            return ring.generator("parameter", symbols.get(name, name))
-        return ring.square_root(carried(tower.squares[MOST_ROOTS - 1 - index]))
+            return letter(ring, symbols.get(name, name))
+        kind = tower.kind(index)
+        return letter(ring, kind) if isinstance(kind, str) else ring.square_root(carried(kind))
 
     def carried(p: Any) -> Polynomial:
         total = ring.zero
