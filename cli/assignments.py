@@ -13,7 +13,7 @@ from mbsym.expressions.tree import CONSTANTS, Expression, Name, names, substitut
 from mbsym.model.system import velocity_name
 from mbsym.source import render_option
 from mbsym.source.scope import did_you_mean, listed
-from mbsym_cli.lacking import missing
+from mbsym.studies.study import missing as unfit
 from mbsym_cli.options import MAX_LENGTH, Options
 
 if TYPE_CHECKING:
@@ -187,3 +187,12 @@ def _check_target(name: str, span: Span, system: System, complaints: Complaints)
     hint = did_you_mean(name, _settable(system)) or listed("these have values", _settable(system))
     complaints.error("unknown-name", f"there is nothing called {ascii_safe(name)} to set", span, hint)
     return False
+
+
+# What has no value, said once, with how to give it.
+
+
+def missing(file: Path, shown: Sequence[str], what: str = "value") -> str:
+    """One complaint about all names without a value; a coordinate is shown as ``x (its initial position)``."""
+    one = unfit(shown, what)
+    return render_option(Complaint(one.code, one.message, None, one.hint), "", str(file))

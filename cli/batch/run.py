@@ -25,8 +25,7 @@ from mbsym.expressions.counting import counted
 from mbsym.report.words.findings import github_annotations, json_lines, sarif
 from mbsym_cli.batch.appendix import SUMMARY
 from mbsym_cli.batch.folders import Found, chosen, found_in, share
-from mbsym_cli.batch.locks import Locks
-from mbsym_cli.batch.machine import memory_is_bounded
+from mbsym_cli.batch.machine import Locks, memory_is_bounded
 from mbsym_cli.batch.store import COMMAND, FolderStore
 from mbsym_cli.batch.table import complaints, totals, watcher
 from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, printable
@@ -34,7 +33,7 @@ from mbsym_cli.files import MANIFEST, deliver, delivered, obstacle, read_manifes
 from mbsym_cli.options import SUFFIXES
 
 if TYPE_CHECKING:
-    from mbsym.batch.executor import Executor
+    from mbsym.batch.coordinator import Executor
 
 
 @dataclass(frozen=True)
@@ -132,7 +131,7 @@ def _executor(request: Request, tasks: int) -> Executor:
         from mbsym.batch.cluster import Cluster
 
         return Cluster(request.cluster, request.jobs)
-    from mbsym.batch.executor import Local
+    from mbsym.batch.coordinator import Local
 
     return Local(request.jobs, tasks, request.asked.formats)
 

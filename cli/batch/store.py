@@ -19,7 +19,7 @@ from mbsym.batch.outcome import FORMAT, ComplaintRow, Outcome, Row
 from mbsym.batch.task import Asked, Finished, Task
 from mbsym.batch.transport import MALFORMED, read_row, row_data
 from mbsym.report.targets import FORMATS
-from mbsym_cli.batch.locks import Locks
+from mbsym_cli.batch.machine import Locks
 from mbsym_cli.files import deliver, delivered, digest_of, obstacle, recover
 
 #: What became of the description whose files these are.

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from mbsym_cli.option_groups import group
-from mbsym_cli.options import Options
+from mbsym_cli.options import Options, group
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence

@@ -10,8 +10,7 @@ import click
 from mbsym.expressions.safe import quoted
 from mbsym.model.constraints import listed as constraints_listed
 from mbsym.source.scope import did_you_mean, listed
-from mbsym_cli.option_groups import group
-from mbsym_cli.options import Options
+from mbsym_cli.options import Options, group
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
@@ -66,7 +65,6 @@ def check_constrained(system: System | None, wanted: Asked, many: Many, asked: O
         "--sensitivity": many.sensitivity is not None,
         "--certify": request.certify is not None,
         "--linear": request.model.linear,
-        "--accuracy": wanted.goal is not None,
     }
     for option, there in options.items():
         if there:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from mbsym_cli.option_groups import group
+from mbsym_cli.options import group
 
 if TYPE_CHECKING:
     from collections.abc import Collection

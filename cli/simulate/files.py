@@ -107,7 +107,7 @@ def _bodies(run: Simulation) -> Iterator[BodyMotions]:
 
 def _happened(run: Simulation) -> dict[str, str]:
     """What was watched for is written whatever the formats are: it was asked for by options of its own."""
-    from mbsym.report.runs.events_csv import events_csv, section_csv
+    from mbsym.report.runs.events_json import events_csv, section_csv
 
     if run.happened is None:
         return {}

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from mbsym_cli.formulas import LAWS, read_formula
-from mbsym_cli.option_groups import group
-from mbsym_cli.options import Options
+from mbsym_cli.options import Options, group
 
 if TYPE_CHECKING:
     from mbsym.expressions.tree import Expression

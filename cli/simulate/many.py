@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from mbsym.studies.request import Ranges
-from mbsym_cli.option_groups import group
-from mbsym_cli.options import Options
+from mbsym_cli.options import Options, group
 from mbsym_cli.variations import read_variations
 
 if TYPE_CHECKING:

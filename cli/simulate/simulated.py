@@ -55,7 +55,7 @@ def simulated(
     wanted = replace(wanted, request=going_on(wanted.request, begun_at(given, wanted.request), typed, asked))
     check_held(wanted.request, system, bool(many.vary or many.sensitivity), asked)
     varied, sensitive = read_many(many, given, wanted, typed, asked)
-    wanted = with_goal(further["choosing"], system, wanted, settings, typed, carried(context), asked)
+    wanted = with_goal(further["choosing"], seen, wanted, settings, typed, carried(context), asked)
     check_constrained(system, wanted, many, asked)
     check_states(seen, wanted, many, asked)
     if asked.refused(None if system is None else file) or given is None:

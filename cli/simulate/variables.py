@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from mbsym_cli.option_groups import group
-from mbsym_cli.options import Options
+from mbsym_cli.options import Options, group
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
@@ -82,11 +81,8 @@ def check_states(system: System | None, wanted: Asked, many: Many, asked: Option
         "--vary": bool(many.vary),
         "--sensitivity": many.sensitivity is not None,
         "--certify": request.certify is not None,
-        "--accuracy": wanted.goal is not None,
         "--continue": request.earlier is not None,
-        "--gravity": request.model.gravity is not None,
         "--linear": request.model.linear,
-        "--without": bool(request.model.without),
         **{option: kind in wanted.formats for kind, option in OF_BODIES.items()},
     }
     for option, there in options.items():

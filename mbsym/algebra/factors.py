@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from itertools import compress, count
 from typing import Any
 
 from flint import fmpq_mpoly, fmpq_mpoly_ctx, fmpz_mpoly
@@ -91,3 +93,18 @@ def rational_ratio(x: Any, y: Any) -> Any:
         return None
     ratio = x.coefficient(0) / y.coefficient(0)
     return ratio if x == y * ratio else None
+
+
+# Which generators stand in polynomials.
+
+
+def occurring(polynomials: Iterable[Polynomial]) -> list[int]:
+    """Positions of the generators that stand plainly in at least one of the polynomials, in order.
+
+    What an adjoined generator is made of (the argument of a root or a function) is not looked into.
+    """
+    found: set[int] = set()
+    for x in polynomials:
+        if x:  # else all degrees are -1
+            found.update(compress(count(), x.degrees()))
+    return sorted(found)

@@ -30,9 +30,8 @@ from flint.utils.flint_exceptions import DomainError
 
 from mbsym.algebra import rationals
 from mbsym.algebra.base import Algebra
-from mbsym.algebra.factors import irreducible_factors, rational_ratio
+from mbsym.algebra.factors import irreducible_factors, occurring, rational_ratio
 from mbsym.algebra.failures import Limit, NoClosedForm, SingularPoint
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.point import enclosed
 from mbsym.expressions.angles import LinearForm
 from mbsym.expressions.message import Message

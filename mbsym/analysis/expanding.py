@@ -8,8 +8,8 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from mbsym.algebra import rationals
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure, NoClosedForm, message_of
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.quotients import Quotient
 from mbsym.algebra.signs import Condition, Signs
 from mbsym.algebra.signs import conditions as sharpest
@@ -18,7 +18,7 @@ from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.motion import relations
-from mbsym.model.small import SmallParameter
+from mbsym.model.system import SmallParameter
 from mbsym.problems.small_parameter import slow
 from mbsym.problems.small_parameter.checks import residual_orders
 from mbsym.problems.small_parameter.result import Hurwitz, Outcome, SlowManifold

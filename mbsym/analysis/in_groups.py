@@ -25,9 +25,8 @@ from mbsym.expressions.tree import (
     substitute,
     text,
 )
-from mbsym.model.small import SmallParameter
 from mbsym.model.substitution import folded, put
-from mbsym.model.system import Body, InitialValue, Parameter, System, rational
+from mbsym.model.system import Body, InitialValue, Parameter, SmallParameter, System, rational
 from mbsym.model.units import Units
 from mbsym.problems.scaling import Groups
 

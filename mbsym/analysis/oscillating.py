@@ -23,8 +23,7 @@ from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.motion import relations
 from mbsym.model.oscillation_names import names_in, oscillation_names
-from mbsym.model.small import SmallParameter
-from mbsym.model.system import System, velocity_name
+from mbsym.model.system import SmallParameter, System, velocity_name
 from mbsym.problems.normal_forms.dissipative import taylor_field
 from mbsym.problems.normal_forms.exact import letter
 from mbsym.problems.small_parameter.graded_rows import graded_rows

@@ -81,6 +81,7 @@ KNOW_CONSTRAINTS = frozenset(
         *("tied_in_coordinates", "first_order", "small_parameters"),
         *("claims", "checks", "reduced", "residuals", "equilibrium", "first_approximation", "linearisation"),
         *("state_space", "judgeable", "balance", "stability", "trials", "integrals", "reactions", "stabilisation"),
+        "equilibria",
         *(f"check: {name}" for name in ("kinematics", "energy", "equations of motion", *constrained.CHECKS)),
         f"check: {constrained.REACTIONS}",
         *("check: equilibrium", "check: perturbed motion", "check: stabilisation"),
@@ -390,7 +391,9 @@ class Analysis(Stages):
 
     # --- at numbers ---
 
-    equilibria: Derived[Analysis, Equilibria] = Derived(deriving.equilibria_of, ("straight-line program",), says=True)
+    equilibria: Derived[Analysis, Equilibria] = Derived(
+        deriving.equilibria_of, ("straight-line program", "constraints"), says=True
+    )
 
     # --- what stands beside the problems: claims, and the second routes of the self-check ---
 

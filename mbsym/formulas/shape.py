@@ -22,9 +22,8 @@ from weakref import WeakKeyDictionary, proxy
 
 from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpz_mpoly_ctx
 
-from mbsym.algebra.factors import irreducible_factors
+from mbsym.algebra.factors import irreducible_factors, occurring
 from mbsym.algebra.failures import NoClosedForm
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.terms import (
     Monomial,

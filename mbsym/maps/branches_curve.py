@@ -19,8 +19,8 @@ from typing import Any
 from flint import fmpq, fmpq_mat, fmpq_poly
 
 from mbsym.algebra import rationals
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import NoClosedForm
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.plane.numbers import Number, compare, number, primitive, roots_between
 from mbsym.algebra.polynomial_systems import AlgebraicPoint, Family, Limits, solve
 from mbsym.algebra.ring import Polynomial

@@ -9,8 +9,8 @@ from functools import cached_property
 from typing import Any
 
 from mbsym.algebra.characteristic import determinant
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import NoClosedForm
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.polynomial_systems import Limits
 from mbsym.algebra.ring import Polynomial
 from mbsym.mechanics.charts import Chart, charts

@@ -22,12 +22,11 @@ from mbsym.algebra import rationals
 from mbsym.algebra.failures import Constrained, Failure
 from mbsym.expressions.message import Message, joined
 from mbsym.mechanics.constraints.rows import RowName
-from mbsym.model.states import InStates
 from mbsym.numerics.constrained import Constraints
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.precise import precise
 from mbsym.numerics.scenario import PRECISION, Scenario, rounded
-from mbsym.numerics.states import StateDynamics
+from mbsym.numerics.states import dynamics_of
 
 #: Steps of Newton's method and of the descent to the least gap, of the way along the constraints, of the refinement.
 STEPS, ALONG, REFINED = 200, 60, 40
@@ -179,7 +178,7 @@ def closed(scenario: Scenario, fixed: Collection[str] = ()) -> Closed:
 
 def _constraints(scenario: Scenario) -> Constraints | None:
     """Those of a scenario in its variables."""
-    return (StateDynamics if isinstance(scenario.system, InStates) else Dynamics)(scenario).constraints
+    return dynamics_of(scenario).constraints
 
 
 T = TypeVar("T")

@@ -213,6 +213,7 @@ def _with_own(
         velocities=tuple(map(rounded, rates)),
         prescribed=prescribed,
         inputs=became,
+        unstated=found.unstated,
         declared=tuple(map(rounded, found.state)),
         singular=singular,
     )

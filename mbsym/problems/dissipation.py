@@ -32,8 +32,8 @@ from itertools import product as choices
 from typing import Any
 
 from mbsym.algebra.characteristic import leading_minors
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs, sign_of_product
 from mbsym.algebra.vectors import axis_vector

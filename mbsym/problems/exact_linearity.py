@@ -13,8 +13,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial
 from mbsym.mechanics.generalized import generalized_forces
 from mbsym.mechanics.kinematics import Scene

@@ -24,8 +24,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import SingularPoint
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.matrices import ScalarMatrix
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs

@@ -35,7 +35,7 @@ from typing import Any
 from flint import fmpq, fmpq_mat
 
 from mbsym.algebra import rationals
-from mbsym.algebra.generators import occurring
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.matrices import Operators, added, null_vectors, reduced_rows
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.mechanics.kinematics import Scene

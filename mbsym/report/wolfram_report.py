@@ -26,10 +26,10 @@ from mbsym.report.code.functions import prescribed_value
 from mbsym.report.code.programs import programs_of
 from mbsym.report.conditions import Statement, provided, statements
 from mbsym.report.environment import rendered
-from mbsym.report.first_order import first_order
 from mbsym.report.lengths import COUNTED, FILE, FILE_PROGRAM, formulas, not_printed, program_not_printed, withheld
 from mbsym.report.plain_writer import LONGEST, Writer
 from mbsym.report.results import contents, results
+from mbsym.report.sections.linearisation import first_order
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis

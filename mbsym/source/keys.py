@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.place import Span
 from mbsym.expressions.table import CUBIC, ENDS, EXTRAPOLATE, HOLD, LINEAR, OUTSIDE_ZERO
 from mbsym.expressions.tree import ZERO, Expression, multiply
@@ -657,6 +658,7 @@ SYSTEM = {
         "a publication's own symbols for use in claims, in order: {c1: mA + mB, ...}", Named(_FORMULA)
     ),
     "source": Key("where the system is from: a publication, for the references of reports", _TEXT),
+    "label": Key("what labels in LaTeX have of this system in them, in place of its name: mbsym:LABEL:eq:M", _TEXT),
     "latex": Key(
         "how names are written in LaTeX: {d_Ccm1: 'd_{C1}', phi: '\\phi'}: letters, accents, fonts and an index",
         Named(String(LONGEST)),
@@ -697,13 +699,33 @@ def spellings(key: str) -> list[str]:
     return [other for other, one in ALIASES.items() if one == key]
 
 
-#: What other programs have and this one has not: no slip of the pen for something else.
-_LOOPS = "loops are closed under 'constraints': - coincide: [{body: A, point: [0, 0, 0]}, {body: B, point: [0, 0, 0]}]"
-_LISTS = "all constraints are one list, 'constraints': coincide, parallel, distance, relation, rolling, velocity"
-_JOINTS = "a joint is described in its body: 'attached to', 'rotation', 'connection point', 'coordinates'"
-UNSUPPORTED = {
+#: What other programs write, and what is written here: no slip of the pen for something else.
+_LOOPS = Message(
+    "loops are closed under 'constraints': - coincide: [{body: A, point: [0, 0, 0]}, {body: B, point: [0, 0, 0]}]"
+)
+_LISTS = Message(
+    "all constraints are one list, 'constraints': coincide, parallel, distance, relation, rolling, velocity"
+)
+_JOINTS = Message(
+    "a joint is described in its body: 'attached to', 'rotation', 'connection point', 'coordinates'; [[loops]]",
+    loops=_LOOPS,
+)
+_LOADS = Message(
+    "forces and torques are one list, 'loads': - force: {body: A, point: [0, 0, 0], components: [F, 0, 0]}"
+)
+_GRAVITY = Message("gravity is one of the 'loads': - uniform gravity: {vector: [0, -g, 0]}")
+_SPRINGS = Message("springs and dampers are 'loads': - spring: {coordinate: x, stiffness: k}")
+_PARAMETERS = Message("constants are 'parameters', and their numbers 'values'")
+_COORDINATES = Message("coordinates are named in the body that they move: 'coordinates: [x, theta]'")
+UNSUPPORTED: dict[str, Message] = {
     **dict.fromkeys(("constraint", "holonomic constraints", "nonholonomic constraints"), _LISTS),
     **dict.fromkeys(("loop", "loops", "closed loop", "closed loops", "loop closure", "loop closures"), _LOOPS),
     **dict.fromkeys(("kinematic loop", "kinematic loops", "cut joint", "cut joints", "closure"), _LOOPS),
-    **dict.fromkeys(("joint", "joints"), f"{_JOINTS}; {_LOOPS}"),
+    **dict.fromkeys(("joint", "joints"), _JOINTS),
+    **dict.fromkeys(("force", "forces", "torque", "torques", "moments", "actuators", "motors"), _LOADS),
+    **dict.fromkeys(("gravity", "gravitation", "gravity vector"), _GRAVITY),
+    **dict.fromkeys(("spring", "springs", "damper", "dampers", "damping"), _SPRINGS),
+    **dict.fromkeys(("constants", "constant", "params", "param"), _PARAMETERS),
+    **dict.fromkeys(("coords", "coordinates", "generalized coordinates", "dof", "degrees of freedom"), _COORDINATES),
+    **dict.fromkeys(("links", "link", "parts", "elements"), Message("links and other parts are 'bodies'")),
 }

@@ -37,6 +37,8 @@ def to_yaml(system: System) -> str:
         lines.append(f"description: {scalar_text(system.description)}")
     if system.source:
         lines.append(f"source: {scalar_text(system.source)}")
+    if system.label:
+        lines.append(f"label: {scalar_text(system.label)}")
     if system.language:
         lines.append(f"language: {system.language}")
     if system.order:

@@ -60,9 +60,9 @@ class Request:
     order: Annotated[Mapping[str, int], Named("NAME=POWER", ORDER, least=-9, most=9, example="v=-1")] = field(
         default_factory=dict
     )
-    time: Annotated[float | None, Number("T", "How long the motions are compared.", most=1e9, usual="60 periods")] = (
-        None
-    )
+    time: Annotated[
+        float | None, Number("T", "How long the motions are compared.", "-t", most=1e9, usual="60 periods")
+    ] = None
 
     @property
     def powers(self) -> dict[str, int]:

@@ -139,12 +139,13 @@ def public(
 def asked_of(source: Source, request: Any) -> Asked:
     """The system with its inputs held; the motion, too, where the request has values of one."""
     system = moving_system(source)
-    if not any(isinstance(one.kind, Settings) for one in fields_of(type(request))):
+    settings = [one.kind for one in fields_of(type(request)) if isinstance(one.kind, Settings)]
+    if not settings:
         return Asked(system)
     from mbsym.numerics.scenario import scenario
     from mbsym.simulation.request import read_values
 
-    return Asked(system, scenario(system, read_values(system, request.values or {})))
+    return Asked(system, scenario(system, read_values(system, request.values or {}), settings[0].state))
 
 
 def _shown(default: Any) -> Any:

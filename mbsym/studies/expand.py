@@ -48,7 +48,7 @@ class Request:
     order: Annotated[int, Whole("N", "Up to this power.", "-n", most=8)] = 2
     values: Numbers = field(default_factory=dict)
     time: Annotated[
-        float | None, Number("T", "How long the motions are compared.", most=1e9, usual="found from the flow")
+        float | None, Number("T", "How long the motions are compared.", "-t", most=1e9, usual="found from the flow")
     ] = None
 
 

@@ -6,7 +6,7 @@ from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING
 
 from mbsym.studies.described import public
-from mbsym.studies.request import Values
+from mbsym.studies.request import Stateless
 from mbsym.studies.study import Answer, Asked, Refusal, Study, Watch, no_program, refused
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ class Request:
     """
 
     _: KW_ONLY
-    values: Values = field(default_factory=dict)
+    values: Stateless = field(default_factory=dict)
 
 
 @public(Request)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from mbsym.studies.described import analysis_of
-from mbsym.studies.request import Formulas, Settings, Value, Whole, duration
+from mbsym.studies.request import Formulas, Stateless, Whole, duration
 from mbsym.studies.study import Answer, Asked, Exit, Refusal, Study, Unfit, Watch, no_program, refused
 
 if TYPE_CHECKING:
@@ -43,9 +43,7 @@ class Request:
     time: Annotated[float, duration("From 0 to T.")]
     _: KW_ONLY
     samples: Annotated[int, Whole("N", "Rows.", least=2)] = 1001
-    values: Annotated[
-        Mapping[str, Value], Settings("NAME=VALUE", "Replace a value; repeatable.", "-s", "--set", state=False)
-    ] = field(default_factory=dict)
+    values: Stateless = field(default_factory=dict)
 
 
 def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:

@@ -58,7 +58,7 @@ class Request:
     values: Annotated[
         Mapping[str, Fraction], ExactSettings("NAME=VALUE", "Replace a value; repeatable.", "-s", "--set")
     ] = field(default_factory=dict)
-    vary: Annotated[Axis | None, Range("NAME=LOW:HIGH", "The parameter, and its open interval.", "-v")] = None
+    vary: Annotated[Axis | None, Range("NAME=LOW:HIGH", "The parameter, and its open interval.")] = None
 
 
 def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:

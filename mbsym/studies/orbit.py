@@ -66,7 +66,7 @@ def orbit(asked: Asked, request: Request, watch: Watch) -> PeriodicMotion:
         >>> import mbsym
         >>> found = mbsym.orbit("systems/double-pendulum.yaml", 2.6, values={"theta1": 0.3, "theta2": 0.12})
         >>> found.orbit.multipliers.shape, found.states.shape
-        ((4,), (4, 401))
+        ((4,), (4, 421))
 
     Raises DescriptionError, ValueError, ``mbsym.numerics.orbits.periodic.NotFound``.
     """

@@ -217,6 +217,9 @@ class Share(Kind):
 
 #: ``--set`` of studies of one motion, and of exact ones.
 Values = Annotated[Mapping[str, Value], Settings("NAME=VALUE", "Replace a value; repeatable.", "-s", "--set")]
+Stateless = Annotated[
+    Mapping[str, Value], Settings("NAME=VALUE", "Replace a value; repeatable.", "-s", "--set", state=False)
+]
 Numbers = Annotated[Mapping[str, Fraction], ExactSettings("NAME=VALUE", "Put in a number; repeatable.", "-s", "--set")]
 
 #: The same as signatures show them.
@@ -231,7 +234,7 @@ def duration(help: str, usual: str = "") -> Number:
 
 def formats(help: str, choices: tuple[str, ...], usual: str = "") -> Words:
     """``--format``: which files."""
-    return Words("LIST", help, usual=usual, choices=choices, what="format")
+    return Words("LIST", help, "-f", usual=usual, choices=choices, what="format")
 
 
 def language(help: str) -> Word:

@@ -37,8 +37,7 @@ from mbsym.studies.study import (
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
-    from mbsym.sweeps.measure import Measure
-    from mbsym.sweeps.points import Points
+    from mbsym.sweeps.points import Measure, Points
     from mbsym.sweeps.request import Asked as Wanted
     from mbsym.sweeps.store import Folder as Store
     from mbsym.sweeps.sweep import Chunk, Executor
@@ -82,11 +81,11 @@ class Request:
 
     \b
     Examples:
-      mbsym sweep systems/satellite.yaml -v alpha=-0.9:0.9:400 -v gamma=-0.9:0.9:400 -s p1=2/5 -s p2=1/5
-      mbsym sweep systems/spring-pendulum.yaml -v "m=1 +- 5%" -v "k=+-10%" --points 10000 --measure frequency
+      mbsym sweep systems/satellite.yaml --vary alpha=-0.9:0.9:400 --vary gamma=-0.9:0.9:400 -s p1=2/5 -s p2=1/5
+      mbsym sweep systems/spring-pendulum.yaml --vary "m=1 +- 5%" --vary "k=+-10%" --points 10000 --measure frequency
     """
 
-    vary: Annotated[tuple[Varied, ...], Ranges("NAME=RANGE", VARY, "-v", most=64, exact=True)]
+    vary: Annotated[tuple[Varied, ...], Ranges("NAME=RANGE", VARY, most=64, exact=True)]
     _: KW_ONLY
     values: Annotated[
         Mapping[str, Fraction], ExactSettings("NAME=VALUE", "Replace a value; repeatable.", "-s", "--set")
@@ -99,7 +98,7 @@ class Request:
     ] = None
     seed: Annotated[int, Whole("N", "Of what is drawn at random.", least=0, most=2**63 - 1)] = 1
     sampling: Annotated[str, Word("[random|sobol]", "", choices=("random", "sobol"), what="sampling")] = "random"
-    time: Annotated[float | None, Number("T", f"How long to simulate, with --measure {MOTION}FORMULA.")] = None
+    time: Annotated[float | None, Number("T", f"How long to simulate, with --measure {MOTION}FORMULA.", "-t")] = None
     format: Annotated[tuple[str, ...], formats("csv, parquet, svg, png, pdf.", KINDS)] = ("csv", "svg", "png")
     jobs: Annotated[int | None, Whole("N", "Threads.", "-j", usual="as many as there are processors", most=1000)] = None
     cluster: Annotated[str | None, Text("ADDRESS", "A Dask scheduler, tcp://host:8786, or 'local'.")] = None

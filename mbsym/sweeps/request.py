@@ -12,8 +12,7 @@ from mbsym.expressions.tree import Expression, number, text
 from mbsym.maps.section import Axis, Section, section
 from mbsym.model.system import System
 from mbsym.numerics.scenario import scenario
-from mbsym.sweeps.measure import Measure
-from mbsym.sweeps.points import Points
+from mbsym.sweeps.points import Measure, Points
 
 STABILITY, EIGENVALUES, DAMPING, FREQUENCY = "stability", "eigenvalues", "damping", "frequency"
 #: What is measured by name; anything else is a formula.

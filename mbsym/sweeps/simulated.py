@@ -22,7 +22,7 @@ from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.specialise import Names
-from mbsym.sweeps.measure import Column
+from mbsym.sweeps.points import Column
 
 METHOD, TOLERANCE = "dop853", 1e-9
 ROWS = 201

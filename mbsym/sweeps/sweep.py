@@ -11,8 +11,7 @@ from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from mbsym.sweeps.measure import Measure
-from mbsym.sweeps.points import Points
+from mbsym.sweeps.points import Measure, Points
 
 #: Points that are measured at once: enough that compiled code dominates, few enough for the caches and for Ctrl-C.
 CHUNK = 65_536

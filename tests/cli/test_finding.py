@@ -320,3 +320,28 @@ def test_a_value_that_cannot_be_is_refused(tmp_path: Path, command: str, setting
     assert done.exit_code == 2
     assert f"--set: error[{code}]" in done.output
     assert not (tmp_path / "out").exists()
+
+
+def test_whether_inputs_reach_everything_and_whether_a_feedback_was_found(tmp_path: Path) -> None:
+    """A force on the cart controls cart and pole (every textbook); not a second oscillator that nothing joins to it."""
+    text = (SHIPPED / "cart-pole.yaml").read_text(encoding="utf-8")
+    start = told(tmp_path, text, "--problems", "1-8")
+    control = start.index("Control  Controllability of p, theta by F: yes, for almost all parameters (proved).")
+    assert start[control + 1].startswith("A feedback makes the linear equations asymptotically stable")
+    apart = """
+mbsym: 1
+name: Two oscillators
+parameters: {m: {sign: positive}, k: {sign: positive}}
+inputs: {F: {}}
+bodies:
+  - {name: driven, attached to: 0, connection point: [x, 0, 0], mass: m, coordinates: [x]}
+  - {name: alone, attached to: 0, connection point: [y, 0, 0], mass: m, coordinates: [y]}
+loads:
+  - force: {body: driven, point: [0, 0, 0], components: [F, 0, 0], axes: 0}
+  - spring: {coordinate: x, stiffness: k}
+  - spring: {coordinate: y, stiffness: k}
+motion: {x: 0, y: 0}
+values: {m: 1, k: 1}
+"""
+    (line,) = [x for x in told(tmp_path, apart, "--problems", "1-8", "--force") if x.startswith("Control ")]
+    assert "Controllability of x, y by F: no (proved)" in line

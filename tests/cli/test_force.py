@@ -22,7 +22,7 @@ FOLDERS = [
     ("inverse", "cart-pole", ["--motion", "p=t**2/2", "--motion", "theta=0", "-t", "1"], "inputs.csv"),
     ("lyapunov", "simple-pendulum", ["--time", "2"], "lyapunov.csv"),
     ("map", "ziegler", ["--x", "P=0:4"], "map.json"),
-    ("sweep", "ziegler", ["-v", "P=0:4:5"], "sweep.json"),
+    ("sweep", "ziegler", ["--vary", "P=0:4:5"], "sweep.json"),
     ("equilibria", "simple-pendulum", ["--vary", "l=1:2"], "branches.json"),
     (
         *("orbit", "spherical-pendulum"),

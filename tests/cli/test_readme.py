@@ -43,7 +43,7 @@ FEW = (
 
 def said(line: str) -> tuple[str, ...]:
     """The words of a command, whichever way it spells an option and wherever its systems are."""
-    spelled = {"-s": "--set", "-v": "--vary", "-f": "--format", "-o": "--out"}
+    spelled = {"-s": "--set", "-f": "--format", "-o": "--out"}
     return tuple(spelled.get(word, word.removeprefix("systems/")) for word in shlex.split(line, comments=True))
 
 

@@ -17,7 +17,7 @@ STUDIES = [
     ("orbit", "double-pendulum", "--period 2.6 --set theta1=0.3 --set theta2=0.12"),
     ("floquet", "shaken-pendulum", "--set nu=40"),
     ("inverse", "cart-pole", "--motion p=t**2/2 --motion theta=0 --time 1"),
-    ("sweep", "ziegler", "-v P=uniform(0,4) -v k=uniform(1,2) --points 50 --format csv"),
+    ("sweep", "ziegler", "--vary P=uniform(0,4) --vary k=uniform(1,2) --points 50 --format csv"),
     ("equilibria", "gravity-gradient", ""),
     ("equilibria", "bead-on-hoop", "--vary Omega=1:12 --format json"),
     ("map", "triangular-points", "--x mu=0:1/2 --format json"),

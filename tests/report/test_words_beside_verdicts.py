@@ -179,7 +179,7 @@ def test_what_moves_is_said_to_move(tmp_path: Path, text: str, command: str, tol
     [
         (["map", "--x", "l=1:2"], "no map: the first approximation is time-dependent"),
         (["nonlinear", "--vary", "l=1:2"], "no values listed: the first approximation is time-dependent"),
-        (["sweep", "-v", "l=1:2:3"], "for these equations: the first approximation is time-dependent"),
+        (["sweep", "--vary", "l=1:2:3"], "for these equations: the first approximation is time-dependent"),
     ],
 )
 def test_no_name_of_a_stage_stands_before_a_reason(tmp_path: Path, command: list[str], reason: str) -> None:

@@ -8,37 +8,24 @@ from typing import Any
 from mbsym.algebra.base import S
 from mbsym.algebra.vectors import Vector
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.loads import (
-    coordinate_damper,
-    coordinate_spring,
-    generalized_force,
-    isotropic_damper,
-    newtonian_gravity,
-    point_damper,
-    point_force,
-    point_spring,
-    rayleigh,
-    torque,
-    uniform_gravity,
-)
-from mbsym.mechanics.loads import force_function as free_force_function
+from mbsym.mechanics.loads import forces, gravity, springs
 from mbsym.mechanics.loads.interface import Action, Kind
 from mbsym.model import loads as model
 from mbsym.model.system import INERTIAL
 
 KINDS: dict[type, Kind[Any]] = {
-    model.NewtonianGravity: newtonian_gravity.KIND,
-    model.UniformGravity: uniform_gravity.KIND,
-    model.CoordinateSpring: coordinate_spring.KIND,
-    model.PointSpring: point_spring.KIND,
-    model.CoordinateDamper: coordinate_damper.KIND,
-    model.PointDamper: point_damper.KIND,
-    model.IsotropicDamper: isotropic_damper.KIND,
-    model.ForceFunction: free_force_function.KIND,
-    model.Rayleigh: rayleigh.KIND,
-    model.GeneralizedForce: generalized_force.KIND,
-    model.PointForce: point_force.KIND,
-    model.Torque: torque.KIND,
+    model.NewtonianGravity: gravity.NEWTONIAN_GRAVITY,
+    model.UniformGravity: gravity.UNIFORM_GRAVITY,
+    model.CoordinateSpring: springs.COORDINATE_SPRING,
+    model.PointSpring: springs.POINT_SPRING,
+    model.CoordinateDamper: springs.COORDINATE_DAMPER,
+    model.PointDamper: springs.POINT_DAMPER,
+    model.IsotropicDamper: springs.ISOTROPIC_DAMPER,
+    model.ForceFunction: forces.FORCE_FUNCTION,
+    model.Rayleigh: springs.RAYLEIGH,
+    model.GeneralizedForce: forces.GENERALIZED_FORCE,
+    model.PointForce: forces.POINT_FORCE,
+    model.Torque: forces.TORQUE,
 }
 
 

@@ -10,21 +10,28 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.program import Node
 from mbsym.expressions.tree import Expression, names
+from mbsym.model.states import InStates
 from mbsym.model.system import System, velocity_name
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.scenario import Scenario, initial_values
 from mbsym.numerics.specialise import Names, Specialised, bound
+from mbsym.numerics.states import StateDynamics, dynamics_of
+
+if TYPE_CHECKING:
+    from mbsym.numerics.constrained import Constraints
 
 
 class Parametrised(Dynamics):
-    """The codes of a scenario with the parameters ``free`` as inputs behind (t, q, q').
+    """The codes of a scenario with the parameters ``free`` as inputs behind (t, q, q'); of one in states ``parametrised``.
 
     ``overrides`` are those of which the scenario was made: an initial state may be an expression in free parameters.
+    Which rows of constraints follow from others is told at the scenario's own values.
     """
 
     def __init__(
@@ -37,6 +44,11 @@ class Parametrised(Dynamics):
         self.free = tuple(free)
         self.overrides = dict(overrides or {})
         self.inputs = (*self.inputs, *self.free)
+
+    @cached_property
+    def constraints(self) -> Constraints | None:
+        """At the scenario's own values."""
+        return dynamics_of(self.scenario, self.ring).constraints
 
     @cached_property
     def _specialised(self) -> Specialised:
@@ -65,6 +77,23 @@ class Parametrised(Dynamics):
         fresh = released(self.scenario, self.free)
         moving = (*self.free, *dependent(self.system, self.free))
         return Code(fresh, self.free, tuple(fresh.input(name) for name in moving))
+
+
+class ParametrisedStates(Parametrised, StateDynamics):
+    """The same in declared variables."""
+
+    @property
+    def dimension(self) -> int:
+        """Positions and speeds."""
+        return len(self.inputs) - 1 - len(self.free)
+
+
+def parametrised(
+    scenario: Scenario, free: Sequence[str], overrides: Mapping[str, Expression] | None = None
+) -> Parametrised:
+    """The codes of a scenario, in what it is told in, with some parameters as inputs."""
+    kind = ParametrisedStates if isinstance(scenario.system, InStates) else Parametrised
+    return kind(scenario, free, overrides)
 
 
 def dependent(system: System, free: Iterable[str]) -> tuple[str, ...]:

@@ -28,8 +28,8 @@ from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.matrices import components, determinant
 from mbsym.algebra.rationals import ball
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.algebra.zero_kinds import UNDECIDED, Zero, Zeros, ZeroSet
 from mbsym.algebra.zero_sets import zero_sets
+from mbsym.algebra.zeros_in_boxes import UNDECIDED, Zero, Zeros, ZeroSet
 from mbsym.expressions.angles import linear_form
 from mbsym.expressions.message import Message
 from mbsym.formulas.python import python_text

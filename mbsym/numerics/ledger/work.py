@@ -10,8 +10,8 @@ from typing import Any, TypeVar
 
 from flint import arb
 
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure, NoClosedForm
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.point import Balls
 from mbsym.algebra.program import Node
 from mbsym.algebra.ring import Polynomial, Ring

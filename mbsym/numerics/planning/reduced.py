@@ -66,7 +66,7 @@ def reduced(dynamics: Dynamics) -> Reduced | None:
 
     Accelerations at some states tell first what is pushed, so that nothing is proved where nothing rests.
     """
-    if all(dynamics.scenario.velocities) or dynamics.size < 2 or dynamics.constraints is not None:
+    if all(dynamics.scenario.velocities) or dynamics.size < 2 or dynamics.constraints is not None or dynamics.in_states:
         return None
     try:
         unpushed = _unpushed(dynamics)

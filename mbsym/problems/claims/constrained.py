@@ -33,9 +33,8 @@ from mbsym.problems.claims.conditions import examined_condition
 from mbsym.problems.claims.counterexample import Counterexample, shown
 from mbsym.problems.claims.equations import NOTHING, power_of
 from mbsym.problems.claims.forms import in_parameters, scene_of_claims
-from mbsym.problems.claims.in_momenta import IN_MOMENTA
 from mbsym.problems.claims.numbers import examined_number
-from mbsym.problems.claims.quantities import derived_quantity, of_first_approximation
+from mbsym.problems.claims.quantities import IN_MOMENTA, derived_quantity, of_first_approximation
 from mbsym.problems.claims.result import (
     EXACT,
     FAILS,

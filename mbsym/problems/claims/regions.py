@@ -13,8 +13,8 @@ from itertools import combinations
 from typing import Any
 
 from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.point import Rationals
 from mbsym.algebra.ring import ParameterRing, Polynomial
 from mbsym.algebra.semialgebraic import atom, where

@@ -11,8 +11,8 @@ from flint import arb, fmpq, fmpq_poly
 
 from mbsym.algebra import rationals
 from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure, NoClosedForm, NoValue, message_of
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.matrices import dot, faddeev
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.tower import Element, Tower, angle_in

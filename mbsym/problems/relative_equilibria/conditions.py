@@ -6,34 +6,42 @@ from collections.abc import Iterator
 from functools import cached_property
 from typing import Any
 
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import NoClosedForm
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.polynomial_systems import (
     Limits,
 )
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message
 from mbsym.mechanics.charts import Chart, moments
+from mbsym.problems.relative_equilibria.multipliers import Case
 
 
 class Conditions:
-    """f = 0 in one chart as polynomials, what must not vanish, and which coordinates occur."""
+    """What vanishes at rest in one chart as polynomials, what must not vanish, and which coordinates occur.
 
-    def __init__(self, chart: Chart, within: float, limits: Limits) -> None:
+    Under constraints that is one ``case`` of the rank of J, which elsewhere is ``rank``, where that is known.
+    """
+
+    def __init__(
+        self, chart: Chart, within: float, limits: Limits, case: Case | None = None, rank: int | None = None
+    ) -> None:
         self.chart, self.found, self.within, self.limits = chart, chart.found, within, limits
+        self.case = case or Case(self.found.at_rest)
+        self.ranks = (self.case.rank, rank)
         self.ring: Ring = chart.found.ring
         self.remarks: list[str] = []
         self.complete = True
 
     def _conditions(self) -> None:
         found, ring = self.found, self.ring
-        forcing = list(found.at_rest)
+        forcing = [*found.kept, *self.case.zero, *self.case.left]
         for joint, other in zip(self.chart.joints, self.chart.replaced, strict=True):
             # Where the angles are regular these follow, and with them the exact solution is much faster.
-            forcing += () if other else moments(found, joint)
+            forcing += () if other or found.rows else moments(found, joint)
         polynomials = [y for x in forcing for y in self._for_all_times(x)]
         self.equations: list[Polynomial] = []
-        self.nonzero: list[Polynomial] = []
+        self.nonzero: list[Polynomial] = [*self.case.nonzero]
         self.impossible = False
         for x in (*polynomials, *self.chart.restrictions):
             numerator, denominators = ring.fraction(x)

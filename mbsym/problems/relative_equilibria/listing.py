@@ -22,6 +22,7 @@ from mbsym.mechanics.charts import Chart
 from mbsym.mechanics.charts import features as direction_features
 from mbsym.mechanics.reflections import Reflection, reflections
 from mbsym.problems.relative_equilibria.conditions import Conditions
+from mbsym.problems.relative_equilibria.multipliers import Case
 from mbsym.problems.relative_equilibria.place import PRECISION, Place, exact_rates
 from mbsym.problems.relative_equilibria.result import CoordinateValue, EquilibriumFamily
 from mbsym.problems.relative_equilibria.sampling import turned
@@ -67,11 +68,14 @@ def groups(found: Iterable[Solution]) -> list[list[Solution]]:
 class Listing(Conditions):
     """Solutions of one chart, as they are found."""
 
-    def __init__(self, chart: Chart, within: float, limits: Limits) -> None:
-        super().__init__(chart, within, limits)
+    def __init__(
+        self, chart: Chart, within: float, limits: Limits, case: Case | None = None, rank: int | None = None
+    ) -> None:
+        super().__init__(chart, within, limits, case, rank)
         self.points: list[Solution] = []
         self.families: list[EquilibriumFamily] = []
         self.family_equations: list[list[Polynomial]] = []
+        self.family_places: list[Place] = []
 
     def _zero(self) -> Place:
         """The place where every coordinate is 0, exactly."""
@@ -123,7 +127,7 @@ class Listing(Conditions):
     @cached_property
     def _reflections(self) -> tuple[Reflection, ...]:
         """Polar coordinates; none for the search of a family's points."""
-        return reflections(self.found)
+        return () if self.found.rows else reflections(self.found)
 
     def _values(self, place: Place) -> tuple[CoordinateValue, ...]:
         return tuple(self._value(place, name) for name in self.occurring)
@@ -190,6 +194,9 @@ class Listing(Conditions):
 
     def verdict(self, place: Place) -> Verdict:
         """The verdict of problem 6 at a place."""
+        here, elsewhere = self.ranks
+        if elsewhere is not None and here != elsewhere:
+            return undecided(Because.RANK_LOST, here, elsewhere)
         if isinstance(self._linear, str):
             return undecided(Because.NO_EQUATIONS, self._linear)
         found = self._linear.verdict(place)

@@ -7,8 +7,8 @@ from typing import Any
 
 from flint import arb, ctx, fmpq, fmpq_poly
 
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import NotRational
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.polynomial_systems import inverse_modulo
 from mbsym.algebra.ring import Polynomial
 from mbsym.mechanics.rest import Rest

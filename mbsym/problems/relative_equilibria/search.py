@@ -131,6 +131,9 @@ class SearchInBoxes(Listing):
     def _square_system(self) -> list[Polynomial] | None:
         """As many of the equations at rest as unknowns: those of the occurring coordinates."""
         ring, found = self.ring, self.found
+        if found.rows:
+            square = len(self.equations) == len(self.occurring) and not self.case.zero and not self.chart.restrictions
+            return list(self.equations) if square else None
         chosen = [
             ring.fraction(x)[0]
             for name, x in zip(found.system.coordinates, found.at_rest, strict=True)

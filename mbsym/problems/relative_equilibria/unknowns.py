@@ -8,7 +8,7 @@ from typing import Any
 
 from flint import fmpq, fmpz
 
-from mbsym.algebra.generators import occurring
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.polynomial_systems import AlgebraicPoint, context
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.python import python_text

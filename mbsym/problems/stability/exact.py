@@ -11,7 +11,7 @@ from typing import Any, Protocol
 from flint import fmpq, fmpq_mat
 
 from mbsym.algebra.characteristic import Matrix, Polynomial
-from mbsym.algebra.generators import occurring
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.matrices import leading_determinants
 from mbsym.algebra.roots import RootCount, counted, rational
 from mbsym.problems.stability import linear_theory, nonholonomic

@@ -15,8 +15,8 @@ from mbsym.algebra.base import Lowering
 from mbsym.algebra.characteristic import Matrix as Polynomials
 from mbsym.algebra.elimination import Elimination, eliminate
 from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import NOT_THERE, Failure
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.matrices import added
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.ring import ParameterRing, Polynomial, Ring

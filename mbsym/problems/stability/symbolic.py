@@ -45,9 +45,8 @@ from mbsym.algebra.characteristic import (
     resultant,
     subdiscriminants,
 )
-from mbsym.algebra.factors import irreducible_factors
+from mbsym.algebra.factors import irreducible_factors, occurring
 from mbsym.algebra.failures import Failure, NoClosedForm, TooLargeError, message_of
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.matrices import added
 from mbsym.algebra.signs import MOST_TERMS, Condition, ContradictionError, Signs, conditions
 from mbsym.expressions.message import Message, joined

@@ -28,7 +28,7 @@ from mbsym.model.quantities import (
 )
 from mbsym.model.system import System
 from mbsym.numerics.body_motion import BodyMotions
-from mbsym.report.runs.events_csv import cell
+from mbsym.report.runs.events_json import cell
 from mbsym.report.runs.trajectory_csv import parts
 
 _VECTORS = (

@@ -34,6 +34,7 @@ def orbit_json(found: PeriodicMotion) -> str:
         description_sha256=meaning(system),
         initial=dict(zip(orbit.names, map(float, orbit.state), strict=True)),
         period=orbit.period,
+        repeats=found.repeats,
         turns={name: float(turn) for name, turn in zip(orbit.names, orbit.turns, strict=True) if turn},
         energy=orbit.energy,
         closure=orbit.closure,
@@ -58,7 +59,10 @@ def orbit_json(found: PeriodicMotion) -> str:
 def sentences(found: PeriodicMotion) -> Iterator[tuple[str, str]]:
     """(title, text)."""
     orbit = found.orbit
-    yield Message("period"), f"{orbit.period:.15g}"
+    period, n = f"{orbit.period:.15g}", found.repeats
+    told = "[[period]], in which the motion is run through [[n]] times: it repeats after [[shorter]]"
+    shorter = f"{orbit.period / n:.15g}"
+    yield Message("period"), Message(told, period=period, n=n, shorter=shorter) if n > 1 else period
     yield Message("motion"), _judged(orbit)
     values = zip(orbit.names, orbit.state, strict=True)
     yield Message("state"), ", ".join(f"{name} = {value:.12g}" for name, value in values)

@@ -19,8 +19,7 @@ from mbsym.report.documents.writer import written
 from mbsym.report.runs.trajectory_csv import header, rows
 from mbsym.source.meaning import meaning
 from mbsym.sweeps.judged import VERDICT
-from mbsym.sweeps.measure import Column
-from mbsym.sweeps.points import Points
+from mbsym.sweeps.points import Column, Points
 from mbsym.sweeps.statistics import LEVEL, Share, Totals
 
 Part = tuple[Any, Mapping[str, Any]]

@@ -14,6 +14,7 @@ from mbsym.model.quantities import rate_unit
 from mbsym.model.system import INERTIAL, System
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.integrals import Integral
+from mbsym.problems.stabilisation import Stabilisation
 from mbsym.problems.stability import Stability, SubsystemStability
 from mbsym.problems.stability.spectrum import numbers
 from mbsym.problems.stability.word import Word
@@ -49,6 +50,7 @@ from mbsym.report.sections.integrals import CONSTANT
 from mbsym.report.sections.stability import condition_keys
 from mbsym.report.sections.system import unperturbed_motion
 from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line, titles
+from mbsym.report.words.stabilisation_words import controllability
 from mbsym.report.words.verdicts import decided, grade, verdict, where
 
 if TYPE_CHECKING:
@@ -119,6 +121,8 @@ def _facts(results: Results) -> Iterator[Fact]:
         if found[6].numerical is not None:
             yield Fact(Said("At given values"), (_at_values(found[6], system),))
         yield Fact(Said("Stability"), tuple(_stability(found[6], results)))
+    if 8 in found and found[8].control:
+        yield Fact(Link(Said("Control"), "stabilisation"), tuple(_control(found[8])))
     if 7 in found:
         none = (Said("none in closed form of the kinds that are looked for"),)
         yield Fact(Said("First integrals"), tuple(map(_integral, found[7])) or none)
@@ -308,6 +312,17 @@ def _relation(item: Statement, seen: list[Formula]) -> Relation:
     minus = all(coefficient < 0 for coefficient in formula.polynomial.coeffs())
     seen.append(-formula if minus else formula)
     return Relation(seen[-1], reversed_ if minus else item.relation, 0)
+
+
+def _control(found: Stabilisation) -> Iterator[Inline]:
+    """Whether the inputs reach everything; whether a feedback was found, or why not."""
+    yield controllability(found.control[0])
+    if found.feedback is None:
+        yield say("No feedback is given: [[why]].", why=worded(found.no_feedback))
+    else:
+        whole = "A feedback makes the linear equations asymptotically stable at the given values (proved)."
+        part = "A feedback makes a part of the linear equations asymptotically stable at the given values (proved)."
+        yield Said(part if found.feedback.of_part else whole)
 
 
 def _claims(results: Results) -> Iterator[Inline]:

@@ -244,22 +244,24 @@ def _roots(factors: Sequence[Sequence[Formula]]) -> Phrase:
 # --- control ---
 
 
-def _control(part: Control) -> Iterator[Said]:
+def controllability(part: Control) -> Said:
+    """Whether the inputs control the coordinates, for almost all parameters, and how surely that is known."""
     gaps: Gaps = {"names": named(part.coordinates), "inputs": named(part.inputs)}
     if part.rank.full:
-        yield Said("Controllability of [[names]] by [[inputs]]: yes, for almost all parameters (proved).", gaps)
-    elif part.rank.factors:
-        yield Said(
+        return Said("Controllability of [[names]] by [[inputs]]: yes, for almost all parameters (proved).", gaps)
+    if part.rank.factors:
+        return Said(
             "Controllability of [[names]] by [[inputs]]: no (proved), out of reach are the roots of [[roots]].",
             {**gaps, "roots": _roots(part.rank.factors)},
         )
-    elif part.rank.certainty is Certainty.PROVED:
-        yield Said("Controllability of [[names]] by [[inputs]]: no (proved).", gaps)
-    else:
-        yield Said(
-            "Controllability of [[names]] by [[inputs]]: undecided ([[why]]).",
-            {**gaps, "why": worded(part.rank.why_not)},
-        )
+    if part.rank.certainty is Certainty.PROVED:
+        return Said("Controllability of [[names]] by [[inputs]]: no (proved).", gaps)
+    why: Gaps = {**gaps, "why": worded(part.rank.why_not)}
+    return Said("Controllability of [[names]] by [[inputs]]: undecided ([[why]]).", why)
+
+
+def _control(part: Control) -> Iterator[Said]:
+    yield controllability(part)
     yield from _locus(part.rank)
     if part.at_values:
         yield Said("At the given values they are controllable (proved).")

@@ -129,14 +129,14 @@ def _gravity(root: Element, reader: Reader) -> Texts:
     return NOWHERE if _together(option, "flag").get("gravity") == "disable" else gravity
 
 
-def _driven(root: Element, reader: Reader) -> set[str]:
+def _driven(root: Element, reader: Reader, defaults: Defaults) -> set[str]:
     """The joints that an actuator drives; what else actuators do is left out.
 
     The input is the torque or force in the joint: that of an actuator times its gear.
     """
     found = set()
     for section in root.all("actuator"):
-        for element in section.children:
+        for element in (defaults.of(child, "") for child in section.children):
             joint = element.get("joint") or element.get("jointinparent")
             if not joint:
                 reader.leave_out(f"actuator of no joint ({element.tag})")
@@ -144,6 +144,8 @@ def _driven(root: Element, reader: Reader) -> set[str]:
             found.add(joint)
             if element.tag != "motor":
                 reader.leave_out(f"law of an actuator ({element.tag})")
+            if float((element.get("gear") or "1").split()[0]) != 1:
+                reader.leave_out("gear of an actuator (the input is the torque or force in the joint)")
     return found
 
 
@@ -162,7 +164,7 @@ class _Bodies:
         self.groups = tuple(map(float, reader.numbers(section, "inertiagrouprange", 2, "0 5")))
         self.angles = Angles(compiler.get("angle", "degree") != "radian", compiler.get("eulerseq", "xyz"))
         self.autolimits = compiler.get("autolimits", "true") != "false"
-        self.driven = _driven(root, reader)
+        self.driven = _driven(root, reader, self.defaults)
         self.from_geoms = compiler.get("inertiafromgeom", "auto")
         self.names: set[str] = set()
         self.sites: set[str] = set()

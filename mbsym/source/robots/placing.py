@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from mbsym.source.robots.numbers import NOWHERE, Texts, number, opposite
+from mbsym.source.robots.numbers import NOWHERE, Texts, angle, number, opposite
 from mbsym.source.robots.robot import Joint, Turns
 
 #: What a body can turn about.
@@ -98,7 +98,7 @@ def turns_about(axis: Texts, name: str) -> Turns:
     if len(on) == 1:
         positive = (x, y, z)[on[0] - 1] > 0
         return ((on[0], name if positive else _negative(name)),)
-    azimuth, slope = number(repr(math.atan2(y, x))), number(repr(math.atan2(math.hypot(x, y), z)))
+    azimuth, slope = angle(repr(math.atan2(y, x))), angle(repr(math.atan2(math.hypot(x, y), z)))
     return tuple(
         turn
         for turn in ((3, azimuth), (2, slope), (3, name), (2, opposite(slope)), (3, opposite(azimuth)))

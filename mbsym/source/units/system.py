@@ -36,8 +36,7 @@ from mbsym.model.units import (
     times,
 )
 from mbsym.source.reading import Reading
-from mbsym.source.units.expressions import Dimensions
-from mbsym.source.units.inference import Form, Inference
+from mbsym.source.units.expressions import Dimensions, Form, Inference
 from mbsym.source.units.reading import Unit, unit
 
 _EXACT = 1e-9

@@ -55,8 +55,8 @@ class Request:
       mbsym integrals systems/euler-poisson.yaml --set y0=0 --cases --budget 30
       mbsym integrals systems/euler-poisson.yaml --set y0=0 --relations
       mbsym integrals systems/goryachev-chaplygin.yaml --relations
-      mbsym integrals euler-poisson.yaml -d 1 -s A=6 -s C=3 -s x0=1 -s y0=0 -s z0=1 -s m=1 -s g=1 -v B=1:5 --relations
-    """
+      mbsym integrals euler-poisson.yaml -d 1 -s A=6 -s C=3 -s x0=1 -s y0=0 -s z0=1 -s m=1 -s g=1 --vary B=1:5 --relations
+    """  # noqa: E501 - a command is one line
 
     _: KW_ONLY
     degree: Annotated[int, Whole("N", "Up to this weighted degree.", "-d", most=60)] = 4
@@ -65,7 +65,7 @@ class Request:
         Mapping[str, int],
         Named("NAME=N", "Weight of a variable, or unit vector.", "-w", "--weight", most=12, example="gamma1=2"),
     ] = field(default_factory=dict)
-    vary: Annotated[Axis | None, Range("NAME=LOW:HIGH", "At which values of a parameter are there more?", "-v")] = None
+    vary: Annotated[Axis | None, Range("NAME=LOW:HIGH", "At which values of a parameter are there more?")] = None
     cases: Annotated[bool, Flag(None, "Under which conditions on parameters are there more?")] = False
     budget: Annotated[
         float | None, Number("S", "Counted work, worth some S seconds, that --cases may take.", usual="60")

@@ -3,8 +3,8 @@
     x'' = psi'^2 sin x cos x - sin x - eps x',   psi'' = alpha (cos x - beta),   cos x0 = beta, psi'0 = beta^(-1/2)
 
 det(lambda - A) = lambda^3 + eps lambda^2 + (1 - beta^2)/beta lambda + 2 alpha sqrt(beta) (1 - beta^2), so that the
-border is eps = 2 alpha beta^(3/2) (I. A. Vyshnegradskii, 1876) and there w^2 = (1 - beta^2)/beta.  On it the first Lyapunov
-coefficient is, with the eigenvector whose first component has the modulus 1,
+border is eps = 2 alpha beta^(3/2) (I. A. Vyshnegradskii, 1876) and there w^2 = (1 - beta^2)/beta.  On it Lyapunov's
+first coefficient is, with the eigenvector whose first component has the modulus 1,
 
     l1 = -alpha beta^(3/2) (1 - beta^2) G / (2 (1 - beta^2 + alpha^2 beta^4) (1 - beta^2 + 4 alpha^2 beta^4)),
     G = 3 + (alpha^2 - 5) beta^2 + alpha^4 beta^6

@@ -1,4 +1,6 @@
-"""A force function U(q, e, t), or a potential, given by a formula; e are unit vectors of bodies.
+"""What is given by formulas: force functions, generalised forces, forces on points, torques.
+
+A force function U(q, e, t), or a potential: e are unit vectors of bodies.
 
 In angles e is a function of them, and Q = dU/dq.  Where e are variables of their own (``mechanics.speeds``), each is at
 rest in the frame j that its body k hangs on, so that e' = e x omega with omega relative to it, and from
@@ -13,8 +15,8 @@ from __future__ import annotations
 from mbsym.algebra.base import S
 from mbsym.expressions.tree import Expression, Name, differentiate, names
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.loads.interface import Action, Kind, Wrench
-from mbsym.model.loads import ForceFunction
+from mbsym.mechanics.loads.interface import Action, Kind, Wrench, force_at
+from mbsym.model.loads import ForceFunction, GeneralizedForce, PointForce, Torque
 from mbsym.model.speeds import UnitVector
 from mbsym.model.system import INERTIAL
 
@@ -54,4 +56,41 @@ def _torques(formula: Expression, sign: S, scene: Scene[S]) -> list[Wrench[S]]:
     return found
 
 
-KIND = Kind(_force_function_action, _force_function)
+FORCE_FUNCTION = Kind(_force_function_action, _force_function)
+
+
+# Generalised forces given by formulas.
+
+
+def _generalized_action(load: GeneralizedForce, scene: Scene[S]) -> Action[S]:
+    return Action(generalized={name: scene.lower(value) for name, value in load.components})
+
+
+GENERALIZED_FORCE = Kind(_generalized_action)
+
+
+# A force on a point of a body; with components in the body's own axes it follows the body.
+
+
+def _force_action(load: PointForce, scene: Scene[S]) -> Action[S]:
+    force = scene.to_axes(scene.vector(load.components, load.axes), load.point.body)
+    point = scene.vector(load.point.position, load.point.body)
+    return Action((force_at(point, force),))
+
+
+POINT_FORCE = Kind(_force_action)
+
+
+# A torque on a body, and the opposite one on another.
+
+
+def _torque_action(load: Torque, scene: Scene[S]) -> Action[S]:
+    given = scene.vector(load.components, load.axes)
+    wrenches = []
+    for body, torque in ((load.body, given), (load.reaction_on, -given)):
+        if body is not None and body != INERTIAL:
+            wrenches.append(Wrench(body, scene.zero(body), scene.to_axes(torque, body)))
+    return Action(tuple(wrenches))
+
+
+TORQUE = Kind(_torque_action)

@@ -1,4 +1,4 @@
-"""The Newtonian field of a centre, of second order; the orders above are in ``newtonian_orders``."""
+"""Gravity: uniform, and the Newtonian field of a centre to second order (above that ``newtonian_orders``)."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from mbsym.algebra.base import S
 from mbsym.algebra.vectors import Vector
 from mbsym.mechanics.intermediates import Quantity
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.loads.interface import Action, Kind, Note, Wrench
+from mbsym.mechanics.loads.interface import Action, Kind, Note, Wrench, force_at
 from mbsym.mechanics.loads.newtonian_orders import order_action, order_force_function
 from mbsym.mechanics.loads.orbit import Orbit, central_inertia, completed, radius_vectors
-from mbsym.model.loads import EXACT, NewtonianGravity
+from mbsym.model.loads import EXACT, NewtonianGravity, UniformGravity
 from mbsym.model.system import INERTIAL
 
 
@@ -107,4 +107,46 @@ def _upward(load: NewtonianGravity, scene: Scene[S], frame: str) -> Vector[S] | 
     return scene.to_axes(scene.position(scene.zero(frame), INERTIAL), frame)
 
 
-KIND = Kind(_action_of_order, _force_function_of_order, notes=_notes, upward=_upward, falls=True)
+NEWTONIAN_GRAVITY = Kind(_action_of_order, _force_function_of_order, notes=_notes, upward=_upward, falls=True)
+
+
+# Uniform gravity: U = sum m g.r_C.
+
+
+def _uniform_force_function(load: UniformGravity, scene: Scene[S]) -> S:
+    """U = sum m g.r_C, without turning r_C into inertial axes: g turns outwards, and g.r_O adds up joint by joint."""
+    algebra = scene.algebra
+    field = {INERTIAL: scene.vector(load.acceleration, INERTIAL)}
+    height = {INERTIAL: algebra.zero}
+    total = algebra.zero
+    for name, motion in scene.motions.items():
+        parent = motion.body.attached_to
+        field[name] = scene.to_axes(field[parent], name)
+        height[name] = algebra.reduce(height[parent] + field[parent].dot(motion.offset))
+        if not algebra.vanishes(motion.mass):
+            rise = height[name] + field[name].dot(motion.mass_centre)
+            total = total + algebra.times(motion.mass, rise)
+    return algebra.reduce(total)
+
+
+def _uniform_action(load: UniformGravity, scene: Scene[S]) -> Action[S]:
+    """m g at each mass centre."""
+    field = {INERTIAL: scene.vector(load.acceleration, INERTIAL)}
+    wrenches = []
+    for name, motion in scene.motions.items():
+        field[name] = scene.to_axes(field[motion.body.attached_to], name)
+        if not scene.algebra.vanishes(motion.mass):
+            wrenches.append(force_at(motion.mass_centre, field[name] * motion.mass))
+    return Action(tuple(wrenches))
+
+
+def _field(load: UniformGravity, scene: Scene[S]) -> Vector[S]:
+    """g, in inertial axes."""
+    return scene.vector(load.acceleration, INERTIAL)
+
+
+def _uniform_upward(load: UniformGravity, scene: Scene[S], frame: str) -> Vector[S]:
+    return scene.to_axes(-_field(load, scene), frame)
+
+
+UNIFORM_GRAVITY = Kind(_uniform_action, _uniform_force_function, field=_field, upward=_uniform_upward)
