@@ -42,6 +42,10 @@ if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
 
 
+#: What the sign of the exponent of a cycle says; None of one that is not known.
+_ATTRACTS: dict[str | None, bool] = {"negative": True, "positive": False}
+
+
 @dataclass(frozen=True)
 class Oscillating:
     """An oscillation with the ring in which it is told: parameters, ``symbols`` (amplitude, constants), the phase.
@@ -49,7 +53,8 @@ class Oscillating:
     ``field``: the equations with their numbers; ``taylor``: it is a Taylor series about the motion, cut off; ``real``:
     by the signs of the parameters the frequency at eps = 0 is real and not zero; ``resonances``: the divisors that are
     not known to be different from zero by them.  ``real_amplitude``: so is a determined amplitude.  ``velocities``:
-    variables that are rates of others.
+    variables that are rates of others.  ``attracts``: whether motions near a single cycle come closer to it for small
+    eps > 0, None where that is not known, or depends.
     """
 
     found: Oscillation
@@ -61,6 +66,7 @@ class Oscillating:
     real: bool = False
     resonances: tuple[Divisor, ...] = ()
     real_amplitude: bool = True
+    attracts: bool | None = None
     velocities: tuple[str, ...] = ()
 
     def formula(self, x: Element) -> Formula:
@@ -205,6 +211,7 @@ def oscillating(
             if all(_sign(analysis, tower, x) not in ("positive", "negative") for x in one.parts)
         ),
         found.kind is Amplitude.FREE or size == "positive",
+        None if found.exponent is None else _ATTRACTS.get(_sign(analysis, tower, found.exponent[1])),
         () if system.speeds else system.velocities,
     )
 

@@ -23,7 +23,6 @@ from mbsym.algebra.failures import Constrained, Failure
 from mbsym.expressions.message import Message, joined
 from mbsym.mechanics.constraints.rows import RowName
 from mbsym.numerics.constrained import Constraints
-from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.precise import precise
 from mbsym.numerics.scenario import PRECISION, Scenario, rounded
 from mbsym.numerics.states import dynamics_of
