@@ -240,9 +240,9 @@ class Tower(Algebra[Element]):
         """x at values of the parameters, of angles, too; roots by their principal values, sines by the angle."""
         point = [acb(0)] * MOST_ROOTS + [_value(name, values) for name in self.parameters]
         for k, square in enumerate(self.squares):
-            sine = self._sines.get(k)
-            known = sine is not None and sine[0] in values
-            point[MOST_ROOTS - 1 - k] = (acb(values[sine[0]]) / sine[1]).sin() if known else _at(square, point).sqrt()
+            angle, share = self._sines.get(k, ("", 1))
+            known = angle in values
+            point[MOST_ROOTS - 1 - k] = (acb(values[angle]) / share).sin() if known else _at(square, point).sqrt()
         return _at(x.top, point) / _at(x.bottom, point)
 
 

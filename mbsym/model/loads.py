@@ -412,6 +412,8 @@ class Torque(_Free):
             yield Measured(x, ENERGY, "a torque")
 
 
+#: What is made of formulas that may hold speeds and unit vectors.
+Free = ForceFunction | Rayleigh | GeneralizedForce | PointForce | Torque
 Load = (
     NewtonianGravity
     | UniformGravity
@@ -420,9 +422,5 @@ Load = (
     | CoordinateDamper
     | PointDamper
     | IsotropicDamper
-    | ForceFunction
-    | Rayleigh
-    | GeneralizedForce
-    | PointForce
-    | Torque
+    | Free
 )

@@ -117,8 +117,8 @@ class _State:
             k for k in range(ring.spare) if ring.generators[k].kind == "reciprocal" and self._exponent(k) is not None
         ]
 
-    def _exponent(self, k: int) -> Polynomial | None:
-        """a, where the generator is exp(a) and a is made of positions and parameters."""
+    def _exponent(self, k: int) -> Any:
+        """a, where the generator is exp(a) and a is made of positions and parameters; else None."""
         ring, sign = self.ring, 1
         g = ring.generators[k]
         if g.kind == "reciprocal":
@@ -205,20 +205,21 @@ class _State:
 
         Raises NoClosedForm where only constants are left of such a sum, or several are zero.
         """
-        ring = self.ring
-        exponents = [self._exponent(k) for k in places]
-        still = {k: ring.zero for k, g in enumerate(ring.generators) if g.kind not in ("parameter", "spare")}
-        moving = [
-            (a - a.compose(*(still.get(k, x) for k, x in enumerate(ring.context.gens())))).to_dict() for a in exponents
+        if not places:
+            return []
+        ring, exponents = self.ring, [self._exponent(k) for k in places]
+        free = [
+            x if g.kind == "parameter" else ring.zero for g, x in zip(ring.generators, ring.context.gens(), strict=True)
         ]
+        moving = [(a - a.compose(*free)).to_dict() for a in exponents]
         rows = [[a.get(m, fmpq(0)) for a in moving] for m in sorted({m for a in moving for m in a})]
         rows = [[x * lcm(*(int(y.q) for y in row)) for x in row] for row in rows]
-        columns, count = fmpz_mat([[int(x.p) for x in row] for row in rows]).nullspace() if rows else (None, 0)
+        columns, count = fmpz_mat([[int(x.p) for x in row] for row in rows]).nullspace()
         if not count:
             return []
         column = [int(columns[k, 0]) for k in range(len(places))]
         powers = [x // gcd(*column) for x in column]
-        if count > 1 or not ring.vanishes(sum((a * n for a, n in zip(exponents, powers, strict=True)), ring.zero)):
+        if count > 1 or not ring.vanishes(ring.dot(exponents, [ring.number(n) for n in powers])):
             raise NoClosedForm(
                 Message(
                     "the exponentials [[names]] are related in several ways, or by a constant factor",
@@ -228,7 +229,7 @@ class _State:
             )
         sides = [ring.one, ring.one]
         for k, n in zip(places, powers, strict=True):
-            sides[n < 0] = sides[n < 0] * ring.context.gen(k) ** abs(n)
+            sides[int(n < 0)] = sides[int(n < 0)] * ring.context.gen(k) ** abs(n)
         difference = sides[0] - sides[1]
         return [difference / difference.leading_coefficient()]
 

@@ -20,7 +20,7 @@ from contextlib import suppress
 from functools import cached_property
 
 from mbsym.algebra.failures import Failure
-from mbsym.algebra.matrices import determinant
+from mbsym.algebra.matrices import cramer, determinant
 from mbsym.algebra.ring import Polynomial
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.speeds import SpeedForm
@@ -50,12 +50,8 @@ class TiedField:
     @cached_property
     def scaled(self) -> list[Polynomial]:
         """D u', by Cramer's rule."""
-        ring, mass = self.form.ring, self.embedded.mass_matrix.polynomials
-        right, own = [x.polynomial for x in self.embedded.forcing], []
-        for k in range(len(right)):
-            replaced = [[*row[:k], f, *row[k + 1 :]] for row, f in zip(mass, right, strict=True)]
-            own.append(determinant(ring, replaced))
-        found = []
+        ring, found = self.form.ring, []
+        own = cramer(ring, self.embedded.mass_matrix.polynomials, [x.polynomial for x in self.embedded.forcing])
         for i, shift in enumerate(self.solved.acceleration_shift):
             row = [self.solved.transformation[i, k].polynomial for k in range(len(own))]
             found.append(ring.reduce(ring.dot(row, own) + ring.times(self.determinant, shift.polynomial)))
