@@ -12,7 +12,7 @@ from functools import wraps
 from pathlib import Path
 from typing import Any, TypeVar
 
-from mbsym.expressions.counting import counted
+from mbsym.expressions.message import counted
 from mbsym.expressions.place import Complaint, Complaints, Span
 from mbsym.expressions.safe import quoted as ascii_safe
 from mbsym.problems import NUMBERS, ranges

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from mbsym.report.content import say
 from mbsym.report.language import Language
 from mbsym.report.whole_run import derive_all, lost, rendered_all
-from mbsym_cli.assignments import with_settings
+from mbsym_cli.assignments import in_scale, with_settings
 from mbsym_cli.beside import beside
 from mbsym_cli.console import (
     BAD_INPUT,
@@ -72,6 +72,7 @@ class Request:
     verbose: bool = False
     detail: str = "compact"
     settings: tuple[str, ...] = ()  # values that replace those of the description
+    scale: str | None = None  # dimensionless variables that the description is put in
 
 
 def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> int:
@@ -87,6 +88,11 @@ def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> 
             asked = Options()
             system = with_settings(path, system, request.settings, asked)
             if asked.refused(path):
+                return BAD_INPUT
+        if request.scale is not None:
+            asked = Options()
+            system = in_scale(system, request.scale, asked)
+            if asked.refused(path) or system is None:
                 return BAD_INPUT
         reason = obstacle(folder, base)
         if reason:
@@ -140,7 +146,7 @@ def _figures(folder: Path, system: System) -> tuple[MadeFigure, ...]:
     if not (folder / "simulation.json").is_file():
         return ()
     from mbsym.report.figures.made_figures import made_figures
-    from mbsym.source.meaning import meaning
+    from mbsym.source.yaml_writer import meaning
 
     sums = delivered(folder, "simulate")
     unchanged = [name for name, digest in sums.items() if digest_of(folder / name) == digest]

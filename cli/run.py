@@ -70,6 +70,7 @@ ledger_options = group(
 )
 @click.option("--out", "-o", type=OutPath(path_type=Path), help="Folder of the reports.  [default: reports/NAME]")
 @click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Replace a value; repeatable.")
+@click.option("--scale", metavar="LIST", help="In dimensionless variables, as 'mbsym convert' has them.")
 @click.option("--detail", default="compact", show_default=True, metavar="WORD", help="Long formulas: compact, or full.")
 @click.option("--terms", default="60000", show_default=True, metavar="N", help="Budget of terms of one closed formula.")
 @click.option(
@@ -96,6 +97,7 @@ def command(
     formats: str,
     out: Path | None,
     settings: tuple[str, ...],
+    scale: str | None,
     detail: str,
     terms: str,
     angles: str | None,
@@ -146,6 +148,9 @@ def command(
 
     With --set NAME=VALUE a parameter has another value than in the description: for the verdict at given values,
     eigenvalues, parameters that code begins with.
+
+    With --scale x=L*x1,t=tau/omega0,... everything is derived of the description in these variables, which 'mbsym
+    convert --scale' writes.
 
     \b
     Examples:
@@ -206,6 +211,7 @@ def command(
         verbose,
         wanted or detail,
         settings,
+        scale,
     )
     worst = OK
     base = None if out is not None and len(paths) == 1 else out or REPORTS

@@ -95,7 +95,7 @@ def command(
       mbsym batch systems/ --format latex --appendix
       mbsym batch systems/ --cluster tcp://10.0.0.1:8786
     """
-    from mbsym.batch.task import Asked, Budget
+    from mbsym.batch.transport import Asked, Budget
     from mbsym.report.detail import DETAILS
     from mbsym.report.targets import ANGLES
 

@@ -17,11 +17,10 @@ import mbsym
 from mbsym.batch import index_page, junit
 from mbsym.batch.coordinator import Batch, Place
 from mbsym.batch.digests import derivation
-from mbsym.batch.findings import findings
-from mbsym.batch.outcome import FORMAT, ComplaintRow, Outcome, Row, Summary
+from mbsym.batch.outcome import FORMAT, ComplaintRow, Outcome, Row, Summary, findings
 from mbsym.batch.summary_json import FILENAME, summary_text
-from mbsym.batch.task import Asked, Budget
-from mbsym.expressions.counting import counted
+from mbsym.batch.transport import Asked, Budget
+from mbsym.expressions.message import counted
 from mbsym.report.words.findings import github_annotations, json_lines, sarif
 from mbsym_cli.batch.appendix import SUMMARY
 from mbsym_cli.batch.folders import Found, chosen, found_in, share

@@ -16,8 +16,7 @@ from typing import Any
 from mbsym.batch import digests
 from mbsym.batch.coordinator import Place
 from mbsym.batch.outcome import FORMAT, ComplaintRow, Outcome, Row
-from mbsym.batch.task import Asked, Finished, Task
-from mbsym.batch.transport import MALFORMED, read_row, row_data
+from mbsym.batch.transport import MALFORMED, Asked, Finished, Task, read_row, row_data
 from mbsym.report.targets import FORMATS
 from mbsym_cli.batch.machine import Locks
 from mbsym_cli.files import deliver, delivered, digest_of, obstacle, recover

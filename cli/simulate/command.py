@@ -15,10 +15,9 @@ from mbsym_cli.simulate.choice import choice_options
 from mbsym_cli.simulate.closing import closing_options
 from mbsym_cli.simulate.continuing import continue_options
 from mbsym_cli.simulate.events import watch_options
-from mbsym_cli.simulate.inputs import input_options
 from mbsym_cli.simulate.many import Many, many_options
 from mbsym_cli.simulate.options import Group, Output, output_options, span_options, way_options
-from mbsym_cli.simulate.simulated import simulated
+from mbsym_cli.simulate.simulated import input_options, simulated
 from mbsym_cli.simulate.variables import variables_options
 
 

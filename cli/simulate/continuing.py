@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from mbsym.numerics.planning.models import Model
     from mbsym.numerics.scenario import Scenario
     from mbsym.simulation import Request
-    from mbsym.simulation.earlier import Earlier
+    from mbsym.simulation.request import Earlier
     from mbsym_cli.options import Options
 
 

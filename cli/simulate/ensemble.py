@@ -8,12 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mbsym.expressions.message import Message
-from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, complain, printable, status
+from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, complain, printable, progress, status
 from mbsym_cli.files import deliver
 from mbsym_cli.options import Options
-from mbsym_cli.progress import progress
-from mbsym_cli.study import attempted
-from mbsym_cli.telling import told
+from mbsym_cli.study import attempted, told
 
 if TYPE_CHECKING:
     from mbsym.expressions.tree import Expression

@@ -48,12 +48,11 @@ def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
     """
     from mbsym.model.quantities import unit_of
     from mbsym.numerics.further_columns import input_columns
-    from mbsym.report.runs.bodies_csv import bodies_parts
     from mbsym.report.runs.certificate import enclosure_csv
     from mbsym.report.runs.constrained_run_words import drift_columns
     from mbsym.report.runs.simulation_json import simulation_json
     from mbsym.report.runs.state_run_words import norm_columns
-    from mbsym.report.runs.trajectory_csv import trajectory_parts
+    from mbsym.report.runs.trajectory_csv import bodies_parts, trajectory_parts
 
     mark = "" if run.whole else "-partial"
     files: dict[str, Content] = {}
@@ -107,7 +106,7 @@ def _bodies(run: Simulation) -> Iterator[BodyMotions]:
 
 def _happened(run: Simulation) -> dict[str, str]:
     """What was watched for is written whatever the formats are: it was asked for by options of its own."""
-    from mbsym.report.runs.events_json import events_csv, section_csv
+    from mbsym.report.runs.events import events_csv, section_csv
 
     if run.happened is None:
         return {}

@@ -118,7 +118,7 @@ def _sensitive(text: str | None, given: Scenario | None, options: Options) -> tu
     from mbsym.source.scope import closest
 
     system = given.system
-    known = (*system.parameter_names, *system.coordinates, *system.velocities)
+    known = (*system.parameter_names, *system.coordinates, *system.velocities, *system.variables)
     following = {relation.name for relation in system.relations}
     for name in named:
         if name not in known:

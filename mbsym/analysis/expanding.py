@@ -21,8 +21,7 @@ from mbsym.mechanics.motion import relations, unperturbed_with
 from mbsym.model.system import SmallParameter
 from mbsym.problems.small_parameter import slow
 from mbsym.problems.small_parameter.checks import residual_orders
-from mbsym.problems.small_parameter.result import Hurwitz, Outcome, SlowManifold
-from mbsym.problems.small_parameter.scaled import scaled
+from mbsym.problems.small_parameter.result import Hurwitz, Outcome, SlowManifold, scaled
 from mbsym.problems.small_parameter.steady import steady_states
 from mbsym.problems.vector_field import Transfer, vector_field
 

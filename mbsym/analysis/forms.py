@@ -11,8 +11,7 @@ from mbsym.mechanics.variables import ring_environment
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
-    from mbsym.problems.canonical.brackets import Brackets
-    from mbsym.problems.canonical.canonical import Hamilton, Routh
+    from mbsym.problems.canonical.canonical import Brackets, Hamilton, Routh
     from mbsym.problems.checks import Check
 
 # What few ask for is not imported for nothing: names stand here, modules in the functions.
@@ -45,7 +44,7 @@ def routh(analysis: Analysis) -> Routh:
 
 def brackets(analysis: Analysis) -> Brackets | None:
     """The Poisson brackets of problem 7's integrals; None without any."""
-    from mbsym.problems.canonical import brackets as problem
+    from mbsym.problems.canonical import canonical as problem
 
     return problem.brackets(analysis.system, analysis.hamilton, analysis.integrals)
 

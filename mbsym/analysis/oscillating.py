@@ -6,29 +6,33 @@ all deviations from the unperturbed motion are small themselves, the field is th
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import pairwise
+from functools import cached_property
+from itertools import count, pairwise
 from typing import TYPE_CHECKING, Any
 
 from flint import acb
 
 from mbsym.algebra import rationals
+from mbsym.algebra.base import Lowering
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower, angle_in
+from mbsym.analysis.scaled import with_parameters
 from mbsym.expressions.message import Message
+from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.motion import relations
 from mbsym.model.oscillation_names import names_in, oscillation_names
+from mbsym.model.scaling import Scaling
 from mbsym.model.system import SmallParameter, System, velocity_name
 from mbsym.problems.normal_forms.dissipative import taylor_field
 from mbsym.problems.normal_forms.exact import letter
 from mbsym.problems.small_parameter.graded_rows import graded_rows
-from mbsym.problems.small_parameter.harmonics import Harmonics
-from mbsym.problems.small_parameter.oscillation_result import Amplitude, Divisor, Oscillation
+from mbsym.problems.small_parameter.oscillation_result import Amplitude, Divisor, Harmonics, Oscillation
 from mbsym.problems.small_parameter.oscillations import (
     AMPLITUDE,
     LATEST,
@@ -69,18 +73,61 @@ class Oscillating:
     attracts: bool | None = None
     velocities: tuple[str, ...] = ()
 
-    def formula(self, x: Element) -> Formula:
-        return Formula(self.ring, in_letters(self.found.tower, self.ring, self.symbols, x))
+    def formula(self, x: Element, ring: Ring | None = None) -> Formula:
+        """An element; in ``told_ring`` with letters for common denominators."""
+        letters = None if ring is None else self.denominators
+        whole = self.ring if ring is None else ring
+        return Formula(whole, in_letters(self.found.tower, whole, self.symbols, x, letters))
 
-    def wave(self, one: Harmonics) -> Formula:
+    @cached_property
+    def denominators(self) -> tuple[tuple[Any, str], ...]:
+        """Letters D1, D2, ... for irreducible factors with several terms that divide more than one coefficient."""
+        found = self.found
+        waves = [one for series in found.series for one in series] + [x for one in found.drifts for x in one.waves]
+        values = [x for one in waves for pair in one.waves.values() for x in pair if not x.is_zero()]
+        factors: list[Any] = []
+        often: list[int] = []
+        for x in [*values, *found.corrections]:
+            for factor, _ in x.bottom.factor()[1]:
+                if len(factor) > 1 and not any(factor.degrees()[:MOST_ROOTS]):
+                    if factor not in factors:
+                        factors.append(factor)
+                        often.append(0)
+                    often[factors.index(factor)] += 1
+        taken = set(self.ring.names()) | set(self.symbols.values())
+        names = (name for k in count(1) if (name := f"D{k}") not in taken)
+        return tuple(zip((x for x, times in zip(factors, often, strict=True) if times > 1), names, strict=False))
+
+    @cached_property
+    def told_ring(self) -> Ring:
+        """The ring of the result with the letters of ``denominators``."""
+        if not self.denominators:
+            return self.ring
+        names = [g.name for g in self.ring.generators if g.kind == "parameter" and g.name != "pi"]
+        positive = [name for name in names if self.ring.is_positive(self.ring.generator("parameter", name))]
+        return Ring(
+            (), (self.phase,), [*names, *(name for _, name in self.denominators)], self.ring.angles, positive, spare=40
+        )
+
+    def wave(self, one: Harmonics, told: Ring | None = None) -> Formula:
         """A trigonometric polynomial of the phase."""
-        ring, total = self.ring, self.ring.zero
+        ring = self.ring if told is None else told
+        total = ring.zero
         s, c = (ring.generator(kind, self.phase) for kind in ("sine", "cosine"))
         for k, (a, b) in one.waves.items():
             sine, cosine = ring.multiple_angle(s, c, k) if k else (ring.zero, ring.one)
-            total = total + ring.times(self.formula(a).polynomial, cosine)
-            total = total + ring.times(self.formula(b).polynomial, sine)
-        return Formula(ring, ring.reduce(total))
+            total = total + ring.times(self.formula(a, told).polynomial, cosine)
+            total = total + ring.times(self.formula(b, told).polynomial, sine)
+        return Formula(ring, total if told is not None else ring.reduce(total))
+
+    def shortest(self, one: Harmonics) -> Formula:
+        """The same with letters for common denominators, in the form that takes least to be written."""
+        whole = self.wave(one)
+        if not self.denominators:
+            return whole
+        plain = self.wave(one, self.told_ring)
+        reduced = Formula(plain.ring, plain.ring.reduce(plain.polynomial))
+        return min((plain, reduced, whole), key=lambda x: len(x.text()))
 
     def written(self, one: Harmonics) -> str:
         """The same, harmonic by harmonic, in Python syntax."""
@@ -216,6 +263,117 @@ def oscillating(
     )
 
 
+def in_variables(told: Oscillating, system: System, scaling: Scaling) -> Oscillating:
+    """The same solution in an author's variables, time and parameters: put in, exactly, divided by the factors.
+
+    Constant values and the small parameter keep their names; the amplitude is that of the new leading variable.
+    """
+    found, old = told.found, told.found.tower
+    if any(angle_in(name) is not None for name in old.parameters):
+        raise NoClosedForm("sines and cosines of parameters stand in it: it is not told in other variables")
+    base = with_parameters(system, scaling)
+    shown = {name: internal for internal, name in told.symbols.items()}
+    kept = [one.name for one in base.parameters if one.name not in shown and one.name != found.small]
+    internal = [name for name in old.parameters if name.startswith("#")]
+    tower = Tower((*kept, *internal))
+    own = {name: tower.parameter(shown.get(name, name)) for name in (*kept, *shown)}
+    lower = Lowering(tower, own)
+    images = {**own, **{name: lower(value) for name, value in scaling.parameters}}
+    factors = {one.name: lower(one.factor) for one in scaling.variables}
+    new = {one.name: one.new for one in scaling.variables}
+    slow = tower.one if scaling.time is None else lower(scaling.time.factor)
+    for name in told.velocities:
+        plain = without_velocity(name)
+        factors[name] = factors.get(plain, tower.one) / slow
+        new[name] = velocity_name(new.get(plain, plain))
+    leading = factors.get(found.leading, tower.one)
+
+    def called(names: tuple[str, ...]) -> tuple[str, ...]:
+        return tuple(new.get(name, name) for name in names)
+
+    def generator(index: int) -> Element:
+        if index < MOST_ROOTS:
+            return tower.square_root(whole(old.squares[MOST_ROOTS - 1 - index]))
+        name = old.parameters[index - MOST_ROOTS]
+        if name == AMPLITUDE:
+            return tower.parameter(name) * leading
+        return tower.parameter(name) if name.startswith("#") else images[name]
+
+    known: dict[int, Element] = {}
+
+    def whole(p: Any) -> Element:
+        """A polynomial with everything put in, over the product of the denominators."""
+        degrees = [int(d) for d in p.degrees()]
+        used = [k for k, degree in enumerate(degrees) if degree > 0]
+        for k in used:
+            known.setdefault(k, generator(k))
+        total = tower.context.constant(0)
+        for monomial, c in p.to_dict().items():
+            term = tower.context.constant(c)
+            for k in used:
+                term *= known[k].top ** int(monomial[k]) * known[k].bottom ** (degrees[k] - int(monomial[k]))
+            total += term
+        below = tower.context.constant(1)
+        for k in used:
+            below *= known[k].bottom ** degrees[k]
+        return tower.made(tower.reduced(total), below)
+
+    def put(x: Element) -> Element:
+        return whole(x.top) / whole(x.bottom)
+
+    def wave(name: str, one: Harmonics) -> Harmonics:
+        factor = tower.reciprocal(factors.get(name, tower.one))
+        return Harmonics(tower, {k: (put(c) * factor, put(s) * factor) for k, (c, s) in one.waves.items()})
+
+    moved = {
+        id(one): replace(
+            one,
+            variables=called(one.variables),
+            value=put(one.value),
+            damping=None if one.damping is None else put(one.damping),
+        )
+        for one in found.divisors
+    }
+    changed = replace(
+        found,
+        tower=tower,
+        names=called(found.names),
+        leading=new.get(found.leading, found.leading),
+        block=called(found.block),
+        frequency=put(found.frequency) * slow,
+        corrections=tuple(map(put, found.corrections)),
+        amplitude=put(found.amplitude) / leading,
+        constants=tuple((name, put(x)) for name, x in found.constants),
+        series=tuple(
+            tuple(wave(name, one) for one in series) for name, series in zip(found.names, found.series, strict=True)
+        ),
+        drifts=tuple(
+            replace(
+                one,
+                variable=new.get(one.variable, one.variable),
+                rates=tuple(put(x) * slow / factors.get(one.variable, tower.one) for x in one.rates),
+                waves=tuple(wave(one.variable, x) for x in one.waves),
+            )
+            for one in found.drifts
+        ),
+        divisors=tuple(moved.values()),
+        others=tuple((called(names), put(x) * slow * slow) for names, x in found.others),
+        damped=tuple(map(called, found.damped)),
+        with_zero=tuple(map(called, found.with_zero)),
+        not_known=tuple(map(called, found.not_known)),
+        other_amplitudes=None if found.other_amplitudes is None else put(found.other_amplitudes),
+        exponent=None if found.exponent is None else (found.exponent[0], put(found.exponent[1]) * slow),
+    )
+    return replace(
+        told,
+        found=changed,
+        ring=_letters(base, kept, told.phase, told.symbols),
+        real=told.real or tower.rational(changed.frequency) is not None,
+        resonances=tuple(moved[id(one)] for one in told.resonances),
+        velocities=called(told.velocities),
+    )
+
+
 def _sign(analysis: Analysis, tower: Tower, x: Element) -> str | None:
     """By the assumptions of the description; None where there is no telling, or symbols of the solution are in it."""
     if _is_number(tower, x):
@@ -285,8 +443,17 @@ def _letters(system: System, kept: list[str], phase: str, symbols: Mapping[str, 
     return Ring((), (phase,), [*names, *symbols.values()], {phase: 1} | angles, positive, spare=40)
 
 
-def in_letters(tower: Tower, ring: Ring, symbols: Mapping[str, str], x: Element) -> Polynomial:
-    """An element as a polynomial of the ring of a result; symbols that no result holds are left as they are."""
+def in_letters(
+    tower: Tower,
+    ring: Ring,
+    symbols: Mapping[str, str],
+    x: Element,
+    denominators: Sequence[tuple[Any, str]] | None = None,
+) -> Polynomial:
+    """An element as a polynomial of the ring of a result; symbols that no result holds are left as they are.
+
+    ``denominators``: letters for factors of denominators; then c/c is left where it stands.
+    """
 
     def generator(index: int) -> Polynomial:
         if index >= MOST_ROOTS:
@@ -308,4 +475,12 @@ def in_letters(tower: Tower, ring: Ring, symbols: Mapping[str, str], x: Element)
     top = carried(x.top)
     if x.bottom.is_constant():
         return top  # the leading coefficient of every denominator is 1
-    return ring.reduce(ring.times(top, ring.reciprocal(carried(x.bottom))))
+    if denominators is None:
+        return ring.reduce(ring.times(top, ring.reciprocal(carried(x.bottom))))
+    constant, factors = x.bottom.factor()
+    below = ring.number(rationals.fraction(constant))
+    for factor, power in factors:
+        name = next((name for one, name in denominators if one == factor), None)
+        own = carried(factor) if name is None else ring.generator("parameter", name)
+        below = ring.times(below, own ** int(power))
+    return ring.times(top, ring.reciprocal(below))

@@ -15,7 +15,7 @@ from typing import Protocol
 from mbsym.batch.isolation import Processes, isolated
 from mbsym.batch.nursery import Nursery, available
 from mbsym.batch.outcome import Outcome, Row
-from mbsym.batch.task import Budget, Finished, Task
+from mbsym.batch.transport import Budget, Finished, Task
 
 #: Seconds between two looks at folders that another batch is working on, and at the clock.
 TICK = 0.1

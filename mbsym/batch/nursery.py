@@ -22,8 +22,7 @@ import threading
 from contextlib import suppress
 from typing import IO
 
-from mbsym.batch.task import Asked, Task
-from mbsym.batch.transport import task_text
+from mbsym.batch.transport import Asked, Task, task_text
 from mbsym.batch.worker import SINGLE, attend
 
 #: A worker gets: its task, where the answer goes, where complaints go, its lifeline; its nurse, where to report.

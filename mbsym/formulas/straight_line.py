@@ -16,7 +16,7 @@ from mbsym.algebra.program import Instruction, Node, Program
 from mbsym.expressions.message import Message
 from mbsym.expressions.table import Tabulated
 from mbsym.expressions.tree import MOST_WRITTEN_OUT, Name, slope_written_out, written_out
-from mbsym.formulas.numerals import writable
+from mbsym.formulas.tree import writable
 
 #: Longer expressions are given a name even if they are used only once.
 WIDTH = 60

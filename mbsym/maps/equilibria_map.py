@@ -28,16 +28,16 @@ from mbsym.algebra.plane import Point
 from mbsym.algebra.polynomial_systems import Limits, _Branch, _moved, _moved_back, _Solver, context
 from mbsym.algebra.ring import Polynomial
 from mbsym.maps.boundaries import Boundaries, Condition, Origin, factored
+from mbsym.maps.branches_curve import INFINITY_OPEN, MASS_OPEN, Varied, charts_over
 from mbsym.maps.branches_stability import BY_INERTIA, is_undamped
 from mbsym.maps.mapping import Watch, box_of, places
 from mbsym.maps.result import Cell, Counted, Lack, Map, Of, Shape
 from mbsym.maps.section import Axis
-from mbsym.maps.varied import INFINITY_OPEN, MASS_OPEN, Varied, charts_over
 from mbsym.mechanics.charts import Chart
 from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.model.system import System
 from mbsym.problems.relative_equilibria.equilibria import equilibria
-from mbsym.problems.relative_equilibria.unknowns import Unknowns
+from mbsym.problems.relative_equilibria.place import Unknowns
 
 #: So many random points are tried until one lies in a region.
 TRIED = 60

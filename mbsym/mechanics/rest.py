@@ -24,8 +24,7 @@ from mbsym.expressions.tree import (
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.newton_euler import residuals
 from mbsym.mechanics.variables import expressions, ring_environment, ring_of
-from mbsym.model.driven import held
-from mbsym.model.substitution import put
+from mbsym.model.substitution import held, put
 from mbsym.model.system import System, acceleration_name, rational, velocity_name
 
 if TYPE_CHECKING:

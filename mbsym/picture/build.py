@@ -37,10 +37,9 @@ from mbsym.model.system import INERTIAL, Point, System
 from mbsym.numerics.carriers import COMPACT, frames
 from mbsym.numerics.scenario import Scenario, exact
 from mbsym.numerics.specialise import bound
-from mbsym.picture.looks import ellipsoid, shapes
+from mbsym.picture.looking import Room, State, ellipsoid, first_look, samples, shapes
 from mbsym.picture.placing import Places, Triple
 from mbsym.picture.program import PoseProgram, flattened
-from mbsym.picture.room import Room, State, first_look, samples
 from mbsym.picture.start import Start, start
 from mbsym.picture.values import (
     Acting,

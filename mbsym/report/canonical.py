@@ -20,8 +20,7 @@ from mbsym.report.plain import Write, column_text, matrix_text
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
     from mbsym.analysis.stages import NoResult
-    from mbsym.problems.canonical.brackets import Brackets
-    from mbsym.problems.canonical.canonical import Hamilton, Routh
+    from mbsym.problems.canonical.canonical import Brackets, Hamilton, Routh
 
 
 @dataclass(frozen=True)

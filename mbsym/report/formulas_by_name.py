@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
 
 from mbsym.algebra.failures import NoClosedForm
@@ -14,12 +14,13 @@ from mbsym.expressions.rates import ENDINGS, acceleration_name
 from mbsym.formulas.formula import Column, Formula, Matrix, column
 from mbsym.formulas.latex import latex_symbol
 from mbsym.formulas.wolfram import wolfram_name
-from mbsym.problems.stability.spectrum import RootNumbers, numbers
+from mbsym.problems.stability.enclosed import RootNumbers, numbers
 from mbsym.report.conditions import Statement, label_meanings, statements
 from mbsym.report.content import Number
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+    from mbsym.analysis.scaled import Formulas
     from mbsym.problems.in_speeds.speeds import SpeedEquations
 
 #: The languages in which a formula is written; the first is for people.
@@ -197,6 +198,27 @@ def lines(analysis: Analysis, name: str) -> Iterator[Line]:
     if name not in known_names(analysis):
         raise KeyError(name)
     return _of_body(analysis, name)
+
+
+def carried_lines(formulas: Formulas, name: str) -> Iterator[Line]:
+    """The same in the new variables of ``formulas``.  Raises Failure for what is no formula of one row."""
+    if name not in CARRIED:
+        raise NoClosedForm(f"no description has these variables, in which there are only {', '.join(CARRIED)}")
+    for line in lines(formulas.analysis, name):
+        if not isinstance(line.value, Formula):
+            continue
+        if isinstance(line.name, Formula):
+            yield replace(line, name=formulas.moving(line.name), value=formulas.rate(line.name, line.value))
+        elif line.relation and not line.name:
+            free = "const" in line.relation
+            value = formulas.formula(line.value) if line.right else formulas.row(line.value, free)
+            yield replace(line, value=value, right=tuple((formulas.formula(x), to) for x, to in line.right))
+        else:
+            yield replace(line, value=formulas.formula(line.value))
+
+
+#: What can be told in variables that no description has.
+CARRIED = ("equations", "T", "U", "L", "integrals")
 
 
 def written(line: Line, language: str) -> str:

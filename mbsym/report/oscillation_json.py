@@ -11,9 +11,9 @@ from msgspec.structs import asdict
 
 from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
-from mbsym.problems.small_parameter.harmonics import Harmonics
+from mbsym.problems.small_parameter.oscillation_result import Harmonics
 from mbsym.report.documents import oscillations as doc
-from mbsym.report.documents.writer import written
+from mbsym.report.documents.base import written
 from mbsym.report.words.oscillation_words import numerator
 
 if TYPE_CHECKING:

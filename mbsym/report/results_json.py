@@ -20,10 +20,10 @@ from mbsym.problems.claims import ClaimResult
 from mbsym.report.canonical import data as canonical_data
 from mbsym.report.canonical import forms_of
 from mbsym.report.documents import results as doc
+from mbsym.report.documents.base import plain, written
 from mbsym.report.documents.parts import Counted
 from mbsym.report.documents.results import linearisation
 from mbsym.report.documents.results.claims import Claim, ClaimPart, Counterexample, Repair
-from mbsym.report.documents.writer import plain, written
 from mbsym.report.lengths import COUNTED, FILE, withheld
 from mbsym.report.plain import Written, matrix_text
 from mbsym.report.sections import section_of

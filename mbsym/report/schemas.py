@@ -21,8 +21,7 @@ from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin
 from msgspec import Meta, Struct, UnsetType
 
 from mbsym.algebra.parts import missing
-from mbsym.report.documents.base import Named
-from mbsym.report.documents.writer import headed
+from mbsym.report.documents.base import Named, headed
 
 Schema = dict[str, Any]
 

@@ -15,8 +15,8 @@ from mbsym.expressions.place import Complaints
 from mbsym.expressions.tree import Expression
 from mbsym.model.admissibility import known_values
 from mbsym.model.constraints import Constraint
-from mbsym.model.driven import with_held
 from mbsym.model.inputs import Input, Output
+from mbsym.model.substitution import with_held
 from mbsym.model.system import INERTIAL, Body, MotionEntry, System
 from mbsym.source.bodies import draft_bodies, read_body, read_body_name
 from mbsym.source.checks import check_body, check_system, in_formulas

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import re
 
 from mbsym.expressions.tree import text
@@ -128,3 +129,11 @@ def scalar_text(value: str) -> str:
         return value
     escaped = value.replace("\\", "\\\\").replace('"', '\\"')
     return f'"{escaped}"'
+
+
+# What a description says, as a number: equal for the two spellings, for any order of keys, and for any comments.
+
+
+def meaning(system: System) -> str:
+    """SHA-256, in hexadecimal digits, of the description as ``mbsym convert`` writes it in YAML."""
+    return hashlib.sha256(to_yaml(system).encode()).hexdigest()

@@ -62,7 +62,7 @@ def moving_system(source: Source) -> System:
     Raises GivenByMatrices where there are no bodies that could move.
     """
     from mbsym.analysis.given import refuse_matrices
-    from mbsym.model.driven import held
+    from mbsym.model.substitution import held
 
     system = analysis_of(source).system
     refuse_matrices(system, "no motion is integrated or searched for")
@@ -145,7 +145,10 @@ def asked_of(source: Source, request: Any) -> Asked:
     from mbsym.numerics.scenario import scenario
     from mbsym.simulation.request import read_values
 
-    return Asked(system, scenario(system, read_values(system, request.values or {}), settings[0].state))
+    kind = settings[0]
+    return Asked(
+        system, scenario(system, read_values(system, request.values or {}), kind.state, declared=kind.declared)
+    )
 
 
 def _shown(default: Any) -> Any:

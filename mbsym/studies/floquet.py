@@ -52,10 +52,10 @@ def floquet(asked: Asked, request: Request, watch: Watch) -> Judged:
 
 
 def answer(asked: Asked, request: Request, found: Judged) -> Answer:
-    from mbsym.report.content import titled
+    from mbsym.report.content import facts
     from mbsym.report.runs.floquet_files import floquet_json, sentences
 
-    return Answer(titled(sentences(found)), {"floquet.json": floquet_json(asked.system, found)})
+    return Answer([facts(sentences(found))], {"floquet.json": floquet_json(asked.system, found)})
 
 
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:

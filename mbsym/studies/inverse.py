@@ -66,12 +66,12 @@ def derive(asked: Asked, request: Request, watch: Watch) -> InverseDynamics:
 
 
 def answer(asked: Asked, request: Request, found: InverseDynamics) -> Answer:
-    from mbsym.report.content import titled
+    from mbsym.report.content import facts
     from mbsym.report.runs.inverse_files import inputs_csv, inputs_figure, sentences
 
     files: dict[str, str | bytes] = {"inputs.csv": inputs_csv(found)}
     files |= inputs_figure(found, ("svg", "png"))
-    return Answer(titled(sentences(found)), files, code=Exit.OK if found.exact else Exit.BROKEN_DOWN)
+    return Answer([facts(sentences(found))], files, code=Exit.OK if found.exact else Exit.BROKEN_DOWN)
 
 
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:

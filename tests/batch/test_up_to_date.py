@@ -17,7 +17,7 @@ from mbsym.batch import digests
 from mbsym.batch.coordinator import Place
 from mbsym.batch.isolation import isolated
 from mbsym.batch.outcome import Outcome, Row
-from mbsym.batch.task import Asked, Budget, Task
+from mbsym.batch.transport import Asked, Budget, Task
 from mbsym.batch.work import work
 from mbsym.report.exports import fmu
 from mbsym_cli.batch.store import FolderStore

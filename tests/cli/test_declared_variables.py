@@ -50,13 +50,7 @@ def test_coordinates_are_integrated_where_they_are_asked_for(tmp_path: Path) -> 
 @pytest.mark.parametrize(
     ("option", "words"),
     [
-        ("--vary", ("--vary", "A=11:12:3")),
-        ("--sensitivity", ("--sensitivity", "A")),
-        ("--certify", ("--certify", "1e-6")),
-        ("--accuracy", ("--accuracy", "1e-3")),
-        ("--gravity", ("--gravity", "3")),
         ("--linear", ("--linear",)),
-        ("--without", ("--without", "A")),
         ("--bodies", ("--bodies",)),
         ("--animate", ("--animate",)),
         ("--method", ("--method", "midpoint", "--step", "0.1")),

@@ -17,7 +17,7 @@ import pytest
 import mbsym
 from mbsym.analysis import Analysis
 from mbsym.report.code import c_source, python_module
-from mbsym.report.code.parsing_exports import READERS
+from mbsym.report.code.parsing import READERS
 from mbsym.report.exports import fmu, julia, modelica, octave
 
 POLE = Path(__file__).parents[2] / "systems" / "cart-pole.yaml"

@@ -23,7 +23,7 @@ from mbsym.report.latex.displays import written_out
 from mbsym.report.latex.labels import labels, prefix_of, slug
 from mbsym.report.rendering import rendered
 from mbsym.report.targets import TARGETS
-from mbsym.source.meaning import meaning
+from mbsym.source.yaml_writer import meaning
 from mbsym_cli.main import main
 from tests.conftest import SHIPPED, needs_pdflatex
 

@@ -20,9 +20,8 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.tree import Expression, Name
 from mbsym.formulas.names import free_name
 from mbsym.mechanics.energy import kinetic_energy
-from mbsym.mechanics.forward_dynamics import ForwardDynamics, forward_dynamics
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.programs import constants
+from mbsym.mechanics.programs import ForwardDynamics, constants, forward_dynamics
 from mbsym.mechanics.variables import ring_environment, ring_of
 from mbsym.model.system import Body, Parameter, System
 from mbsym.numerics.ledger.entry import COUNT, OPERATIONS, SECONDS, TERMS, Measure

@@ -25,12 +25,10 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation
 from mbsym.formulas.formula import Formula
 from mbsym.model.claims import Claim
-from mbsym.problems.claims.forms import in_parameters
 from mbsym.problems.claims.other_symbols import explained
-from mbsym.problems.claims.result import DIFFERS, EXACT, SCALED, UNDECIDED, ClaimResult, Derived
+from mbsym.problems.claims.result import DIFFERS, EXACT, SCALED, UNDECIDED, ClaimResult, Derived, in_parameters
 from mbsym.problems.claims.symbols import Symbols
-from mbsym.problems.small_parameter.harmonics import Harmonics
-from mbsym.problems.small_parameter.oscillation_result import Oscillation
+from mbsym.problems.small_parameter.oscillation_result import Harmonics, Oscillation
 from mbsym.problems.small_parameter.result import SlowManifold
 from mbsym.problems.vector_field import Transfer
 

@@ -26,8 +26,7 @@ from mbsym.problems.constrained_balance import ConstrainedBalance
 from mbsym.problems.dissipation import EnergyLaw
 from mbsym.problems.energy import Energy
 from mbsym.problems.relative_equilibria.place import PRECISION, Place
-from mbsym.problems.stability.bundle import Element, NumberField
-from mbsym.problems.stability.degenerate import Extremum, in_one_coordinate, of_fourth_order
+from mbsym.problems.stability.bundle import Element, Extremum, NumberField, in_one_coordinate, of_fourth_order
 from mbsym.problems.stability.enclosed import blocks, enclosed_verdict_with_cyclic
 from mbsym.problems.stability.exact import verdict_at
 from mbsym.problems.stability.linear_form import LinearSystem, null_rows

@@ -17,10 +17,9 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
 from mbsym.expressions.message import Message, joined
 from mbsym.problems.small_parameter.generating import Generating, Mode, Rows, generating
-from mbsym.problems.small_parameter.harmonics import Harmonics
 from mbsym.problems.small_parameter.lindstedt import Demand, NotPeriodic, Orders
 from mbsym.problems.small_parameter.oscillation_checks import residual_orders
-from mbsym.problems.small_parameter.oscillation_result import Amplitude, Oscillation
+from mbsym.problems.small_parameter.oscillation_result import Amplitude, Harmonics, Oscillation
 
 #: A condition on the amplitude may first appear in this order.
 LATEST = 4

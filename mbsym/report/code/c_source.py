@@ -24,9 +24,8 @@ from mbsym.model.quantities import marked, told_units
 from mbsym.model.speeds import Quaternion
 from mbsym.model.system import Parameter, System
 from mbsym.numerics.scenario import exact
-from mbsym.report.code.functions import Function, Functions, prescribed_value
+from mbsym.report.code.functions import Function, Functions, c_definition, identifier, prescribed_value
 from mbsym.report.code.identifiers import prefix_of
-from mbsym.report.code.lookups import c_definition, identifier
 from mbsym.report.code.model_code import programs_of, solved, undetermined
 from mbsym.report.code.named_dynamics import bodies as bodies_of
 from mbsym.report.code.named_dynamics import named_dynamics

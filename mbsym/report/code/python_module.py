@@ -30,11 +30,20 @@ from mbsym.model.quantities import told_units, unit_of
 from mbsym.model.speeds import Quaternion
 from mbsym.model.system import System, rational
 from mbsym.problems.linearisation import Linearisation
-from mbsym.report.code.functions import Function, Functions, prescribed_value, words_of_inputs
+from mbsym.report.code.functions import (
+    Function,
+    Functions,
+    identifier,
+    initial_values,
+    ordered,
+    parameters_of,
+    prescribed_value,
+    python_definition,
+    starting,
+    words_of_inputs,
+)
 from mbsym.report.code.identifiers import prefix_of
-from mbsym.report.code.lookups import identifier, python_definition
 from mbsym.report.code.model_code import Solved, first_integrals, programs_of, solved, undetermined
-from mbsym.report.code.model_values import initial_values, ordered, parameters_of, starting
 from mbsym.report.code.named_dynamics import bodies, named_dynamics
 from mbsym.report.environment import rendered
 from mbsym.report.sections import section_of

@@ -7,8 +7,7 @@ from typing import Annotated
 from msgspec import UNSET, UnsetType, field
 
 from mbsym.problems.small_parameter.oscillation_result import Amplitude
-from mbsym.report.documents.base import ASIDE, Format, Part, SystemName, Version, told_apart_by
-from mbsym.report.documents.writer import version
+from mbsym.report.documents.base import ASIDE, Format, Part, SystemName, Version, told_apart_by, version
 
 
 class AmplitudeValue(Part, frozen=True):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from mbsym.expressions.table import Tabulated
 from mbsym.formulas.straight_line import Dialect
-from mbsym.report.code.lookups import identifier, python_definition
+from mbsym.report.code.functions import identifier, python_definition
 from mbsym.report.environment import rendered
 from mbsym.report.exports.interface import COMMON, Language, export
 from mbsym.report.numbers import number

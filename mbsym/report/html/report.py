@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any
 from markupsafe import Markup, escape
 
 from mbsym import __version__
-from mbsym.expressions.counting import counted
-from mbsym.expressions.message import Message
+from mbsym.expressions.message import Message, counted
 from mbsym.expressions.tree import text
 from mbsym.formulas.mathml import letter, mathml_names
 from mbsym.formulas.names import parts
@@ -21,12 +20,12 @@ from mbsym.model.system import System
 from mbsym.problems import NUMBERS
 from mbsym.report.code.interconnection import Interconnection, Joint, Kind, Node, interconnection
 from mbsym.report.content import Said
-from mbsym.report.html.environment import page
+from mbsym.report.html.environment import fragment, page
 from mbsym.report.html.writer import Writer
 from mbsym.report.language import Language
 from mbsym.report.lengths import COUNTED, PAPER, withheld
 from mbsym.report.results import contents, results
-from mbsym.source.meaning import meaning
+from mbsym.source.yaml_writer import meaning
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -236,3 +235,35 @@ def _name(name: str) -> str:
     if not all(piece.isdigit() for piece in split.indices):
         return name
     return (letter(split.greek) if split.greek else split.stem) + "".join(split.indices).translate(_SUBSCRIPTS)
+
+
+# Parts of ``report.html`` one by one, as fragments for a page that fills while results are derived.
+#
+# A fragment is what the same part of the report is, word for word, and its formulas carry what other programs read
+# (``html.formulas.spellings``).  Everything that comes from a description is escaped.
+
+
+#: What a report shows beside problems, with the titles that it gives them.
+PARTS = {
+    "summary": "What was found",
+    "system": "The system",
+    "claims": "Claims",
+    "checks": "Self-check",
+    "conventions": "Conventions",
+}
+
+
+def title(analysis: Analysis, part: str | int) -> str:
+    """As the report has it: ``Problem 6. Stability``, ``The system``."""
+    return str(title_in(analysis, part if isinstance(part, int) else PARTS[part]))
+
+
+def part_html(analysis: Analysis, part: str | int, problems: Sequence[int]) -> str:
+    """A part, or a problem by its number, told beside the results of ``problems``.
+
+    Raises KeyError for a part that there is not.
+    """
+    if isinstance(part, str) and part not in PARTS:
+        raise KeyError(part)
+    known, values = context(analysis, problems, part in ("summary", "claims", "checks"), spelled=True)
+    return fragment("part.html.j2", known, part=part, **values)

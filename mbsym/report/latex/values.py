@@ -26,7 +26,7 @@ from mbsym.report.latex.writer import Writer
 from mbsym.report.lengths import COUNTED, PAPER, PAPER_FORMS, withheld
 from mbsym.report.references import references
 from mbsym.report.results import contents, results
-from mbsym.source.meaning import meaning
+from mbsym.source.yaml_writer import meaning
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis

@@ -23,10 +23,10 @@ from mbsym.maps.slices import Layer, Picture, Stack
 from mbsym.model.system import System
 from mbsym.report.documents import branches, equilibria_map, parts
 from mbsym.report.documents import map as doc
-from mbsym.report.documents.writer import written
+from mbsym.report.documents.base import written
 from mbsym.report.maps.equilibria_json import coordinate_value
 from mbsym.report.sections.stability import verdict_data
-from mbsym.source.meaning import meaning
+from mbsym.source.yaml_writer import meaning
 
 #: Digits of numbers that are followed in floating point.
 DIGITS = 10

@@ -22,6 +22,7 @@ from mbsym.maps.slices import Layer, Stack, at_level
 from mbsym.maps.soft_borders import Onset
 from mbsym.maps.subdivision import Subdivision
 from mbsym.report.maps.words import cell_words
+from mbsym.report.runs.trajectory_csv import text_table
 
 #: Rows beyond this number are refused.
 MOST_POINTS = 1_000_000
@@ -105,13 +106,13 @@ def located_csv(points: Points, found: Map) -> str:
 
     The last one: soft, hard or open at a point where a pair of roots is imaginary and none to the right.
     """
-    out, locate = io.StringIO(newline=""), Locating(found)
+    locate = Locating(found)
     borders = len(found.axes) < 3 and found.of is not Of.EQUILIBRIA and not isinstance(found.ground, Subdivision)
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow((*points.header, WHERE, VERDICT, *([BORDER] if borders else [])))
-    for row, values in zip(points.rows, points.values, strict=True):
-        writer.writerow((*row, *locate(*values), *([locate.border(*values)] if borders else [])))
-    return out.getvalue()
+    rows = (
+        (*row, *locate(*values), *([locate.border(*values)] if borders else []))
+        for row, values in zip(points.rows, points.values, strict=True)
+    )
+    return text_table((*points.header, WHERE, VERDICT, *([BORDER] if borders else [])), rows)
 
 
 class Locating:

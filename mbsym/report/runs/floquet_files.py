@@ -8,8 +8,8 @@ from mbsym.expressions.message import Counted, Message, joined
 from mbsym.model.system import System
 from mbsym.numerics.orbits.floquet import Judged, Multiplier, Word
 from mbsym.report.documents import floquet as doc
-from mbsym.report.documents.writer import written
-from mbsym.source.meaning import meaning
+from mbsym.report.documents.base import written
+from mbsym.source.yaml_writer import meaning
 
 #: Digits of numbers that are shown.
 DIGITS = 12

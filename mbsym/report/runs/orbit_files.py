@@ -14,10 +14,11 @@ from mbsym.expressions.message import Counted, Message
 from mbsym.model.quantities import marked, unit_of
 from mbsym.numerics.orbits.periodic import Orbit
 from mbsym.report.documents import orbit as doc
-from mbsym.report.documents.writer import written as document
+from mbsym.report.documents.base import finite
+from mbsym.report.documents.base import written as document
 from mbsym.report.runs.trajectory_csv import written
 from mbsym.simulation.motions import PeriodicMotion
-from mbsym.source.meaning import meaning
+from mbsym.source.yaml_writer import meaning
 
 
 def orbit_csv(found: PeriodicMotion) -> str:
@@ -38,7 +39,7 @@ def orbit_json(found: PeriodicMotion) -> str:
         turns={name: float(turn) for name, turn in zip(orbit.names, orbit.turns, strict=True) if turn},
         energy=orbit.energy,
         closure=orbit.closure,
-        verified=doc.Verified(closure=orbit.verified if isfinite(orbit.verified) else None, method=orbit.verifier),
+        verified=doc.Verified(closure=finite(orbit.verified), method=orbit.verifier),
         newton_steps=orbit.steps,
         autonomous=orbit.autonomous,
         multipliers=[

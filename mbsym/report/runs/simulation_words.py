@@ -77,7 +77,7 @@ def setting_words(setting: Setting, scalar: str) -> Message:
 def error_lines(found: ErrorEstimate | NoEstimate) -> Iterator[Message]:
     """The error in words; nothing where none was asked for or the run says itself why it ended."""
     if isinstance(found, NoEstimate):
-        if found.why not in (Lacking.NOT_ASKED, Lacking.NOT_WHOLE, Lacking.INTERRUPTED):
+        if found.why not in (Lacking.NOT_ASKED, Lacking.NOT_WHOLE, Lacking.NOTHING, Lacking.INTERRUPTED):
             yield Message("not estimated: [[why]]", why=found.why)
         return
     better = joined([found.against.method, setting_words(found.against.setting, found.against.scalar)], ", ")

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from io import BytesIO
-from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -15,9 +14,9 @@ import numpy as np
 from mbsym.model.system import System
 from mbsym.numerics.ensembles.variation import Grid, Variation
 from mbsym.report.documents import sweep as doc
-from mbsym.report.documents.writer import written
+from mbsym.report.documents.base import finite, written
 from mbsym.report.runs.trajectory_csv import header, rows
-from mbsym.source.meaning import meaning
+from mbsym.source.yaml_writer import meaning
 from mbsym.sweeps.judged import VERDICT
 from mbsym.sweeps.points import Column, Points
 from mbsym.sweeps.statistics import LEVEL, Share, Totals
@@ -110,9 +109,9 @@ def sweep_json(
         ranges=[
             doc.Range(
                 column=one.column,
-                least=_finite(one.least),
-                mean=_finite(one.mean),
-                greatest=_finite(one.greatest),
+                least=finite(one.least),
+                mean=finite(one.mean),
+                greatest=finite(one.greatest),
                 missing=one.missing,
             )
             for one in totals.ranges()
@@ -134,7 +133,3 @@ def _share(one: Share) -> doc.Share:
     if one.interval is not None:
         found = doc.Interval(low=one.interval[0], high=one.interval[1], confidence=LEVEL)
     return doc.Share(word=one.word, count=one.count, total=one.total, interval=found)
-
-
-def _finite(value: float) -> float | None:
-    return value if isfinite(value) else None

@@ -10,9 +10,9 @@ from mbsym.algebra.tower import Element
 from mbsym.expressions.message import worded
 from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula
-from mbsym.problems.small_parameter.harmonics import Harmonics
-from mbsym.problems.small_parameter.oscillation_result import Amplitude
+from mbsym.problems.small_parameter.oscillation_result import Amplitude, Harmonics
 from mbsym.report.content import (
+    Definitions,
     Gaps,
     Listed,
     Math,
@@ -131,6 +131,28 @@ def coefficients(told: Oscillating) -> Iterator[Coefficient]:
             yield Coefficient(told.phase, True, order, told.formula(found.frequency * x))
 
 
+def collected(told: Oscillating) -> Iterator[Relation]:
+    """The same for people: factors that divide several coefficients have letters (``denominators``)."""
+    found = told.found
+    for name, series in zip(found.names, found.series, strict=True):
+        plain = without_velocity(name) if name in told.velocities else name
+        for order, one in enumerate(series):
+            if not one.is_zero:
+                yield Coefficient(plain, plain != name, order, told.shortest(one)).equation
+    for order, x in enumerate((found.tower.one, *found.corrections)):
+        if not x.is_zero():
+            value = told.shortest(Harmonics.constant(found.tower, found.frequency * x))
+            yield Coefficient(told.phase, True, order, value).equation
+
+
+def denominators(told: Oscillating) -> Definitions | None:
+    """What the letters stand for."""
+    tower, ring = told.found.tower, told.told_ring
+    made = [(name, tower.made(factor, tower.context.constant(1))) for factor, name in told.denominators]
+    items = tuple(Relation(Name(name, ring=ring), "=", told.formula(x)) for name, x in made)
+    return Definitions(Said("with"), items) if items else None
+
+
 def drifting(told: Oscillating) -> Iterator[Relation]:
     """Coefficients of variables that follow by integration: a rate times t, and what is periodic."""
     for one in told.found.drifts:
@@ -138,9 +160,12 @@ def drifting(told: Oscillating) -> Iterator[Relation]:
         for order, (rate, wave) in enumerate(zip_longest(one.rates, one.waves)):
             parts: list[Math | str] = []
             if rate is not None and not rate.is_zero():
-                parts += [Notation("t"), Listed((told.formula(rate),), brackets=True)]
+                parts += [
+                    Notation("t"),
+                    Listed((told.shortest(Harmonics.constant(told.found.tower, rate)),), brackets=True),
+                ]
             if wave is not None and not wave.is_zero:
-                parts += [*(["+"] if parts else []), told.wave(wave)]
+                parts += [*(["+"] if parts else []), told.shortest(wave)]
             if parts:
                 yield Relation(Raised(Name(plain, int(plain != one.variable)), order), "=", *parts)
 

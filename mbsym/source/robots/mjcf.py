@@ -12,14 +12,10 @@ from fractions import Fraction
 
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints
-from mbsym.source.robots.elements import Element
 from mbsym.source.robots.geoms import checked, is_solid, matter_of, shape_of, weighs
-from mbsym.source.robots.numbers import NOWHERE, Texts, decimal, degrees, number
 from mbsym.source.robots.orientation import TURNING, Angles, orientation
-from mbsym.source.robots.reader import Reader
-from mbsym.source.robots.robot import GROUND, Inertial, Joint, Link, Robot, Turns
-from mbsym.source.robots.spelling import check_spelling
-from mbsym.source.robots.ties import ties
+from mbsym.source.robots.reader import NOWHERE, Element, Reader, Texts, check_spelling, decimal, degrees, number
+from mbsym.source.robots.robot import GROUND, Inertial, Joint, Link, Robot, Turns, ties
 
 _KINDS = {"hinge": "turn", "slide": "slide", "ball": "ball", "free": "free"}
 

@@ -1,4 +1,4 @@
-"""What ``simulation.json`` says of events and of a section; the occurrences themselves are in the tables."""
+"""Events and sections of a run: what ``simulation.json`` and the terminal say of them, and their tables."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from mbsym.model.system import System
 from mbsym.numerics.events.events import MOST, Occurrence, Occurrences
 from mbsym.numerics.events.surfaces import Event
 from mbsym.report.documents import simulation as doc
+from mbsym.report.runs.trajectory_csv import text_table
 from mbsym.report.unit_text import pretty
 from mbsym.simulation import Simulation
 from mbsym.simulation.watching import SectionPoints
@@ -87,7 +88,10 @@ def events_lines(run: Simulation) -> Iterator[tuple[str, Message]]:
         yield "event", Message("[[event]]: [[said]]", event=event.name, said=joined(told, "; "))
     if found.ended is not None:
         time = with_unit(f"{found.ended.time:.9g}", unit)
-        yield "stopped", Message("at t = [[time]] by [[event]]", time=time, event=found.events[found.ended.event].name)
+        text = "at t = [[time]] by [[event]]"
+        if found.ended.time <= (0.0 if run.request.earlier is None else run.request.earlier.time):
+            text = "at t = [[time]] by [[event]], which holds at the start: nothing was integrated"
+        yield "stopped", Message(text, time=time, event=found.events[found.ended.event].name)
     for event in found.undecided:
         text = "[[event]]: the two sides were equal all along within the error of a step: nothing can be told"
         yield "warning", Message(text, event=event.name)
@@ -110,7 +114,7 @@ def events_lines(run: Simulation) -> Iterator[tuple[str, Message]]:
 
 def events_csv(found: Occurrences, system: System, radii: Sequence[float | None] | None = None) -> str:
     """The text of events.csv; ``radii`` of a certificate stand in a column of their own."""
-    names = [cell(event.name) for event in found.events]
+    names = [event.name for event in found.events]
     time_unit = unit_of(system, "t")
     proved = [] if radii is None else [marked("t_radius", time_unit)]
     header = [marked("t", time_unit), *proved, "event", "direction", *_states(system)]
@@ -121,7 +125,7 @@ def events_csv(found: Occurrences, system: System, radii: Sequence[float | None]
             found.times, columns, found.which, found.turns, found.states.T, strict=True
         )
     )
-    return "\n".join([",".join(map(cell, header)), *map(",".join, rows), ""])
+    return text_table(header, rows)
 
 
 def section_csv(found: SectionPoints, system: System) -> str:
@@ -133,12 +137,7 @@ def section_csv(found: SectionPoints, system: System) -> str:
         [_number(time), str(turn), *map(_number, point[shown]), *map(_number, state)]
         for time, turn, point, state in zip(found.times, found.turns, found.points.T, found.states.T, strict=True)
     )
-    return "\n".join([",".join(map(cell, header)), *map(",".join, rows), ""])
-
-
-def cell(text: str) -> str:
-    """Quoted where it has to be."""
-    return '"' + text.replace('"', '""') + '"' if any(c in text for c in ',"\r\n') else text
+    return text_table(header, rows)
 
 
 def _states(system: System) -> Sequence[str]:
