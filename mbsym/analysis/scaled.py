@@ -226,6 +226,11 @@ def _groups(base: System, scaling: Scaling, preferred: Sequence[str] = ()) -> Gr
     exponents = {name: vector(name) for name in free}
     candidates = [name for name in (*preferred, *scaling.units, *free) if signs.get(name) == "positive"]
     units = independent(candidates, exponents)
+    lost = next((name for name in free if len(independent((*units, name), exponents)) > len(units)), None)
+    if lost is not None and lost not in units:
+        raise NoDescription(
+            Message("nothing that is positive measures [[name]]", name=lost), remedy="say what it is in new names"
+        )
     rate = [fmpq(-int(base_ == "s")) for base_ in bases]
     moving = (*base.coordinates, *base.variables, *(one.name for one in base.prescribed), *base.input_names)
     return measured_in(exponents, units, rate, {name: vector(name) for name in moving})
@@ -236,7 +241,10 @@ def proposed(system: System, dimensions: Scaling, preferred: Sequence[str]) -> s
 
     ``dimensions`` are those of a scaling that changes nothing.
     """
-    found = _groups(system, dimensions, preferred)
+    try:
+        found = _groups(system, dimensions, preferred)
+    except NoDescription:
+        return ""
     known = {*system.parameter_names, *system.coordinates, *system.variables}
     items = []
 

@@ -167,6 +167,14 @@ def test_a_number_with_a_dimension_has_no_place_among_dimensionless_ones(text: s
         in_variables(system, scaling(system, "t=tau/w,g=l*w**2"))
 
 
+def test_what_nothing_measures_is_named() -> None:
+    """The sleigh's speed v may have either sign, and no other name holds the time."""
+    system = mbsym.load(SYSTEMS / "chaplygin-sleigh.yaml").system
+    with pytest.raises(NoDescription, match="measures v"):
+        in_variables(system, scaling(system, "x=a*x1,y=a*y1,J=m*a**2*j"))
+    assert in_scale(system, scaling(system, "x=a*x1,y=a*y1,J=m*a**2*j,t=tau*a/u,v=u*w"))
+
+
 def test_signs_go_over_to_what_is_put_in() -> None:
     """d = c/(m w) has the sign of c; where the sign of a name does not follow it is assumed of the expression."""
     system, _ = read(MOTION.replace("REST", "l"))
