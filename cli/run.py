@@ -10,6 +10,7 @@ import click
 
 from mbsym_cli.console import BAD_INPUT, OK, OutPath, read_description
 from mbsym_cli.files import REPORTS, safe_name
+from mbsym_cli.letters import with_letters
 from mbsym_cli.options import Options
 from mbsym_cli.reports import Request, report_on
 from mbsym_cli.run_ledger import Asked, ledger_options
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
     help="products, sums or shorter: sin and cos of sums of angles in every file.  [default: the shorter form of each "
     "formula for people, products for programs]",
 )
+@with_letters
 @click.option(
     "--form", "forms", default="lagrange", metavar="FORMS", help="Of problem 3, beside Lagrange's: routh, hamilton."
 )
@@ -55,6 +57,7 @@ def command(
     detail: str,
     terms: str,
     angles: str | None,
+    letters: str | None,
     forms: str,
     animate: str | None,
     language: str | None,
@@ -162,6 +165,7 @@ def command(
         verbose,
         wanted or detail,
         settings,
+        letters,
     )
     worst = OK
     base = None if out is not None and len(paths) == 1 else out or REPORTS
