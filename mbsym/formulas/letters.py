@@ -1,11 +1,12 @@
 """Formulas in an author's own letters: symbols of the description put in for what they stand for, exactly.
 
-A letter L that stands for N/D is the relation L D - N = 0.  Where that is A v^d + B = 0 with A and B free of a symbol v,
-v^d may be written as -B/A, which takes v out of a formula (d = 1) or its high powers; all that cancels is cancelled.
-What is left equals the formula by the relations alone, so that putting the definitions back gives it again, in the
-ring.  Such steps are taken one by one, the one that leaves least to read first, as long as each leaves less
-(``size``: names, numbers, functions, signs, brackets, fractions) by a tenth at least and brings in neither other symbols
-nor denominators, and all of them together save a fifth.  Letters that were asked for take out a symbol wherever they can.
+A letter L that stands for N/D is the relation L D - N = 0.  Where that is A v^d + B = 0 with A and B free of a symbol
+v, v^d may be written as -B/A, which takes v out of a formula (d = 1) or its high powers; all that cancels is cancelled.
+What is left equals the formula by the relations alone: putting the definitions back gives it again, in the ring.
+Such steps are taken one by one, the one that leaves least to read first, as long as each leaves less
+(``size``: names, numbers, functions, signs, brackets, fractions) by a tenth at least and brings in neither other
+symbols nor denominators, and all of them together save a fifth.  Letters that were asked for take out a symbol
+wherever they can.
 
 Which letters there are is said once around all that is written (``letters_as``); printers ask ``lettered``.
 """

@@ -1,4 +1,4 @@
-"""The author's letters in results: which there are, around all that is written, and what those stand for that are used."""
+"""The author's letters in results: which there are, and what those stand for that are used."""
 
 from __future__ import annotations
 
