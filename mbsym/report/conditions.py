@@ -14,7 +14,7 @@ from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.stability import Stability, SubsystemStability
 from mbsym.problems.stability.requirements import PART, REVERSED, Case, Place, Requirement
 from mbsym.problems.stability.word import Word
-from mbsym.report.coefficients import InCoefficients, in_coefficients, names_in
+from mbsym.report.coefficients import InCoefficients, in_coefficients, is_letter, names_in
 
 #: Places that are told with the condition: the others are those of the list as a whole.
 _TOLD = (Place.METHOD, Place.FIRST, Place.HARMLESS, Place.STRICTLY, Place.BESIDE, Place.EQUALITY)
@@ -66,7 +66,8 @@ class Labels:
 def label_meanings(ring: Ring, requirements: Sequence[Requirement]) -> Labels:
     """The meaning of the labels where these requirements are told."""
     forms = [form for one in requirements if (form := in_coefficients(ring, one)) is not None]
-    return Labels(frozenset(name for form in forms for name in form.names), names_in(ring))
+    same = {x for one in requirements if is_letter(Formula(ring, one.polynomial), x := _bare(one.label))}
+    return Labels(frozenset(name for form in forms for name in form.names), names_in(ring) - same)
 
 
 def statements(
