@@ -256,7 +256,7 @@ def _terminal_line(words: str) -> Line:
         return Line(symbol, None, relation, under=symbol)
     if formula.startswith("["):
         return Line(symbol, None, relation)
-    if re.fullmatch(r"-?[av]\d+\^\(\d+\)", formula) or re.search(r" of |, |minor|subdisc", formula):
+    if re.fullmatch(r"-?[av]\d+\^\(\d+\)", formula) or re.search(r" of |, |minor|subdisc|condition ", formula):
         return Line(symbol, None, relation, under=_terminal_label(formula))
     return Line(
         symbol, readable(formula), relation, symbol=label if re.fullmatch(r"[av]\d+", label) else "", alone=formula
