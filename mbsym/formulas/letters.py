@@ -13,8 +13,9 @@ Which letters there are is said once around all that is written (``letters_as``)
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from dataclasses import dataclass
 from fractions import Fraction
@@ -33,7 +34,7 @@ from mbsym.formulas.tree import angles_or
 
 #: Longer formulas stay as they are: nobody reads them, and it may take long.
 MOST_TERMS = 400
-#: Candidate terms of products that all steps of one formula may take.
+#: Candidate terms of products that the steps of one formula may take, by each route.
 WORK = 20_000_000
 #: So many of the candidates with the fewest terms are written out, to see which is the shortest to read.
 WRITTEN = 8
@@ -146,7 +147,10 @@ class Written:
 
 @dataclass(frozen=True)
 class _Step:
-    """``symbol``**``degree`` = -``rest``/``factor``, by the definition of ``letter``; ``brings`` what it brings in."""
+    """``symbol``**``degree`` = -``rest``/``factor``, by the definition of ``letter``; ``brings`` what it brings in.
+
+    ``given``: as the definition has it, with earlier letters in it.
+    """
 
     letter: str
     symbol: int
@@ -154,6 +158,7 @@ class _Step:
     factor: Polynomial
     rest: Polynomial
     brings: frozenset[int]
+    given: bool
 
 
 #: A numerator, and factors of the denominator with their exponents.
@@ -187,6 +192,9 @@ class Rewriter:
         self._read_so(ring, moving)
         self._carry = Carrier(ring, self.ring, self.named)
         self.steps = [step for name in self.values if name in letters.wanted for step in self._steps_of(name)]
+        letter = set(self.places.values())
+        self.chained = [x for x in self.steps if x.given and x.degree == 1 and x.symbol not in letter]
+        self.sharing = Counter(k for name in letters.wanted if name in self.values for k in self._symbols(name))
 
     @staticmethod
     def _expanded(letters: Letters, held: set[str], ring: Ring) -> dict[str, Expression]:
@@ -213,6 +221,10 @@ class Rewriter:
         self.ring.resting = frozenset(place for name, place in places.items() if name in mixed)
         self.ring.leading = frozenset(places.values()) - self.ring.resting
 
+    def _symbols(self, name: str) -> set[int]:
+        """The generators that a letter is made of."""
+        return {k for x in names(self.values[name]) if x in self.named for k in occurring([self.named[x]])}
+
     def _steps_of(self, name: str) -> Iterator[_Step]:
         """What the definition of a letter allows to write differently, with earlier letters in it and without."""
         ring, letter = self.ring, self.named[name]
@@ -231,9 +243,9 @@ class Rewriter:
             for relation in relations:
                 if relation not in seen:
                     seen.append(relation)
-                    yield from self._solved(name, relation)
+                    yield from self._solved(name, relation, value is given)
 
-    def _solved(self, name: str, relation: Polynomial) -> Iterator[_Step]:
+    def _solved(self, name: str, relation: Polynomial, given: bool) -> Iterator[_Step]:
         own, held = self.places[name], occurring([relation])
         if own not in held:
             return
@@ -246,7 +258,7 @@ class Rewriter:
             factor, rest = powers[degree], powers[0]
             if degree > 1 and not factor.is_constant():
                 continue
-            yield _Step(name, symbol, degree, factor, rest, frozenset(held) - {own, symbol})
+            yield _Step(name, symbol, degree, factor, rest, frozenset(held) - {own, symbol}, given)
 
     # --- writing -----------------------------------------------------------------------------------------------------
 
@@ -262,7 +274,7 @@ class Rewriter:
         if not self.steps or len(polynomial) > MOST_TERMS or polynomial.is_constant():
             return None
         try:
-            with self.ring.whole.budget(WORK), self.ring.budget(WORK):
+            with self.ring.whole.budget(WORK):
                 return self._shortest(polynomial)
         except (Failure, ZeroDivisionError):  # as it is it can be read, too
             return None
@@ -272,20 +284,61 @@ class Rewriter:
         found: _Fraction = ring.fraction(self._carry(polynomial))
         if not self._applicable(found, self.steps, True):
             return None
-        raw = least = size(whole, polynomial)
-        best: Polynomial | None = None
-        for name in self.letters.wanted if self.letters.asked else ():
-            own = [step for step in self.steps if step.letter == name and step.degree == 1]
-            tried = self._tried(found, own, forced=True)
-            if tried is not None:
-                least, found, best = tried
-        while (tried := self._tried(found, self.steps)) is not None and tried[0] <= least * STEP:
-            least, found, best = tried
-        if best is None or (least > raw * SHORTER and not self.letters.asked):
+        routes: list[_Fraction] = []
+        if not self.letters.asked:
+            routes.append(self._improved(found))
+        with suppress(Failure, ZeroDivisionError), ring.budget(WORK):
+            chain = self._chain(found)
+            if chain is not None:
+                routes.append(self._improved(chain))
+        routes = [x for x in routes if x is not found]
+        if not routes:
+            return None
+        found = min(routes, key=self._read)
+        best = self._joined(found)
+        if not self.letters.asked and size(ring, best) > size(whole, polynomial) * SHORTER:
             return None
         held = self._held(found)
         used = frozenset(name for name in self.values if self.places[name] in held)
         return Written(ring, best, used)
+
+    def _improved(self, found: _Fraction) -> _Fraction:
+        """What single steps make of it, each of which leaves less to read."""
+        least = self._read(found)
+        with suppress(Failure), self.ring.budget(WORK):  # what is found within the budget is as good
+            while (tried := self._tried(found)) is not None and tried[0] <= least * STEP:
+                least, found = tried
+        return found
+
+    def _read(self, found: _Fraction) -> int:
+        """How much there is to read of a numerator and its denominator; nothing is adjoined for it."""
+        return size(self.ring, found[0]) + sum(1 + (n != 1) + size(self.ring, x) for x, n in found[1])
+
+    def _chain(self, found: _Fraction) -> _Fraction | None:
+        """One symbol for each letter that is not made of letters alone: A = a C, B = b C, lz = n C r; None for no step.
+
+        The symbol is one that leaves no denominator, and that few letters hold.  Only letters that were asked for bring
+        in other symbols.
+        """
+        start, gone, taken = self._held(found), set[int](), 0
+        if self.letters.asked and len(found[0]) == 1 and found[0].total_degree() == 1 and not found[1]:
+            return None  # a symbol
+        start |= set(self.places.values())
+        for name in self.values:
+            own = [
+                x for x in self.chained if x.letter == name and x.symbol not in gone and x.symbol in self._held(found)
+            ]
+            if not self.letters.asked:
+                own = [x for x in own if x.brings <= start]
+            if own:
+                step = min(
+                    own, key=lambda x: (not x.brings <= start, not x.factor.is_constant(), self.sharing[x.symbol])
+                )
+                after = self._after(found, step)
+                if after is not None:
+                    found, taken = after, taken + 1
+                    gone.add(step.symbol)
+        return found if taken else None
 
     def _held(self, found: _Fraction) -> set[int]:
         """The generators of a fraction, and those in what is adjoined."""
@@ -296,27 +349,20 @@ class Rewriter:
         held = self._held(found)
         return [x for x in steps if x.symbol in held and (forced or x.brings <= held)]
 
-    def _tried(
-        self, found: _Fraction, steps: Iterable[_Step], forced: bool = False
-    ) -> tuple[int, _Fraction, Polynomial] | None:
-        """(length, what is left, as a polynomial) by the step that leaves least to read."""
+    def _tried(self, found: _Fraction) -> tuple[int, _Fraction] | None:
+        """(how much there is to read, what is left) by the step that leaves least."""
         candidates: list[tuple[int, int, _Fraction]] = []
-        for step in self._applicable(found, steps, forced):
+        for step in self._applicable(found, self.steps):
             try:
                 after = self._after(found, step)
             except (Failure, ZeroDivisionError):
                 continue
-            if after is not None and (forced or len(after[1]) <= len(found[1])):
+            if after is not None and len(after[1]) <= len(found[1]):
                 polynomials = [after[0], *(x for x, _ in after[1])]
                 terms = sum(map(len, polynomials)) + len(occurring(polynomials))
                 candidates.append((terms, len(candidates), after))
-        best: tuple[int, _Fraction, Polynomial] | None = None
-        for _, _, after in sorted(candidates)[:WRITTEN]:
-            polynomial = self._joined(after)
-            read = size(self.ring, polynomial)
-            if best is None or read < best[0]:
-                best = read, after, polynomial
-        return best
+        shown = [x for _, _, x in sorted(candidates, key=lambda x: x[:2])[:WRITTEN]]
+        return min(((self._read(x), x) for x in shown), key=lambda x: x[0], default=None)
 
     def _joined(self, found: _Fraction) -> Polynomial:
         ring, result = self.ring, found[0]
