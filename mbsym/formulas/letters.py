@@ -6,7 +6,7 @@ What is left equals the formula by the relations alone: putting the definitions 
 Such steps are taken one by one, the one that leaves least to read first, as long as each leaves less
 (``size``: names, numbers, functions, signs, brackets, fractions) by a tenth at least and brings in neither other
 symbols nor denominators, and all of them together save a fifth.  Letters that were asked for take out a symbol
-wherever they can.
+wherever that leaves no denominator.
 
 Which letters there are is said once around all that is written (``letters_as``); printers ask ``lettered``.
 """
@@ -40,6 +40,8 @@ WORK = 20_000_000
 WRITTEN = 8
 #: What is left to read at most, as a share of what there was: after one step, and after all of them.
 STEP, SHORTER = Fraction(9, 10), Fraction(4, 5)
+#: With more letters than this that hold declared symbols they are tried one by one only.
+MOST_CHAINED = 16
 #: Generators beside those of the ring, for what the definitions adjoin.
 FURTHER = 24
 
@@ -193,7 +195,14 @@ class Rewriter:
         self._carry = Carrier(ring, self.ring, self.named)
         self.steps = [step for name in self.values if name in letters.wanted for step in self._steps_of(name)]
         letter = set(self.places.values())
-        self.chained = [x for x in self.steps if x.given and x.degree == 1 and x.symbol not in letter]
+        other = letter - {self.places[name] for name in letters.wanted if name in self.places}
+        self.steps = [x for x in self.steps if not x.brings & other and x.symbol not in other]
+        given = {x.letter for x in self.steps if x.given}
+        self.chained = [
+            x for x in self.steps if (x.given or x.letter not in given) and x.degree == 1 and x.symbol not in letter
+        ]
+        if len({x.letter for x in self.chained}) > MOST_CHAINED:
+            self.chained = []
         self.sharing = Counter(k for name in letters.wanted if name in self.values for k in self._symbols(name))
 
     @staticmethod
@@ -284,9 +293,7 @@ class Rewriter:
         found: _Fraction = ring.fraction(self._carry(polynomial))
         if not self._applicable(found, self.steps, True):
             return None
-        routes: list[_Fraction] = []
-        if not self.letters.asked:
-            routes.append(self._improved(found))
+        routes = [self._improved(found)]
         with suppress(Failure, ZeroDivisionError), ring.budget(WORK):
             chain = self._chain(found)
             if chain is not None:
@@ -317,23 +324,20 @@ class Rewriter:
     def _chain(self, found: _Fraction) -> _Fraction | None:
         """One symbol for each letter that is not made of letters alone: A = a C, B = b C, lz = n C r; None for no step.
 
-        The symbol is one that leaves no denominator, and that few letters hold.  Only letters that were asked for bring
-        in other symbols.
+        The symbol is one that leaves no denominator, and that few letters hold.  For letters that were asked for, which
+        are taken also where nothing gets shorter, there is no other.
         """
         start, gone, taken = self._held(found), set[int](), 0
         if self.letters.asked and len(found[0]) == 1 and found[0].total_degree() == 1 and not found[1]:
             return None  # a symbol
         start |= set(self.places.values())
         for name in self.values:
-            own = [
-                x for x in self.chained if x.letter == name and x.symbol not in gone and x.symbol in self._held(found)
-            ]
-            if not self.letters.asked:
-                own = [x for x in own if x.brings <= start]
+            held = self._held(found)
+            own = [x for x in self.chained if x.letter == name and x.symbol in held - gone and x.brings <= start]
+            if self.letters.asked:
+                own = [x for x in own if x.factor.is_constant()]
             if own:
-                step = min(
-                    own, key=lambda x: (not x.brings <= start, not x.factor.is_constant(), self.sharing[x.symbol])
-                )
+                step = min(own, key=lambda x: (not x.factor.is_constant(), self.sharing[x.symbol]))
                 after = self._after(found, step)
                 if after is not None:
                     found, taken = after, taken + 1

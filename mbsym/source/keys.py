@@ -659,7 +659,7 @@ SYSTEM = {
         label="initial state",
     ),
     "abbreviations": Key(
-        "a publication's own symbols for use in claims, in order: {c1: mA + mB, ...}", Named(_FORMULA)
+        "an author's own symbols for claims and results, in order: {c1: mA + mB, ...}", Named(_FORMULA)
     ),
     "source": Key("where the system is from: a publication, for the references of reports", _TEXT),
     "latex": Key(
