@@ -13,10 +13,11 @@ from mbsym.expressions.tree import CONSTANTS, Expression, Name, names, substitut
 from mbsym.model.system import velocity_name
 from mbsym.source import render_option
 from mbsym.source.scope import did_you_mean, listed
-from mbsym_cli.lacking import missing
+from mbsym.studies.study import missing as unfit
 from mbsym_cli.options import MAX_LENGTH, Options
 
 if TYPE_CHECKING:
+    from mbsym.model.scaling import Scaling
     from mbsym.model.system import System
     from mbsym.numerics.scenario import Lack, Scenario
 
@@ -136,6 +137,31 @@ def with_settings(file: Path, system: System, settings: Sequence[str], options: 
     return with_values(system, values)
 
 
+def scaling_of(text: str, system: System, options: Options) -> Scaling | None:
+    """What ``--scale`` says; every complaint joins those of ``options``."""
+    from mbsym.source.scaling import read_scaling
+
+    text, complaints = " ".join(text.splitlines()), Complaints()
+    found = read_scaling(text, system, complaints)
+    options.complaints += [render_option(one, text, "--scale") for one in complaints.sorted()]
+    return found
+
+
+def in_scale(system: System, text: str, options: Options) -> System | None:
+    """The description in the variables of ``--scale``; why there is none joins the complaints of ``options``."""
+    from mbsym.algebra.failures import Failure
+    from mbsym.studies.groups import in_scale as described
+
+    scaling = scaling_of(text, system, options)
+    try:
+        return None if scaling is None else described(system, scaling)
+    except Failure as error:
+        told = f"there is no description in these variables: {error.reason}"
+        hint = error.remedy or "'mbsym show --scale' prints equations and integrals in them"
+        options.complain("--scale", "no-description", told, hint)
+    return None
+
+
 def contradictions(file: Path, lack: Lack, assigned: Assigned, options: Options) -> None:
     """Values that contradict a sign or a relation, or are none: said of ``--set`` where they come from there."""
     for one in lack.contradictions:
@@ -187,3 +213,12 @@ def _check_target(name: str, span: Span, system: System, complaints: Complaints)
     hint = did_you_mean(name, _settable(system)) or listed("these have values", _settable(system))
     complaints.error("unknown-name", f"there is nothing called {ascii_safe(name)} to set", span, hint)
     return False
+
+
+# What has no value, said once, with how to give it.
+
+
+def missing(file: Path, shown: Sequence[str], what: str = "value") -> str:
+    """One complaint about all names without a value; a coordinate is shown as ``x (its initial position)``."""
+    one = unfit(shown, what)
+    return render_option(Complaint(one.code, one.message, None, one.hint), "", str(file))

@@ -7,6 +7,7 @@ import os
 import re
 import shutil
 import sys
+import time
 import traceback
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
@@ -21,16 +22,16 @@ from mbsym.algebra.parts import missing
 from mbsym.expressions.message import Message
 from mbsym.expressions.safe import UNBROKEN
 from mbsym.expressions.safe import safe as escaped
+from mbsym.studies.study import Watch, unwatched
 
 if TYPE_CHECKING:
     from rich.console import Console
     from rich.status import Status
-    from rich.table import Table
     from rich.text import Text
 
     from mbsym.model.system import System
     from mbsym.report.plain_writer import Line
-    from mbsym.studies.study import Rows
+
 
 #: Exit codes: everything held; a result failed its self-check, or is missing; the input is wrong.
 OK, FAILED, BAD_INPUT = 0, 1, 2
@@ -202,36 +203,6 @@ def show(lines: Iterable[Line], indent: int = 2) -> None:
         tell(" " * indent, *parts, whole=whole, margin=None if margin is None else margin + indent)
 
 
-#: Columns of a wide table that does not go to a terminal.
-WIDE = 400
-
-
-def show_rows(table: Rows) -> None:
-    """A table as wide as it must be where nobody's screen is the limit, if it is a wide one."""
-    from rich.console import Console
-
-    out = console()
-    (Console(width=WIDE, highlight=False) if table.wide and not out.is_terminal else out).print(rich_table(table))
-
-
-def rich_table(table: Rows) -> Table:
-    """Numbers of a wide table never fold; what else it holds does."""
-    from rich.table import Table
-    from rich.text import Text
-
-    shown = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold cyan")
-    for place, one in enumerate(table.columns):
-        whole = table.wide and one.right
-        width = max((len(Text.assemble(row[place])) for row in table.rows), default=0)
-        shown.add_column(
-            Text(one.name), justify="right" if one.right else "left", style=one.style,
-            overflow="fold" if one.fold or whole else "ellipsis", min_width=width if whole else None,
-        )  # fmt: skip
-    for row in table.rows:
-        shown.add_row(*(Text.assemble(cell) for cell in row))
-    return shown
-
-
 def indented(text: Text, indent: int) -> None:
     """Wrapped with a hanging indent on a terminal; one line elsewhere, so that nothing is cut from a log."""
     from rich.padding import Padding
@@ -311,7 +282,7 @@ def read_held(file: Path, command: str, constrained: bool = False, moving: bool 
     takes systems that are given by their matrices, too.
     """
     from mbsym.expressions.tree import text
-    from mbsym.model.driven import held
+    from mbsym.model.substitution import held
 
     system = read_description(file, "" if constrained else command, command if moving else "")
     if system is None or not system.inputs:
@@ -379,3 +350,64 @@ class OutPath(click.Path):
         if not str(value).strip():
             self.fail("it is empty (an unset variable?); write . for this folder", param, ctx)
         return super().convert(value, param, ctx)
+
+
+# What is being done, on standard error: words with a bar, or a bar over simulated time or whatever is counted.
+
+
+@contextmanager
+def progress(quiet: bool, name: str, end: float, what: str = "t") -> Iterator[Callable[[float], None]]:
+    """On standard error; nothing where that is no terminal.  ``what`` is counted: the time, unless it is said."""
+    if quiet or not sys.stderr.isatty():
+        yield lambda t: None
+        return
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+
+    bar = Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TaskProgressColumn(),
+        TextColumn(what + " = {task.completed:.4g}"),
+        TimeRemainingColumn(),
+        console=console(stderr=True),
+        transient=True,
+    )
+    with bar:
+        task = bar.add_task(name, total=end)
+        shown = 0.0
+
+        def watch(t: float) -> None:
+            nonlocal shown
+            now = time.monotonic()
+            if now - shown > 0.05:
+                shown = now
+                bar.update(task, completed=t)
+
+        yield watch
+
+
+@contextmanager
+def watching(quiet: bool, name: str) -> Iterator[Watch]:
+    """What a study is doing, and a bar that fills where that is counted; nothing where there is no terminal."""
+    if quiet or not sys.stderr.isatty():
+        yield unwatched
+        return
+    from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+    words = TextColumn("{task.description}", markup=False)
+    bar = Progress(
+        SpinnerColumn(), words, BarColumn(), TimeElapsedColumn(), console=console(stderr=True), transient=True
+    )
+    with bar:
+        task = bar.add_task(printable(name), total=None)
+        said, shown = "", 0.0
+
+        def watch(text: str, done: float = 0.0, whole: float = 0.0) -> None:
+            nonlocal said, shown
+            now = time.monotonic()
+            if text != said or now - shown > 0.05:
+                said, shown = text, now
+                told = f"{printable(name)}: {printable(text)}" if text else printable(name)
+                bar.update(task, description=told, completed=done, total=whole or None)
+
+        yield watch

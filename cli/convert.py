@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import sys
+from codecs import BOM_UTF8
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 
 import click
 
-from mbsym.source import read, to_text, to_yaml
-from mbsym_cli.console import BAD_INPUT, FAILED, OutPath, complain, printable, read_description
+from mbsym.expressions.message import counted
+from mbsym.expressions.place import Complaints
+from mbsym.source import read, render, to_text, to_yaml
+from mbsym_cli.assignments import in_scale
+from mbsym_cli.console import BAD_INPUT, FAILED, OutPath, complain, diagnose, printable, read_description
 from mbsym_cli.files import write_whole
 from mbsym_cli.options import Options
-from mbsym_cli.robots import Choices, described, robot_text
 
 
 @click.command("convert")
@@ -21,12 +25,13 @@ from mbsym_cli.robots import Choices, described, robot_text
 @click.option("--floating", is_flag=True, help="Of a robot: its first link moves freely, by six coordinates.")
 @click.option("--symbols", is_flag=True, help="Of a robot: masses, lengths, moments are parameters with values.")
 @click.option("--no-damping", is_flag=True, help="Of a robot: without dampers and springs of joints.")
-@click.option("--no-inputs", is_flag=True, help="Of a robot: without an input, torque or force, in driven joints.")
+@click.option("--no-inputs", is_flag=True, help="Of a robot: without inputs, torques or forces, in joints.")
 @click.option(
     "--angles",
     type=click.Choice(["snap", "exact"]),
     help="Of a robot: 1.5708 is pi/2 (snap, the default; it is told), or stays the number that it is (exact).",
 )
+@click.option("--scale", metavar="LIST", help="In dimensionless variables: x=L*x1,t=tau/omega0,k=m*omega0**2*kappa.")
 @click.option("--out", type=OutPath(path_type=Path, dir_okay=False), help="Default: standard output.")
 def command(
     file: Path,
@@ -36,19 +41,30 @@ def command(
     no_damping: bool,
     no_inputs: bool,
     angles: str | None,
+    scale: str | None,
     out: Path | None,
 ) -> None:
     """Convert a description between YAML and the editor's plain text, or make one of a robot's URDF or MJCF.
 
     Between the two spellings comments are not kept; everything that has a meaning is.  Of a robot, what rigid bodies
-    have no place for (contacts, sensors, ...) is left out, and listed, on the terminal and in every
-    report; a link that hangs on two joints is an error.  In driven joints the torque or force is an input, tau_NAME;
-    joints that mimic others follow them exactly.  Links and named sites without mass are frames: massless bodies.
+    have no place for (contacts, sensors, ...) is left out, and listed, on the terminal and in every report; a link
+    that hangs on two joints is an error.  In joints that an actuator drives, and in every joint of a URDF, which does
+    not tell, the torque or force is an input, tau_NAME; joints that mimic others follow them exactly.  Links and named
+    sites without mass are frames: massless bodies.
+
+    With --scale the description is written in dimensionless variables of yours.  Left of = stands a name of FILE, right
+    of it what is put in: of a coordinate, a speed or the time t a factor times its new name; of a parameter anything.
+    Other new names are parameters.  New variables are pure numbers; so is a new parameter that stands once only, at a
+    parameter.  Names of units (those of factors first, then the first positive ones) become 1, and what has
+    a dimension still is measured in them.  The equations of both are compared exactly before anything is written.
+    Names in factors are taken to be positive.  Claims, abbreviations, limits and units of measurement are left out.
+    'mbsym groups' proposes such a list.
 
     \b
     Examples:
       mbsym convert systems/satellite.yaml --out satellite.txt
       mbsym convert robot.urdf --symbols --out robot.yaml
+      mbsym convert systems/simple-pendulum.yaml --to yaml --scale "t=tau/w,J=j*m*l**2,g=l*(1+j)*w**2,b=m*l**2*w*d"
     """
     asked = Options()
     if out is not None and _same(out, file):
@@ -69,6 +85,10 @@ def command(
             complain(file, f"is no URDF or MJCF: {options} mean nothing here")
             sys.exit(BAD_INPUT)
         written, system = None, read_description(file)
+    if system is not None and scale is not None:
+        written, system = None, in_scale(system, scale, asked)
+        if asked.refused(file):
+            sys.exit(BAD_INPUT)
     if system is None:
         sys.exit(BAD_INPUT)
     if spelling is None:
@@ -89,3 +109,92 @@ def _same(one: Path, other: Path) -> bool:
     with suppress(OSError, ValueError):
         return one.samefile(other)
     return False
+
+
+# What ``mbsym convert`` does with a robot's file: reads it, complains, and tells what is left out.
+
+
+#: Of a file so many bytes are read to see what it is, and at all.
+_LOOK, _MOST = 20_000, 40_000_000
+#: Of angles that are read as parts of pi so many are told one by one; all of them stand in the description.
+SHOWN = 3
+
+
+@dataclass(frozen=True)
+class Choices:
+    """How a robot is described."""
+
+    floating: bool
+    symbols: bool
+    damping: bool
+    exact_angles: bool
+    inputs: bool
+
+
+def robot_text(file: Path) -> str | None:
+    """The text of a URDF or MJCF file; None of everything else, and of what cannot be read."""
+    try:
+        with file.open("rb") as stream:
+            head = stream.read(_LOOK)
+            if not head.removeprefix(BOM_UTF8).lstrip().startswith(b"<"):
+                return None
+            from mbsym.source.robots import is_robot  # descriptions are no XML
+
+            if not is_robot(head.decode("utf-8", "replace")):
+                return None
+            data = head + stream.read(_MOST)
+    except OSError:
+        return None
+    return data.decode("utf-8", "replace")
+
+
+def _beside(file: Path, name: str) -> str | None:
+    """The text of a file in the folder of another one, or in a folder in that; None where there is none."""
+    folder, other = file.parent.resolve(), (file.parent / name).resolve()
+    if not other.is_relative_to(folder):
+        return None
+    try:
+        with other.open("rb") as stream:
+            return stream.read(_MOST).decode("utf-8", "replace")
+    except (OSError, ValueError):
+        return None
+
+
+def described(file: Path, text: str, choices: Choices) -> str | None:
+    """The description in YAML, after saying what it leaves out; None after printing every complaint."""
+    from mbsym.source.robots import convert
+
+    complaints = Complaints()
+    made = convert(
+        text,
+        complaints,
+        choices.floating,
+        choices.symbols,
+        choices.damping,
+        choices.exact_angles,
+        choices.inputs,
+        lambda name: _beside(file, name),
+    )
+    if made is not None:
+        _, doubts = read(made.yaml, f"{file.stem}.yaml")
+        for doubt in doubts.sorted():  # of the description that was made: its lines are not the file's
+            said = f"the description that it gives: {doubt.message}"
+            (complaints.error if doubt.severity == "error" else complaints.warning)(doubt.code, said, None, doubt.hint)
+    for complaint in complaints.sorted():
+        diagnose(render(complaint, text, str(file)))
+    errors = len(complaints.errors)
+    if made is None or errors:
+        complain(file, f"{counted(errors, 'error', 'errors')}; nothing was written.")
+        return None
+    for told in made.left_out:
+        print(f"{printable(file)}: left out: {printable(told)}", file=sys.stderr)
+    if made.snapped:
+        several = len(made.snapped) > 1
+        count = f"{counted(len(made.snapped), 'printed angle')} {'are' if several else 'is'} read as"
+        parts = "parts" if several else "a part"
+        first = ", ".join(map(printable, made.snapped[:SHOWN])) + (", ..." if len(made.snapped) > SHOWN else "")
+        where = " (all are listed in the head of the description)" if len(made.snapped) > SHOWN else ""
+        complain(file, f"{count} {parts} of pi: {first}{where}; --angles exact leaves them as they are")
+    for joint in made.still:
+        print(f"{printable(file)}: held still, because it moves no inertia: {printable(joint)}", file=sys.stderr)
+    return made.yaml

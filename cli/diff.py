@@ -88,7 +88,7 @@ def _compare(
             show_lacking(name, first_only)
     if form == "json":
         from mbsym.report.documents import diff as doc
-        from mbsym.report.documents.writer import written
+        from mbsym.report.documents.base import written
 
         only = doc.OnlyIn(*([name for name, first in lacking if first is side] for side in (True, False)))
         click.echo(written(doc.Diff(systems=told, only_in=only), indent=2), nl=False)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from mbsym.expressions.counting import counted
+from mbsym.expressions.message import counted
 from mbsym.report.documents import diff as doc
 from mbsym_cli.console import console, printable
 

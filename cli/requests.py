@@ -118,7 +118,7 @@ def _motion(
 
     if not kind.whole(texts):
         return None, sound_numbers(file, system, settings, options)
-    return given_numbers(file, system, settings, options, state=kind.state)
+    return given_numbers(file, system, settings, options, declared=kind.declared, state=kind.state)
 
 
 def _read(field: Field, given: Any, system: System | None, options: Options, motion: Scenario | None = None) -> Any:
@@ -134,12 +134,12 @@ def _read(field: Field, given: Any, system: System | None, options: Options, mot
         case Words() as kind:
             return options.words(field.option, given, kind.known, kind.what, kind.every) if given is not None else ()
         case Range():
-            from mbsym_cli.section_options import read_axis
+            from mbsym_cli.variations import read_axis
 
             wanted = system is not None and (field.required or given is not None)
             return read_axis(given, field.option, system, options) if wanted else None
         case ExactSettings() if system is not None:
-            from mbsym_cli.section_options import read_settings
+            from mbsym_cli.variations import read_settings
 
             return read_settings(given, system, options, field.kind.more(system))
         case ExactSettings():

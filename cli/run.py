@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
@@ -11,12 +12,55 @@ import click
 from mbsym_cli.console import BAD_INPUT, OK, OutPath, read_description
 from mbsym_cli.files import REPORTS, safe_name
 from mbsym_cli.letters import with_letters
-from mbsym_cli.options import Options
+from mbsym_cli.options import Options, group
 from mbsym_cli.reports import Request, report_on
-from mbsym_cli.run_ledger import Asked, ledger_options
+from mbsym_cli.simulate.choice import COARSEST, FINEST
 
 if TYPE_CHECKING:
     from mbsym.formulas.tree import Angles
+    from mbsym.numerics.ledger.work import AccuracyGoal
+
+
+# ``--ledger`` of ``mbsym run``, and the accuracy that it is held against.
+
+
+@dataclass(frozen=True)
+class LedgerOptions:
+    """As typed."""
+
+    ledger: bool
+    accuracy: str | None
+    until: str | None
+
+    def read(self, asked: Options) -> AccuracyGoal | bool:
+        """Whether there is a ledger, and the accuracy that it is held against, if any; complaints join ``asked``."""
+        if self.accuracy is None and self.until is None:
+            return self.ledger
+        for name, value in (("--accuracy", self.accuracy), ("--until", self.until)):
+            if value is None:
+                asked.complain(name, "missing-option", "an accuracy is one of a motion from 0 to a time: give both")
+        if not self.ledger:
+            asked.complain("--accuracy", "conflicting-options", "only the ledger is held against it", "add --ledger")
+        accuracy = asked.number("--accuracy", self.accuracy, FINEST, COARSEST)
+        until = asked.number("--until", self.until)
+        if accuracy is None or until is None:
+            return self.ledger
+        from mbsym.numerics.ledger.work import AccuracyGoal
+
+        return AccuracyGoal(accuracy, until)
+
+
+ledger_options = group(
+    "ledger",
+    LedgerOptions,
+    click.option("--ledger", is_flag=True, help="What was left out, why that is safe, and what it saved."),
+    click.option(
+        "--accuracy",
+        metavar="X",
+        help="Hold what the ledger's equations leave out against this relative error of the motion (1e-6).",
+    ),
+    click.option("--until", metavar="T", help="The end of that motion, from 0 (20, 2*pi)."),
+)
 
 
 @click.command("run")
@@ -27,6 +71,7 @@ if TYPE_CHECKING:
 )
 @click.option("--out", "-o", type=OutPath(path_type=Path), help="Folder of the reports.  [default: reports/NAME]")
 @click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Replace a value; repeatable.")
+@click.option("--scale", metavar="LIST", help="In dimensionless variables, as 'mbsym convert' has them.")
 @click.option("--detail", default="compact", show_default=True, metavar="WORD", help="Long formulas: compact, or full.")
 @click.option("--terms", default="60000", show_default=True, metavar="N", help="Budget of terms of one closed formula.")
 @click.option(
@@ -54,6 +99,7 @@ def command(
     formats: str,
     out: Path | None,
     settings: tuple[str, ...],
+    scale: str | None,
     detail: str,
     terms: str,
     angles: str | None,
@@ -63,7 +109,7 @@ def command(
     language: str | None,
     strict_claims: bool,
     brief: bool,
-    ledger: Asked,
+    ledger: LedgerOptions,
     verbose: bool,
     quiet: bool,
 ) -> None:
@@ -105,6 +151,9 @@ def command(
 
     With --set NAME=VALUE a parameter has another value than in the description: for the verdict at given values,
     eigenvalues, parameters that code begins with.
+
+    With --scale x=L*x1,t=tau/omega0,... everything is derived of the description in these variables, which 'mbsym
+    convert --scale' writes.
 
     \b
     Examples:
@@ -165,6 +214,7 @@ def command(
         verbose,
         wanted or detail,
         settings,
+        scale,
         letters,
     )
     worst = OK

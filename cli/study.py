@@ -8,41 +8,41 @@ from __future__ import annotations
 import inspect
 import sys
 import time
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
+from typing import Any, NoReturn, TypeVar
 
 import click
 
+from mbsym.expressions.message import Message
+from mbsym.model.system import System
+from mbsym.report.content import Block, facts
 from mbsym.report.language import Language
 from mbsym.report.letters import in_letters, with_meanings
+from mbsym.report.plain_writer import Writer
 from mbsym.studies.request import fields_of
-from mbsym.studies.study import Answer, Asked, Document, Folder, Line, NotFit, Rows, Single, Study, Unfit
+from mbsym.studies.study import Answer, Asked, Document, Folder, Line, NotFit, Single, Study, Unfit
 from mbsym_cli.console import (
     BAD_INPUT,
     FAILED,
     INTERRUPTED,
     OK,
     OutPath,
+    asked_width,
     complain,
     printable,
     read_description,
     read_held,
     reason_of,
-    show_rows,
     tell,
+    watching,
 )
 from mbsym_cli.files import deliver, folder_for, obstacle, write_whole
 from mbsym_cli.letters import letters_option, read_letters
 from mbsym_cli.options import Options
-from mbsym_cli.progress import watching
 from mbsym_cli.requests import option_of, read_fields
-from mbsym_cli.telling import show, show_files
-
-if TYPE_CHECKING:
-    from mbsym.model.system import System
 
 Found = TypeVar("Found")
 
@@ -124,10 +124,10 @@ class _Run:
     def _described(self) -> System | None:
         """The system, None after complaints; inputs are held, which is said, where the study does so."""
         study, bodies = self.study, self.study.bodies(self.texts)
-        constraints, matrices = study.constraints and not bodies, study.matrices and not bodies
+        matrices = study.matrices and not bodies
         if study.held:
-            return read_held(self.file, study.name, constraints, not matrices)
-        return read_description(self.file, "" if constraints else study.name, "" if matrices else study.name)
+            return read_held(self.file, study.name, study.constraints, not matrices)
+        return read_description(self.file, "" if study.constraints else study.name, "" if matrices else study.name)
 
     def _complain(self, request: Any, system: System | None, typed: Collection[str]) -> None:
         """About what does not go together."""
@@ -205,9 +205,7 @@ class _Run:
         for one in answer.lines if loud or not answer.brief else answer.brief:
             if isinstance(one, Line) and (loud or one.always):
                 tell(*one.parts, whole=one.whole)
-            elif isinstance(one, Rows) and loud:
-                show_rows(one)
-            elif not isinstance(one, Line | Rows) and (loud or answer.brief):
+            elif not isinstance(one, Line) and (loud or answer.brief):
                 show([one], asked.system.language)
         if loud:
             show(with_meanings((), asked.system, self.used | used), asked.system.language)
@@ -277,3 +275,31 @@ def attempted(
     except OSError as error:
         complain(file, f"the {results} cannot be written: {reason_of(error)}")
     return None
+
+
+# What a command has found, in the language of the description, and where the files are.
+
+
+#: Columns of tables in a file or pipe of which nothing is said.
+WIDTH = 120
+
+
+def show(blocks: Iterable[Block], language: str) -> None:
+    """Prints them beneath the name of a system."""
+    writer = Writer(Language(language), width=(asked_width() or WIDTH) - 2)
+    for parts, whole, margin in writer.document(blocks):
+        tell("  ", *parts, whole=whole, margin=None if margin is None else margin + 2)
+
+
+def show_files(folder: Path, names: Iterable[str], language: str) -> None:
+    tell(f"  {Language(language).say(Message('files in'))} ", (printable(folder), "bold"), f": {', '.join(names)}")
+
+
+def show_result(
+    file: Path, system: System, lines: Iterable[tuple[str, str]], folder: Path, names: Iterable[str], after: str = ""
+) -> None:
+    """Prints lines with titles beneath the name of the system, ``after`` which stands what they are about."""
+    about = f": {Language(system.language).say(after)}" if after else ""
+    tell((f"{system.name}{about}", "bold"), (f"  {printable(file)}", "dim"))
+    show([facts(lines)], system.language)
+    show_files(folder, names, system.language)

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from mbsym.studies.tables import equilibria as equilibria
     from mbsym.studies.tables import extremes as extremes
     from mbsym.studies.tables import tradeoff as tradeoff
+    from mbsym.studies.trim import trim as trim
 
 __version__ = "0.1.0"
 
@@ -48,6 +49,7 @@ _PLACES = {
     "regressor": ("regressor",),
     "simulate": ("ensemble", "gradient", "plan", "sensitivities", "simulate"),
     "tables": ("equilibria", "extremes", "tradeoff"),
+    "trim": ("trim",),
 }
 __all__ = [
     "DescriptionError",
@@ -66,6 +68,7 @@ __all__ = [
     "sensitivities",
     "simulate",
     "tradeoff",
+    "trim",
 ]
 
 

@@ -16,7 +16,7 @@ import mbsym
 from mbsym.numerics.accuracy import ErrorEstimate, Lacking, NoEstimate
 from mbsym.numerics.methods.interface import SINGULAR, STEP_LIMIT, UNDEFINED, Unusable
 from mbsym.numerics.scenario import Incomplete
-from mbsym.simulation import SAMPLES, Request, dense, sample_times
+from mbsym.simulation import SAMPLES, Request, sample_times
 
 ROOT = Path(__file__).parents[1]
 DOUBLE = SHIPPED / "double-pendulum.yaml"
@@ -72,7 +72,7 @@ def test_a_result_has_times_coordinates_velocities_and_energies() -> None:
 @pytest.mark.parametrize("most", [10**6, 3])
 def test_a_result_is_a_function_of_time(how: dict[str, object], most: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """x = cos 2t anywhere, in any order, at the rows what they are; the same where steps are too many to be kept."""
-    monkeypatch.setattr(dense, "MOST_KEPT", most)
+    monkeypatch.setattr("mbsym.simulation.result.MOST_KEPT", most)
     run = mbsym.simulate(
         free("spring: {coordinate: x, stiffness: k}"), 3, values={"k": 4}, samples=7, estimate=False, **how
     )  # type: ignore[arg-type]

@@ -17,16 +17,14 @@ import mbsym
 from mbsym.batch import index_page, junit
 from mbsym.batch.coordinator import Batch, Place
 from mbsym.batch.digests import derivation
-from mbsym.batch.findings import findings
-from mbsym.batch.outcome import FORMAT, ComplaintRow, Outcome, Row, Summary
+from mbsym.batch.outcome import FORMAT, ComplaintRow, Outcome, Row, Summary, findings
 from mbsym.batch.summary_json import FILENAME, summary_text
-from mbsym.batch.task import Asked, Budget
-from mbsym.expressions.counting import counted
+from mbsym.batch.transport import BatchOptions, Budget
+from mbsym.expressions.message import counted
 from mbsym.report.words.findings import github_annotations, json_lines, sarif
 from mbsym_cli.batch.appendix import SUMMARY
-from mbsym_cli.batch.folders import Found, chosen, found_in, share
-from mbsym_cli.batch.locks import Locks
-from mbsym_cli.batch.machine import memory_is_bounded
+from mbsym_cli.batch.folders import Descriptions, chosen, found_in, share
+from mbsym_cli.batch.machine import Locks, memory_is_bounded
 from mbsym_cli.batch.store import COMMAND, FolderStore
 from mbsym_cli.batch.table import complaints, totals, watcher
 from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, printable
@@ -34,7 +32,7 @@ from mbsym_cli.files import MANIFEST, deliver, delivered, obstacle, read_manifes
 from mbsym_cli.options import SUFFIXES
 
 if TYPE_CHECKING:
-    from mbsym.batch.executor import Executor
+    from mbsym.batch.coordinator import Executor
 
 
 @dataclass(frozen=True)
@@ -43,7 +41,7 @@ class Request:
 
     folders: tuple[Path, ...]
     out: Path
-    asked: Asked
+    asked: BatchOptions
     budget: Budget
     jobs: int
     patterns: tuple[str, ...] = ()
@@ -90,7 +88,7 @@ def run(request: Request) -> int:
     return summary.exit_code if whole else summary.exit_code or FAILED
 
 
-def _summed_up(request: Request, places: list[Place], found: Found, started: float) -> tuple[Summary, bool]:
+def _summed_up(request: Request, places: list[Place], found: Descriptions, started: float) -> tuple[Summary, bool]:
     """Every row, and whether the batch was stopped."""
     version = derivation()
     refused = [_unreadable(folder, reason) for folder, reason in found.unreadable]
@@ -132,7 +130,7 @@ def _executor(request: Request, tasks: int) -> Executor:
         from mbsym.batch.cluster import Cluster
 
         return Cluster(request.cluster, request.jobs)
-    from mbsym.batch.executor import Local
+    from mbsym.batch.coordinator import Local
 
     return Local(request.jobs, tasks, request.asked.formats)
 
@@ -203,7 +201,7 @@ def _unreadable(folder: str, reason: str) -> Row:
     return Row(folder, "", Outcome.ERRORS, complaints=(complaint,))
 
 
-def _nothing(request: Request, found: Found) -> str:
+def _nothing(request: Request, found: Descriptions) -> str:
     """What to say where there is nothing to do."""
     where = ", ".join(map(printable, request.folders))
     if found.places:

@@ -7,7 +7,7 @@ import time
 from typing import TYPE_CHECKING
 
 from mbsym.batch.outcome import ComplaintRow, Outcome, Row, Summary
-from mbsym.expressions.counting import counted
+from mbsym.expressions.message import counted
 from mbsym_cli.console import console, printable
 
 if TYPE_CHECKING:

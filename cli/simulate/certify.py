@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from mbsym_cli.option_groups import group
+from mbsym_cli.options import group
 
 if TYPE_CHECKING:
     from mbsym.model.system import System

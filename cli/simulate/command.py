@@ -15,10 +15,9 @@ from mbsym_cli.simulate.choice import choice_options
 from mbsym_cli.simulate.closing import closing_options
 from mbsym_cli.simulate.continuing import continue_options
 from mbsym_cli.simulate.events import watch_options
-from mbsym_cli.simulate.inputs import input_options
 from mbsym_cli.simulate.many import Many, many_options
 from mbsym_cli.simulate.options import Group, Output, output_options, span_options, way_options
-from mbsym_cli.simulate.simulated import simulated
+from mbsym_cli.simulate.simulated import input_options, simulated
 from mbsym_cli.simulate.variables import variables_options
 
 
@@ -56,7 +55,8 @@ def command(
 
     --vary integrates many motions at once, on a grid or drawn at random; written are ensemble.csv (mean, standard
     deviation, extremes and quantiles at every time), members.csv (values and final state of each), fan charts and
-    ensemble.json.  --sensitivity writes the motion's derivatives by initial values and parameters, sensitivity.csv.
+    ensemble.json.  Up to six motions of a grid are drawn as curves, in one picture, in place of the fan charts.
+    --sensitivity writes the motion's derivatives by initial values and parameters, sensitivity.csv.
 
     --certify encloses the exact solution in balls: what it says is proved, whatever the method did.  enclosure.csv has
     it.  Where neighbouring motions part fast that takes long, and ends early (exit code 3) where it is out of reach.

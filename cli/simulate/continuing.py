@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from mbsym_cli.option_groups import group
+from mbsym_cli.options import group
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from mbsym.numerics.planning.models import Model
     from mbsym.numerics.scenario import Scenario
     from mbsym.simulation import Request
-    from mbsym.simulation.earlier import Earlier
+    from mbsym.simulation.request import Earlier
     from mbsym_cli.options import Options
 
 

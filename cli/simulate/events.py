@@ -11,8 +11,7 @@ import click
 from mbsym.expressions.condition import AxisText, Condition, parse_axes, parse_condition
 from mbsym.expressions.place import Complaints
 from mbsym.source import render_option
-from mbsym_cli.option_groups import group
-from mbsym_cli.options import Options, place_in
+from mbsym_cli.options import Options, group, place_in
 
 if TYPE_CHECKING:
     from mbsym.model.system import System

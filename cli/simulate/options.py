@@ -10,7 +10,7 @@ import click
 
 from mbsym.studies.simulate import Request
 from mbsym_cli.console import OutPath
-from mbsym_cli.option_groups import group
+from mbsym_cli.options import group
 from mbsym_cli.requests import decorators
 
 if TYPE_CHECKING:

@@ -20,7 +20,7 @@ from mbsym_cli.options import Options
 COMMANDLINE = ParameterSource.COMMANDLINE
 
 #: What a plan hands on to the command that runs it.
-CARRIED = ("laws", "variables", "formats", "bodies", "animate", "out", "estimate", "certify_seconds")
+CARRIED = ("laws", "variables", "fixed", "formats", "bodies", "animate", "out", "estimate", "certify_seconds")
 
 
 @dataclass(frozen=True)

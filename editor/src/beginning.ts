@@ -29,7 +29,7 @@ export async function begin(model: Model, beginning: Beginning, said: string): P
 /** The cards; `done` is told when one of them has begun a description. */
 export function beginnings(model: Model, done: () => void = () => undefined): HTMLElement {
   const start = (beginning: Beginning, said: string) => async () => void ((await begin(model, beginning, said)) && done());
-  const joints = (model.file.joints ?? []).map(({ name, title }) =>
+  const joints = (model.file.joints ?? []).filter(({ name }) => name !== "fixed").map(({ name, title }) =>
     make("button", { type: "button", title, click: start({ joint: name }, `one body on a ${name} joint is here; undo takes it back`) }, make("b", {}, name), ` ${title.split(",")[0]}`),
   );
   const select = make("select", { size: 7, "aria-label": "Begin from" }, make("option", { value: "" }, "an empty description"));

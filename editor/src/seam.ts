@@ -77,7 +77,7 @@ export type Operation =
   | { op: "insert"; path: Path; source: string }
   | { op: "delete"; path: Path }
   | { op: "move"; path: Path; before: Path | null }
-  | { op: "add body"; name: string; to: string | null }
+  | { op: "add body"; name: string; to: string | null; joint?: string; axis?: number }
   | { op: "rename body"; body: string; name: string }
   | { op: "reattach"; body: string; to: string | null }
   | { op: "duplicate branch"; body: string }
@@ -117,7 +117,14 @@ export interface FileState {
   /** The last event that was told before the file was read. */
   told: string;
   examples?: { name: string; title: string }[];
-  joints?: { name: string; title: string }[];
+  joints?: Joint[];
+}
+
+/** How a body may move on what carries it; `axis`: about or along one axis, whichever. */
+export interface Joint {
+  name: string;
+  title: string;
+  axis: boolean;
 }
 
 export interface CompletionItem {

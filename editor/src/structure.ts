@@ -5,7 +5,7 @@ import { make } from "./elements.js";
 import { nodeAt, valueOf } from "./fields.js";
 import { branch, FIXED } from "./layout.js";
 import type { Model } from "./model.js";
-import type { Changed, Operation, Path } from "./seam.js";
+import type { Changed, Joint, Operation, Path } from "./seam.js";
 
 /** The name of the fixed axes for people. */
 export const FIXED_WORDS = "fixed axes (0)";
@@ -30,9 +30,10 @@ export class Structure {
 
   async add(to: string): Promise<void> {
     const on = to === FIXED ? FIXED_WORDS : to;
-    const name = await asked(`Add a body on ${on}`, "Name", this.freeName("body"), "Add");
-    if (name === null) return;
-    const outcome = await this.model.change([{ op: "add body", name, to: to === FIXED ? null : to }], `${name} added on ${on}`);
+    const body = await askedBody(`Add a body on ${on}`, this.freeName("body"), this.model.file.joints ?? []);
+    if (body === null) return;
+    const { name } = body;
+    const outcome = await this.model.change([{ op: "add body", ...body, to: to === FIXED ? null : to }], `${name} added on ${on}`);
     if (outcome.done) this.show(name);
   }
 
@@ -155,4 +156,19 @@ export class Structure {
 
 function line(what: string, names: string[]): HTMLElement {
   return make("li", {}, make("strong", {}, `${what}: `), names.join(", "));
+}
+
+/** Name of a new body, its joint and axis unless it is described by hand; null where it is given up. */
+async function askedBody(title: string, free: string, joints: Joint[]): Promise<{ name: string; joint?: string; axis?: number } | null> {
+  const name = make("input", { type: "text", value: free, autocomplete: "off", spellcheck: "false", autofocus: true });
+  const joint = make("select", {}, ...joints.map((one) => make("option", { value: one.name }, `${one.name}: ${one.title.split(",")[0]}`)), make("option", { value: "" }, "none yet: all by hand"));
+  const axis = make("select", {}, ...["3", "1", "2"].map((one) => make("option", { value: one }, one)));
+  const asksAxis = () => (axis.disabled = !joints.find((one) => one.name === joint.value)?.axis);
+  joint.addEventListener("change", asksAxis);
+  asksAxis();
+  const rows = [make("label", {}, "Name ", name), make("label", {}, "Joint ", joint), make("label", {}, "Axis ", axis)];
+  const done = await confirmed(title, rows, "Add");
+  const typed = name.value.trim();
+  if (!done || typed === "") return null;
+  return joint.value ? { name: typed, joint: joint.value, axis: Number(axis.value) } : { name: typed };
 }

@@ -14,8 +14,8 @@ from typing import Any
 
 from flint import fmpq_mat
 
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.matrices import reduced_rows
 from mbsym.algebra.ring import Polynomial, Ring
 

@@ -15,9 +15,8 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from mbsym.algebra import matrices
-from mbsym.algebra.factors import irreducible_factors
+from mbsym.algebra.factors import irreducible_factors, occurring
 from mbsym.algebra.failures import TooLargeError
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.matrices import Operators
 from mbsym.expressions.message import Message
 

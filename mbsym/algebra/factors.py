@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from itertools import compress, count
 from typing import Any
 
 from flint import fmpq_mpoly, fmpq_mpoly_ctx, fmpz_mpoly
@@ -39,7 +41,7 @@ def _factored_among_its_own(p: Polynomial) -> tuple[Any, list[tuple[Polynomial, 
         names = whole.names()
         own = p.project_to_context(type(whole).get([names[k] for k in used], whole.ordering()))
     if _is_irreducible(own):
-        unit = _content(p)
+        unit = content(p)
         return unit, [(p / unit, 1)]
     unit, powers = _factored(own)
     if own is p:
@@ -60,7 +62,7 @@ def _is_irreducible(p: Polynomial) -> bool:
     return False
 
 
-def _content(p: Polynomial) -> Any:
+def content(p: Polynomial) -> Any:
     """The number by which p has to be divided to be primitive, with whole coefficients and a positive leading one."""
     coefficients = p.coeffs()
     found = coefficients[0]
@@ -91,3 +93,18 @@ def rational_ratio(x: Any, y: Any) -> Any:
         return None
     ratio = x.coefficient(0) / y.coefficient(0)
     return ratio if x == y * ratio else None
+
+
+# Which generators stand in polynomials.
+
+
+def occurring(polynomials: Iterable[Polynomial]) -> list[int]:
+    """Positions of the generators that stand plainly in at least one of the polynomials, in order.
+
+    What an adjoined generator is made of (the argument of a root or a function) is not looked into.
+    """
+    found: set[int] = set()
+    for x in polynomials:
+        if x:  # else all degrees are -1
+            found.update(compress(count(), x.degrees()))
+    return sorted(found)

@@ -25,9 +25,8 @@ from typing import Any
 
 from flint import fmpq, fmpq_poly
 
-from mbsym.algebra.factors import irreducible_factors
+from mbsym.algebra.factors import irreducible_factors, occurring
 from mbsym.algebra.failures import Failure, Limit, TooLargeError
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.plane.numbers import (
     AlgebraicNumber,
     Number,

@@ -33,9 +33,8 @@ from typing import Any
 
 from flint import arb, ctx, fmpq
 
-from mbsym.algebra.factors import irreducible_factors
+from mbsym.algebra.factors import irreducible_factors, occurring
 from mbsym.algebra.failures import Failure, NoClosedForm
-from mbsym.algebra.generators import occurring
 
 Polynomial = Any  # a flint.fmpq_mpoly: python-flint carries no types
 SignSet = frozenset[int]

@@ -17,21 +17,20 @@ from typing import Any
 from flint import Ordering, arb, ctx, fmpq, fmpq_mat, fmpq_mpoly_ctx, fmpq_poly
 
 from mbsym.algebra import rationals
-from mbsym.algebra.factors import irreducible_factors
+from mbsym.algebra.factors import irreducible_factors, occurring
 from mbsym.algebra.failures import Limit, NoClosedForm
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.matrices import reduced_rows
 from mbsym.algebra.polynomial_systems import real_roots
 from mbsym.algebra.ring import Generator, Polynomial, Ring
-from mbsym.algebra.zero_kinds import (
+from mbsym.algebra.zeros_in_boxes import (
     EXACT,
     MOST_TERMS,
     PRECISION,
+    Several,
     Zero,
     Zeros,
     ZeroSet,
 )
-from mbsym.algebra.zeros_in_boxes import Several
 from mbsym.expressions.message import Message
 
 

@@ -195,11 +195,18 @@ def _growing(analysis: Analysis) -> tuple[str, ...]:
     """
     system = analysis.system
     names = (*turning(analysis.parameters_scene), *(item.name for item in system.prescribed), "t")
+    given = True
     if system.constraints:
-        names = tuple(dict.fromkeys((*names, *sorted(analysis.reduced.expansion.base.turning))))
+        from mbsym.mechanics.constraints.rows import said_rows  # most systems have none
+
+        running = analysis.reduced.expansion.base.turning
+        given = running <= {*names}  # the rates of all that runs are the description's
+        names = tuple(dict.fromkeys((*names, *sorted(running))))
         held = {name for x in expressions(system.constraints) for name in _outside(x)}
         if held & set(names):
-            return tuple(name for name in names if name in held)
+            rows = [y for row in said_rows(analysis.scene) for y in (row.position, row.velocity, *row.partials) if y]
+            if not given or not all(is_steady(analysis.scene, x) for x in rows):
+                return tuple(name for name in names if name in held)
     angles = [angle for body in system.bodies for angle in body.rotation.angles]
     plain = [x for body in system.bodies for x in (*body.connection_point, *body.mass_centre)]
     told = {name for x in (*plain, *expressions(system.loads)) for name in _outside(x)}
@@ -210,10 +217,8 @@ def _growing(analysis: Analysis) -> tuple[str, ...]:
         return suspects
     entries = [x.polynomial for x in equations.forcing]
     entries += [x for row in equations.mass_matrix.polynomials for x in row]
-    if not system.constraints and all(
-        is_steady(analysis.scene, x) for x in entries
-    ):  # they know q - v t alone: deviations do not know the time
-        return ()
+    if given and all(is_steady(analysis.scene, x) for x in entries):
+        return ()  # they know q - v t alone: deviations do not know the time
     return tuple(name for name in suspects if any(_unbounded(analysis.ring, x, name) for x in entries))
 
 

@@ -121,10 +121,10 @@ def motion_check(analysis: Analysis) -> Check | None:
 def integrals_of(analysis: Analysis) -> tuple[Integral, ...]:
     """What the constrained motion keeps."""
     if analysis.speed_form is not None:
-        from mbsym.problems.constraints import speed_integrals
+        from mbsym.problems.constraints import in_speeds
 
         equations = cast("SpeedEquations", analysis.equations)
-        return speed_integrals.integrals(analysis.speed_form, analysis.scene, analysis.energy, equations)
+        return in_speeds.integrals(analysis.speed_form, analysis.scene, analysis.energy, equations)
     from mbsym.problems.constraints.integrals import integrals
 
     return integrals(analysis.scene, analysis.energy, analysis.equations, programs_of(analysis))

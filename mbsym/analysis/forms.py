@@ -11,8 +11,7 @@ from mbsym.mechanics.variables import ring_environment
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
-    from mbsym.problems.canonical.brackets import Brackets
-    from mbsym.problems.canonical.canonical import Hamilton, Routh
+    from mbsym.problems.canonical.canonical import Brackets, Hamilton, Routh
     from mbsym.problems.checks import Check
 
 # What few ask for is not imported for nothing: names stand here, modules in the functions.
@@ -45,7 +44,7 @@ def routh(analysis: Analysis) -> Routh:
 
 def brackets(analysis: Analysis) -> Brackets | None:
     """The Poisson brackets of problem 7's integrals; None without any."""
-    from mbsym.problems.canonical import brackets as problem
+    from mbsym.problems.canonical import canonical as problem
 
     return problem.brackets(analysis.system, analysis.hamilton, analysis.integrals)
 
@@ -57,14 +56,14 @@ def _write(analysis: Analysis, ring: Ring) -> None:
         write_as(ring, {one.name: one.latex for one in analysis.system.symbols})
 
 
-def asked(analysis: Analysis) -> tuple[str, ...]:
+def requested_forms(analysis: Analysis) -> tuple[str, ...]:
     """The forms that reports of problem 3 show besides Lagrange's, in their order."""
     return tuple(name for name in FORMS if name in analysis.forms) if 3 in analysis.problems else ()
 
 
 def wanted_checks(analysis: Analysis) -> Iterator[str]:
     """The names of the checks of what is told."""
-    shown = asked(analysis)
+    shown = requested_forms(analysis)
     for check, stage in CHECKED.items():
         if stage in shown or (stage == BRACKETS and "hamilton" in shown and 7 in analysis.problems):
             yield check

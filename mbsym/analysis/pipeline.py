@@ -34,7 +34,7 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.programs import Programs, programs
 from mbsym.mechanics.states import Oracles
 from mbsym.mechanics.variables import ring_environment, ring_of
-from mbsym.model.driven import held
+from mbsym.model.substitution import held
 from mbsym.model.system import System
 from mbsym.problems import kinematics, knowledge
 from mbsym.problems.checks import Check, oracles
@@ -53,8 +53,7 @@ if TYPE_CHECKING:
     from mbsym.analysis.oscillating import Oscillating
     from mbsym.analysis.small import SmallParameters
     from mbsym.mechanics.speeds import SpeedForm
-    from mbsym.problems.canonical.brackets import Brackets
-    from mbsym.problems.canonical.canonical import Hamilton, Routh
+    from mbsym.problems.canonical.canonical import Brackets, Hamilton, Routh
     from mbsym.problems.claims import ClaimResult
     from mbsym.problems.claims.counterexample import Trials
     from mbsym.problems.constraints import Constraints
@@ -81,6 +80,7 @@ KNOW_CONSTRAINTS = frozenset(
         *("tied_in_coordinates", "first_order", "small_parameters"),
         *("claims", "checks", "reduced", "residuals", "equilibrium", "first_approximation", "linearisation"),
         *("state_space", "judgeable", "balance", "stability", "trials", "integrals", "reactions", "stabilisation"),
+        "equilibria",
         *(f"check: {name}" for name in ("kinematics", "energy", "equations of motion", *constrained.CHECKS)),
         f"check: {constrained.REACTIONS}",
         *("check: equilibrium", "check: perturbed motion", "check: stabilisation"),
@@ -221,9 +221,9 @@ class Analysis(Stages):
         if self.system.constraints and name not in KNOW_CONSTRAINTS:
             compute = self._without_constraints
         elif self.system.speeds and name in IN_COORDINATES:
-            from mbsym.analysis import in_coordinates
+            from mbsym.analysis import deriving
 
-            compute = lambda: in_coordinates.told(self, name)  # noqa: E731
+            compute = lambda: deriving.result_in_coordinates(self, name)  # noqa: E731
         elif self.system.speeds and name not in KNOW_SPEEDS:
             compute = _without_speeds
         elif self.system.linear is not None and name not in given.KNOWN:
@@ -273,9 +273,9 @@ class Analysis(Stages):
 
         Raises Unavailable where the speeds do not determine these on the unperturbed motion.
         """
-        from mbsym.analysis import in_coordinates
+        from mbsym.analysis import deriving
 
-        return in_coordinates.analysis(self)
+        return deriving.analysis(self)
 
     def over_ring(self, bodies: bool = True, inputs: bool = True) -> Scene:
         """The system over the ring; without ``bodies`` only formulas in its parameters can be lowered.
@@ -392,7 +392,9 @@ class Analysis(Stages):
 
     # --- at numbers ---
 
-    equilibria: Derived[Analysis, Equilibria] = Derived(deriving.equilibria_of, ("straight-line program",), says=True)
+    equilibria: Derived[Analysis, Equilibria] = Derived(
+        deriving.equilibria_of, ("straight-line program", "constraints"), says=True
+    )
 
     # --- what stands beside the problems: claims, and the second routes of the self-check ---
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from flint import fmpq
 
 from mbsym.algebra import rationals
-from mbsym.algebra.generators import occurring
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.generalized import generalized_forces

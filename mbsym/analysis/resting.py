@@ -19,7 +19,8 @@ from mbsym.mechanics.rest import Value, at_numbers
 from mbsym.model.system import MotionEntry, Parameter, System
 from mbsym.problems.open_verdicts import MOST_COORDINATES
 from mbsym.problems.relative_equilibria.equilibria import WITHIN, Equilibria, equilibria
-from mbsym.problems.relative_equilibria.result import CoordinateValue, RelativeEquilibrium
+from mbsym.problems.relative_equilibria.listing import CoordinateValue, RelativeEquilibrium
+from mbsym.problems.stability.reasons import Because
 
 
 def relative_equilibria(system: System, values: Mapping[str, Value], within: float = WITHIN) -> Equilibria:
@@ -55,6 +56,10 @@ def _decided(bare: System, one: RelativeEquilibrium) -> RelativeEquilibrium:
     )
     analysis = Analysis(replace(bare, motion=motion, parameters=tuple(map(Parameter, enclosed))), ())
     try:
+        if bare.constraints:  # of velocities, where the whole of problem 6 knows more than the list
+            known = not enclosed and one.verdict.because(Because.NO_EQUATIONS)
+            found = analysis.stability if known else None
+            return one if found is None else replace(one, verdict=found.numerical or found.verdict)
         if not {*one.free} <= higher.ignorable(analysis)[1]:
             return one
         return replace(one, verdict=Judge(analysis).decided(one.verdict, enclosed))

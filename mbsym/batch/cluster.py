@@ -16,8 +16,7 @@ from typing import TYPE_CHECKING, Any
 from mbsym.batch.digests import derivation
 from mbsym.batch.isolation import Processes, isolated
 from mbsym.batch.outcome import Outcome, Row
-from mbsym.batch.task import Budget, Finished, Task
-from mbsym.batch.transport import finished_text, read_finished, read_task, task_text
+from mbsym.batch.transport import Budget, Finished, Task, finished_text, read_finished, read_task, task_text
 
 if TYPE_CHECKING:
     from concurrent.futures import Future

@@ -7,7 +7,7 @@ from html import escape
 from urllib.parse import quote
 
 from mbsym.batch.outcome import Outcome, Row, Summary
-from mbsym.expressions.counting import counted
+from mbsym.expressions.message import counted
 from mbsym.expressions.safe import safe
 
 FILENAME = "index.html"

@@ -13,8 +13,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Protocol
 
 from mbsym.batch.outcome import Outcome, Row
-from mbsym.batch.task import Budget, Finished, Task
-from mbsym.batch.transport import MALFORMED, read_finished, task_text
+from mbsym.batch.transport import MALFORMED, Budget, Finished, Task, read_finished, task_text
 from mbsym.batch.worker import OUT_OF_MEMORY, SINGLE
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ Front ends (tables, summary.json, whatever a CI system reads) are made from thes
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import Annotated
@@ -15,6 +15,7 @@ from typing import Annotated
 from msgspec import Meta
 
 from mbsym.report.documents.base import SHA256, Part, words
+from mbsym.report.words.findings import Finding
 
 #: The version of the schema of summary.json; another one where a reader would have to be changed.
 FORMAT = 1
@@ -213,3 +214,37 @@ class Summary:
 
 def worst(codes: Iterable[int]) -> int:
     return max(codes, default=OK)
+
+
+# What is wrong with the descriptions of a batch, for code scanning and annotations.
+
+
+#: Codes of what concerns a file as a whole.
+_CODES = {
+    Outcome.CRASHED: "crashed",
+    Outcome.TIMEOUT: "timeout",
+    Outcome.MEMORY: "out-of-memory",
+    Outcome.NOT_WRITTEN: "not-written",
+    Outcome.INCOMPLETE: "incomplete",
+}
+
+
+def findings(summary: Summary) -> tuple[Finding, ...]:
+    """Complaints with their places, then failed self-checks, claims that do not hold, and budgets that were met."""
+    return tuple(finding for row in summary.rows for finding in _of(row))
+
+
+def _of(row: Row) -> Iterator[Finding]:
+    for one in row.complaints:
+        yield Finding(row.file, one.code, one.message, one.severity, one.line, one.column, one.length or 1, one.hint)
+    for check in row.checks:
+        if check.failed:
+            yield Finding(row.file, "self-check-failed", f"self-check failed: {check.name}: {check.detail}")
+    severity = "error" if row.outcome is Outcome.CLAIMS else "warning"
+    for claim in row.claims:
+        if claim.word == "refuted":
+            place = f"{claim.place}: " if claim.place else ""
+            message = f"a claim does not hold: {place}{claim.title}: {claim.outcome}"
+            yield Finding(row.file, "claim-refuted", message, severity)
+    if row.outcome in _CODES:
+        yield Finding(row.file, _CODES[row.outcome], row.message or "; ".join(row.notes) or str(row.outcome))

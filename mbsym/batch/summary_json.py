@@ -13,8 +13,7 @@ from msgspec import Meta
 from mbsym.batch.outcome import CheckRow, ClaimRow, ComplaintRow, FileRow, Outcome, ProblemRow, Summary
 from mbsym.batch.outcome import Row as Finished
 from mbsym.expressions.safe import encodable
-from mbsym.report.documents.base import SHA256, Format, Part, words
-from mbsym.report.documents.writer import written
+from mbsym.report.documents.base import SHA256, Format, Part, words, written
 from mbsym.report.schemas import Schema, schema_of
 
 FILENAME = "summary.json"

@@ -14,7 +14,7 @@ from mbsym.batch.cluster import Connection
 from mbsym.batch.digests import derivation
 from mbsym.model.system import System
 from mbsym.source import read, to_yaml
-from mbsym.sweeps.measure import Measure
+from mbsym.sweeps.points import Measure
 from mbsym.sweeps.request import Asked, measure_of
 from mbsym.sweeps.sweep import Chunk, Columns
 

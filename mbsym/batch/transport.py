@@ -5,14 +5,13 @@ from __future__ import annotations
 import base64
 import json
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from msgspec import convert
 
 from mbsym.batch.outcome import CheckRow, ClaimRow, ComplaintRow, FileRow, Outcome, ProblemRow, Row
-from mbsym.batch.task import Asked, Finished, Task
-from mbsym.report.documents.writer import plain
+from mbsym.report.documents.base import plain
 
 #: What a reader of foreign data has to expect.
 MALFORMED = (ValueError, TypeError, KeyError, AttributeError, RecursionError)
@@ -30,7 +29,7 @@ def read_task(text: str) -> Task:
         found["file"],
         found["folder"],
         base64.b64decode(found["data"]),
-        Asked(tuple(asked["formats"]), problems, asked["terms"], asked["angles"], asked["detail"]),
+        BatchOptions(tuple(asked["formats"]), problems, asked["terms"], asked["angles"], asked["detail"]),
         found["known"],
     )
 
@@ -83,3 +82,58 @@ def read_row(found: Mapping[str, Any]) -> Row:
         message=str(found["message"]),
         notes=tuple(map(str, found["notes"])),
     )
+
+
+# What is to be done with one description, what it may cost, and what comes back: plain data that travels.
+
+
+@dataclass(frozen=True)
+class BatchOptions:
+    """What is asked of every description of a batch.
+
+    ``problems`` None: those that the formats show.  ``angles`` is ``products``, ``sums``, ``shorter``, or None: what
+    each kind of text usually has.  ``detail`` is ``compact`` or ``full``.
+    """
+
+    formats: tuple[str, ...]
+    problems: tuple[int, ...] | None = None
+    terms: int = 60_000
+    angles: str | None = None
+    detail: str = "compact"
+
+
+@dataclass(frozen=True)
+class Task:
+    """One description: its name for complaints, its bytes as they were read once, its folder in the batch's.
+
+    ``known`` is the digest of the description (``digests.meaning``) whose results are there already, or "": where this
+    one means the same, nothing is derived.
+    """
+
+    file: str
+    folder: str
+    data: bytes
+    asked: BatchOptions
+    known: str = ""
+
+
+@dataclass(frozen=True)
+class Budget:
+    """What one description may cost: ``seconds`` on the wall, ``memory`` in bytes; None: no bound."""
+
+    seconds: float | None = None
+    memory: int | None = None
+
+
+@dataclass(frozen=True)
+class Finished:
+    """What became of a task: its row, and the files by their names.
+
+    ``meaning`` is the digest of the description after normalisation, "" where it has none.  ``same`` says that it is
+    the ``known`` one, so that the row holds nothing but the complaints.
+    """
+
+    row: Row
+    files: Mapping[str, str | bytes] = field(default_factory=dict)
+    meaning: str = ""
+    same: bool = False

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, cast
 from msgspec import structs
 
 from mbsym.batch.outcome import CheckRow, ClaimRow, ComplaintRow, FileRow, Outcome, ProblemRow, Row
-from mbsym.batch.task import Finished, Task
+from mbsym.batch.transport import Finished, Task
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable

@@ -3,16 +3,30 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
-from mbsym.editing.keys import keys_in, types_at
 from mbsym.editing.place import Where, where
 from mbsym.expressions.tree import FUNCTIONS
 from mbsym.model.oscillation_names import names_in, oscillating_variables, oscillation_names
 from mbsym.model.system import System, velocity_name
-from mbsym.source.grammar import About, BodyName, Equation, Formula, Index, Name, Named, Vector, Word
-from mbsym.source.keys import SIGNS
+from mbsym.source.grammar import (
+    About,
+    BodyName,
+    Equation,
+    Formula,
+    Index,
+    Key,
+    Kinds,
+    Name,
+    Named,
+    Record,
+    Type,
+    Vector,
+    Word,
+    plain,
+)
+from mbsym.source.keys import ALIASES, DESCRIPTION, SIGNS
 
 _DECLARED = re.compile(r"^\s+([A-Za-z][A-Za-z0-9_]*)\s*:", re.MULTILINE)
 
@@ -86,3 +100,46 @@ def _names(text: str, system: System | None, velocities: bool) -> Iterator[Sugge
         yield from (Suggestion(one.name, "function", "a table", f"{one.name}(") for one in system.tables)
     yield from (Suggestion(name, "function", "", f"{name}(") for name in FUNCTIONS)
     yield Suggestion("pi", "word", "3.14159...", "pi")
+
+
+# Which keys may stand where in a description, and what their values may be: the reader's table by paths of keys.
+
+
+def keys_in(path: tuple[str, ...]) -> Mapping[str, Key]:
+    """The keys that a mapping at this place may have; none where names are chosen freely."""
+    return next((keys for one in _types(path) if (keys := _keys(one))), {})
+
+
+def types_at(path: tuple[str, ...]) -> list[Type]:
+    """What may stand at a place, item of a list or value of a key."""
+    return [inner for one in _types(path) for inner in plain(one)]
+
+
+def _types(path: tuple[str, ...]) -> list[Type]:
+    found: list[Type] = [DESCRIPTION]
+    for key in path:
+        found = [inner for one in found for inner in _inside(one, ALIASES.get(key, key))]
+    return found
+
+
+def _keys(one: Type) -> Mapping[str, Key]:
+    for inner in plain(one):
+        match inner:
+            case Record(keys):
+                return keys
+            case Kinds(kinds):
+                return kinds
+    return {}
+
+
+def _inside(one: Type, key: str) -> list[Type]:
+    """What the value of a key may be."""
+    found: list[Type] = []
+    for inner in plain(one):
+        match inner:
+            case Named(value):
+                found.append(value)
+            case Record() | Kinds():
+                keys = _keys(inner)
+                found += [keys[key].type] if key in keys else []
+    return found

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from mbsym.editing.keys import keys_in
+from mbsym.editing.completion import keys_in
 from mbsym.editing.place import key_at, where, word_at
 from mbsym.expressions.rates import without_velocity
 from mbsym.expressions.tree import text as written

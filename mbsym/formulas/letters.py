@@ -24,8 +24,8 @@ from weakref import WeakKeyDictionary
 
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.rates import ENDINGS
 from mbsym.expressions.tree import Call, Expression, names, substitute

@@ -22,15 +22,20 @@ from weakref import WeakKeyDictionary, proxy
 
 from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpz_mpoly_ctx
 
-from mbsym.algebra.factors import irreducible_factors
+from mbsym.algebra.factors import irreducible_factors, occurring
 from mbsym.algebra.failures import NoClosedForm
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.formulas.terms import (
+from mbsym.formulas.tree import (
+    Angles,
+    Factor,
     Monomial,
+    Product,
     Split,
+    Sum,
     Terms,
+    Wave,
     by,
+    leaves,
     obviously_irreducible,
     only_negative,
     powers,
@@ -38,7 +43,6 @@ from mbsym.formulas.terms import (
     tidy,
     without_common,
 )
-from mbsym.formulas.tree import Angles, Factor, Product, Sum, Wave, leaves
 from mbsym.formulas.waves import WITHIN, Waves
 
 #: Longer polynomials are not factored as a whole: nobody sees the factors, and it may take long.

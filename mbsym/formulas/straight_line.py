@@ -16,7 +16,7 @@ from mbsym.algebra.program import Instruction, Node, Program
 from mbsym.expressions.message import Message
 from mbsym.expressions.table import Tabulated
 from mbsym.expressions.tree import MOST_WRITTEN_OUT, Name, slope_written_out, written_out
-from mbsym.formulas.numerals import writable
+from mbsym.formulas.tree import writable
 
 #: Longer expressions are given a name even if they are used only once.
 WIDTH = 60
@@ -32,12 +32,17 @@ class Dialect:
     cosine of a name, if the language has a nice way.  ``tables``: whether ``call`` can write those.
     """
 
-    call: Callable[[str, str], str]
-    local: Callable[[int], str]
+    call: Callable[[str, str], str] = lambda function, argument: f"{function}({argument})"
+    local: Callable[[int], str] = lambda count: f"s{count}"
     number: Callable[[Fraction], str] = str
     times: str = "*"
     angle: Callable[[str, str], str] | None = None
     tables: bool = False
+
+
+def angle_name(function: str, name: str) -> str:
+    """``sin_theta``."""
+    return f"{function}_{name}"
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from typing import Any, Generic, TypeVar
 
 from mbsym.algebra.base import Algebra, Scalar
 from mbsym.algebra.evaluate import Carrier
-from mbsym.algebra.generators import occurring
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Formula

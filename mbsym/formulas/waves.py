@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 from weakref import proxy
 
 from mbsym.formulas import angle_sums
-from mbsym.formulas.terms import Monomial, Terms
-from mbsym.formulas.tree import Wave
+from mbsym.formulas.tree import Monomial, Terms, Wave
 
 if TYPE_CHECKING:
     from mbsym.formulas.shape import Presenter

@@ -21,7 +21,7 @@ from mbsym.maps.boundaries import Condition, Origin
 from mbsym.maps.images import Images
 from mbsym.maps.section import Section
 from mbsym.mechanics.kinematics import Scene
-from mbsym.model.comparison import RELATION_OF_SIGN, holds
+from mbsym.model.assumptions import RELATION_OF_SIGN, holds
 from mbsym.model.system import Body
 from mbsym.problems.stability.problem import elimination_of
 

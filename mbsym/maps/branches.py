@@ -11,31 +11,36 @@ on both sides, which are found by another route.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from itertools import chain
 from typing import Any
 
-from flint import fmpq
+import numpy as np
+from flint import arb, fmpq
 
 from mbsym.algebra.certainty import Certainty
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.plane.line import Interval, Line, divided
 from mbsym.algebra.plane.numbers import Number, ascending, between_simply, compare, enclosure
 from mbsym.algebra.polynomial_systems import Limits
 from mbsym.algebra.rationals import fraction
+from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.maps.boundaries import Boundaries
-from mbsym.maps.branches_curve import Curve, CurvePoint, Found, curves, joined
+from mbsym.maps.branches_curve import Curve, CurvePoint, CurvePoints, curves, joined
 from mbsym.maps.branches_events import named
-from mbsym.maps.branches_linked import linked
 from mbsym.maps.branches_result import Branches, Critical, Doubt, Meeting, Piece, Remark
 from mbsym.maps.branches_stability import decided_throughout, is_undamped, stability_changes
-from mbsym.maps.mapping import Watch, ends, lengths, unwatched
+from mbsym.maps.mapping import Watch, ends, float_of, lengths, unwatched
 from mbsym.maps.result import Cell, Counted, Lack, Of, Shape
 from mbsym.maps.section import Axis
 from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.model.system import System
-from mbsym.problems.relative_equilibria.equilibria import CoordinateValue, Equilibria, equilibria
+from mbsym.problems.relative_equilibria.equilibria import CoordinateValue, Equilibria, RelativeEquilibrium, equilibria
+from mbsym.problems.relative_equilibria.place import Place
 
 
 def branches(
@@ -115,7 +120,7 @@ def branches(
         return made()
 
 
-def _doubts(bifurcating: Found, leaving: Found, changing: Found) -> list[Remark]:
+def _doubts(bifurcating: CurvePoints, leaving: CurvePoints, changing: CurvePoints) -> list[Remark]:
     found = [Remark(Doubt.UNFINISHED, x) for one in (bifurcating, leaving) for x in one.unfinished]
     if bifurcating.throughout:
         found.append(Remark(Doubt.THROUGHOUT))
@@ -213,3 +218,217 @@ def _balanced(found: Branches, at: Cell) -> Critical:
 
 def short(x: Any) -> str:
     return str(x) if isinstance(x, fmpq) else f"{float(enclosure(x).mid()):.10g}"
+
+
+# Which branch tends to which equilibrium at a critical value: followed in floating point, then held against counts.
+
+
+#: Farther than this (in direction cosines, sines, cosines, lengths) a branch does not tend to an equilibrium.
+FAR = 0.05
+
+
+def linked(parts: Sequence[Curve], found: Branches) -> list[Piece]:
+    """The branches over all intervals, with the meetings they start from and end in."""
+    usable = {one.label: one for one in parts if uses_only_known(one.ring, [*one.forcing, *chain(*one.slopes)])}
+    pieces: list[Piece] = []
+    for interval in found.intervals:
+        made: list[Piece] = []
+        arrivals: list[tuple[tuple[float, ...] | None, tuple[float, ...] | None]] = []
+        for number, one in enumerate(found.equilibria(interval)):
+            piece, where = _followed(usable.get(one.coordinates_of), one, found, interval, number)
+            made.append(piece)
+            arrivals.append(where)
+        starts, stops = (
+            _assigned(found, critical, [x[side] for x in arrivals], usable, below=side == 1)
+            for side, critical in enumerate(found.between(interval))
+        )
+        pieces += [replace(one, start=a, end=b) for one, a, b in zip(made, starts, stops, strict=True)]
+    return pieces
+
+
+def _followed(
+    curve: Curve | None, one: RelativeEquilibrium, found: Branches, interval: Cell, number: int
+) -> tuple[Piece, tuple[tuple[float, ...] | None, tuple[float, ...] | None]]:
+    sample, k = float_of(interval.sample), interval.number
+    values = {x.name: x.value for x in one.values}
+    if curve is None or set(curve.names) != set(values):
+        start = tuple(x.value for x in one.values)
+        return Piece(k, number, False, None, None, (sample,), (start,)), (None, None)
+    low, high = (float(enclosure(x).mid()) for x in found.ends(interval))
+    start = tuple(values[name] for name in curve.names)
+    ps, qs, at_low, at_high = followed(curve, start, sample, low, high)
+    piece = Piece(k, number, False, None, None, tuple(ps), tuple(qs))
+    arrived = (
+        _features(curve, ps[0], qs[0]) if at_low else None,
+        _features(curve, ps[-1], qs[-1]) if at_high else None,
+    )
+    return piece, arrived
+
+
+def _features(curve: Curve, p: float, q: Sequence[float]) -> tuple[float, ...]:
+    balls = {name: arb(x) for name, x in zip(curve.names, q, strict=True)} | {curve.parameter: arb(p)}
+    place = Place(curve.found, balls, {}, None)
+    return tuple(float(x.mid()) for x in curve.search._features(place))
+
+
+def _assigned(
+    found: Branches,
+    at: Cell | None,
+    arrivals: Sequence[tuple[float, ...] | None],
+    usable: dict[str, Curve],
+    below: bool,
+) -> list[int | None]:
+    """For every branch the number of the nearest meeting; nothing where the numbers that events demand do not come out.
+
+    ``below``: the branches lie at smaller values of the parameter than the critical one.
+    """
+    nobody: list[int | None] = [None] * len(arrivals)
+    meetings = None if at is None else found.critical(at).meetings
+    if at is None or meetings is None:
+        return nobody
+    p = float(enclosure(at.sample).mid())
+    places = [_features_at(one, usable, p) for one in meetings]
+    chosen: list[int | None] = []
+    for where in arrivals:
+        distances = [
+            (math.dist(where, x), k) for k, x in enumerate(places) if where is not None and x is not None
+            and len(x) == len(where)
+        ]  # fmt: skip
+        nearest = min(distances, default=(math.inf, -1))
+        chosen.append(nearest[1] if nearest[0] < FAR else None)
+    wanted = [one.named.below if below else one.named.above for one in meetings]
+    return [
+        k if k is not None and (wanted[k] is None or chosen.count(k) == wanted[k]) else None for k in chosen
+    ]  # fmt: skip
+
+
+def _features_at(one: Meeting, usable: dict[str, Curve], p: float) -> tuple[float, ...] | None:
+    curve = usable.get(one.coordinates_of)
+    if curve is None:
+        return None
+    values = {x.name: x.value for x in one.values}
+    if set(values) != set(curve.names):
+        return None
+    return _features(curve, p, [values[name] for name in curve.names])
+
+
+# Branches followed in floating point, for pictures and for which equilibrium a branch tends to.
+#
+# Newton's method in the coordinates, from the sample outwards; nothing that is proved rests on it.
+
+
+Array = Any  # numpy.ndarray of floats
+
+#: Points of a branch over an interval, on either side of its sample.
+POINTS = 40
+#: The last of them is so near to the end, as a part of the interval.
+NEAR = 1e-7
+#: Steps of Newton's method at one value of the parameter, and when they are small enough.
+MOST_STEPS, SMALL = 12, 1e-11
+
+
+class Floats:
+    """Polynomials of a ring at floating-point numbers of coordinates and one parameter."""
+
+    def __init__(self, ring: Ring, parameter: str) -> None:
+        self.ring, self.parameter = ring, parameter
+        self._tables: dict[int, tuple[Any, list[tuple[float, tuple[tuple[int, int], ...]]]]] = {}
+
+    def __call__(self, x: Polynomial, values: Mapping[str, float]) -> float:
+        return self._total(x, values, {})
+
+    def _total(self, x: Polynomial, values: Mapping[str, float], known: dict[int, float]) -> float:
+        if id(x) not in self._tables:
+            terms = [
+                (float(int(c.p)) / float(int(c.q)), tuple((k, int(e)) for k, e in enumerate(m) if e))
+                for m, c in x.terms()
+            ]
+            self._tables[id(x)] = x, terms
+        total = 0.0
+        for coefficient, powers in self._tables[id(x)][1]:
+            for k, e in powers:
+                if k not in known:
+                    known[k] = self._generator(k, values, known)
+                coefficient *= known[k] ** e
+            total += coefficient
+        return total
+
+    def _generator(self, k: int, values: Mapping[str, float], known: dict[int, float]) -> float:
+        g = self.ring.generators[k]
+        if g.kind in ("sine", "cosine") and g.argument is None:
+            angle = values[g.name] / g.denominator
+            return math.sin(angle) if g.kind == "sine" else math.cos(angle)
+        if g.kind == "root":
+            return math.sqrt(self._total(g.argument, values, known))
+        if g.kind == "reciprocal":
+            return 1 / self._total(g.argument, values, known)
+        if g.kind in ("coordinate", "parameter"):
+            return math.pi if g.name == "pi" else values[g.name]
+        raise KeyError(g.name)
+
+
+def followed(
+    curve: Curve, start: Sequence[float], sample: float, low: float, high: float
+) -> tuple[list[float], list[tuple[float, ...]], bool, bool]:
+    """(values of the parameter, coordinates there, whether the lower end was reached, and the upper one)."""
+    numbers = Floats(curve.ring, curve.parameter)
+    below, reached_low = _outwards(curve, numbers, start, sample, low)
+    above, reached_high = _outwards(curve, numbers, start, sample, high)
+    whole = [*reversed(below), (sample, tuple(start)), *above]
+    return [p for p, _ in whole], [q for _, q in whole], reached_low, reached_high
+
+
+def _outwards(
+    curve: Curve, numbers: Floats, start: Sequence[float], sample: float, end: float
+) -> tuple[list[tuple[float, tuple[float, ...]]], bool]:
+    found: list[tuple[float, tuple[float, ...]]] = []
+    q = np.array(start, dtype=float)
+    before: tuple[float, Array] | None = None
+    at = sample
+    for k in range(1, POINTS + 1):
+        # evenly at first, then dense towards the end, where branches meet like square roots
+        half = 2 * k / POINTS
+        p = end + (sample - end) * (1 - 0.9 * half if half <= 1 else 0.1 * (10 * NEAR) ** (half - 1))
+        guess = q if before is None else q + (q - before[1]) * ((p - at) / (at - before[0]))
+        corrected = _newton(curve, numbers, guess, p)
+        if corrected is None or np.max(np.abs(corrected - q)) > 0.6:
+            corrected = _newton(curve, numbers, q, p)
+        if corrected is None or np.max(np.abs(corrected - q)) > 0.6:
+            return found, False
+        before, q, at = (at, q), corrected, p
+        found.append((p, tuple(float(x) for x in q)))
+    return found, True
+
+
+def _newton(curve: Curve, numbers: Floats, guess: Array, p: float) -> Array | None:
+    q = np.array(guess, dtype=float)
+    for _ in range(MOST_STEPS):
+        values = {**dict(zip(curve.names, q.tolist(), strict=True)), curve.parameter: p}
+        try:
+            f = np.array([numbers(x, values) for x in curve.forcing])
+            slopes = np.array([[numbers(x, values) for x in row] for row in curve.slopes])
+            step = np.linalg.solve(slopes, f)
+        except (ValueError, ArithmeticError, KeyError, np.linalg.LinAlgError):
+            return None
+        q = q - step
+        if not np.all(np.isfinite(q)):
+            return None
+        if np.max(np.abs(step)) < SMALL * (1 + np.max(np.abs(q))):
+            return q
+    return None
+
+
+def uses_only_known(ring: Ring, polynomials: Sequence[Polynomial]) -> bool:
+    """Whether all generators are of a kind that ``Floats`` evaluates."""
+    pending, seen = [*occurring(polynomials)], set()
+    while pending:
+        k = pending.pop()
+        if k in seen:
+            continue
+        seen.add(k)
+        g = ring.generators[k]
+        if g.kind not in ("sine", "cosine", "root", "reciprocal", "coordinate", "parameter"):
+            return False
+        if g.argument is not None:
+            pending += occurring([g.argument])
+    return True

@@ -11,25 +11,145 @@ or at which an unknown goes to infinity, a square root to zero, or a denominator
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from typing import Any
 
 from flint import fmpq, fmpq_mat, fmpq_poly
 
 from mbsym.algebra import rationals
+from mbsym.algebra.characteristic import determinant
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import NoClosedForm
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.plane.numbers import Number, compare, number, primitive, roots_between
 from mbsym.algebra.polynomial_systems import AlgebraicPoint, Family, Limits, solve
 from mbsym.algebra.ring import Polynomial
-from mbsym.maps.varied import INFINITY_OPEN, MASS_OPEN, Varied, charts_over
-from mbsym.mechanics.charts import Chart
+from mbsym.mechanics.charts import Chart, charts
+from mbsym.mechanics.rest import at_numbers, rest
 from mbsym.model.system import System
-from mbsym.problems.relative_equilibria.equilibria import EXACT
-from mbsym.problems.relative_equilibria.place import PRECISION, Place
-from mbsym.problems.relative_equilibria.unknowns import Unknowns
+from mbsym.problems.relative_equilibria.equilibria import EXACT, WITHIN, _ChartSearch
+from mbsym.problems.relative_equilibria.place import PRECISION, Place, Unknowns
+
+# Relative equilibria over parameters: f(q, p) = 0 in one set of angles, the parameters p among the unknowns.
+
+
+#: The determinant of M is not formed for more coordinates.
+MOST_COORDINATES = 6
+#: Why something at the ends of the space is left open.
+MASS_OPEN = "where the mass matrix is singular is not looked at"
+INFINITY_OPEN = "whether branches go to infinity is not looked at: roots beside lengths"
+
+
+class _Search(_ChartSearch):
+    """The conditions of rest with parameters that are unknowns, too."""
+
+    parameters: tuple[str, ...] = ()
+
+    def _obstacle(self, used: set[int]) -> str:
+        found = super()._obstacle(used - {self.ring.index("parameter", name) for name in self.parameters})
+        if any(found == f"{name} is transcendental" for name in self.parameters):
+            return f"{found.split()[0]} stands in a root or a function"
+        return found
+
+
+class Varied:
+    """The equations of rest with unknown parameters.
+
+    Raises NoClosedForm where they are not of the kind needed.  ``empty``: they have no solutions.
+    """
+
+    def __init__(self, chart: Chart, parameters: Sequence[str], limits: Limits) -> None:
+        self.chart, self.limits, self.label = chart, limits, chart.label
+        search = _Search(chart, WITHIN, limits)
+        search.parameters = tuple(parameters)
+        search._conditions()
+        self.search, self.found, self.ring = search, chart.found, chart.found.ring
+        self.unknown = [self.ring.context.gen(self.ring.index("parameter", name)) for name in parameters]
+        self.empty = search.impossible
+        self.names = () if self.empty else search.occurring
+        if self.empty:
+            return
+        if search.reason:
+            raise NoClosedForm(search.reason)
+        others = [x for name, x in self._rows.items() if name not in self.names and not x.is_zero()]
+        if others or search.remarks:
+            raise NoClosedForm("the equations at rest are more than their unknowns, or vary in time")
+
+    @cached_property
+    def _rows(self) -> dict[str, Polynomial]:
+        found = self.found
+        return {name: self.ring.fraction(x)[0] for name, x in zip(found.system.coordinates, found.at_rest, strict=True)}
+
+    @cached_property
+    def forcing(self) -> list[Polynomial]:
+        """f, times what its rows divide by, for the coordinates that occur: the rows vanish with those of f."""
+        return [self._rows[name] for name in self.names]
+
+    @cached_property
+    def slopes(self) -> list[list[Polynomial]]:
+        """df/dq of ``forcing``."""
+        return [[self.ring.derivative(x, name) for name in self.names] for x in self.forcing]
+
+    @cached_property
+    def singular(self) -> Polynomial:
+        """det df/dq."""
+        return self.ring.reduce(determinant(self.slopes)) if self.names else self.ring.one
+
+    def table(self, given: Sequence[Polynomial] = ()) -> Unknowns:
+        """The unknowns of the equations and of further polynomials."""
+        return Unknowns(self.ring, [*self.search.equations, *given, *self.search.singular_where, *self.unknown])
+
+    # --- where solutions leave ---
+
+    def undefined(self) -> list[Polynomial]:
+        """What vanishes where a denominator or a square root does, but for singular angles."""
+        angular = {str(x) for x in self.search.singular_where}
+        beside = [x for x in self.search.nonzero if str(x) not in angular]
+        used = occurring(self.search.equations)
+        return [*beside, *(self.ring.context.gen(k) for k in used if self.ring.generators[k].kind == "root")]
+
+    @cached_property
+    def mass(self) -> Polynomial | None:
+        """det M; None of more than ``MOST_COORDINATES``."""
+        matrix = self.found.mass_matrix()
+        return None if len(matrix) > MOST_COORDINATES else self.ring.reduce(determinant(matrix))
+
+    def at_infinity(self) -> Iterator[tuple[Unknowns, list[Any]] | None]:
+        """For each length the equations of what goes to infinity, none faster; None where that is not looked at.
+
+        Lengths are z/u with one z_j = 1; at u = 0 the forms of highest degree in z are left of the equations.
+        """
+        ring = self.ring
+        lengths = [name for name in self.names if not self.search._periodic(name)]
+        if not lengths:
+            return
+        kinds = {ring.generators[k].kind for k in occurring(self.search.equations)}
+        if kinds - {"sine", "cosine", "coordinate", "parameter"}:
+            yield None
+            return
+        table = Unknowns(ring, [*self.search.equations, *self.unknown])
+        equations = [table.polynomial(x) for x in self.search.equations] + table.relations()
+        places = [table.indices.index(ring.index("coordinate", name)) for name in lengths]
+        for at in places:
+            tops = []
+            for x in equations:
+                degree = max(sum(int(m[i]) for i in places) for m in x.monoms())
+                kept = {m: c for m, c in x.terms() if sum(int(m[i]) for i in places) == degree}
+                tops.append(table.context.from_dict(kept))
+            yield table, [*tops, table.context.gens()[at] - 1]
+
+
+def charts_over(system: System, parameters: Sequence[str], values: Mapping[str, Fraction]) -> list[Chart]:
+    """The sets of angles of a system with numbers for all parameters but these.
+
+    Raises KeyError for a missing number, NoClosedForm, SingularPoint.
+    """
+    kept = tuple(replace(one, value=None) for one in system.parameters if one.name in parameters)
+    numbers = {key: value for key, value in values.items() if key not in parameters}
+    return list(charts(rest(replace(at_numbers(system, numbers), parameters=kept))))
+
 
 #: Values of coordinates (or of their sines and cosines) at which real points of a family are looked for.
 _TRIED = (fmpq(3, 5), fmpq(-4, 5), fmpq(5, 13), fmpq(1, 10), fmpq(-1, 10), fmpq(0), fmpq(1))
@@ -58,7 +178,7 @@ class CurvePoint:
 
 
 @dataclass(frozen=True)
-class Found:
+class CurvePoints:
     """Isolated points with p in the range, numbers p over which there are infinitely many, and what was not done.
 
     ``throughout``: there are infinitely many on a set along which p varies.
@@ -99,7 +219,7 @@ class Curve(Varied):
 
     # --- places on the curve ---
 
-    def where(self, further: Sequence[Polynomial], at: Number | None = None) -> Found:
+    def where(self, further: Sequence[Polynomial], at: Number | None = None) -> CurvePoints:
         """The points of the curve, p within the range, at which ``further`` vanish, or at one number p."""
         given = [self.ring.fraction(x)[0] for x in further]
         table = self.table(given)
@@ -108,22 +228,22 @@ class Curve(Varied):
             wanted.append(_of_number(at, table.context, table.indices.index(self.index)))
         return self._solved(table, [*wanted, *table.relations()], at)
 
-    def where_on_components(self, further: Sequence[Polynomial]) -> Found:
+    def where_on_components(self, further: Sequence[Polynomial]) -> CurvePoints:
         """As ``where``, component by component of the curve: longer polynomials are short on one."""
         given = [self.ring.fraction(x)[0] for x in further]
         table = self.table(given)
         equations = [table.polynomial(x) for x in self.search.equations] + table.relations()
         usable = [table.polynomial(x) for x in self.search.nonzero if table.holds(x)]
         whole = solve(equations, usable, table.bounded(), self.limits)
-        found = [Found((), (), False, whole.unfinished)]
+        found = [CurvePoints((), (), False, whole.unfinished)]
         wanted = [table.polynomial(x) for x in given]
         for family in whole.families:
             if any(part.dimension > 1 for part in whole.families):
-                return Found((), (), True, ())
+                return CurvePoints((), (), True, ())
             found.append(self._solved(table, [*family.equations, *table.relations(), *wanted], None))
         return joined(found)
 
-    def _solved(self, table: Unknowns, equations: Sequence[Any], at: Number | None) -> Found:
+    def _solved(self, table: Unknowns, equations: Sequence[Any], at: Number | None) -> CurvePoints:
         usable = [table.polynomial(x) for x in self.search.nonzero if table.holds(x)]
         result = solve(equations, usable, table.bounded(), self.limits)
         points = []
@@ -141,7 +261,7 @@ class Curve(Varied):
                     shown = self._shown_at(table, family, p)
                     continua += [p] if shown else []
                     unfinished += [] if shown else ["whether infinitely many equilibria at one value are real"]
-        return Found(tuple(points), tuple(continua), throughout, tuple(dict.fromkeys(unfinished)))
+        return CurvePoints(tuple(points), tuple(continua), throughout, tuple(dict.fromkeys(unfinished)))
 
     def _conjugates(self, table: Unknowns, family: Family) -> list[Number]:
         """The numbers in the range that p may have on a family, as it has one of them at the sample."""
@@ -181,33 +301,34 @@ class Curve(Varied):
 
     # --- places that are no points ---
 
-    def borders(self) -> Found:
+    def borders(self) -> CurvePoints:
         """Where a square root vanishes, a denominator does, or a length goes to infinity."""
         parts = [self._without_conditions([x]) for x in self.undefined()]
         parts += [
-            Found((), (), False, (INFINITY_OPEN,)) if one is None else self._gone(*one) for one in self.at_infinity()
+            CurvePoints((), (), False, (INFINITY_OPEN,)) if one is None else self._gone(*one)
+            for one in self.at_infinity()
         ]
         return joined([*parts, self._massless()])
 
-    def _massless(self) -> Found:
+    def _massless(self) -> CurvePoints:
         """Where det M = 0: the coordinates are singular, and what is found there is not counted.
 
         Where it vanishes all along a branch, other branches meet that one in singular points only.
         """
         if self.mass is None:
-            return Found((), (), False, (MASS_OPEN,))
+            return CurvePoints((), (), False, (MASS_OPEN,))
         if self.mass.is_constant():
-            return Found((), (), False, ())
+            return CurvePoints((), (), False, ())
         return replace(self.where([self.mass]), throughout=False)
 
-    def _without_conditions(self, further: Sequence[Polynomial]) -> Found:
+    def _without_conditions(self, further: Sequence[Polynomial]) -> CurvePoints:
         kept, self.search.nonzero = self.search.nonzero, list(self.search.singular_where)
         try:
             return self.where(further)
         finally:
             self.search.nonzero = kept
 
-    def _gone(self, table: Unknowns, equations: Sequence[Any]) -> Found:
+    def _gone(self, table: Unknowns, equations: Sequence[Any]) -> CurvePoints:
         """The values of p at which a length may go to infinity."""
         result = solve(equations, (), table.bounded(), self.limits)
         numbers = [self._number(table, one, None) for one in result.points]
@@ -217,12 +338,12 @@ class Curve(Varied):
                 numbers += self._conjugates(table, family)
             else:
                 unfinished.append("whether branches go to infinity is not decided")
-        return Found((), tuple(x for x in numbers if x is not None), False, tuple(dict.fromkeys(unfinished)))
+        return CurvePoints((), tuple(x for x in numbers if x is not None), False, tuple(dict.fromkeys(unfinished)))
 
 
-def joined(parts: Sequence[Found]) -> Found:
+def joined(parts: Sequence[CurvePoints]) -> CurvePoints:
     """What several searches found, together."""
-    return Found(
+    return CurvePoints(
         tuple(x for one in parts for x in one.points),
         tuple(x for one in parts for x in one.continua),
         any(one.throughout for one in parts),

@@ -35,11 +35,9 @@ from mbsym.algebra.plane.line import Line
 from mbsym.algebra.plane.numbers import Rational, between_simply, high, low, sign, simplest
 from mbsym.algebra.plane.points import Point
 from mbsym.algebra.plane.projection import nothing
-from mbsym.maps.constant_points import beside
-from mbsym.maps.continuity import jumps
-from mbsym.maps.on_curves import ExactVerdicts
+from mbsym.maps.on_curves import ExactVerdicts, beside
 from mbsym.maps.section import Section
-from mbsym.maps.verdicts import Judged, verdict_at
+from mbsym.maps.verdicts import Judged, jumps, verdict_at
 from mbsym.problems.stability.constant import Constant
 from mbsym.problems.stability.enclosed import eigenvalues, on_axis, spectrum
 from mbsym.problems.stability.exact import RationalPoint, evaluated

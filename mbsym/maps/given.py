@@ -17,7 +17,7 @@ from mbsym.analysis import Analysis
 from mbsym.expressions.tree import names
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import relations
-from mbsym.model.comparison import RELATION_OF_SIGN, holds
+from mbsym.model.assumptions import RELATION_OF_SIGN, holds
 from mbsym.model.system import System, rational
 from mbsym.problems.knowledge import definition_in_parameters
 

@@ -12,8 +12,8 @@ from typing import Any
 from flint import fmpq
 
 from mbsym.algebra import rationals
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure, NoValue, SingularPoint
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import relations

@@ -18,8 +18,8 @@ from fractions import Fraction
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure, NoValue, SingularPoint
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial
 from mbsym.analysis import Analysis
 from mbsym.maps.axis import Axis

@@ -271,7 +271,7 @@ def _regrouped(
         if number in kept:
             continue
         frame, own = frames[number], masses[number]
-        stays, leaves = _split(algebra, frame, own)
+        stays, leaves = split(algebra, frame, own)
         masses[number] = stays
         if frame.parent >= 0:
             leaves = turned_back(algebra, leaves, frame)
@@ -281,7 +281,7 @@ def _regrouped(
     return tuple(masses)
 
 
-def _split(algebra: Algebra[S], frame: Frame[S], own: MassProperties[S]) -> tuple[MassProperties[S], MassProperties[S]]:
+def split(algebra: Algebra[S], frame: Frame[S], own: MassProperties[S]) -> tuple[MassProperties[S], MassProperties[S]]:
     """What stays on a frame, and what may move to its parent; their sum is ``own``."""
     none = nothing(algebra, frame.name)
     if frame.together:  # the joint is solved as a whole, with all that it moves on the last of its frames

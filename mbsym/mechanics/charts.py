@@ -136,9 +136,10 @@ def _coordinate(form: LinearForm | None) -> tuple[str, int] | None:
 
 
 def cyclic_angles(found: Rest) -> tuple[str, ...]:
-    """The constant coordinates that occur neither in f(q, q', t) nor in M(q): any value is as good as another."""
+    """The constant coordinates that occur neither in f(q, q', t) nor in M(q), nor in constraints: any value will do."""
     ring = found.ring
-    open_ = [x for x in found.constant if not any(ring.depends_on(f, x) for f in found.forcing)]
+    known = [*found.forcing, *found.kept, *(x for row in found.rows for x in row.partials)]
+    open_ = [x for x in found.constant if not any(ring.depends_on(f, x) for f in known)]
     if not open_:
         return ()
     mass = [x for row in found.mass_matrix() for x in row]
@@ -149,9 +150,9 @@ def _used_elsewhere(system: System, body: Body, angles: Sequence[str]) -> bool:
     """Whether an angle or its velocity is named anywhere but in the rotation of its body."""
     watched = {*angles, *map(velocity_name, angles)}
     others = [replace(x, rotation=Rotation()) if x is body else x for x in system.bodies]
-    parts = (tuple(others), system.loads, system.prescribed)
+    parts = (tuple(others), system.loads, system.prescribed, system.constraints)
     in_formulas = any(names(x) & watched for x in expressions(parts))
-    return in_formulas or any(word in watched for word in _words(system.loads))
+    return in_formulas or any(word in watched for word in _words((system.loads, system.constraints)))
 
 
 def _words(part: Any) -> list[str]:
@@ -177,7 +178,10 @@ def _has_no_twist(system: System, body: Body, axis: int) -> bool:
         found = rest(wider)
         place = wider.coordinates.index(extra)
         # A force fixed in the body does no work in the twist, but it turns with it.
-        if not found.forcing[place].is_zero() or any(found.ring.dependencies(f, (extra,)) for f in found.forcing):
+        known = [*found.forcing, *found.kept, *(x for row in found.rows for x in row.partials)]
+        if not found.forcing[place].is_zero() or any(found.ring.dependencies(f, (extra,)) for f in known):
+            return False
+        if any(not row.partials[place].is_zero() for row in found.rows):
             return False
         row = found.mass_matrix()[place]
     except Failure:

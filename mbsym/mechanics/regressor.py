@@ -24,6 +24,7 @@ from mbsym.mechanics.articulation import (
     mass_properties,
     nothing,
     shifted,
+    split,
     turned_back,
 )
 from mbsym.mechanics.kinematics import Scene
@@ -120,26 +121,19 @@ def _parts(x: MassProperties[S]) -> Iterator[tuple[str, S]]:
 
 def _split(algebra: Algebra[S], frame: Frame[S], own: MassProperties[S]) -> tuple[MassProperties[S], MassProperties[S]]:
     """What stays on a frame, and what its joint does not feel."""
-    none = nothing(algebra, frame.name)
-    if frame.together or not (frame.fixed_turn or frame.fixed_offset):
-        return own, none
-    if frame.fixed_turn and frame.fixed_offset:
-        return none, own
-    if frame.fixed_turn:
-        stays = MassProperties(own.mass, own.first_moment, none.tensor)
-        return stays, MassProperties(algebra.zero, none.first_moment, own.tensor)
+    stays, leaves = split(algebra, frame, own)
+    if frame.together or frame.fixed_turn or not frame.fixed_offset:
+        return stays, leaves
     assert frame.turn is not None
     a = frame.turn.axis - 1
     b, c = (a + 1) % 3, (a + 2) % 3
-    h, rows, round_ = list(own.first_moment), [list(row) for row in own.tensor], own.tensor[c][c]
-    along = axis_vector(algebra, a + 1, h[a], frame.name)
-    h[a] = algebra.zero
+    rows, round_ = [list(row) for row in own.tensor], own.tensor[c][c]
     rows[b][b], rows[c][c] = rows[b][b] - round_, algebra.zero
     leaving = [[round_ if i == j != a else algebra.zero for j in range(3)] for i in range(3)]
-    stays = MassProperties(
-        algebra.zero, Vector(algebra, (h[0], h[1], h[2]), frame.name), symmetric_tensor(algebra, rows, frame.name)
+    return (
+        MassProperties(stays.mass, stays.first_moment, symmetric_tensor(algebra, rows, frame.name)),
+        MassProperties(leaves.mass, leaves.first_moment, symmetric_tensor(algebra, leaving, frame.name)),
     )
-    return stays, MassProperties(own.mass, along, symmetric_tensor(algebra, leaving, frame.name))
 
 
 class Energies(Generic[S]):

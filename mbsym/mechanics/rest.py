@@ -1,7 +1,8 @@
 """A system at numbers, and the equations of its steady motions.
 
 At a relative equilibrium every coordinate is constant, except those to which the description gives a rate, which turn
-steadily; the prescribed quantities go on running.  With M(q) q'' = f(q, q', t) it is a solution of f(q, rates, t) = 0.
+steadily; the prescribed quantities go on running.  With M(q) q'' = f(q, q', t) it is a solution of f(q, rates, t) = 0,
+under constraints of f + J^T lambda = 0 with phi(q, t) = 0 and J q' + j = 0 for some multipliers lambda.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.tree import (
@@ -22,9 +24,11 @@ from mbsym.expressions.tree import (
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.newton_euler import residuals
 from mbsym.mechanics.variables import expressions, ring_environment, ring_of
-from mbsym.model.driven import held
-from mbsym.model.substitution import put
+from mbsym.model.substitution import held, put
 from mbsym.model.system import System, acceleration_name, rational, velocity_name
+
+if TYPE_CHECKING:
+    from mbsym.mechanics.constraints.rows import Row
 
 #: The number of a parameter: a rational one, or an expression without names (pi/6, sqrt(2)), taken exactly as well.
 Value = Fraction | Expression
@@ -50,7 +54,9 @@ def missing_values(system: System, values: Mapping[str, Value]) -> tuple[str, ..
     dependent = {item.name: item.value for item in system.relations}
     rates = tuple(entry.rate for entry in system.motion)
     pending = [
-        name for x in expressions((system.bodies, held(system).loads, system.prescribed, rates)) for name in names(x)
+        name
+        for x in expressions((system.bodies, held(system).loads, system.prescribed, system.constraints, rates))
+        for name in names(x)
     ]
     needed: set[str] = set()
     while pending:
@@ -95,7 +101,7 @@ def _folded(expression: Expression) -> Expression:
 class Rest:
     """A system at numbers, in its ring: f(q, q', t) and M(q), and f on the steady motions.
 
-    ``turning`` are the coordinates that have a rate; ``rates`` the velocities of all.
+    ``turning`` are the coordinates that have a rate; ``rates`` the velocities of all; ``rows`` those of constraints.
     """
 
     system: System
@@ -105,6 +111,27 @@ class Rest:
     at_rest: tuple[Polynomial, ...]
     rates: Mapping[int, Polynomial]
     turning: tuple[str, ...]
+    rows: tuple[Row, ...] = ()
+
+    @property
+    def kept(self) -> list[Polynomial]:
+        """What constraints demand of a steady motion: phi(q, t) = 0, J q' + j = 0."""
+        demanded = [y for row in self.rows for y in (row.position, row.velocity) if y is not None]
+        return [self.ring.reduce(self.ring.substitute(x, dict(self.rates))) for x in demanded]
+
+    @property
+    def tied_in_motion(self) -> tuple[str, ...]:
+        """What moves and is tied by constraints; then coordinates without a rate need not be constant."""
+        ring, names = self.ring, self.system.coordinates
+        moving = [*self.turning, *(item.name for item in self.system.prescribed), "t"]
+        still = {ring.index("velocity", name): ring.zero for name in names}
+        found = []
+        for row in self.rows:
+            parts = [*([] if row.position is None else [row.position]), *row.partials]
+            found += [name for x in parts for name in ring.dependencies(x, moving)]
+            found += [name for name in self.turning if not row.partials[names.index(name)].is_zero()]
+            found += [str(row.name.label)] if not ring.substitute(row.velocity, still).is_zero() else []
+        return tuple(dict.fromkeys(found))
 
     @property
     def constant(self) -> tuple[str, ...]:
@@ -150,4 +177,9 @@ def rest(system: System) -> Rest:
             turning.append(entry.coordinate)
     forcing = tuple(-found[name] for name in system.coordinates)
     at_rest = tuple(ring.substitute(x, dict(rates)) for x in forcing)
-    return Rest(system, ring, scene, forcing, at_rest, rates, tuple(turning))
+    rows: tuple[Row, ...] = ()
+    if system.constraints:
+        from mbsym.mechanics.constraints.rows import said_rows  # most systems have none
+
+        rows = said_rows(scene)
+    return Rest(system, ring, scene, forcing, at_rest, rates, tuple(turning), rows)

@@ -16,7 +16,7 @@ from mbsym.algebra.point import Balls, BallsAtRationals, Rationals
 from mbsym.algebra.ring import Ring
 from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.variables import has_linear_angles
-from mbsym.model.comparison import has_sign, holds
+from mbsym.model.assumptions import has_sign, holds
 from mbsym.model.speeds import Quaternion
 from mbsym.model.system import System, rational
 

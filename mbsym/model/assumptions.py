@@ -11,11 +11,11 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import chain
+from typing import Any
 
 from mbsym.expressions.angles import LinearForm, linear_form
 from mbsym.expressions.tree import Expression
 from mbsym.model.admissibility import number_of
-from mbsym.model.comparison import RELATION_OF_SIGN, holds
 from mbsym.model.system import Assumption, System
 
 #: More inequalities than this are not eliminated: nothing is said then.
@@ -161,3 +161,20 @@ def _without(name: str, lower: _Inequality, upper: _Inequality) -> _Inequality:
     scale = abs(kept[0][1]) if kept else Fraction(1)
     kept = tuple((one, value / scale) for one, value in kept)
     return _Inequality(kept, constant / scale, lower.strict or upper.strict)
+
+
+# Comparisons of numbers with zero, as assumptions state them and as the declared signs of parameters mean them.
+
+
+#: The relation to zero that a sign word declares; "real" declares none.
+RELATION_OF_SIGN = {"positive": ">", "nonnegative": ">=", "negative": "<", "nonpositive": "<=", "nonzero": "!="}
+
+
+def holds(gap: Any, relation: str) -> bool:
+    """Whether ``gap relation 0``; of a ball, whether this is certain."""
+    return bool({"<": gap < 0, "<=": gap <= 0, ">": gap > 0, ">=": gap >= 0, "!=": gap != 0}[relation])
+
+
+def has_sign(value: Any, sign: str) -> bool:
+    """Whether a number has a declared sign; of a ball, whether this is certain."""
+    return sign not in RELATION_OF_SIGN or holds(value, RELATION_OF_SIGN[sign])

@@ -30,6 +30,11 @@ class InStates(System):
         """u."""
         return self.own_speeds
 
+    def with_field_order(self, order: int | str) -> System:
+        """The same of what is described, seen in the same variables."""
+        assert self.described is not None
+        return in_states(self.described.with_field_order(order), self.positions, self.own_speeds)
+
 
 def in_states(system: System, positions: tuple[str, ...], speeds: tuple[str, ...]) -> InStates:
     """The same system in these variables."""

@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import Any
 
 from mbsym.expressions.tree import (
+    ZERO,
     Call,
     Expression,
     Name,
@@ -22,6 +23,8 @@ from mbsym.expressions.tree import (
     substitute,
     subtract,
 )
+from mbsym.model.inputs import Input
+from mbsym.model.system import System
 
 _EXPRESSIONS = (Number, Name, Negative, Operation, Call)
 _FOLDING = {"+": add, "-": subtract, "*": multiply}
@@ -62,3 +65,29 @@ def folded(expression: Expression, images: Mapping[str, Expression]) -> Expressi
         case Operation("**", base, exponent) if is_number(folded(base, images), 1) and not names(exponent):
             return Number(Fraction(1))
     return substitute(expression, images)
+
+
+# A system with expressions in place of its inputs.
+
+
+def driven(system: System, laws: Mapping[str, Expression]) -> System:
+    """The system whose inputs are the given expressions, in the state, parameters and t; others keep ``held``.
+
+    It has no inputs and no outputs.  Loads that vanish are left out: zero forces would only cast doubt on the energy.
+    """
+    if not system.inputs:
+        return replace(system, outputs=()) if system.outputs else system
+    images = {one.name: laws.get(one.name, one.held) for one in system.inputs}
+    loads = (put(load, images, folded) for load in system.loads)
+    kept = tuple(load for one in loads if (load := one.simplified()) is not None)
+    return replace(system, loads=kept, inputs=(), outputs=())
+
+
+def held(system: System) -> System:
+    """The system whose inputs keep the constant values of the unperturbed motion: the one problems 4 to 6 judge."""
+    return driven(system, {})
+
+
+def with_held(inputs: tuple[Input, ...], values: Mapping[str, Expression]) -> tuple[Input, ...]:
+    """The inputs with their constant values on the unperturbed motion, where these are given."""
+    return tuple(replace(one, held=values.get(one.name, ZERO)) for one in inputs)

@@ -20,7 +20,7 @@ Spans point back into the description; they take no part in equality, so two spe
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -37,13 +37,13 @@ from mbsym.model.basics import rational as rational
 from mbsym.model.claims import Abbreviation, Claim
 from mbsym.model.inputs import Input, Output
 from mbsym.model.linear import LinearModel
-from mbsym.model.loads import Load, NewtonianGravity, UniformGravity
-from mbsym.model.small import SmallParameter
+from mbsym.model.loads import Free, Load, NewtonianGravity, UniformGravity
 from mbsym.model.speeds import Quaternion, Speed, UnitVector
 from mbsym.model.units import Units
 
 if TYPE_CHECKING:
     from mbsym.model.constraints import Constraint
+
 
 Tensor = tuple[Vector, Vector, Vector]
 
@@ -224,8 +224,9 @@ class System(GuessesNames):
     """A whole description.
 
     ``time_scale`` (a rate) makes time dimensionless in problems 5 and 6: tau = time_scale * t.  ``source`` says where
-    the system is from; ``symbols`` how names are written in LaTeX, ``language`` in which language ("" is English),
-    ``order`` in which order the subsystems of problems 5 and 6 are told: by these coordinates, then by the others.
+    the system is from; ``label`` what LaTeX labels have of it in them ("": its name); ``symbols`` how names are written
+    in LaTeX, ``language`` in which language ("" is English), ``order`` in which order the subsystems of problems 5 and
+    6 are told: by these coordinates, then by the others.
     ``reactions`` are the bodies whose joints' forces and moments are wanted.
     ``start`` are initial values of declared variables, speeds and components of unit vectors and quaternions, as
     ``initial`` are of coordinates.
@@ -252,6 +253,7 @@ class System(GuessesNames):
     units: Units = Units()
     limits: tuple[Limit, ...] = ()
     source: str = ""
+    label: str = ""
     symbols: tuple[WrittenSymbol, ...] = ()
     language: str = ""
     order: tuple[str, ...] = ()
@@ -302,9 +304,10 @@ class System(GuessesNames):
     def without_speeds(self) -> System:
         """The same system in generalised coordinates and their derivatives; claims and abbreviations left out."""
         bodies = tuple(replace(body, speeds=(), orientation=()) for body in self.bodies)
+        loads = tuple(replace(x, as_written=None) if isinstance(x, Free) else x for x in self.loads)
         named = {*self.coordinates}  # a dependent speed is none of the coordinates'
         dependent = tuple(name for name in self.dependent if name in named)
-        return replace(self, bodies=bodies, claims=(), abbreviations=(), dependent=dependent)
+        return replace(self, bodies=bodies, loads=loads, claims=(), abbreviations=(), dependent=dependent)
 
     @property
     def claimable(self) -> tuple[str, ...]:
@@ -364,3 +367,24 @@ def overruled(system: System, overrides: Iterable[str]) -> set[str]:
     for _ in system.relations:
         found |= {x.name for x in system.relations if x.name not in given and names(x.value) & (given | found)}
     return found
+
+
+# A small parameter: what is expanded in its powers, and which variables are fast, which oscillates.
+
+
+@dataclass(frozen=True)
+class SmallParameter:
+    """``name`` is a parameter, or with ``powers`` a name of its own: each P there, a parameter or
+    a variable, stands for P name^power.
+
+    ``fast`` are the variables that a slow manifold expresses by the others (empty: they are found), ``slow`` those
+    that are not among them.  ``leading`` is the variable whose oscillation a periodic solution belongs to ("": it is
+    found).
+    """
+
+    name: str
+    powers: tuple[tuple[str, int], ...] = ()
+    fast: tuple[str, ...] = ()
+    slow: tuple[str, ...] = ()
+    leading: str = ""
+    span: Span | None = field(default=None, compare=False, repr=False)

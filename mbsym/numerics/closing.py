@@ -24,10 +24,9 @@ from mbsym.expressions.message import Message, joined
 from mbsym.mechanics.constraints.rows import RowName
 from mbsym.model.states import InStates
 from mbsym.numerics.constrained import Constraints
-from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.precise import precise
 from mbsym.numerics.scenario import PRECISION, Scenario, rounded
-from mbsym.numerics.states import StateDynamics
+from mbsym.numerics.states import dynamics_of, scenario_in_states
 
 #: Steps of Newton's method and of the descent to the least gap, of the way along the constraints, of the refinement.
 STEPS, ALONG, REFINED = 200, 60, 40
@@ -137,6 +136,31 @@ def moving(found: Closed) -> Closed:
     return found
 
 
+def begun(scenario: Scenario, fixed: Collection[str] = (), declared: bool = True) -> Closed:
+    """The scenario in the variables of its run, on its constraints.
+
+    ``declared``: those that a description with speeds declares; else coordinates and their velocities.  Raises
+    NotClosed, Failure.
+    """
+    found = closed(fitted(scenario, declared), fixed)
+    return replace(found, scenario=shown(found.scenario, declared))
+
+
+def fitted(scenario: Scenario, declared: bool) -> Scenario:
+    """The scenario in the variables in which it is fitted to constraints: what is given in declared ones, in these."""
+    if not scenario.system.speeds or isinstance(scenario.system, InStates):
+        return scenario
+    if not declared:
+        return replace(scenario, system=scenario.system.without_speeds)
+    return scenario_in_states(scenario) if scenario.declared else scenario
+
+
+def shown(scenario: Scenario, declared: bool) -> Scenario:
+    """In the variables of the run."""
+    own = declared and bool(scenario.system.speeds) and not isinstance(scenario.system, InStates)
+    return scenario_in_states(scenario) if own else scenario
+
+
 def closed(scenario: Scenario, fixed: Collection[str] = ()) -> Closed:
     """The scenario with the closest initial state that its constraints allow; itself where there are none.
 
@@ -179,7 +203,7 @@ def closed(scenario: Scenario, fixed: Collection[str] = ()) -> Closed:
 
 def _constraints(scenario: Scenario) -> Constraints | None:
     """Those of a scenario in its variables."""
-    return (StateDynamics if isinstance(scenario.system, InStates) else Dynamics)(scenario).constraints
+    return dynamics_of(scenario).constraints
 
 
 T = TypeVar("T")

@@ -1,6 +1,6 @@
 """What a run keeps constant, how that is known, and how far the run itself agrees.
 
-    dh/dt = sum_i q'_i Q_i - dL/dt (explicit)              generalised energy (``mbsym.mechanics.energy_rate``)
+    dh/dt = sum_i q'_i Q_i - dL/dt (explicit)              generalised energy (``mbsym.mechanics.energy``)
     dI/dt = dI/dt(explicit) + dI/dq . q' + dI/dq' . q''    any other quantity
 
 A rate that vanishes identically in the ring is a proof.  Else it is looked at in balls of many bits at states that the

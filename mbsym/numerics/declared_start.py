@@ -40,7 +40,8 @@ BITS = 320
 class DeclaredStart:
     """``state`` is (s, u); ``positions`` and ``velocities`` of all coordinates, None where angles are ``singular``.
 
-    ``missing`` are names without a value; ``wrong`` (name, sentence) of what cannot be.
+    ``missing`` are names without a value; ``wrong`` (name, sentence) of what cannot be; ``unstated`` velocities that
+    were left out and do not follow from speeds.
     """
 
     state: tuple[arb, ...] = ()
@@ -48,6 +49,7 @@ class DeclaredStart:
     velocities: tuple[arb, ...] | None = None
     missing: tuple[str, ...] = ()
     wrong: tuple[tuple[str, str], ...] = ()
+    unstated: tuple[str, ...] = ()
 
 
 def declared_start(
@@ -102,7 +104,10 @@ class _Start:
         if self.wrong:
             return DeclaredStart(wrong=tuple(self.wrong))
         s = [self._position(x.name, q) for x in self.form.positions]
-        return DeclaredStart((*s, *u), tuple(q[name] for name in self.system.coordinates), rates)
+        left = [velocity_name(name) for name, x in self.velocities.items() if x is None]
+        own = {u.name for u in self.form.speeds}
+        unstated = tuple(name for name in left if not given or name in own)
+        return DeclaredStart((*s, *u), tuple(q[name] for name in self.system.coordinates), rates, unstated=unstated)
 
     def _position(self, name: str, q: Mapping[str, arb]) -> arb:
         return self.oriented[name] if name in self.oriented else q[name]

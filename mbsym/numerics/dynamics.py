@@ -23,8 +23,7 @@ from mbsym.algebra.stable import stabilised
 from mbsym.expressions.table import Curve
 from mbsym.mechanics.energy_rate import EnergyRate, energy_rate
 from mbsym.mechanics.falling import relative_lagrangian
-from mbsym.mechanics.forward_dynamics import ForwardDynamics, forward_dynamics
-from mbsym.mechanics.programs import Programs, programs, scene_without_accelerations
+from mbsym.mechanics.programs import ForwardDynamics, Programs, forward_dynamics, programs, scene_without_accelerations
 from mbsym.mechanics.variables import program_environment, ring_of
 from mbsym.model.system import System
 from mbsym.numerics.events.features import SLIDING, Features, Polynomial, Standing, features, held, sign_that_holds

@@ -20,10 +20,9 @@ from mbsym.algebra.point import Balls, Rationals
 from mbsym.expressions.tree import Expression, names
 from mbsym.expressions.tree import text as spelled
 from mbsym.mechanics.given_matrices import refuse_matrices
-from mbsym.model.assumptions import broken
-from mbsym.model.comparison import has_sign
-from mbsym.model.driven import driven
+from mbsym.model.assumptions import broken, has_sign
 from mbsym.model.inputs import Input
+from mbsym.model.substitution import driven
 from mbsym.model.system import InitialValue, System, overruled, velocity_name
 
 #: Irrational values are rounded to so many bits.
@@ -213,6 +212,7 @@ def _with_own(
         velocities=tuple(map(rounded, rates)),
         prescribed=prescribed,
         inputs=became,
+        unstated=found.unstated,
         declared=tuple(map(rounded, found.state)),
         singular=singular,
     )

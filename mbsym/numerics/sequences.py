@@ -23,8 +23,7 @@ from mbsym.algebra.failures import Failure
 from mbsym.expressions.message import Message
 from mbsym.expressions.rates import without_velocity
 from mbsym.expressions.tree import Name, names
-from mbsym.mechanics.forward_dynamics import forward_dynamics
-from mbsym.mechanics.programs import constants, programs
+from mbsym.mechanics.programs import constants, forward_dynamics, programs
 from mbsym.mechanics.variables import expressions, ring_of
 from mbsym.model.system import Body, Rotation, System
 from mbsym.numerics.kernels.interface import FLOAT64, Code

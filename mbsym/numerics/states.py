@@ -37,7 +37,7 @@ from mbsym.mechanics.speed_programs import orthonormal, restoring, speed_program
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.mechanics.variables import program_environment, ring_of
 from mbsym.model.speeds import Quaternion
-from mbsym.model.states import described, in_states
+from mbsym.model.states import InStates, described, in_states
 from mbsym.model.system import Body, System
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.balls import enclosures
@@ -123,7 +123,8 @@ class StateDynamics(Dynamics):
         fresh, moved = self._specialised, restoring(self._specialised, self.described)
         if not moved:
             return None
-        return Code(fresh, self.inputs, (*(moved.get(name, fresh.zero) for name in self.inputs[1:]), fresh.zero))
+        state = self.inputs[1 : 1 + self.dimension]  # what further inputs there are stays
+        return Code(fresh, self.inputs, (*(moved.get(name, fresh.zero) for name in state), fresh.zero))
 
     @cached_property
     def pivots(self) -> Code:
@@ -211,6 +212,13 @@ class StateDynamics(Dynamics):
     def plain(self) -> System:
         """The system in coordinates and their velocities."""
         return self.described.without_speeds
+
+
+def dynamics_of(scenario: Scenario, ring: Ring | None = None, apart: bool = False) -> Dynamics:
+    """The codes of a scenario in what it is told in: coordinates and their velocities, or declared variables."""
+    if isinstance(scenario.system, InStates):
+        return StateDynamics(scenario, ring)
+    return Dynamics(scenario, ring, apart)
 
 
 def norm_drifts(dynamics: StateDynamics, states: Any) -> dict[str, Any]:

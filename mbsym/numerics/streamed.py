@@ -7,7 +7,7 @@ said of those is what would be said of all.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, BinaryIO
 
@@ -17,10 +17,8 @@ from mbsym.numerics.breakdowns import fallen
 from mbsym.numerics.conservation import EVENLY, LARGEST_CHANGES
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED
-from mbsym.numerics.methods.interface import UNDEFINED, Breakdown, Method, Setting
-from mbsym.numerics.methods.passed import up_to
+from mbsym.numerics.methods.interface import UNDEFINED, Breakdown, Method, Setting, up_to
 from mbsym.numerics.simulate import Trajectory, allowed_apart, followed, raw_energies
-from mbsym.numerics.stored import BLOCK, SHOWN, Stored
 
 #: (t, q, q') in columns -> further quantities by name, each of shape (m,).
 Further = Callable[[Any], Mapping[str, Any]]
@@ -204,3 +202,46 @@ def _evenly(count: int, most: int) -> list[int]:
     """At most so many rows, the first and the last among them."""
     places: list[int] = np.linspace(0, count - 1, min(count, most)).astype(int).tolist()
     return places
+
+
+# The rows of a run in a file, block by block: a run of many rows takes no more memory than one of few.
+#
+# A column holds t, q, q', then the energies (``mbsym.numerics.simulate.raw_energies``), as they are in memory; whoever
+# opens the file closes it, and nobody else reads it.
+
+
+#: Rows in memory at a time, and how many are shown of a run that has more of them.
+BLOCK, SHOWN = 8192, 20_001
+
+
+class Stored:
+    """``width`` numbers a row; arrays of it have rows in columns, of shape (width, k)."""
+
+    def __init__(self, stream: BinaryIO, width: int, kind: Any) -> None:
+        self._stream, self.width, self.kind = stream, width, np.dtype(kind)
+        self.count = 0
+
+    def append(self, block: Any) -> None:
+        """Further rows.  Raises OSError where there is no room."""
+        self._stream.seek(self.count * self._bytes)
+        self._stream.write(np.ascontiguousarray(block.T, dtype=self.kind).data)
+        self.count += block.shape[1]
+
+    def rows(self, start: int, stop: int) -> Any:
+        """Rows ``start`` to ``stop`` - 1."""
+        self._stream.seek(start * self._bytes)
+        data = self._stream.read((stop - start) * self._bytes)
+        return np.ascontiguousarray(np.frombuffer(data, self.kind).reshape(-1, self.width).T)
+
+    def at(self, places: Sequence[int]) -> Any:
+        """The rows with these numbers."""
+        return np.hstack([self.rows(place, place + 1) for place in places])
+
+    def blocks(self) -> Iterator[tuple[int, Any]]:
+        """(number of the first row, rows), one after the other."""
+        for start in range(0, self.count, BLOCK):
+            yield start, self.rows(start, min(start + BLOCK, self.count))
+
+    @property
+    def _bytes(self) -> int:
+        return self.width * self.kind.itemsize

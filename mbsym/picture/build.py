@@ -6,30 +6,43 @@ picture(system)    the frame is the inertial one, or one that it carries without
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import hypot, pi
-from typing import Any
+from typing import Any, NamedTuple
 
+from mbsym.algebra.derivative import jacobian
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.program import Node
 from mbsym.expressions.tree import Expression, names
+from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import KINDS
 from mbsym.mechanics.programs import scene_without_accelerations
 from mbsym.mechanics.variables import angles_of, program_environment, ring_of
-from mbsym.model.constraints import is_holonomic
+from mbsym.model.constraints import Coincide, Distance, is_holonomic
+from mbsym.model.loads import (
+    CoordinateDamper,
+    CoordinateSpring,
+    IsotropicDamper,
+    Load,
+    NewtonianGravity,
+    PointDamper,
+    PointForce,
+    PointSpring,
+    Torque,
+    UniformGravity,
+)
 from mbsym.model.quantities import length_unit, time_unit, unit_of
-from mbsym.model.system import System
+from mbsym.model.system import INERTIAL, Point, System
 from mbsym.numerics.carriers import COMPACT, frames
 from mbsym.numerics.scenario import Scenario, exact
 from mbsym.numerics.specialise import bound
-from mbsym.picture import acting, loops
-from mbsym.picture.looks import ellipsoid, shapes
+from mbsym.picture.looking import Room, State, ellipsoid, first_look, samples, shapes
 from mbsym.picture.placing import Places, Triple
-from mbsym.picture.program import flattened
-from mbsym.picture.room import Room, State, first_look, samples
+from mbsym.picture.program import PoseProgram, flattened
 from mbsym.picture.start import Start, start
 from mbsym.picture.values import (
+    Acting,
     Arrow,
     Closure,
     Coordinate,
@@ -41,6 +54,7 @@ from mbsym.picture.values import (
     Notes,
     Operands,
     Picture,
+    Stretch,
 )
 
 #: So many positions of a loop are looked for.
@@ -78,9 +92,9 @@ class _Made:
         self.system: System = scenario.system
         self.places = Places(scene, frame)
         self.centres = {name: self.places.centre(name) for name in self.places.carried}
-        self.pulls, self.without = acting.pulls(self.places)
-        self.spans = list(acting.spans(self.places))
-        self.rows, self.slopes, self.labels = loops.rows(scene) if self.system.constraints else ([], [], [])
+        self.pulls, self.without = pulls(self.places)
+        self.spans = list(spans(self.places))
+        self.rows, self.slopes, self.labels = rows(scene) if self.system.constraints else ([], [], [])
         self.up = self._upward()
         order = ("t", *self.system.coordinates, *self.system.velocities)
         self.program, self._value = flattened(scene.algebra, list(self._nodes()), order)
@@ -141,7 +155,7 @@ class _Made:
         closure = self._closure()
         found = [states[0]]
         for state in states[1 : LOOPS + 1]:
-            there, good = loops.closed(self.program, closure, state, ())
+            there, good = closed(self.program, closure, state, ())
             found += [there] if good else []
         return found
 
@@ -191,7 +205,7 @@ class _Made:
             for along, turn in zip(places.turned[name], (x for x in motion.turns if x.axis), strict=True)
         ]
         hinges += [Hinge(self.at(along), (coordinate,), True) for coordinate, along in places.slides(body)]
-        sprung, damped = acting.held(places, body.coordinates)
+        sprung, damped = held(places, body.coordinates)
         first, second, third = places.axes[name]
         outlines = shapes(body, values)
         return Drawn(
@@ -238,3 +252,186 @@ def measure(system: System, name: str) -> Measure:
         return Measure.ANGLE
     moving = (x for body in system.bodies for x in body.connection_point)
     return Measure.LENGTH if any(name in names(x) for x in moving) else Measure.OTHER
+
+
+# Constraints between positions as operands, so that whoever moves one coordinate can lead the others back.
+#
+#     f(q, t) = 0,     df/dq
+#
+# A step that keeps the moved coordinate is the shortest solution of J dq = -f (Newton's method on rows that may be
+# dependent); ``closed`` takes such steps, a page does the same in its own language.
+
+
+#: Newton's steps at most.
+STEPS = 60
+
+#: No coordinate moves further in one of them, in radians or as a part of 1 + its size.
+LONGEST = 0.5
+
+#: Singular values below this part of the largest count as zero.
+RANK = 1e-9
+
+
+def rows(scene: Scene[Node]) -> tuple[list[Node], list[list[Node]], list[str]]:
+    """f, its derivatives by the coordinates, and the names of the rows; rows that are zero at sight left out."""
+    from mbsym.mechanics.constraints.rows import constraint_rows  # most systems have none
+
+    found: list[tuple[str, Node]] = [
+        (row.name.label, row.position)
+        for row in constraint_rows(scene)
+        if row.position is not None and not scene.algebra.vanishes(row.position)
+    ]
+    if not found:
+        return [], [], []
+    values = [position for _, position in found]
+    program = values[0].program
+    slopes = jacobian(program, values, [program.input(name) for name in scene.system.coordinates])
+    return values, [list(row) for row in slopes], [label for label, _ in found]
+
+
+def gaps(program: PoseProgram, closure: Closure, state: Mapping[str, float]) -> list[float]:
+    """|f| of every row as a part of what the coordinates do to it: closed where it is below the tolerance."""
+    values = program.at(state)
+    sizes = [1 + abs(float(state[name])) for name in closure.coordinates]
+    found = []
+    for row, slopes in zip(closure.rows, closure.slopes, strict=True):
+        scale = sum(abs(float(values[k])) * size for k, size in zip(slopes, sizes, strict=True))
+        found.append(abs(float(values[row])) / scale if scale > 0 else abs(float(values[row])))
+    return found
+
+
+def closed(
+    program: PoseProgram, closure: Closure, state: Mapping[str, float], held: Sequence[str]
+) -> tuple[dict[str, float], bool]:
+    """The state led to the constraints with the coordinates ``held``, and whether it keeps them then."""
+    import numpy as np
+
+    there = dict(state)
+    free = [k for k, name in enumerate(closure.coordinates) if name not in held]
+    for _ in range(STEPS):
+        if max(gaps(program, closure, there)) < 1e-3 * closure.tolerance:
+            break
+        values = program.at(there)
+        f = np.array([float(values[k]) for k in closure.rows])
+        slopes = np.array([[float(values[row[k]]) for k in free] for row in closure.slopes])
+        if not (np.all(np.isfinite(f)) and np.all(np.isfinite(slopes))) or not free:
+            break
+        step = np.linalg.lstsq(slopes, -f, rcond=RANK)[0]
+        sizes = np.array([1 + abs(there[closure.coordinates[k]]) for k in free])
+        step *= min(1.0, LONGEST / max(float(np.max(np.abs(step) / sizes)), 1e-300))
+        for k, change in zip(free, step, strict=True):
+            there[closure.coordinates[k]] += float(change)
+    found = gaps(program, closure, there)
+    return there, bool(max(found, default=0.0) < closure.tolerance)
+
+
+# Loads as arrows, springs, dampers and rods as lines; all of them operands of the picture's program.
+#
+# An arrow is the force that a load exerts on a body (``mechanics.loads``: the wrenches of the equations of motion),
+# or a torque that is given; what acts on coordinates, or as a whole, has none.
+
+
+class Pull(NamedTuple):
+    """An arrow of nodes."""
+
+    load: int
+    of: Acting
+    body: str
+    point: Triple
+    along: Triple
+
+
+class Span(NamedTuple):
+    """A line of nodes."""
+
+    kind: Stretch
+    start: Triple
+    end: Triple
+    of: str
+
+
+def pulls(places: Places) -> tuple[list[Pull], list[int]]:
+    """The arrows, and the loads that have none though they act on something."""
+    found: list[Pull] = []
+    without = []
+    for number, load in enumerate(places.scene.system.loads):
+        try:
+            own = list(_pulls(places, number, load))
+        except Failure:  # no formula for it at these numbers
+            own = []
+        found += own
+        if not own and not isinstance(load, PointSpring | PointDamper | IsotropicDamper):
+            without.append(number)
+    return found, without
+
+
+def _pulls(places: Places, number: int, load: Load) -> Iterator[Pull]:
+    scene, program = places.scene, places.program
+    match load:
+        case UniformGravity() | NewtonianGravity():
+            forces: dict[str, Triple] = {}
+            for wrench in KINDS[type(load)].action(load, scene).wrenches:
+                if wrench.body in places.carried and not program.vanishes(scene.motions[wrench.body].mass):
+                    own = places.direction(wrench.body, wrench.force.components)
+                    before = forces.get(wrench.body, (program.zero,) * 3)
+                    forces[wrench.body] = (before[0] + own[0], before[1] + own[1], before[2] + own[2])
+            for body, force in forces.items():
+                if not all(map(program.vanishes, force)):
+                    yield Pull(number, Acting.GRAVITY, body, places.centre(body), force)
+        case PointForce(point, components, axes) if point.body in places.axes and axes in places.axes:
+            force = places.direction(axes, scene.lower.vector(components))
+            yield Pull(number, Acting.FORCE, point.body, places.given(point.body, point.position), force)
+        case Torque(body, components, axes, reaction_on) if axes in places.axes:
+            torque = places.direction(axes, scene.lower.vector(components))
+            opposite = (-torque[0], -torque[1], -torque[2])
+            for name, along in ((body, torque), (reaction_on, opposite)):
+                if name in places.carried:
+                    yield Pull(number, Acting.TORQUE, name, places.centre(name), along)
+
+
+def held(places: Places, coordinates: tuple[str, ...]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Those on which a spring acts, and those on which a damper does."""
+    loads = places.scene.system.loads
+    sprung = {x.coordinate for x in loads if isinstance(x, CoordinateSpring)}
+    damped = {x.coordinate for x in loads if isinstance(x, CoordinateDamper)}
+    return tuple(x for x in coordinates if x in sprung), tuple(x for x in coordinates if x in damped)
+
+
+def spans(places: Places) -> Iterator[Span]:
+    """Lines within bodies, from body to body, and of what acts or is kept between two points."""
+    scene, system, program = places.scene, places.scene.system, places.program
+    for name in places.carried:
+        body, motion = system.body(name), scene.motions[name]
+        if not program.vanishes(motion.mass) and not motion.mass_centre.vanishes():
+            yield Span(Stretch.BODY, places.origins[name], places.centre(name), name)
+        before = body.attached_to
+        slides = {x for x, _ in places.slides(body)}
+        tied = bool(slides & {x for load in system.loads if not load.given for x in load.coordinates})
+        if not motion.offset.vanishes() and (before in places.carried or tied or not slides):
+            kind, of = (Stretch.SLIDE, name) if slides else (Stretch.LINK, before)
+            yield Span(kind, places.origins[before], places.origins[name], of)
+    for number, load in enumerate(system.loads, 1):
+        if isinstance(load, PointSpring | PointDamper | IsotropicDamper):
+            kind = Stretch.SPRING if isinstance(load, PointSpring) else Stretch.DAMPER
+            yield from _between(places, kind, load.first, load.second, f"load {number}")
+    for number, constraint in enumerate(system.constraints, 1):
+        if isinstance(constraint, Distance):
+            yield from _between(places, Stretch.ROD, constraint.first, constraint.second, f"constraint {number}")
+        elif isinstance(constraint, Coincide):
+            yield from _arms(places, (constraint.first, constraint.second))
+
+
+def _between(places: Places, kind: Stretch, first: Point, second: Point, of: str) -> Iterator[Span]:
+    if first.body in places.axes and second.body in places.axes:
+        ends = [places.given(end.body, end.position) for end in (first, second)]
+        yield Span(kind, ends[0], ends[1], of)
+        yield from _arms(places, (first, second))
+
+
+def _arms(places: Places, points: tuple[Point, ...]) -> Iterator[Span]:
+    """From the joint of a body to a point of it; nothing is drawn of frames."""
+    for one in points:
+        arm = places.scene.vector(one.position, one.body)
+        if one.body in places.carried and one.body != INERTIAL and not arm.vanishes():
+            end: tuple[Node, Node, Node] = places.point(one.body, arm.components)
+            yield Span(Stretch.BODY, places.origins[one.body], end, one.body)

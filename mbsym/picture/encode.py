@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator
 from math import isfinite
 from typing import Any
 
-from mbsym.expressions.counting import counted
+from mbsym.expressions.message import counted
 from mbsym.expressions.table import Curve
 from mbsym.model.system import INERTIAL
 from mbsym.picture.program import PoseProgram

@@ -36,8 +36,7 @@ from mbsym.numerics.scenario import Incomplete, exact
 from mbsym.picture import outlined
 from mbsym.picture.build import picture_at
 from mbsym.picture.lettering import Letters
-from mbsym.picture.looking import AXES, combined, dot, projection, unit
-from mbsym.picture.room import at
+from mbsym.picture.looking import AXES, at, combined, dot, projection, unit
 from mbsym.picture.start import start
 from mbsym.picture.values import Acting, Drawn, Ellipsoid, Hinge, Measure, Numbers, Operands, Picture, Stretch
 

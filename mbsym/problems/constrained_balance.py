@@ -3,8 +3,8 @@
 Ideal constraints do no work in displacements that they allow at an instant; so the balance of the energy is that of the
 open tree if every velocity row is homogeneous, J q' = 0: then the actual velocity is such a displacement.  With a part
 j(q, t) besides (a wall that moves, a table that turns) constraint forces take power from outside, and nothing is
-claimed.  The momentum of a cyclic coordinate is constant where no row knows the coordinate or its velocity: constraint
-forces do not act on it.
+claimed but of equations that are exactly linear, where deviations from the motion obey J q' = 0.  The momentum of a
+cyclic coordinate is constant where no row knows the coordinate or its velocity: constraint forces do not act on it.
 """
 
 from __future__ import annotations
@@ -39,7 +39,9 @@ class ConstrainedBalance(Balance):
         """The law of the energy."""
         free = Balance(self.scene, self.energy, self.signs, self.fixed, self.somewhere)
         moving = set(self.scene.system.coordinates) - self._resting
-        if self._rows is None or not self._homogeneous or self._touched & moving:
+        if self._rows is None:
+            return EnergyLaw.UNKNOWN
+        if (not self._homogeneous or self._touched & moving) and not self.exactly_linear:
             return EnergyLaw.UNKNOWN
         return free.law
 

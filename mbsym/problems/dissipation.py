@@ -32,8 +32,8 @@ from itertools import product as choices
 from typing import Any
 
 from mbsym.algebra.characteristic import leading_minors
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs, sign_of_product
 from mbsym.algebra.vectors import axis_vector
@@ -112,7 +112,9 @@ class Balance:
         }
         there = replace(self, fixed=exact)
         # What holds for all parameters holds there: no need to find it once more at every point.
-        kept: dict[str, Any] = {"ignorable": self.ignorable, "_nonlinear": self._nonlinear}
+        kept: dict[str, Any] = {"ignorable": self.ignorable}
+        if not self._signs:  # which may be known where parameters are numbers
+            kept["_nonlinear"] = self._nonlinear
         if not self.driven:
             kept["driven"] = ()
         if self.law.bounded:
@@ -143,7 +145,24 @@ class Balance:
     def _nonlinear(self) -> Excess:
         if self.energy is None or not self.scene.motions:
             return None
-        return excess(self.scene, self.energy, self._velocity_rows)
+        return excess(self.scene, self.energy, self._velocity_rows, {} if self.somewhere else self._sliding)
+
+    @property
+    def _signs(self) -> dict[int, Polynomial]:
+        """The generators sign(x), and x."""
+        generators = enumerate(self.scene.ring.generators)
+        return {k: g.argument for k, g in generators if g.name == "sign" and g.kind == "function" and g.argument}
+
+    @property
+    def _sliding(self) -> dict[int, Polynomial]:
+        """Signs of velocities that differ from 0 on the motion, and so near it: dry friction while something slides."""
+        ring, numbers = self.scene.ring, {"positive": 1, "negative": -1}
+        found = {}
+        for k, argument in self._signs.items():
+            word = "" if ring.dependencies(argument, self.scene.system.coordinates) else self._word(argument)
+            if word in numbers:
+                found[k] = ring.number(numbers[word])
+        return found
 
     @property
     def _velocity_rows(self) -> tuple[Polynomial, ...]:

@@ -10,11 +10,12 @@ Constraints whose velocity rows are such polynomials, too, leave exactly linear 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from types import MappingProxyType
 from typing import Any
 
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.ring import Polynomial
 from mbsym.mechanics.generalized import generalized_forces
 from mbsym.mechanics.kinematics import Scene
@@ -26,20 +27,25 @@ from mbsym.problems.equations import convective_rate
 Excess = tuple[Polynomial, ...] | None
 
 
-def excess(scene: Scene, energy: Energy, velocity_rows: Sequence[Polynomial] = ()) -> Excess:
+def excess(
+    scene: Scene,
+    energy: Energy,
+    velocity_rows: Sequence[Polynomial] = (),
+    known: Mapping[int, Polynomial] = MappingProxyType({}),
+) -> Excess:
     """What keeps the equations from being linear; () where they are (scene over the ring, with its bodies).
 
-    ``velocity_rows`` of constraints: J q' + j.
+    ``velocity_rows`` of constraints: J q' + j.  ``known``: values of generators near the motion (signs of velocities).
     """
     try:
         entries = [x for row in energy.A2.polynomials for x in row]
-        found = _excess(scene, entries, 0)
+        found = _excess(scene, entries, 0, known)
         if found is None:
             return None
-        further = _excess(scene, velocity_rows, 1)
+        further = _excess(scene, velocity_rows, 1, known)
         if further is None:
             return None
-        forces = _excess(scene, _forcing(scene, energy), 1)
+        forces = _excess(scene, _forcing(scene, energy), 1, known)
         return None if forces is None else (*found, *further, *forces)
     except Failure:
         return None
@@ -57,12 +63,12 @@ def _forcing(scene: Scene, energy: Energy) -> Iterable[Polynomial]:
         yield ring.reduce(slope + applied[name] - convective_rate(scene, ring, momentum))
 
 
-def _excess(scene: Scene, formulas: Iterable[Polynomial], most: int) -> Excess:
+def _excess(scene: Scene, formulas: Iterable[Polynomial], most: int, known: Mapping[int, Polynomial]) -> Excess:
     """The coefficients of what is of a higher degree than ``most``, or varies with the time."""
     ring, system = scene.ring, scene.system
     moving = (*system.coordinates, *system.velocities)
     running = (*(item.name for item in system.prescribed), "t")
-    images = relations(scene)
+    images = relations(scene) | dict(known)
     direct = {ring.index(kind, name) for kind in ("coordinate", "velocity") for name in system.coordinates}
     found: list[Polynomial] = []
     for formula in formulas:

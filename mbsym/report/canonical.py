@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
-from mbsym.analysis.forms import BRACKETS, asked
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.analysis.forms import BRACKETS, requested_forms
+from mbsym.formulas.formula import Formula, Matrix
+from mbsym.model.momenta import denominator_names
+from mbsym.model.system import System
+from mbsym.problems.canonical.canonical import DENOMINATORS
 from mbsym.report.documents.results import canonical as doc
+from mbsym.report.latex.formulas import width
+from mbsym.report.lengths import formulas
 from mbsym.report.plain import Write, column_text, matrix_text
 
 if TYPE_CHECKING:
-    from mbsym.algebra.ring import Ring
     from mbsym.analysis import Analysis
     from mbsym.analysis.stages import NoResult
-    from mbsym.problems.canonical.brackets import Brackets
-    from mbsym.problems.canonical.canonical import Hamilton, Routh
+    from mbsym.problems.canonical.canonical import Brackets, Hamilton, Routh
 
 
 @dataclass(frozen=True)
@@ -54,7 +59,7 @@ def forms_of(analysis: Analysis, problems: Sequence[int]) -> Forms:
     """What a report of these problems shows."""
     if 3 not in problems:
         return Forms()
-    wanted = list(asked(analysis))
+    wanted = list(requested_forms(analysis))
     if "hamilton" in wanted and 7 in problems:
         wanted.append(BRACKETS)
     stages = {name: analysis.stage_of(name) for name in wanted}
@@ -113,3 +118,75 @@ def _brackets(found: Brackets, write: Write) -> doc.Brackets:
         matrix=matrix_text(found.matrix, write),
         in_involution=found.in_involution,
     )
+
+
+# Long denominators of Hamilton's and Routh's forms, written once: 1/Delta in place of 1/(a sum that no line holds).
+
+
+#: Denominators estimated wider than this (in ems) have a name.
+WIDEST = 10
+
+
+@dataclass(frozen=True)
+class Denominators:
+    """``forms`` with names in place of long denominators; what these are, in Routh's form and in Hamilton's."""
+
+    forms: Forms
+    routh: tuple[tuple[Formula, Formula], ...]
+    hamilton: tuple[tuple[Formula, Formula], ...]
+
+
+def with_names(forms: Forms, system: System) -> Denominators:
+    """The same formulas; each name and what it stands for as formulas."""
+    routh, hamilton, brackets = forms.routh, forms.hamilton, forms.brackets
+    first: list[tuple[Formula, Formula]] = []
+    second: list[tuple[Formula, Formula]] = []
+    if routh is not None:
+        shorter, first = _named(forms.routh_ring, [routh], system)
+        routh = shorter[0]
+    if hamilton is not None:
+        shorter, second = _named(forms.hamilton_ring, [hamilton, brackets], system, len(first))
+        hamilton, brackets = shorter
+    told = replace(forms, routh=routh, hamilton=hamilton, brackets=brackets)
+    return Denominators(told, tuple(first), tuple(second))
+
+
+def _named(
+    ring: Ring, results: list[Any], system: System, taken: int = 0
+) -> tuple[list[Any], list[tuple[Formula, Formula]]]:
+    """The results with names behind the ``taken`` ones, and what these are; as they are where names do not suffice."""
+    long = list(_long(ring, results))
+    names = denominator_names(system, DENOMINATORS)[taken:]
+    if not long or len(long) > len(names):
+        return results, []
+    letters = [ring.generator("parameter", name) for name in names[: len(long)]]
+    inverse = {index: ring.reciprocal(letter) for index, letter in zip(long, letters, strict=True)}
+    told = [
+        (Formula(ring, letter), Formula(ring, ring.generators[index].argument))
+        for index, letter in zip(long, letters, strict=True)
+    ]
+    return [_mapped(found, lambda x: Formula(ring, ring.substitute(x, inverse))) for found in results], told
+
+
+def _long(ring: Ring, results: list[Any]) -> Iterator[int]:
+    """The reciprocals that occur and are too wide for a line."""
+    used: set[int] = set()
+    for formula in formulas(results):
+        degrees = formula.polynomial.degrees()
+        used |= {k for k, g in enumerate(ring.generators[: ring.spare]) if g.kind == "reciprocal" and degrees[k] > 0}
+    for index in sorted(used):
+        if width(Formula(ring, ring.generators[index].argument).latex()) > WIDEST:
+            yield index
+
+
+def _mapped(found: Any, change: Callable[[Polynomial], Formula]) -> Any:
+    """A result with every formula changed."""
+    if isinstance(found, Formula):
+        return change(found.polynomial)
+    if isinstance(found, Matrix):
+        return Matrix(tuple(tuple(change(x.polynomial) for x in row) for row in found.rows))
+    if isinstance(found, tuple):
+        return tuple(_mapped(x, change) for x in found)
+    if hasattr(found, "__dataclass_fields__"):
+        return replace(found, **{item.name: _mapped(getattr(found, item.name), change) for item in fields(found)})
+    return found

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
-from mbsym.expressions.message import Said
+from mbsym.expressions.message import Message, Said
 from mbsym.expressions.rates import without_velocity
 from mbsym.expressions.tree import Expression
 from mbsym.formulas.formula import Column, Formula, Matrix
@@ -498,12 +498,6 @@ def paragraph(*parts: Inline) -> Paragraph:
     return Paragraph(parts)
 
 
-def titled(pairs: Iterable[tuple[str, str]]) -> Iterator[Facts]:
-    """What was found, each with its title, in every language where that is a message; a ``warning`` stands out."""
-    items = ((Graded(name, "open") if name == "warning" else name, (text,)) for name, text in pairs)
-    yield Facts(tuple(Fact(*item) for item in items))
-
-
 def column(title: str, right: bool = False, fold: bool = False) -> TableColumn:
     """A column of an aligned table."""
     return TableColumn(title, right=right, fold=fold)
@@ -533,8 +527,12 @@ def facts(pairs: Iterable[tuple[str, str]]) -> Facts:
         if title or not items:
             items.append((title, []))
         items[-1][1].append(text)
-    named = {"warning": Graded(say("warning"), "open")}
-    return Facts(tuple(Fact(named.get(title) or say(title), tuple(lines)) for title, lines in items))
+    return Facts(tuple(Fact(_title(title), tuple(lines)) for title, lines in items))
+
+
+def _title(text: str) -> Inline:
+    name = text if isinstance(text, Message) else say(text)
+    return Graded(name, "open") if text == "warning" else name
 
 
 def equalities(pairs: Iterable[tuple[Math, Math]], key: str) -> Iterator[Display]:

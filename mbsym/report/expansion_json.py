@@ -16,7 +16,7 @@ from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
 from mbsym.problems.small_parameter.result import Hurwitz, Outcome
 from mbsym.report.documents import expansion as doc
-from mbsym.report.documents.writer import written
+from mbsym.report.documents.base import written
 from mbsym.report.plain import Write
 
 if TYPE_CHECKING:

@@ -24,7 +24,7 @@ from mbsym.problems.polynomial_integrals import (
     ZeroLevels,
 )
 from mbsym.report.documents import integrals as doc
-from mbsym.report.documents.writer import written
+from mbsym.report.documents.base import written
 
 
 def integrals_json(

@@ -17,7 +17,7 @@ from mbsym.algebra.failures import Failure
 from mbsym.model.system import Body, Shape
 from mbsym.numerics.body_motion import BodyMotions
 from mbsym.numerics.scenario import Scenario, exact
-from mbsym.picture.looks import turned
+from mbsym.picture.looking import turned
 
 #: Straight pieces of a circle.
 PIECES = 32

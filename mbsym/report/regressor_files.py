@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.program import Node, Program
-from mbsym.expressions.counting import counted
+from mbsym.expressions.message import counted
 from mbsym.mechanics.regressor import KINDS, Standard
 from mbsym.mechanics.variables import program_environment
 from mbsym.report.documents import regressor as doc
-from mbsym.report.documents.writer import written
-from mbsym.source.meaning import meaning
+from mbsym.report.documents.base import written
+from mbsym.source.yaml_writer import meaning
 
 if TYPE_CHECKING:
     from mbsym.problems.regressor import Base, Regressor
@@ -87,8 +87,7 @@ def _symbol(one: Standard, numbers: dict[str, int]) -> str:
 
 def regressor_module(found: Regressor) -> str:
     """``regressor.py``: Y and the values of the base parameters, of NumPy alone."""
-    from mbsym.report.code.functions import Functions
-    from mbsym.report.code.model_values import parameters_of
+    from mbsym.report.code.functions import Functions, parameters_of
     from mbsym.report.code.python_module import DIALECT, RESERVED, default, plain
     from mbsym.report.environment import rendered
 

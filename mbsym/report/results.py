@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 from mbsym.expressions.message import worded
 from mbsym.formulas.latex import latex_names, latex_symbol
 from mbsym.model.system import INERTIAL
-from mbsym.report.canonical import forms_of
-from mbsym.report.canonical_denominators import Denominators, with_names
+from mbsym.report.canonical import Denominators, forms_of, with_names
 from mbsym.report.compact import Compact, compact
 from mbsym.report.conditions import provided
 from mbsym.report.content import Block, Heading, Inline, Intermediates, Paragraph, Said, paragraph, say

@@ -15,21 +15,20 @@ from mbsym.expressions.table import Table
 from mbsym.expressions.tree import text
 from mbsym.formulas.formula import Formula
 from mbsym.model.quantities import energy_unit, unit_of, units_by_name
-from mbsym.model.small import SmallParameter
-from mbsym.model.system import System
+from mbsym.model.system import SmallParameter, System
 from mbsym.problems.claims import ClaimResult
 from mbsym.report.canonical import data as canonical_data
 from mbsym.report.canonical import forms_of
 from mbsym.report.documents import results as doc
+from mbsym.report.documents.base import plain, written
 from mbsym.report.documents.parts import Counted
 from mbsym.report.documents.results import linearisation
 from mbsym.report.documents.results.claims import Claim, ClaimPart, Counterexample, Repair
-from mbsym.report.documents.writer import plain, written
-from mbsym.report.first_order import first_order
-from mbsym.report.inertias import accepted_inertias
 from mbsym.report.lengths import COUNTED, FILE, withheld
 from mbsym.report.plain import Written, matrix_text
 from mbsym.report.sections import section_of
+from mbsym.report.sections.linearisation import first_order
+from mbsym.report.sections.system import accepted_inertias
 from mbsym.report.words.claims import claim_line, left_side
 
 if TYPE_CHECKING:

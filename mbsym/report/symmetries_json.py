@@ -10,7 +10,7 @@ from msgspec.structs import asdict
 from mbsym.model.system import System
 from mbsym.problems.symmetries import Symmetries, Symmetry
 from mbsym.report.documents import symmetries as doc
-from mbsym.report.documents.writer import written
+from mbsym.report.documents.base import written
 
 
 def symmetries_json(system: System, values: Mapping[str, Fraction], found: Symmetries) -> str:

@@ -26,10 +26,10 @@ from mbsym.report.code.functions import prescribed_value
 from mbsym.report.code.programs import programs_of
 from mbsym.report.conditions import Statement, provided, statements
 from mbsym.report.environment import rendered
-from mbsym.report.first_order import first_order
 from mbsym.report.lengths import COUNTED, FILE, FILE_PROGRAM, formulas, not_printed, program_not_printed, withheld
 from mbsym.report.plain_writer import LONGEST, Writer
 from mbsym.report.results import contents, results
+from mbsym.report.sections.linearisation import first_order
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -37,7 +37,6 @@ if TYPE_CHECKING:
 
 DIALECT = Dialect(
     call=wolfram_call,
-    local=lambda count: f"s{count}",
     number=wolfram_number,
     tables=True,
 )
@@ -114,12 +113,12 @@ def _of_small_parameters(found: SmallParameters, system: System) -> Iterator[tup
 
     if found.slow is not None:
         listed_ones = list(coefficients(found.slow))
-        for name, rate in (("slowManifold", False), ("slowFlow", True)):
-            kept = (x for x in listed_ones if x.rate is rate)
-            yield name, listed(f"{{{string(x.variable)}, {x.order}, {x.formula.wolfram()}}}" for x in kept)
+        for name, flow in (("slowManifold", False), ("slowFlow", True)):
+            kept = ((x.variable + chr(39) * (x.rate - flow), x) for x in listed_ones if x.flow is flow)
+            yield name, listed(f"{{{string(told)}, {x.order}, {x.formula.wolfram()}}}" for told, x in kept)
     if found.oscillation is not None:
         told = (
-            f"{{{string(x.variable + (chr(39) if x.rate else ''))}, {x.order}, {x.formula.wolfram()}}}"
+            f"{{{string(x.variable + chr(39) * x.rate)}, {x.order}, {x.formula.wolfram()}}}"
             for x in oscillation_words.coefficients(found.oscillation)
         )
         yield "periodicSolution", listed(told)

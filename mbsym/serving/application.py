@@ -28,7 +28,7 @@ from mbsym.serving.jobs import Jobs
 from mbsym.serving.requests import Wrong, flag, listed, mapping, text_of, whole
 from mbsym.serving.storage import Conflict, Storage, Unreadable, Unwritable
 from mbsym.source.examples import example_text, example_titles
-from mbsym.source.starter import JOINTS
+from mbsym.source.starter import JOINTS, ONE_AXIS
 
 #: Seconds between two looks whether somebody else wrote the file.
 WATCHING = 0.5
@@ -182,7 +182,9 @@ class Editor:
             "formats": [{"name": name, "title": FORMATS[name].title} for name in FORMATS],
             "problems": _problems(),
             "examples": example_titles(),
-            "joints": [{"name": name, "title": title} for name, (_, _, title) in JOINTS.items() if name != "fixed"],
+            "joints": [
+                {"name": name, "title": title, "axis": name in ONE_AXIS} for name, (_, _, title) in JOINTS.items()
+            ],
         }
 
     async def digest(self, request: Request) -> Response:

@@ -70,7 +70,7 @@ def _system(task: Task) -> System:
 def _derive(task: Task, system: System) -> Iterator[Message]:
     from mbsym.analysis import USUAL_PROBLEMS, Analysis
     from mbsym.analysis.given import chosen
-    from mbsym.report.html.sections import title
+    from mbsym.report.html.report import title
 
     asked = task.get("problems")
     problems = tuple(sorted(asked)) if asked else chosen(system, USUAL_PROBLEMS)
@@ -102,7 +102,7 @@ def _plan(analysis: Analysis) -> list[str | int]:
 
 
 def _section(analysis: Analysis, part: str | int, problems: tuple[int, ...]) -> Message:
-    from mbsym.report.html.sections import part_html, title
+    from mbsym.report.html.report import part_html, title
 
     started, state = time.perf_counter(), "derived"
     if isinstance(part, int):

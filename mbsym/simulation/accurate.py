@@ -10,7 +10,6 @@ from math import isfinite
 from mbsym.expressions.message import Message
 from mbsym.model.system import System
 from mbsym.numerics.accuracy import ErrorEstimate, Lacking, NoEstimate
-from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.choice import rates
@@ -20,9 +19,10 @@ from mbsym.numerics.planning.plan import ENERGY, INTEGRATION, Accuracy, Bound, P
 from mbsym.numerics.planning.plan_bounds import DOUBLED
 from mbsym.numerics.planning.planning import FREE, Pins, planned
 from mbsym.numerics.scenario import Scenario
-from mbsym.simulation.request import COORDINATES, Request, wrong_with
+from mbsym.numerics.states import dynamics_of
+from mbsym.simulation.request import Request, wrong_with
 from mbsym.simulation.result import Simulation
-from mbsym.simulation.run import PLANNING, Stage, simulate
+from mbsym.simulation.run import PLANNING, Stage, prepared, simulate
 from mbsym.simulation.sampling import sample_times
 
 #: A run that its estimate finds too coarse is repeated with so much finer a setting, so many times at most.
@@ -69,9 +69,10 @@ def plan_for(
     wrong = list(wrong_with(replace(request, method="auto", tolerance=None, step=None)))
     if wrong:
         raise ValueError("; ".join(wrong))
-    frequency = rates(Dynamics(scenario))[1]
-    times = sample_times(replace(request, step=None, store=None), frequency, scenario.system)
-    plan = planned(scenario, accuracy, times, replace(pins, whole=request.whole, longest=request.longest), watch)
+    begun = prepared(scenario, replace(request, model=Model()))[0]
+    frequency = rates(dynamics_of(begun))[1]
+    times = sample_times(replace(request, step=None, store=None), frequency, begun.system)
+    plan = planned(begun, accuracy, times, replace(pins, whole=request.whole, longest=request.longest), watch)
     rows = None if request.every is not None else len(times)
     settled = replace(
         request,
@@ -96,7 +97,7 @@ def simulate_accurately(
 ) -> Simulation:
     """The run of a plan.  Where its own estimate says that the accuracy is missed, a finer one, and a remark."""
     # Who asks for an accuracy asks whether it is kept.
-    request = replace(request, variables=COORDINATES, estimate=request.estimate is not False)
+    request = replace(request, estimate=request.estimate is not False)
     with stage(PLANNING):
         plan, settled = plan_for(scenario, request, accuracy, pins, tried)
     found = simulate(scenario, settled, watch, stage)

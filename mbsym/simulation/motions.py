@@ -21,8 +21,11 @@ from mbsym.numerics.orbits.periodic import Guess, NotFound, Orbit, autonomous, c
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.scenario import scenario as scenario_of
 
-#: Rows of a period that are shown, and intervals between orthogonalisations.
-ROWS, INTERVALS = 401, 400
+#: Rows of a period that are shown, the first one twice, and intervals between orthogonalisations.
+ROWS, INTERVALS = 421, 400
+
+#: A motion runs through itself so many times in its period if it differs by less, as part of its extent.
+REPEATED, AT_MOST = 1e-7, 12
 
 
 @dataclass(frozen=True)
@@ -33,6 +36,24 @@ class PeriodicMotion:
     orbit: Orbit
     times: Any
     states: Any
+
+    @property
+    def repeats(self) -> int:
+        """How many times the motion runs through itself in its period: the most of 2 to ``AT_MOST`` that is seen, or 1.
+
+        The rows are compared with those a part of the period later, so parts that do not divide them are not looked at.
+        """
+        extent = np.ptp(self.states, axis=1)[:, None]
+        bound = REPEATED * extent + 1e-10 * (1 + np.abs(self.states))
+        revolutions = np.round(self.orbit.turns / (2 * np.pi))
+        for n in range(AT_MOST, 1, -1):
+            later, rest = divmod(ROWS - 1, n)
+            if rest or np.any(revolutions % n):
+                continue
+            moved = self.states[:, later:] - self.states[:, :-later] - (self.orbit.turns / n)[:, None]
+            if np.all(np.abs(moved) <= bound[:, later:]):
+                return n
+        return 1
 
 
 def find_orbit(

@@ -6,7 +6,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, inf, isfinite
-from typing import BinaryIO
+from typing import Any, BinaryIO
+
+import numpy as np
 
 from mbsym.expressions.parser import parse_expression
 from mbsym.expressions.place import Complaints, Span
@@ -14,8 +16,7 @@ from mbsym.expressions.tree import Expression, names, number
 from mbsym.model.system import System
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.models import Model
-from mbsym.numerics.stored import SHOWN
-from mbsym.simulation.earlier import Earlier
+from mbsym.numerics.streamed import SHOWN
 from mbsym.simulation.watching import Watch
 
 #: The local error unless asked for otherwise.
@@ -142,3 +143,57 @@ def wrong_with(request: Request) -> Iterator[str]:
         yield f"{request.method} takes steps of one length, no tolerance"
     if fixed and request.longest is not None:
         yield f"{request.method} takes steps of one length: give a shorter step in place of max_step"
+
+
+# Where an earlier run got to, so that another one can go on from there (``mbsym simulate --continue``).
+#
+# The new run begins in the last state of the earlier one, to the last bit, with a step found anew.  So the two together
+# are the uninterrupted run but for what a step size changes: to rounding with steps of one length (where the earlier
+# run ended at the end of a step), within the tolerance with steps that are chosen.
+
+
+@dataclass(frozen=True, eq=False)
+class Earlier:
+    """The rows of an earlier run, from t = 0 to where it ended: times (m,) and states (2n, m).
+
+    ``spacing`` is the distance of rows that was asked for; ``values`` are parameters and the state at t = 0 by their
+    names, and the rest is how it was integrated: ``method`` is the last one, which may ``change`` on the way, ``model``
+    how much of the mechanics was in the equations.
+    """
+
+    times: Any
+    states: Any
+    spacing: float
+    values: Mapping[str, float]
+    method: str
+    tolerance: float | None
+    step: float | None
+    arithmetic: str
+    change: bool = False
+    model: Model = Model()
+
+    @property
+    def time(self) -> float:
+        """Where it ended."""
+        return float(self.times[-1])
+
+    @property
+    def state(self) -> Any:
+        """The state there, in the arithmetic of the run."""
+        return self.states[:, -1]
+
+    def further(self, end: float, every: float | None, samples: int | None) -> Any:
+        """Times after ``time`` up to ``end``: ``samples`` of them, one ``every`` so often, or spaced as before.
+
+        Where the rows so far stand on multiples of the spacing, as they do unless they end between, so do these.
+        """
+        if samples is not None:
+            return np.linspace(self.time, end, samples + 1)[1:]
+        spacing = every if every is not None else self.spacing
+        before = round(self.time / spacing)
+        on_grid = abs(before * spacing - self.time) <= 1e-9 * spacing
+        first = before if on_grid else 0
+        count = int(np.ceil((end - (0.0 if on_grid else self.time)) / spacing * (1 - 1e-12))) - first
+        times = np.arange(first + 1, first + max(count, 1) + 1) * spacing + (0.0 if on_grid else self.time)
+        times[-1] = end
+        return times

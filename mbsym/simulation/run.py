@@ -10,44 +10,55 @@ where it is shown.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from math import inf
 from typing import TYPE_CHECKING, Any
 
 from mbsym.expressions.message import Message
-from mbsym.model.states import InStates, described, in_states
+from mbsym.mechanics.constraints.refusal import refuse_constraints
+from mbsym.model.states import described, in_states
 from mbsym.numerics import simulate as integration
 from mbsym.numerics.accuracy import ErrorEstimate, Lacking, NoEstimate, contradicted, estimated
+from mbsym.numerics.closing import Closed, begun, moving
 from mbsym.numerics.columns import columns
-from mbsym.numerics.conservation import Standing
+from mbsym.numerics.conservation import (
+    Conservation,
+    Measure,
+    Standing,
+    between_switches,
+    confronted,
+    energy_standing,
+    standing,
+    visited,
+)
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.enclosure.compare import analytic, certified
 from mbsym.numerics.extremes.stepped_over import stepped_over
-from mbsym.numerics.invariants import along, invariants
+from mbsym.numerics.invariants import along, invariants, values
 from mbsym.numerics.linearised import LinearisedDynamics
 from mbsym.numerics.methods.interface import Method, Unusable
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.planning.models import Model, scenario_of
+from mbsym.numerics.planning.models import droppable, scenario_of
 from mbsym.numerics.planning.prices import cost
 from mbsym.numerics.planning.reduced import reduced
 from mbsym.numerics.planning.sizes import kinetic_between
 from mbsym.numerics.scenario import Scenario
-from mbsym.numerics.states import StateDynamics, scenario_in_states, state_names
+from mbsym.numerics.states import dynamics_of, state_names
 from mbsym.numerics.unseen import between_rows, nearest_to_singular
-from mbsym.simulation.choosing import chosen_for
-from mbsym.simulation.kept import energies, kept_integrals
 from mbsym.simulation.request import COORDINATES, DECLARED, Request, wrong_with
-from mbsym.simulation.result import Chosen, Simulation
+from mbsym.simulation.result import Chosen, FollowedIntegral, Simulation
+from mbsym.simulation.sampling import chosen_for
 from mbsym.simulation.watching import Watching
 
 if TYPE_CHECKING:
     from mbsym.algebra.ring import Ring
     from mbsym.analysis import Analysis
     from mbsym.model.system import System
-    from mbsym.numerics.closing import Closed
     from mbsym.numerics.constrained import Drift
+    from mbsym.numerics.simulate import Trajectory
+
 
 #: The error of a run that costs less (``mbsym.numerics.planning.prices``) is estimated without being asked for.
 SOON_DONE = 2.0
@@ -79,26 +90,16 @@ def simulate(
     wrong = list(wrong_with(request))
     if wrong:
         raise ValueError("; ".join(wrong))
-    given, scenario = scenario, scenario_of(scenario, request.model)
-    declared = runs_in_states(scenario.system, request)
-    if declared:
-        refuse_in_states(scenario.system, request)
-    elif scenario.system.speeds:  # what is integrated are coordinates and their derivatives
-        scenario = replace(scenario, system=scenario.system.without_speeds)
-    in_declared = declared and bool(scenario.declared)  # what is given in these is fitted in these
-    scenario = scenario_in_states(scenario) if in_declared else scenario
-    closed = _closed(scenario, request)
-    scenario = scenario if closed is None else closed.scenario
+    given = scenario
+    scenario, closed = prepared(scenario, request)
     with stage(COMPILING):
         analysis = _analysis(scenario) if request.invariants else None
         integrals, missing = _integrals(analysis, scenario)
         ring = analysis.ring if analysis is not None and not missing else None
-        if declared and not in_declared:
-            scenario = scenario_in_states(scenario)
         dynamics = _dynamics(scenario, ring, request)
         if request.certify is not None:
             analytic(dynamics)
-        resting = None if request.model.linear or declared else reduced(dynamics)
+        resting = None if request.model.linear else reduced(dynamics)
         chosen = chosen_for(dynamics, request, None if request.whole else resting)
         watching = Watching(dynamics, chosen.method, request.events) if request.events else None
     method = chosen.method if watching is None else watching.method
@@ -136,6 +137,22 @@ def simulate(
     )
 
 
+def prepared(scenario: Scenario, request: Request) -> tuple[Scenario, Closed | None]:
+    """The scenario in the variables of its run, of the request's model, on its constraints; and how it was led there.
+
+    A model that leaves out what constraints and speeds do not hold begins where the whole one does.  Raises as
+    ``simulate``.
+    """
+    system, model = scenario.system, request.model
+    later = set(model.without) <= set(droppable(system))
+    scenario = scenario if later else scenario_of(scenario, model)
+    refuse_in_run(system, request)
+    found = begun(scenario, request.fixed, request.variables == DECLARED)
+    found = moving(found) if system.constraints else found
+    whole = scenario_of(found.scenario, model) if later else found.scenario
+    return whole, found if system.constraints else None
+
+
 def runs_in_states(system: System, request: Request) -> bool:
     """Whether a run integrates the variables that a description declares."""
     return bool(system.speeds) and request.variables == DECLARED
@@ -152,11 +169,15 @@ def integrated_system(system: System, variables: str = DECLARED) -> System:
 NOT_IN_STATES = "integrates coordinates and their velocities only; this system has speeds"
 
 
-def refuse_in_states(system: System, request: Request) -> None:
-    """Raises ValueError for what goes with coordinates only, Unusable for a method that does."""
+def refuse_in_run(system: System, request: Request) -> None:
+    """Raises Constrained for what leaves constraints out; with speeds ValueError and Unusable for what does not know
+    them."""
+    if request.model.linear:
+        refuse_constraints(system, "linearised equations in numbers")
+    if not runs_in_states(system, request):
+        return
     asked = {
-        "certify": request.certify is not None,
-        "a model": request.model != Model(),
+        "the linearised equations": request.model.linear,
         "going on from an earlier run": request.earlier is not None,
     }
     wrong = [f"{what} {NOT_IN_STATES}: take variables='{COORDINATES}'" for what, there in asked.items() if there]
@@ -168,26 +189,7 @@ def refuse_in_states(system: System, request: Request) -> None:
 
 
 def _dynamics(scenario: Scenario, ring: Ring | None, request: Request) -> Dynamics:
-    if isinstance(scenario.system, InStates):
-        return StateDynamics(scenario, ring)
-    return LinearisedDynamics(scenario, ring) if request.model.linear else Dynamics(scenario, ring, request.whole)
-
-
-def _closed(scenario: Scenario, request: Request) -> Closed | None:
-    """The initial state on the constraints; None where there are none.
-
-    Raises NotClosed, NothingMoves, and Constrained where something is asked for that leaves constraints out.
-    """
-    if not scenario.system.constraints:
-        return None
-    from mbsym.mechanics.constraints.refusal import refuse_constraints
-    from mbsym.numerics.closing import closed, moving
-
-    if request.certify is not None:
-        refuse_constraints(scenario.system, "enclosures of the solution")
-    if request.model.linear:
-        refuse_constraints(scenario.system, "linearised equations in numbers")
-    return moving(closed(scenario, request.fixed))
+    return LinearisedDynamics(scenario, ring) if request.model.linear else dynamics_of(scenario, ring, request.whole)
 
 
 def drift_along(dynamics: Dynamics, found: integration.Trajectory) -> Drift | None:
@@ -236,3 +238,60 @@ def _integrals(analysis: Analysis | None, scenario: Scenario) -> tuple[tuple[Any
         return found, "" if found else "none is known beside the energy, which is watched in every run"
     except Unavailable as reason:
         return (), str(reason)
+
+
+# How far a run keeps its energies and first integrals, and how it is known that they are constant.
+
+
+def energies(dynamics: Dynamics, found: Trajectory, held: Collection[str]) -> tuple[Conservation, Conservation]:
+    """Of T2 - T0 - U, and of T - U; the coordinates ``held`` provably rest."""
+    points = _seen(found, "change", found.change)
+    scale, near = found.energy_scale, _near(found)
+    if isinstance(dynamics, LinearisedDynamics):
+        # The energy is that of the whole system, the motion that of the linear equations: no theorem joins them.
+        known, doubt = standing(dynamics, dynamics.relative_energy, 0, points, held, near)
+    else:
+        known, doubt = energy_standing(dynamics, points, scale / max(float(found.times[-1]), 1e-300), held, near)
+    moving = Measure.KINETIC if found.largest_kinetic else Measure.INITIAL
+    measure = moving if moving is Measure.KINETIC or found.generalized_energy[0] else Measure.UNIT
+    if dynamics.natural:
+        same = confronted("energy", known, found.change, scale, doubt, measure)
+        return same, same
+    generalized = confronted("generalised energy", known, found.change, scale, doubt, measure)
+    known, doubt = standing(dynamics, dynamics.energies, 0, _seen(found, "energy", found.energy), held, near)
+    return generalized, confronted("energy", known, found.energy, scale, doubt, measure)
+
+
+def _seen(found: Trajectory, name: str, values: Any) -> Any:
+    """States of a run at which a quantity changes most, and others: among all rows, where these are some of them."""
+    return visited(found.times, found.states, values) if found.table is None else found.table.visited[name]
+
+
+def _near(found: Trajectory) -> list[list[float]]:
+    """States beside the motion, where something acts for less than the distance of two rows."""
+    met = found.passed
+    return [] if met is None else between_switches(found.times, found.states, met.switches, met.inside)
+
+
+def kept_integrals(
+    dynamics: Dynamics, found: Trajectory, integrals: tuple[Any, ...], held: Collection[str], dense: Trajectory
+) -> tuple[FollowedIntegral, ...]:
+    """First integrals at the rows of ``found``; judged along ``dense``, the same run with places between its rows.
+
+    One that is not proved is looked at where the run goes.
+    """
+    if not integrals:
+        return ()
+    known = invariants(dynamics, integrals, columns(dynamics.system, dynamics.natural))
+    shown, seen = (list(values(known, run.times, run.states)) for run in (found, dense))
+    kept = []
+    for item, (column, _), (course, size) in zip(known, shown, seen, strict=True):
+        state, doubt = Standing.PROVED, None
+        if not item.proved or isinstance(dynamics, LinearisedDynamics):
+            state, doubt = standing(dynamics, item.code, 0, _seen(dense, item.column, course), held, _near(dense))
+        kept.append(
+            FollowedIntegral(
+                item.column, column, confronted(item.name, state, course, size, doubt, Measure.TERMS), item.unit
+            )
+        )
+    return tuple(kept)

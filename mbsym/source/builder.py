@@ -9,23 +9,31 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from mbsym.expressions.message import Message
+from mbsym.expressions.message import Message, worded
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints
+from mbsym.expressions.tree import Expression
 from mbsym.model.admissibility import known_values
 from mbsym.model.constraints import Constraint
-from mbsym.model.driven import with_held
-from mbsym.model.system import INERTIAL, Body, System
+from mbsym.model.inputs import Input, Output
+from mbsym.model.substitution import with_held
+from mbsym.model.system import INERTIAL, Body, MotionEntry, System
 from mbsym.source.bodies import draft_bodies, read_body, read_body_name
 from mbsym.source.checks import check_body, check_system, in_formulas
 from mbsym.source.claims import read_abbreviations, read_claims
-from mbsym.source.constants import declare_prescribed, declared_by_use, read_parameters, read_prescribed, read_values
-from mbsym.source.inputs import held_values, read_inputs, read_outputs
-from mbsym.source.keys import SYSTEM, VERSION
+from mbsym.source.constants import (
+    declare_prescribed,
+    declared_by_use,
+    note_unit,
+    read_parameters,
+    read_prescribed,
+    read_values,
+)
+from mbsym.source.keys import INPUT, SYSTEM, VERSION
 from mbsym.source.linear import declare_linear, read_linear
 from mbsym.source.loads import read_loads
 from mbsym.source.oscillation_symbols import enter_symbols, leave_symbols
-from mbsym.source.placed import Node, Sequence
+from mbsym.source.placed import Entry, Node, Scalar, Sequence
 from mbsym.source.reading import Fields, Reading
 from mbsym.source.scope import Allowed, Scope
 from mbsym.source.settings import (
@@ -38,7 +46,7 @@ from mbsym.source.settings import (
     read_relations,
 )
 from mbsym.source.small import read_small
-from mbsym.source.speeds import check_speeds, constraint_in_angles, declare_speeds, read_speeds, vectors_in_angles
+from mbsym.source.speeds import check_speeds, constraint_in_angles, declare_speeds, in_coordinates, read_speeds
 from mbsym.source.symbols import read_symbols
 from mbsym.source.tables import read_tables
 
@@ -79,7 +87,6 @@ def build(node: Node, complaints: Complaints, editor: bool = False, folder: Path
         for body, own, draft in zip(bodies, speeds, drafts, strict=True)
     ]
     loads = read_loads(fields.get("loads"), [body.name for body in bodies], reading)
-    loads = tuple(vectors_in_angles(load, bodies) for load in loads)
     constraints, dependent = _constraints(fields, bodies, reading)
     matrices = None if linear is None else read_linear(*linear, len(inputs), reading)
     parameters += declared_by_use(reading)
@@ -108,6 +115,7 @@ def build(node: Node, complaints: Complaints, editor: bool = False, folder: Path
         abbreviations=read_abbreviations(fields.get("abbreviations"), reading),
         limits=read_limits(fields.get("limits"), reading),
         source=fields.text("source"),
+        label=fields.text("label"),
         symbols=read_symbols(fields.get("latex"), reading),
         language=fields.word("language"),
         order=_coordinates(fields, "order", "an order of coordinates", reading),
@@ -117,6 +125,8 @@ def build(node: Node, complaints: Complaints, editor: bool = False, folder: Path
         linear=matrices,
         dependent_span=fields.key_span("dependent") if "dependent" in fields.found else None,
     )
+    if any(body.speeds or body.orientation for body in bodies):
+        system = replace(system, loads=tuple(in_coordinates(load, system) for load in loads))
     small = read_small(fields.get("small parameter"), reading, in_formulas(system))
     system = replace(system, small=small)
     names = [body.name for body in bodies]
@@ -219,3 +229,79 @@ def _check_version(fields: Fields, reading: Reading) -> None:
             known=VERSION,
         )
         reading.error("bad-version", message, scalar.span)
+
+
+# Inputs and outputs: names that forces hold and whose values are chosen later, and what is measured.
+
+
+#: A system has at most so many inputs, and so many outputs: each is a column of B, or a row of C.
+MAX_INPUTS = 200
+
+OUTPUT = Allowed("an output", ("coordinate", "velocity", "prescribed", "parameter", "input"))
+
+
+def read_inputs(node: Node | None, reading: Reading) -> tuple[Input, ...]:
+    """``u1: {meaning: torque of the wheel, unit: N*m}`` or ``u1: torque of the wheel``, or a list of names."""
+    if node is None:
+        return ()
+    if isinstance(node, Sequence):
+        found = [one for item in reading.items(node, "'inputs'") if (one := _listed(item, reading)) is not None]
+    else:
+        found = [one for entry in reading.entries(node, "'inputs'") if (one := _input(entry, reading)) is not None]
+    _bound(len(found), "inputs", node, reading)
+    return tuple(found)
+
+
+def _listed(item: Node, reading: Reading) -> Input | None:
+    scalar = reading.scalar(item, "an input")
+    if scalar is None or not reading.scope.declare(scalar.text, "input", scalar.span):
+        return None
+    return Input(scalar.text, span=scalar.span)
+
+
+def _input(entry: Entry, reading: Reading) -> Input | None:
+    name, meaning = entry.key.text, ""
+    declared = reading.scope.declare(name, "input", entry.key.span)
+    if isinstance(entry.value, Scalar):
+        if entry.value.text.strip():
+            meaning = reading.free_text(
+                entry.value, Message("the meaning of the input [[name]]", name=ascii_safe(name))
+            )
+    else:
+        fields = reading.fields(entry.value, Message("the input [[name]]", name=ascii_safe(name)), INPUT)
+        note_unit(name, fields, reading)
+        meaning = fields.text("meaning")
+    return Input(name, meaning, span=entry.key.span) if declared else None
+
+
+def read_outputs(node: Node | None, reading: Reading) -> tuple[Output, ...]:
+    """``y1: theta``: expressions in coordinates, velocities, parameters, prescribed motions and inputs."""
+    found = []
+    for entry in () if node is None else reading.entries(node, "'outputs'"):
+        errors = reading.errors
+        value = reading.expression(entry.value, OUTPUT)
+        declared = reading.scope.declare(entry.key.text, "output", entry.key.span)
+        if declared and reading.errors == errors:
+            found.append(Output(entry.key.text, value, entry.key.span))
+    if node is not None:
+        _bound(len(found), "outputs", node, reading)
+    return tuple(found)
+
+
+def _bound(count: int, what: str, node: Node, reading: Reading) -> None:
+    if count > MAX_INPUTS:
+        reading.error(
+            "too-large",
+            Message(
+                "a system has at most [[most]] [[what]], not [[count]]",
+                most=MAX_INPUTS,
+                what=worded(what),
+                count=count,
+            ),
+            node.span,
+        )
+
+
+def held_values(motion: tuple[MotionEntry, ...], reading: Reading) -> dict[str, Expression]:
+    """What ``motion`` says of inputs; complains about one that is to change there."""
+    return {entry.coordinate: entry.value for entry in motion if reading.scope.kinds.get(entry.coordinate) == "input"}

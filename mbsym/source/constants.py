@@ -11,7 +11,7 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.parser import ascii_safe, decimal_comma, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import CONSTANTS, ZERO, Expression, names
-from mbsym.model.comparison import has_sign
+from mbsym.model.assumptions import has_sign
 from mbsym.model.system import Parameter, Prescribed, rational
 from mbsym.model.units import Declared
 from mbsym.source.keys import PARAMETER, PRESCRIBED, SIGN_WORDS, SIGNS

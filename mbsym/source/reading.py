@@ -248,18 +248,7 @@ class Reading:
             else:
                 self.shape_error(node, what, "a mapping (key: value)", hint)
             return
-        if len(node.entries) > MAX_ENTRIES:
-            self.error(
-                "too-large",
-                Message(
-                    "[[what]] has at most [[most]] entries, not [[entries]]",
-                    what=worded(what),
-                    most=MAX_ENTRIES,
-                    entries=len(node.entries),
-                ),
-                node.span,
-            )
-            raise placed.TooManyComplaints  # without them every name would be unknown
+        self._bounded(node, what, "[[what]] has at most [[most]] entries, not [[entries]]", entries=len(node.entries))
         seen: set[str] = set()
         for entry in self.with_decimals(node.entries):
             key = ALIASES.get(entry.key.text, entry.key.text)
@@ -307,19 +296,14 @@ class Reading:
         if not isinstance(node, Sequence):
             self.shape_error(node, what, "a list")
             return ()
-        if len(node.items) > MAX_ENTRIES:
-            self.error(
-                "too-large",
-                Message(
-                    "[[what]] has at most [[most]] items, not [[items]]",
-                    what=worded(what),
-                    most=MAX_ENTRIES,
-                    items=len(node.items),
-                ),
-                node.span,
-            )
-            raise placed.TooManyComplaints  # without them every name would be unknown
+        self._bounded(node, what, "[[what]] has at most [[most]] items, not [[items]]", items=len(node.items))
         return node.items
+
+    def _bounded(self, node: Node, what: str, text: str, **count: int) -> None:
+        """Raises TooManyComplaints beyond ``MAX_ENTRIES``: without them every name would be unknown."""
+        if max(count.values()) > MAX_ENTRIES:
+            self.error("too-large", Message(text, what=worded(what), most=MAX_ENTRIES, **count), node.span)
+            raise placed.TooManyComplaints
 
     def fields(self, node: Node, what: str, known: Mapping[str, Key], hint: str | None = None) -> Fields:
         """A mapping with a fixed set of keys; an unknown one is complained about and taken for what it resembles."""

@@ -18,9 +18,19 @@ from mbsym.model.constraints import Axis, Constraint, as_written
 from mbsym.model.inputs import Input
 from mbsym.model.linear import LinearModel
 from mbsym.model.loads import Load
-from mbsym.model.small import SmallParameter
 from mbsym.model.speeds import OMEGA, Speed
-from mbsym.model.system import Body, Inertia, InitialValue, MotionEntry, Parameter, Point, Prescribed, System, Vector
+from mbsym.model.system import (
+    Body,
+    Inertia,
+    InitialValue,
+    MotionEntry,
+    Parameter,
+    Point,
+    Prescribed,
+    SmallParameter,
+    System,
+    Vector,
+)
 from mbsym.model.system import Shape as Look
 from mbsym.source.grammar import Ends, Equation, Formula, Key, Kind, Named, Record, Same, Type
 from mbsym.source.grammar import Vector as VectorType
@@ -188,7 +198,7 @@ def inferred_coordinates(system: System) -> list[tuple[str, ...]]:
 
 def load_shape(load: Load) -> tuple[str, Shape]:
     """The kind of a load and its data.  Raises TypeError for anything else."""
-    return _of_kind(load, LOADS)
+    return _of_kind(load.written, LOADS)
 
 
 def constraint_shape(constraint: Constraint) -> tuple[str, Shape]:

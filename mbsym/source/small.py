@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from mbsym.expressions.message import Message
 from mbsym.expressions.parser import ascii_safe
-from mbsym.model.small import SmallParameter
+from mbsym.model.system import SmallParameter
 from mbsym.source.keys import MOST_POWER, SMALL_PARAMETER
 from mbsym.source.placed import Entry, Mapping, Node, Scalar
 from mbsym.source.reading import Reading

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from mbsym.expressions.parser import ascii_safe
 from mbsym.source.yaml_writer import scalar_text as quoted
@@ -18,14 +19,36 @@ JOINTS: dict[str, tuple[tuple[int, ...], tuple[int, ...], str]] = {
     "fixed": ((), (), "nothing moves"),
 }
 
+#: Joints of one coordinate, about or along any axis.
+ONE_AXIS = tuple(name for name, (turns, slides, _) in JOINTS.items() if len(turns) + len(slides) == 1)
+
+_AXES = (1, 2, 3)
+
 
 @dataclass(frozen=True)
 class NewBody:
-    """A body of a new description: its name, the body that carries it (None: the ground), its joint of JOINTS."""
+    """A body of a new description: its name, the body that carries it (None: the ground), its joint of JOINTS.
+
+    ``axis``: about or along which a joint of one coordinate lets it move; None: that of JOINTS.
+    """
 
     name: str
     carrier: str | None = None
     joint: str = "hinge"
+    axis: int | None = None
+
+    @property
+    def axes(self) -> tuple[int, ...]:
+        """Of its rotations."""
+        return self._chosen(JOINTS[self.joint][0])
+
+    @property
+    def slides(self) -> tuple[int, ...]:
+        """The axes along which it moves."""
+        return self._chosen(JOINTS[self.joint][1])
+
+    def _chosen(self, axes: tuple[int, ...]) -> tuple[int, ...]:
+        return (self.axis,) if self.axis is not None and self.joint in ONE_AXIS and axes else axes
 
 
 def starter(title: str, bodies: Sequence[NewBody], gravity: bool = True) -> str:
@@ -79,59 +102,87 @@ def _check(bodies: Iterable[NewBody]) -> None:
 
 
 def _parameters(number: int, body: NewBody, carriers: set[str | None]) -> list[str]:
-    name = f"{body.name}"
-    lines = [
-        f"  m{number}: {{sign: positive, meaning: {quoted(f'mass of {name}')}}}",
-        f"  l{number}: {{sign: positive, meaning: {quoted(f'distance from the joint of {name} to its mass centre')}}}",
-        *(
-            f"  J{number}{axis}: {{sign: positive, meaning: {quoted(f'moment of inertia of {name}, axis {axis}')}}}"
-            for axis in (1, 2, 3)
-        ),
-    ]
+    meanings = parameters_of(number, body)
     if body.name in carriers:
-        meaning = quoted(f"distance from the joint of {name} to the next one")
-        lines.append(f"  d{number}: {{sign: positive, meaning: {meaning}}}")
-    return lines
+        meanings[f"d{number}"] = f"distance from the joint of {body.name} to the next one"
+    return [f"  {name}: {{sign: positive, meaning: {quoted(meaning)}}}" for name, meaning in meanings.items()]
+
+
+def parameters_of(number: int, body: NewBody) -> dict[str, str]:
+    """Mass, distance to the mass centre, principal moments of inertia of a body: name -> meaning."""
+    moments = {f"J{number}{axis}": f"moment of inertia of {body.name}, axis {axis}" for axis in _AXES}
+    return {
+        f"m{number}": f"mass of {body.name}",
+        f"l{number}": f"distance from the joint of {body.name} to its mass centre",
+        **moments,
+    }
+
+
+def coordinates_of(number: int, body: NewBody) -> list[str]:
+    """The translations and the rotations that the joint allows."""
+    return [*_translations(number, body), *_rotations(number, body)]
+
+
+def on_its_joint(number: int, body: NewBody, below: str = "0") -> dict[str, Any]:
+    """The keys of a body from its joint on, which is ``below`` that of the carrier (0: where that is).
+
+    The mass centre is at the distance l below the joint, for a hinge about the second axis beside it.
+    """
+    angles, point = _rotations(number, body), ["0", f"-{below}" if below != "0" else "0", "0"]
+    for axis, name in zip(body.slides, _translations(number, body), strict=True):
+        point[axis - 1] = name if point[axis - 1] == "0" else f"{name} - {below}"
+    found: dict[str, Any] = {}
+    if angles:
+        found["rotation"] = {"axes": list(map(str, body.axes)), "angles": angles}
+    if point != ["0", "0", "0"]:
+        found["connection point"] = point
+    beside = body.axes == (2,)
+    return {
+        **found,
+        "mass": f"m{number}",
+        "mass centre": [f"l{number}", "0", "0"] if beside else ["0", f"-l{number}", "0"],
+        "inertia about": "mass centre",
+        "inertia": [f"J{number}{axis}" for axis in _AXES],
+        "coordinates": coordinates_of(number, body),
+    }
 
 
 def _rotations(number: int, body: NewBody) -> list[str]:
-    return [f"q{number}{index}" for index in range(1, len(JOINTS[body.joint][0]) + 1)]
+    return [f"q{number}{index}" for index in range(1, len(body.axes) + 1)]
 
 
 def _translations(number: int, body: NewBody) -> list[str]:
-    return [f"x{number}{axis}" for axis in JOINTS[body.joint][1]]
+    return [f"x{number}{axis}" for axis in body.slides]
 
 
 def _coordinates(bodies: Sequence[NewBody]) -> list[str]:
-    return [name for k, body in enumerate(bodies, 1) for name in (*_translations(k, body), *_rotations(k, body))]
+    return [name for k, body in enumerate(bodies, 1) for name in coordinates_of(k, body)]
+
+
+#: What is said beside a key.
+_COMMENTS = {
+    "inertia about": "or: joint",
+    "inertia": "or three rows of a symmetric matrix",
+}
 
 
 def _body(number: int, body: NewBody, bodies: Sequence[NewBody]) -> list[str]:
-    axes, slides, told = JOINTS[body.joint]
+    told = f"{body.joint}: {JOINTS[body.joint][2]}"
     lines = [f"  - name: {quoted(body.name)}", f"    attached to: {quoted(body.carrier) if body.carrier else 0}"]
     carrier = next((k for k, one in enumerate(bodies, 1) if one.name == body.carrier), None)
-    point = ["0", "0" if carrier is None else f"-d{carrier}", "0"]
-    for axis in slides:
-        point[axis - 1] = f"x{number}{axis}" + ("" if point[axis - 1] == "0" else f" - d{carrier}")
-    if axes:
-        angles = ", ".join(_rotations(number, body))
-        lines.append(
-            f"    rotation: {{axes: [{', '.join(map(str, axes))}], angles: [{angles}]}} # {body.joint}: {told}"
-        )
-    else:
-        lines[0] += f" # {body.joint}: {told}"
-    if point != ["0", "0", "0"]:
-        lines.append(f"    connection point: [{', '.join(point)}]")
-    names = [*_translations(number, body), *_rotations(number, body)]
-    return [
-        *lines,
-        f"    mass: m{number}",
-        f"    mass centre: [0, -l{number}, 0]",
-        "    inertia about: mass centre # or: joint",
-        f"    inertia: [J{number}1, J{number}2, J{number}3] # or three rows of a symmetric matrix",
-        f"    coordinates: [{', '.join(names)}]",
-        "",
-    ]
+    data = on_its_joint(number, body, "0" if carrier is None else f"d{carrier}")
+    comments = {**_COMMENTS, "rotation": told}
+    if "rotation" not in data:
+        lines[0] += f" # {told}"
+    for key, value in data.items():
+        lines.append(f"    {key}: {_flow(value)}" + (f" # {comments[key]}" if key in comments else ""))
+    return [*lines, ""]
+
+
+def _flow(value: Any) -> str:
+    if isinstance(value, dict):
+        return f"{{{', '.join(f'{key}: {_flow(one)}' for key, one in value.items())}}}"
+    return f"[{', '.join(value)}]" if isinstance(value, list) else value
 
 
 def _gravity() -> list[str]:

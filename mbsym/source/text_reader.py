@@ -18,9 +18,8 @@ from mbsym.source.keys import CONSTRAINTS, LOADS, VERSION
 from mbsym.source.labels import ASSUMPTIONS, BODY, FREE, HEADER, SECTIONS
 from mbsym.source.placed import Entry, Mapping, Node, Scalar, Sequence
 from mbsym.source.scope import closest
-from mbsym.source.text_kinds import claim, of_kind
+from mbsym.source.text_kinds import claim, items, of_kind, row, split
 from mbsym.source.text_lines import HEADING, key_of, label_in, label_of, lines_of, spoken, word_of
-from mbsym.source.text_values import items, row, split
 
 #: A label has no more words.
 MOST_WORDS = 8

@@ -35,6 +35,8 @@ def to_text(system: System) -> str:
         lines.append(f"Description: {free(system.description)}")
     if system.source:
         lines.append(f"Source: {free(system.source)}")
+    if system.label:
+        lines.append(f"Label: {free(system.label)}")
     if system.language:
         lines.append(f"Language: {system.language}")
     if system.order:

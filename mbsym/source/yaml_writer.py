@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import re
 
 from mbsym.expressions.tree import text
@@ -37,6 +38,8 @@ def to_yaml(system: System) -> str:
         lines.append(f"description: {scalar_text(system.description)}")
     if system.source:
         lines.append(f"source: {scalar_text(system.source)}")
+    if system.label:
+        lines.append(f"label: {scalar_text(system.label)}")
     if system.language:
         lines.append(f"language: {system.language}")
     if system.order:
@@ -126,3 +129,11 @@ def scalar_text(value: str) -> str:
         return value
     escaped = value.replace("\\", "\\\\").replace('"', '\\"')
     return f'"{escaped}"'
+
+
+# What a description says, as a number: equal for the two spellings, for any order of keys, and for any comments.
+
+
+def meaning(system: System) -> str:
+    """SHA-256, in hexadecimal digits, of the description as ``mbsym convert`` writes it in YAML."""
+    return hashlib.sha256(to_yaml(system).encode()).hexdigest()

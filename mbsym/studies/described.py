@@ -62,7 +62,7 @@ def moving_system(source: Source) -> System:
     Raises GivenByMatrices where there are no bodies that could move.
     """
     from mbsym.analysis.given import refuse_matrices
-    from mbsym.model.driven import held
+    from mbsym.model.substitution import held
 
     system = analysis_of(source).system
     refuse_matrices(system, "no motion is integrated or searched for")
@@ -139,12 +139,16 @@ def public(
 def asked_of(source: Source, request: Any) -> Asked:
     """The system with its inputs held; the motion, too, where the request has values of one."""
     system = moving_system(source)
-    if not any(isinstance(one.kind, Settings) for one in fields_of(type(request))):
+    settings = [one.kind for one in fields_of(type(request)) if isinstance(one.kind, Settings)]
+    if not settings:
         return Asked(system)
     from mbsym.numerics.scenario import scenario
     from mbsym.simulation.request import read_values
 
-    return Asked(system, scenario(system, read_values(system, request.values or {})))
+    kind = settings[0]
+    return Asked(
+        system, scenario(system, read_values(system, request.values or {}), kind.state, declared=kind.declared)
+    )
 
 
 def _shown(default: Any) -> Any:

@@ -6,7 +6,7 @@ from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING
 
 from mbsym.studies.described import public
-from mbsym.studies.request import Values
+from mbsym.studies.request import Stateless
 from mbsym.studies.study import Answer, Asked, Refusal, Study, Watch, no_program, refused
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ class Request:
     """
 
     _: KW_ONLY
-    values: Values = field(default_factory=dict)
+    values: Stateless = field(default_factory=dict)
 
 
 @public(Request)
@@ -52,10 +52,10 @@ def floquet(asked: Asked, request: Request, watch: Watch) -> Judged:
 
 
 def answer(asked: Asked, request: Request, found: Judged) -> Answer:
-    from mbsym.report.content import titled
+    from mbsym.report.content import facts
     from mbsym.report.runs.floquet_files import floquet_json, sentences
 
-    return Answer(titled(sentences(found)), {"floquet.json": floquet_json(asked.system, found)})
+    return Answer([facts(sentences(found))], {"floquet.json": floquet_json(asked.system, found)})
 
 
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from mbsym.studies.described import analysis_of
-from mbsym.studies.request import Formulas, Settings, Value, Whole, duration
+from mbsym.studies.request import Formulas, Stateless, Whole, duration
 from mbsym.studies.study import Answer, Asked, Exit, Refusal, Study, Unfit, Watch, no_program, refused
 
 if TYPE_CHECKING:
@@ -43,9 +43,7 @@ class Request:
     time: Annotated[float, duration("From 0 to T.")]
     _: KW_ONLY
     samples: Annotated[int, Whole("N", "Rows.", least=2)] = 1001
-    values: Annotated[
-        Mapping[str, Value], Settings("NAME=VALUE", "Replace a value; repeatable.", "-s", "--set", state=False)
-    ] = field(default_factory=dict)
+    values: Stateless = field(default_factory=dict)
 
 
 def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
@@ -68,12 +66,12 @@ def derive(asked: Asked, request: Request, watch: Watch) -> InverseDynamics:
 
 
 def answer(asked: Asked, request: Request, found: InverseDynamics) -> Answer:
-    from mbsym.report.content import titled
+    from mbsym.report.content import facts
     from mbsym.report.runs.inverse_files import inputs_csv, inputs_figure, sentences
 
     files: dict[str, str | bytes] = {"inputs.csv": inputs_csv(found)}
     files |= inputs_figure(found, ("svg", "png"))
-    return Answer(titled(sentences(found)), files, code=Exit.OK if found.exact else Exit.BROKEN_DOWN)
+    return Answer([facts(sentences(found))], files, code=Exit.OK if found.exact else Exit.BROKEN_DOWN)
 
 
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:

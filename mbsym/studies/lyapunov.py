@@ -81,13 +81,13 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
 
 
 def answer(asked: Asked, request: Request, found: Exponents) -> Answer:
-    from mbsym.report.content import titled
+    from mbsym.report.content import facts
     from mbsym.report.runs.lyapunov_files import lyapunov_csv, lyapunov_figure, lyapunov_json, sentences
 
     files: dict[str, str | bytes] = {"lyapunov.csv": lyapunov_csv(found)}
     files |= lyapunov_figure(asked.system, found, ("svg", "png")) if len(found.times) > 1 else {}
     files["lyapunov.json"] = lyapunov_json(asked.system, found)
-    lines, notes = titled(sentences(found)), closed_motion(asked.motion)[1]
+    lines, notes = [facts(sentences(found))], closed_motion(asked.motion)[1]
     if found.ended is None:
         return Answer(lines, files, notes)
     code = Exit.INTERRUPTED if found.ended.kind == "interrupted" else Exit.BROKEN_DOWN

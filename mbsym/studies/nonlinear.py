@@ -64,7 +64,7 @@ class Request:
 def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
     """Numbers are of parameters that follow from nothing else, and have their declared signs; along a parameter all
     others have one."""
-    from mbsym.model.comparison import has_sign
+    from mbsym.model.assumptions import has_sign
 
     signs = {one.name: one.sign for one in system.parameters}
     related = {one.name for one in system.relations}
@@ -111,7 +111,7 @@ def derive(asked: Asked, request: Request, watch: Watch) -> AtValues | Along:
         watch("normal forms")
         return _at_values(asked.system, request.values)
     from mbsym.analysis import Analysis
-    from mbsym.analysis.exceptional import exceptional
+    from mbsym.analysis.judge import exceptional
 
     axis = request.vary
     watch(f"normal forms along {axis.name}")

@@ -66,7 +66,7 @@ def orbit(asked: Asked, request: Request, watch: Watch) -> PeriodicMotion:
         >>> import mbsym
         >>> found = mbsym.orbit("systems/double-pendulum.yaml", 2.6, values={"theta1": 0.3, "theta2": 0.12})
         >>> found.orbit.multipliers.shape, found.states.shape
-        ((4,), (4, 401))
+        ((4,), (4, 421))
 
     Raises DescriptionError, ValueError, ``mbsym.numerics.orbits.periodic.NotFound``.
     """
@@ -80,11 +80,11 @@ def orbit(asked: Asked, request: Request, watch: Watch) -> PeriodicMotion:
 
 
 def answer(asked: Asked, request: Request, found: PeriodicMotion) -> Answer:
-    from mbsym.report.content import titled
+    from mbsym.report.content import facts
     from mbsym.report.runs.orbit_files import orbit_csv, orbit_json, sentences
 
     return Answer(
-        titled(sentences(found)),
+        [facts(sentences(found))],
         {"orbit.csv": orbit_csv(found), "orbit.json": orbit_json(found)},
         closed_motion(asked.motion)[1],
     )

@@ -48,7 +48,7 @@ def regressor(asked: Asked, request: Request, watch: Watch) -> Regressor:
 
 
 def answer(asked: Asked, request: Request, found: Regressor) -> Answer:
-    from mbsym.report.content import titled
+    from mbsym.report.content import facts
     from mbsym.report.regressor_files import regressor_json, regressor_latex, regressor_module, sentences
 
     files: dict[str, str | bytes] = {
@@ -56,7 +56,7 @@ def answer(asked: Asked, request: Request, found: Regressor) -> Answer:
         "regressor.tex": regressor_latex(found),
         "regressor.json": regressor_json(found),
     }
-    return Answer(titled(sentences(found)), files)
+    return Answer([facts(sentences(found))], files)
 
 
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:

@@ -140,10 +140,12 @@ class Named(Kind):
 class Settings(Kind):
     """Values by name that replace those of the description: of parameters, initial positions and velocities.
 
-    ``state``: whether an initial state is needed, ``whole``: whether values are, by the texts of the options.
+    ``state``: whether an initial state is needed, ``declared``: whether it may be one that declared variables alone
+    tell; ``whole``: whether values are needed, by the texts of the options.
     """
 
     state: bool = True
+    declared: bool = False
     whole: Callable[[Mapping[str, Any]], bool] = lambda texts: True
 
 
@@ -217,6 +219,9 @@ class Share(Kind):
 
 #: ``--set`` of studies of one motion, and of exact ones.
 Values = Annotated[Mapping[str, Value], Settings("NAME=VALUE", "Replace a value; repeatable.", "-s", "--set")]
+Stateless = Annotated[
+    Mapping[str, Value], Settings("NAME=VALUE", "Replace a value; repeatable.", "-s", "--set", state=False)
+]
 Numbers = Annotated[Mapping[str, Fraction], ExactSettings("NAME=VALUE", "Put in a number; repeatable.", "-s", "--set")]
 
 #: The same as signatures show them.

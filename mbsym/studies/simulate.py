@@ -80,7 +80,7 @@ def _asked(source: Source, request: Request) -> Asked:
     from mbsym.simulation.request import read_values
 
     system = analysis_of(source).system
-    own = request.variables == "declared" and request.accuracy is None
+    own = request.variables == "declared"
     laws = laws_of(system, request.inputs)
     return Asked(system, scenario(system, read_values(system, request.values or {}), laws=laws, declared=own))
 
@@ -117,17 +117,15 @@ def simulate(asked: Asked, request: Request, watch: Watch) -> Simulation:
     and tables such as ``"20*sin(3*t)"``; those left out are held at their values on the unperturbed motion.
 
     Of a description with ``speeds`` its own variables are integrated: positions (unit vectors or a quaternion in place
-    of angles) and speeds, ``run.coordinates`` and ``run.velocities``; with ``variables="coordinates"``, as with an
-    ``accuracy``, coordinates and their velocities.
+    of angles) and speeds, ``run.coordinates`` and ``run.velocities``; with ``variables="coordinates"`` coordinates and
+    their velocities.
 
     Raises DescriptionError for a description with errors, ValueError for arguments that cannot be met,
     ``mbsym.numerics.scenario.Incomplete`` with every number that is missing, Unusable where the method does not apply.
     """
     from mbsym import simulation
 
-    seen = simulation.integrated_system(
-        asked.system, "coordinates" if request.accuracy is not None else request.variables
-    )
+    seen = simulation.integrated_system(asked.system, request.variables)
     wanted = simulation.Request(
         *(request.time, request.samples, request.every, request.method, request.tolerance, request.step),
         *(request.arithmetic, request.step_limit, request.invariants, request.estimate, request.whole, request.certify),
@@ -135,13 +133,13 @@ def simulate(asked: Asked, request: Request, watch: Watch) -> Simulation:
             seen, _several(request.events), _several(request.stop), request.section, request.axes
         ),
         longest=request.max_step,
-        variables="coordinates" if request.accuracy is not None else request.variables,
+        variables=request.variables,
     )
     if request.accuracy is None:
         return simulation.simulate(asked.motion, wanted)
     from mbsym.simulation.accurate import read_accuracy, settled_by, simulate_accurately
 
-    accuracy = read_accuracy(asked.system, request.accuracy)
+    accuracy = read_accuracy(seen, request.accuracy)
     return simulate_accurately(asked.motion, wanted, accuracy, settled_by(wanted))
 
 
@@ -169,8 +167,9 @@ def plan(
     from mbsym.simulation.accurate import plan_for, read_accuracy
 
     system = moving_system(source)
-    given = scenario(system, simulation.read_values(system, values or {}))
-    return plan_for(given, simulation.Request(time, samples, every), read_accuracy(system, accuracy))[0]
+    given = scenario(system, simulation.read_values(system, values or {}), declared=True)
+    seen = simulation.integrated_system(system)
+    return plan_for(given, simulation.Request(time, samples, every), read_accuracy(seen, accuracy))[0]
 
 
 def ensemble(
@@ -211,7 +210,7 @@ def ensemble(
     read = simulation.read_values(system, values or {})
     request = simulation.Request(time, samples, every, method, tolerance, step)
     asked = Spread(request, [variation(name, given) for name, given in vary.items()], members, seed, sampling)
-    return simulate_many(scenario(system, read), asked, read, threads)
+    return simulate_many(scenario(system, read, declared=True), asked, read, threads)
 
 
 def sensitivities(
@@ -241,7 +240,7 @@ def sensitivities(
     system = moving_system(source)
     read = simulation.read_values(system, values or {})
     request = simulation.Request(time, samples, every, method, tolerance)
-    return derived(scenario(system, read), request, tuple(names), read)
+    return derived(scenario(system, read, declared=True), request, tuple(names), read)
 
 
 def gradient(

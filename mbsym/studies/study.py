@@ -39,25 +39,6 @@ class Line:
     always: bool = False
 
 
-@dataclass(frozen=True)
-class Column:
-    """Of a table: numbers stand to the ``right``, what is ``folded`` may take several lines where it is narrow."""
-
-    name: str
-    right: bool = False
-    style: str = ""
-    fold: bool = False
-
-
-@dataclass(frozen=True)
-class Rows:
-    """A table: a cell is a text, or one with a style; one that is ``wide`` is broken nowhere but by a terminal."""
-
-    columns: Sequence[Column]
-    rows: Sequence[Sequence[str | tuple[str, str]]]
-    wide: bool = False
-
-
 def line(*parts: str | tuple[str, str], whole: bool = False, always: bool = False) -> Line:
     return Line(parts, whole, always)
 
@@ -103,7 +84,7 @@ class Answer:
     behind the name of the description; ``brief``: the blocks that ``--quiet`` leaves.
     """
 
-    lines: Iterable[Line | Rows | Block] = ()
+    lines: Iterable[Line | Block] = ()
     files: Mapping[str, str | bytes | Iterable[str]] = field(default_factory=dict)
     complaints: Sequence[str] = ()
     code: Exit = Exit.OK
@@ -191,9 +172,9 @@ class Study(Generic[R, F]):
     what of a request does not go together; fields that could not be read are None there, but among those that were
     ``typed``.
 
-    ``constraints``, ``matrices``: whether descriptions with these are understood, ``bodies``: whether neither are, by
-    the texts of the options; ``held``: whether inputs are held at their constant values.  ``out``: where files go;
-    ``writes``: whether there are any, by what was typed; ``document`` makes the single one.  ``timed``: whether the
+    ``constraints``, ``matrices``: whether descriptions with these are understood, ``bodies``: whether matrices are
+    not, by the texts of the options; ``held``: whether inputs are held at their constant values.  ``out``: where files
+    go; ``writes``: whether there are any, by what was typed; ``document`` makes the single one.  ``timed``: whether the
     seconds are told.  ``letters``: whether formulas are written in the author's letters.
     """
 

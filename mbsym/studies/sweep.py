@@ -37,11 +37,10 @@ from mbsym.studies.study import (
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
-    from mbsym.sweeps.measure import Measure
-    from mbsym.sweeps.points import Points
+    from mbsym.sweeps.points import Measure, Points
     from mbsym.sweeps.request import Asked as Wanted
-    from mbsym.sweeps.store import Folder as Store
     from mbsym.sweeps.sweep import Chunk, Executor
+    from mbsym.sweeps.sweep import Folder as Store
 
 KINDS = ("csv", "parquet", "svg", "png", "pdf")
 #: A picture holds all points: of more there is none.
@@ -174,9 +173,9 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Swept:
     from mbsym.batch.digests import derivation
     from mbsym.maps.given import Unfit as Wrong
     from mbsym.numerics.scenario import Incomplete
-    from mbsym.source.meaning import meaning
+    from mbsym.source.yaml_writer import meaning
     from mbsym.studies.section import unfit_section
-    from mbsym.sweeps import store, sweep
+    from mbsym.sweeps import sweep
     from mbsym.sweeps.request import measure_of
 
     watch("deriving")
@@ -189,7 +188,7 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Swept:
         raise NotFit(tuple(unfit_section(error.complaints, "--vary"))) from error
     every = sweep.chunks(wanted.points.count)
     digest = wanted.digest(meaning(system), derivation())
-    kept = store.Folder(asked.folder, digest, tuple(column.name for column in measure.columns), asked.write)
+    kept = sweep.Folder(asked.folder, digest, tuple(column.name for column in measure.columns), asked.write)
     mine = every if request.shard is None else sweep.shard(every, *request.shard)
     executor, done, cut = _executor(system, request, wanted, measure), 0, False
     try:
@@ -224,7 +223,7 @@ def answer(asked: Asked, request: Request, found: Swept) -> Answer:
         number, of = request.shard
         told = f"shard {number} of {of}: {found.asked} chunks are done; without --shard all are put together"
         return Answer((line(f"  {told}"),))
-    from mbsym.report.content import titled
+    from mbsym.report.content import facts
     from mbsym.report.runs.sweep_files import sweep_csv, sweep_json, sweep_parquet
     from mbsym.report.runs.sweep_words import sentences
     from mbsym.sweeps.statistics import total
@@ -251,7 +250,7 @@ def answer(asked: Asked, request: Request, found: Swept) -> Answer:
     files["sweep.json"] = sweep_json(
         asked.system, points, settings, request.wanted.name, columns, totals, table, left_out
     )
-    return Answer(titled(sentences(points, columns, totals, left_out)), files)
+    return Answer([facts(sentences(points, columns, totals, left_out))], files)
 
 
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:

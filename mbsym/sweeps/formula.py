@@ -15,7 +15,7 @@ from mbsym.expressions.tree import Expression
 from mbsym.maps.section import Section
 from mbsym.numerics.kernels import llvm
 from mbsym.numerics.kernels.interface import Code
-from mbsym.sweeps.measure import Column
+from mbsym.sweeps.points import Column
 from mbsym.sweeps.polynomials import Horner
 
 

@@ -24,7 +24,7 @@ from mbsym.maps.section import Section
 from mbsym.numerics.kernels import llvm
 from mbsym.problems.stability.word import Word
 from mbsym.sweeps.deciding import classes, deciding
-from mbsym.sweeps.measure import Column
+from mbsym.sweeps.points import Column
 
 #: What may stand in place of a verdict, before the words of verdicts.
 OUTSIDE, UNDEFINED, MASSLESS = "not admissible", "not defined", "kinetic energy not positive definite"

@@ -6,10 +6,11 @@ NumPy's PCG64 or Sobol's sequence (scrambled, SciPy); the points are the same fo
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import prod
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -67,3 +68,30 @@ class Points:
         bits = np.random.PCG64(self.seed)
         bits.advance(start * count)
         return np.random.Generator(bits).random((stop - start, count)).T
+
+
+# What is measured at the points of a sweep: columns of numbers, a measure a file.
+#
+# A measure is made once; then it gives the columns of any points, in threads side by side: the work is done in machine
+# code and in NumPy, which leave other threads alone.
+
+
+@dataclass(frozen=True)
+class Column:
+    """``words`` are what its whole numbers stand for, where they are codes; ``meaning`` says what is in it."""
+
+    name: str
+    meaning: str
+    words: tuple[str, ...] = ()
+    whole: bool = False
+
+
+class Measure(Protocol):
+    """Something of a system at numbers for its parameters."""
+
+    @property
+    def columns(self) -> tuple[Column, ...]: ...
+
+    def at(self, points: Any) -> Mapping[str, Any]:
+        """Arrays (m,) by the columns' names, for points of shape (names, m)."""
+        ...

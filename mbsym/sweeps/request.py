@@ -12,8 +12,7 @@ from mbsym.expressions.tree import Expression, number, text
 from mbsym.maps.section import Axis, Section, section
 from mbsym.model.system import System
 from mbsym.numerics.scenario import scenario
-from mbsym.sweeps.measure import Measure
-from mbsym.sweeps.points import Points
+from mbsym.sweeps.points import Measure, Points
 
 STABILITY, EIGENVALUES, DAMPING, FREQUENCY = "stability", "eigenvalues", "damping", "frequency"
 #: What is measured by name; anything else is a formula.
@@ -56,8 +55,9 @@ def measure_of(system: System, asked: Asked) -> Measure:
     if asked.time is not None and asked.formula is not None:
         from mbsym.sweeps.simulated import SimulatedMeasure
 
-        given = scenario(system, {name: number(value) for name, value in asked.settings.items()}, assumed=False)
-        return SimulatedMeasure(given, asked.points.names, asked.formula, text(asked.formula), asked.time)
+        overrides = {name: number(value) for name, value in asked.settings.items()}
+        given, said = scenario(system, overrides, assumed=False), text(asked.formula)
+        return SimulatedMeasure(given, overrides, asked.points.names, asked.formula, said, asked.time)
     analysis = Analysis(system)
     axes = [Axis(name, *asked.ends[name]) for name in asked.points.names]
     found = section(analysis, axes, asked.settings)

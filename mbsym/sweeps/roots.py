@@ -16,7 +16,7 @@ from mbsym.algebra.matrices import added
 from mbsym.maps.section import Section
 from mbsym.numerics.kernels import llvm
 from mbsym.numerics.kernels.interface import Code
-from mbsym.sweeps.measure import Column
+from mbsym.sweeps.points import Column
 from mbsym.sweeps.polynomials import written
 
 #: Parts of a root below this share of the largest root are rounding, of a root that may be a multiple one.

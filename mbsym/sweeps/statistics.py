@@ -22,7 +22,7 @@ import numpy as np
 
 from mbsym.problems.stability.word import Word
 from mbsym.sweeps.judged import NO_VERDICT, VERDICT, WORDS
-from mbsym.sweeps.measure import Column
+from mbsym.sweeps.points import Column
 
 LEVEL = 0.95
 #: Dependence is told from so many points at most.

@@ -24,8 +24,7 @@ from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.program import Node, Program
 from mbsym.expressions.angles import LinearForm
 from mbsym.expressions.tree import SMOOTH
-from mbsym.mechanics.forward_dynamics import forward_dynamics
-from mbsym.mechanics.programs import momenta, momentum_rates
+from mbsym.mechanics.programs import forward_dynamics, momenta, momentum_rates
 from mbsym.mechanics.states import rational_states
 from mbsym.model.system import velocity_name
 

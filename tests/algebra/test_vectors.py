@@ -166,7 +166,7 @@ PLANTED = [
     Mistake("velocity not turned", RECURSIONS, "forward(turns, carried + relative_velocity, name)", "carried", "", ()),
     Mistake(
         "a weight in inertial axes",
-        "mechanics.loads.uniform_gravity:_uniform_action",
+        "mechanics.loads.gravity:_uniform_action",
         "field[name] *",
         "field['0'] *",
         "",

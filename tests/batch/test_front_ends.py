@@ -11,10 +11,9 @@ from xml.etree import ElementTree
 
 from click.testing import CliRunner
 
-from mbsym.batch.findings import findings
 from mbsym.batch.index_page import index_page
 from mbsym.batch.junit import junit
-from mbsym.batch.outcome import CheckRow, ClaimRow, ComplaintRow, FileRow, Outcome, ProblemRow, Row, Summary
+from mbsym.batch.outcome import CheckRow, ClaimRow, ComplaintRow, FileRow, Outcome, ProblemRow, Row, Summary, findings
 from mbsym_cli.main import main
 
 HOSTILE = "</script><script>alert(1)</script> ]]> \x1b[2J \x00 & \" '\n::error::x"

@@ -425,7 +425,7 @@ def show_simulation(results: list[Record], table: Callable[..., None]) -> None:
 def growth(options: argparse.Namespace) -> list[Record]:
     """Seconds and operations from 2 to 200 joints, by both routes of forward dynamics."""
     import mbsym
-    from mbsym.mechanics.forward_dynamics import forward_dynamics
+    from mbsym.mechanics.programs import forward_dynamics
     from mbsym.mechanics.variables import ring_of
     from mbsym.numerics.dynamics import Dynamics
     from mbsym.numerics.kernels.llvm import SCALARS, function_text

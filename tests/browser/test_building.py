@@ -124,7 +124,7 @@ def build_bodies(window: Window) -> None:
     for name, fields in BODIES.items():
         window.body(name).focus() if name in window.bodies else None
         window.press("a")
-        window.in_dialog(name)
+        window.in_dialog(name, "End")  # no joint yet
         for label, value in fields.items():
             window.field(label, value)
         window.body(name).focus()
@@ -205,7 +205,7 @@ def test_the_double_pendulum_is_built_by_the_keyboard_alone(show: Show) -> None:
         "second rod": {"angle-1": "theta2", "axis-1": "3", "point-2": "-l1", "mass": "m2", "centre-2": "-l2"},
     }.items():
         window.press("a")
-        window.in_dialog(name)
+        window.in_dialog(name, "End")  # no joint yet
         window.press("Enter")
         for _ in range(60):
             at = str(window.page.evaluate("document.activeElement.id")).removeprefix("body-")

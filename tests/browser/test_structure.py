@@ -382,3 +382,26 @@ def test_a_file_with_other_line_ends_keeps_them(show: Show) -> None:
     window.press("F2")
     window.in_dialog("upper rod")
     assert window.text == text.replace("name: first rod", "name: upper rod").replace("to: first rod", "to: upper rod")
+
+
+def test_a_body_is_asked_for_its_joint_and_axis(show: Show) -> None:
+    """A slider along the second axis on a hinge: their coordinates, masses and moments are there, and are positive."""
+    window = show("mbsym: 1\nname: Two\nbodies: []\n")
+    window.page.locator("#graph [role=treeitem]").first.focus()
+    window.press("a")
+    window.in_dialog("arm")
+    window.body("arm").focus()
+    window.press("a")
+    dialog = window.page.locator("dialog[open]")
+    dialog.wait_for()
+    assert dialog.get_by_label("Joint").input_value() == "hinge"
+    dialog.get_by_label("Joint").select_option("ball")
+    assert dialog.get_by_label("Axis").is_disabled()
+    dialog.get_by_label("Joint").select_option("slider")
+    dialog.get_by_label("Axis").select_option("2")
+    window.in_dialog_take()
+    system, _ = read(window.text, "system.yaml")
+    assert system is not None
+    assert system.coordinates == ("q11", "x22")
+    assert window.bodies == {"arm": "fixed axes (0)", "body 2": "arm"}
+    assert {one.sign for one in system.parameters} == {"positive"}

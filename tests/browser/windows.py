@@ -184,11 +184,15 @@ class Window:
         found = (re.match(r"(.*), body \d+ on ([^;]*)", label) for label in labels)
         return {match[1]: match[2] for match in found if match}
 
-    def in_dialog(self, text: str | None = None) -> None:
-        """Answers the open dialog with Enter, after typing `text` over what is marked."""
+    def in_dialog(self, text: str | None = None, *chosen: str) -> None:
+        """Answers the open dialog with Enter, after typing `text` over what is marked, and keys in what follows it."""
         self.page.locator("dialog[open]").wait_for()
         if text is not None:
             self.typed(text)
+        for key in chosen:
+            self.press("Tab", key)
+        if chosen:
+            self.press("Tab")  # to the button: Enter opens a list
         self.press("Enter")
         self.page.locator("dialog").wait_for(state="detached")  # closed, and acted upon
         self.settled()

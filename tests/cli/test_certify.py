@@ -14,7 +14,7 @@ import mpmath
 import pytest
 from click.testing import CliRunner, Result
 
-from mbsym.expressions.counting import duration
+from mbsym.expressions.message import duration
 from mbsym.numerics.enclosure.enclose import OUT_OF_TIME, Enclosure
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main

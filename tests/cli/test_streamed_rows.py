@@ -13,7 +13,7 @@ import pytest
 from click.testing import CliRunner
 from conftest import SHIPPED
 
-from mbsym.numerics import stored
+from mbsym.numerics import streamed
 from mbsym.simulation.sampling import Grid
 from mbsym_cli.main import main
 
@@ -82,23 +82,23 @@ def test_bytes_and_words_are_those_of_the_run_that_holds_its_rows(
 
 def test_a_row_that_is_lost_is_noticed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The comparison above can fail: with a block's last row left out the tables differ."""
-    right = stored.Stored.blocks
+    right = streamed.Stored.blocks
 
-    def lossy(self: stored.Stored) -> Any:
+    def lossy(self: streamed.Stored) -> Any:
         for start, rows in right(self):
             yield start, rows[:, :-1] if start else rows
 
-    monkeypatch.setattr(stored.Stored, "blocks", lossy)
+    monkeypatch.setattr(streamed.Stored, "blocks", lossy)
     words = [str(SHIPPED / "simple-pendulum.yaml"), "--time", "10", "--samples", "20000", "-f", "csv"]
-    (_, streamed), (_, held) = both_ways(tmp_path, monkeypatch, words)
-    assert streamed["trajectory.csv"] != held["trajectory.csv"]
+    (_, parted), (_, held) = both_ways(tmp_path, monkeypatch, words)
+    assert parted["trajectory.csv"] != held["trajectory.csv"]
 
 
 def test_nothing_is_left_where_there_is_no_room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def full(self: stored.Stored, block: Any) -> None:
+    def full(self: streamed.Stored, block: Any) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(stored.Stored, "append", full)
+    monkeypatch.setattr(streamed.Stored, "append", full)
     words = ["simulate", str(SHIPPED / "simple-pendulum.yaml"), "--time", "10", "--samples", "30000", "-f", "csv"]
     done = CliRunner().invoke(main, [*words, "-o", str(tmp_path / "out")])
     assert done.exit_code == 1

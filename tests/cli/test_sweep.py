@@ -15,7 +15,7 @@ from mbsym.report.schemas import schema
 from mbsym_cli.main import main
 
 SYSTEMS = Path(__file__).parents[2] / "systems"
-PLANE = ["-v", "alpha=-0.9:0.9:40", "-v", "gamma=-0.9:0.9:30", "-s", "p1=2/5", "-s", "p2=1/5"]
+PLANE = ["--vary", "alpha=-0.9:0.9:40", "--vary", "gamma=-0.9:0.9:30", "-s", "p1=2/5", "-s", "p2=1/5"]
 
 
 def sweep(name: str, folder: Path, *options: str) -> Result:
@@ -73,7 +73,7 @@ def test_shards_and_what_was_interrupted_give_the_same_bytes(plane: Path, tmp_pa
 
 
 def test_another_request_reads_no_chunks_of_this_one(tmp_path: Path) -> None:
-    small = ["-v", "alpha=-0.9:0.9:5", "-v", "gamma=-0.9:0.9:5", "-s", "p1=2/5", "--format", "csv", "-s"]
+    small = ["--vary", "alpha=-0.9:0.9:5", "--vary", "gamma=-0.9:0.9:5", "-s", "p1=2/5", "--format", "csv", "-s"]
     assert sweep("satellite", tmp_path, *small, "p2=1/5").exit_code == 0
     first = rows(tmp_path)
     assert sweep("satellite", tmp_path, *small, "p2=4/5").exit_code == 0
@@ -83,7 +83,18 @@ def test_another_request_reads_no_chunks_of_this_one(tmp_path: Path) -> None:
 
 def test_frequencies_are_those_of_the_closed_formulas(tmp_path: Path) -> None:
     """A spring pendulum: sqrt(k/m) along the spring, sqrt(g/(l0 + m g/k)) across."""
-    done = sweep("spring-pendulum", tmp_path, "-v", "m=1 +- 20%", "-v", "k=+-10%", "--points", "50", "-m", "frequency")
+    done = sweep(
+        "spring-pendulum",
+        tmp_path,
+        "--vary",
+        "m=1 +- 20%",
+        "--vary",
+        "k=+-10%",
+        "--points",
+        "50",
+        "--measure",
+        "frequency",
+    )
     assert done.exit_code == 0, done.output
     for row in rows(tmp_path):
         m, k = float(row["m"]), float(row["k"])
@@ -93,7 +104,7 @@ def test_frequencies_are_those_of_the_closed_formulas(tmp_path: Path) -> None:
 
 
 def test_a_formula_of_parameters_and_symbols(tmp_path: Path) -> None:
-    done = sweep("satellite", tmp_path, "-v", "Jx=2:3:5", "-m", "alpha + 2*Jx", "--format", "csv")
+    done = sweep("satellite", tmp_path, "--vary", "Jx=2:3:5", "--measure", "alpha + 2*Jx", "--format", "csv")
     assert done.exit_code == 0, done.output
     for row in rows(tmp_path):  # alpha = (c - b)/a = (Jz - Jx)/Jy
         jx = float(row["Jx"])
@@ -102,7 +113,7 @@ def test_a_formula_of_parameters_and_symbols(tmp_path: Path) -> None:
 
 def test_motions_are_simulated(tmp_path: Path) -> None:
     """Small swings of a pendulum: the angle is theta0 cos(w t) but for theta0^2/16 of its frequency."""
-    options = ["-v", "theta=1/1000:2/1000:3", "-m", "simulate:theta", "--time", "3", "--format", "csv"]
+    options = ["--vary", "theta=1/1000:2/1000:3", "--measure", "simulate:theta", "--time", "3", "--format", "csv"]
     done = sweep("spring-pendulum", tmp_path, *options, "-s", "l0=1")
     assert done.exit_code == 0, done.output
     for row in rows(tmp_path):
@@ -112,7 +123,9 @@ def test_motions_are_simulated(tmp_path: Path) -> None:
 
 def test_the_probability_that_is_told_covers_the_true_one(tmp_path: Path) -> None:
     """Ziegler's undamped pendulum flutters above P = (7/2 - sqrt 2) k/l: of P uniform on (0, 4) 52.1447 % are below."""
-    done = sweep("ziegler", tmp_path, "-v", "P=uniform(0, 4)", "--points", "20000", "--format", "csv,png", "-s", "k=1")
+    done = sweep(
+        "ziegler", tmp_path, "--vary", "P=uniform(0, 4)", "--points", "20000", "--format", "csv,png", "-s", "k=1"
+    )
     assert done.exit_code == 0, done.output
     shares = {one["word"]: one for one in told(tmp_path)["shares"]}
     unstable = shares["unstable"]["interval"]
@@ -130,7 +143,20 @@ def test_parquet_holds_the_same(plane: Path, tmp_path: Path) -> None:
 
 def test_every_complaint_comes_at_once_and_nothing_is_written(tmp_path: Path) -> None:
     folder = tmp_path / "none"
-    options = ["-v", "q=1:2:3", "-v", "m=2:1", "-s", "k=sqrt(2)", "-m", "frequencie", "--shard", "4/3", "--time", "2"]
+    options = [
+        "--vary",
+        "q=1:2:3",
+        "--vary",
+        "m=2:1",
+        "-s",
+        "k=sqrt(2)",
+        "--measure",
+        "frequencie",
+        "--shard",
+        "4/3",
+        "--time",
+        "2",
+    ]
     done = sweep("spring-pendulum", folder, *options, "--format", "cvs", "--points", "1")
     assert done.exit_code == 2
     for code in ("unknown-name", "bad-variation", "bad-number", "unknown-format", "conflicting-options"):
@@ -141,18 +167,18 @@ def test_every_complaint_comes_at_once_and_nothing_is_written(tmp_path: Path) ->
 
 
 def test_what_a_relation_gives_does_not_vary(tmp_path: Path) -> None:
-    done = sweep("satellite", tmp_path / "none", "-v", "nu=1:2:3", "-v", "alpha=0:1:3")
+    done = sweep("satellite", tmp_path / "none", "--vary", "nu=1:2:3", "--vary", "alpha=0:1:3")
     assert done.exit_code == 2
     assert "nu = omega0**2*R**3" in done.stderr
 
 
 def test_systems_given_by_matrices_and_constrained_ones(tmp_path: Path) -> None:
     """Routh: the triangular points are stable in the first approximation below mu = 1/2 - sqrt(69)/18 = 0.0385209."""
-    done = sweep("triangular-points", tmp_path / "points", "-v", "mu=0.01:0.06:51", "--format", "csv")
+    done = sweep("triangular-points", tmp_path / "points", "--vary", "mu=0.01:0.06:51", "--format", "csv")
     assert done.exit_code == 0, done.output
     for row in rows(tmp_path / "points"):
         assert (row["verdict"] == "unstable") == (float(row["mu"]) > 0.5 - sqrt(69) / 18)
-    done = sweep("bicycle", tmp_path / "bicycle", "-v", "v=4:6.5:26", "--format", "csv")
+    done = sweep("bicycle", tmp_path / "bicycle", "--vary", "v=4:6.5:26", "--format", "csv")
     assert done.exit_code == 0, done.output
     there = {float(row["v"]): row["unstable_roots"] for row in rows(tmp_path / "bicycle")}
     # Meijaard et al. 2007: weave at 4.292 m/s, capsize at 6.024 m/s
@@ -160,7 +186,9 @@ def test_systems_given_by_matrices_and_constrained_ones(tmp_path: Path) -> None:
 
 
 def test_motions_of_matrices_are_refused_by_name(tmp_path: Path) -> None:
-    done = sweep("triangular-points", tmp_path / "x", "-v", "mu=0.01:0.06:5", "-m", "simulate:x", "--time", "1")
+    done = sweep(
+        "triangular-points", tmp_path / "x", "--vary", "mu=0.01:0.06:5", "--measure", "simulate:x", "--time", "1"
+    )
     assert done.exit_code == 2
     assert "given by its matrices" in done.stderr
 

@@ -12,9 +12,11 @@ import pytest
 import yaml
 from mutants import mutant
 
+import mbsym
 from mbsym.editing.document import changes, formula, look
-from mbsym.editing.document.pieces import Edit, Pieces, applied
+from mbsym.editing.document.meaning import Edit, Pieces, applied
 from mbsym.editing.document.written import data_of, written
+from mbsym.problems.claims import EXACT
 from mbsym.source import read, to_text
 from mbsym.source.document import read_placed
 
@@ -472,3 +474,28 @@ def test_what_acts_on_a_coordinate_acts_on_the_body_that_introduces_it() -> None
         "a.yaml",
     )
     assert [one["bodies"] for one in view["loads"]] == [["pole"], ["cart"], ["pole", "cart"], []]
+
+
+@pytest.mark.parametrize(("begin", "k"), [("mbsym: 1\nname: N\n", 1), ("mbsym: 1\nname: N\nparameters: [m1, k]\n", 2)])
+def test_a_body_on_a_joint_has_what_moves_and_what_has_inertia(begin: str, k: int) -> None:
+    """An arm turns by q about the second axis, a bead slides on it by x:
+
+    2 T = (m1 l1^2 + J1) q'^2 + m2 (x'^2 + x^2 q'^2) + J2 q'^2.
+    """
+    text = done(begin, {"op": "add body", "name": "arm", "to": None, "joint": "hinge", "axis": 2})
+    text = done(text, {"op": "add body", "name": "bead", "to": "arm", "joint": "slider", "axis": 1})
+    mass, length, moment = f"m{k}", f"l{k}", f"J{k}2"
+    q, x = f"q{k}1", f"x{k + 1}1"
+    claim = f"({mass}*{length}**2 + {moment})*{q}_dot**2 + m{k + 1}*({x}_dot**2 + {x}**2*{q}_dot**2)"
+    text += f"claims:\n  - {{claim: kinetic energy, equals: ({claim} + J{k + 1}2*{q}_dot**2)/2}}\n"
+    system, found = read(text, "x.yaml")
+    assert system is not None
+    assert not found.errors
+    (claimed,) = mbsym.loads(text, (2,)).claims
+    assert claimed.outcome == EXACT
+    assert {one.sign for one in system.parameters if one.name not in ("m1", "k") or k == 1} == {"positive"}
+
+
+def test_a_joint_that_is_none_is_refused() -> None:
+    answer = changes(PENDULUM, "x.yaml", [{"op": "add body", "name": "tip", "to": None, "joint": "glue"}])
+    assert "hinge" in answer["complaints"][0]["message"]

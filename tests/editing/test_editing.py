@@ -9,8 +9,8 @@ import pytest
 import mbsym
 from mbsym.analysis import Analysis
 from mbsym.editing import explanation, suggestions
+from mbsym.editing.completion import keys_in
 from mbsym.editing.hover import _name
-from mbsym.editing.keys import keys_in
 from mbsym.source import read
 from mbsym.source.keys import BODY, CLAIM, LOADS, MOTION, PARAMETER, POINT, PRESCRIBED, ROTATION, SYSTEM
 

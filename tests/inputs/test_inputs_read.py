@@ -9,7 +9,7 @@ import pytest
 import yaml
 
 from mbsym.expressions.tree import ONE, text
-from mbsym.model.driven import driven, held
+from mbsym.model.substitution import driven, held
 from mbsym.model.system import System
 from mbsym.source import read
 from mbsym.source.schema import json_schema

@@ -11,10 +11,10 @@ import pytest
 import mbsym
 from mbsym.maps import mapping
 from mbsym.maps.check import Mistake
-from mbsym.maps.continuity import jumps
 from mbsym.maps.mapping import exact_map
 from mbsym.maps.result import Lack, Shape
 from mbsym.maps.section import Axis
+from mbsym.maps.verdicts import jumps
 
 #: With b2 = 2/23 the discriminant of the follower force has an isolated point in the stable region.
 AXES = [Axis("P", Fraction(0), Fraction(4)), Axis("b1", Fraction(0), Fraction(1))]

@@ -87,15 +87,15 @@ def test_declared_signs_are_kept(tmp_path: Path) -> None:
 def test_a_wrong_enclosure_is_caught(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Boxes that are enclosed as if they were their lower left quarter are called what they are not everywhere."""
     from mbsym.algebra.plane import Box
-    from mbsym.maps import irrational
+    from mbsym.maps import boxes
 
-    plain = irrational.IrrationalSection.verdict
+    plain = boxes.IrrationalSection.verdict
 
-    def shrunk(self: irrational.IrrationalSection, box: Box) -> object:
+    def shrunk(self: boxes.IrrationalSection, box: Box) -> object:
         small = Box(box.x0, (63 * box.x0 + box.x1) / 64, box.y0, (63 * box.y0 + box.y1) / 64)
         return plain(self, small)
 
-    monkeypatch.setattr(irrational.IrrationalSection, "verdict", shrunk)
+    monkeypatch.setattr(boxes.IrrationalSection, "verdict", shrunk)
     found = mapped(described(tmp_path, "[[cos(a) + b, sin(b)], [sin(b), 1]]"), -3, 3)
     assert found.check is not None
     assert not found.check.holds

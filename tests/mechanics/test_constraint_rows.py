@@ -12,10 +12,9 @@ from mbsym.algebra.failures import Constrained
 from mbsym.algebra.program import Program
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.mechanics.constraints.rows import Row, constraint_rows, kept_rows, said_rows
-from mbsym.mechanics.forward_dynamics import forward_dynamics
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.oracle import Oracle
-from mbsym.mechanics.programs import programs, scene_without_accelerations
+from mbsym.mechanics.programs import forward_dynamics, programs, scene_without_accelerations
 from mbsym.mechanics.states import rational_states
 from mbsym.mechanics.variables import program_environment, ring_environment, ring_of
 from mbsym.model.constraints import Coincide, Rolling

@@ -24,11 +24,10 @@ from mbsym.mechanics import articulated, factorisation
 from mbsym.mechanics.articulation import Articulation, articulation
 from mbsym.mechanics.bias_forces import bias_forces, forcing
 from mbsym.mechanics.composite import mass_matrix
-from mbsym.mechanics.forward_dynamics import ARTICULATED, FACTORISED, forward_dynamics
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.newton_euler import residuals
 from mbsym.mechanics.oracle import Oracle, State
-from mbsym.mechanics.programs import accelerated, scene_without_accelerations
+from mbsym.mechanics.programs import ARTICULATED, FACTORISED, accelerated, forward_dynamics, scene_without_accelerations
 from mbsym.mechanics.states import rational_states
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import acceleration_name, velocity_name
@@ -332,7 +331,7 @@ MISTAKES = [
     ("mechanics.articulation:turned_symmetric", "p - across", "p + across"),
     ("mechanics.articulation:shifted", "- mixed", "+ mixed"),
     ("mechanics.articulation:shifted", "twice = h + moved", "twice = h + h"),
-    ("mechanics.articulation:_split", "algebra.zero, Vector", "own.mass, Vector"),
+    ("mechanics.articulation:split", "algebra.zero, Vector", "own.mass, Vector"),
     ("mechanics.bias_forces:_w_tensor", "p[0][1] - c", "p[0][1] + c"),
     ("mechanics.bias_forces:_rotational", "tensor[k][k] - tensor[j][j]", "tensor[j][j] - tensor[k][k]"),
     ("mechanics.bias_forces:_moved", "algebra.number(2)", "algebra.number(1)"),

@@ -13,7 +13,7 @@ from mbsym.mechanics.quaternions import product as turned
 from mbsym.numerics.scenario import Incomplete, scenario
 from mbsym.numerics.states import StateDynamics, in_coordinates, scenario_in_states
 from mbsym.source import to_yaml
-from mbsym.source.meaning import meaning
+from mbsym.source.yaml_writer import meaning
 
 BODY = """
 mbsym: 1

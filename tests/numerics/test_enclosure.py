@@ -18,7 +18,6 @@ from properties import settings
 
 import mbsym
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.enclosure import disc as discs
 from mbsym.numerics.enclosure import segment as segments
 from mbsym.numerics.enclosure.compare import Certificate, certified
 from mbsym.numerics.enclosure.enclose import INTERRUPTED, NO_STEP, OUT_OF_TIME, TOO_DEAR, Enclosure, enclosed
@@ -173,7 +172,7 @@ def contains_truth(name: str) -> bool:
 
 def test_a_tail_of_zero_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     assert contains_truth("pendulum")
-    monkeypatch.setattr(discs.Disc, "tail", lambda self, step, terms: [arb(0)] * len(self.solutions))
+    monkeypatch.setattr(segments.Disc, "tail", lambda self, step, terms: [arb(0)] * len(self.solutions))
     assert not contains_truth("pendulum")
 
 
@@ -265,7 +264,7 @@ def test_a_disc_knows_the_singularity() -> None:
     with ctx.workprec(100):
         field = Field(dynamics.right_hand_side, dynamics.jacobian, 100)
         coefficients = field.solution(arb(0), [arb(1), arb(2)], 16)
-        found = discs.disc(field, arb(0), coefficients, 3.0)
+        found = segments.disc(field, arb(0), coefficients, 3.0)
     assert found is not None
     assert 0.4 < found.radius < 1
 

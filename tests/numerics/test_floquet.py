@@ -190,3 +190,12 @@ def test_the_command(tmp_path: Path) -> None:
     done = CliRunner().invoke(main, ["floquet", str(SHIPPED / "double-pendulum.yaml"), "--out", str(tmp_path)])
     assert done.exit_code == 1
     assert "constant" in done.output
+
+
+def test_no_initial_state_is_asked_for(tmp_path: Path) -> None:
+    """It is the unperturbed motion that is judged."""
+    path = tmp_path / "mathieu.yaml"
+    path.write_text(MATHIEU.replace("initial: {x: 1}\n", ""))
+    done = CliRunner().invoke(main, ["floquet", str(path), "--out", str(tmp_path / "out")])
+    assert done.exit_code == 0, done.output
+    assert mbsym.floquet(path).word is verdict(MATHIEU)

@@ -33,7 +33,7 @@ from mbsym.algebra.failures import NoClosedForm, SingularPoint
 from mbsym.algebra.point import Rationals
 from mbsym.algebra.program import Program
 from mbsym.expressions.tree import number
-from mbsym.mechanics.forward_dynamics import forward_dynamics
+from mbsym.mechanics.programs import forward_dynamics
 from mbsym.model.system import System
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels import arrays, llvm, sine_cosine

@@ -18,7 +18,7 @@ from mbsym.numerics.methods import runge_kutta, sides
 from mbsym.numerics.methods.interface import STUCK, Breakdown, Setting
 from mbsym.numerics.methods.kept import compiled_kernel
 from mbsym.numerics.methods.landing import LandingRun
-from mbsym.numerics.methods.leaving import Leaving
+from mbsym.numerics.methods.sides import Leaving
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.scenario import scenario
 

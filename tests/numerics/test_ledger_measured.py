@@ -13,9 +13,9 @@ from click.testing import CliRunner
 
 import mbsym
 from mbsym.algebra.certainty import Certainty
-from mbsym.numerics.ledger import measured
+from mbsym.numerics.ledger import table
 from mbsym.numerics.ledger.entry import NEEDED, NOT_NEEDED, OPEN, Saving
-from mbsym.numerics.ledger.work import Wanted, Work
+from mbsym.numerics.ledger.work import AccuracyGoal, Work
 from mbsym.numerics.planning import model_choice
 from mbsym.numerics.planning.kinds import GRAVITY, MASSES
 from mbsym.numerics.planning.models import Model, emptied, parted
@@ -61,8 +61,8 @@ def difference() -> float:
 
 
 def gravity(accuracy: float | None) -> Saving:
-    wanted = None if accuracy is None else Wanted(accuracy, TIME)
-    (found,) = measured.gravity_orders(Work(mbsym.loads(DUMBBELL, ()), wanted=wanted))
+    wanted = None if accuracy is None else AccuracyGoal(accuracy, TIME)
+    (found,) = table.gravity_orders(Work(mbsym.loads(DUMBBELL, ()), wanted=wanted))
     return found
 
 
@@ -88,7 +88,7 @@ def test_the_plan_says_the_same(times: float) -> None:
     accuracy = times * difference()
     given = scenario(mbsym.loads(DUMBBELL, ()).system)
     settled = Pins(model=Model(2), method="dop853", tolerance=1e-12)
-    plan = planned(given, Accuracy(accuracy), np.linspace(0, TIME, measured.TIMES), settled)
+    plan = planned(given, Accuracy(accuracy), np.linspace(0, TIME, table.TIMES), settled)
     (item,) = (item for item in plan.items if item.kind == GRAVITY)
     found = gravity(accuracy)
     assert plan.reached == (found.standing == NOT_NEEDED)
@@ -143,11 +143,11 @@ initial: {a: 0.3, b: 0.2, c: 0.1, d: -0.2}
 
 def test_a_light_rod_is_left_out_by_the_plan_and_told_by_the_ledger() -> None:
     analysis = mbsym.loads(CHAIN, ())
-    plan = planned(scenario(analysis.system), Accuracy(1e-5), np.linspace(0, 2, measured.TIMES))
+    plan = planned(scenario(analysis.system), Accuracy(1e-5), np.linspace(0, 2, table.TIMES))
     assert set(plan.model.without) == {"m1", "J1"}
     (item,) = (item for item in plan.items if item.kind == MASSES)
     assert item.what == ("rod",)
-    (found,) = measured.simpler_model(Work(analysis, wanted=Wanted(1e-5, 2.0)))
+    (found,) = table.simpler_model(Work(analysis, wanted=AccuracyGoal(1e-5, 2.0)))
     assert (found.kind, found.what, found.standing) == (MASSES, ("rod",), NOT_NEEDED)
     assert found.measures[0].saved > 0
 

@@ -20,6 +20,7 @@ from mbsym.numerics.orbits.lyapunov import Parting, exponents
 from mbsym.numerics.orbits.periodic import Guess, NotFound, Orbit, periodic_orbit
 from mbsym.numerics.scenario import scenario
 from mbsym.report.runs.lyapunov_files import sentences
+from mbsym.report.runs.orbit_files import sentences as orbit_sentences
 from mbsym.report.schemas import schema
 from mbsym.simulation import read_values
 from mbsym.simulation.motions import find_orbit
@@ -95,6 +96,16 @@ def test_the_period_of_a_pendulum() -> None:
     assert found.trivial == 2
     assert np.max(np.abs(found.multipliers - 1)) < 1e-4  # a double eigenvalue of a Jordan block: half the digits
     assert found.determinant == pytest.approx(1, abs=1e-10)
+
+
+@pytest.mark.parametrize(("guess", "repeats"), [(6.5, 1), (13.4, 2), (20.0, 3)])
+def test_a_multiple_of_the_period_is_told_to_be_one(guess: float, repeats: int) -> None:
+    """The period is 4 K(sin(1/2)) = 6.70 where the pendulum is let go at 1."""
+    found = find_orbit(dynamics(PENDULUM).scenario, guess)
+    assert found.repeats == repeats
+    assert found.orbit.period == pytest.approx(repeats * 4 * ellipk(np.sin(0.5) ** 2), abs=1e-9)
+    (told,) = (str(text) for title, text in orbit_sentences(found) if title == "period")
+    assert ("it repeats after 6.69997" in told) == (repeats > 1)
 
 
 def test_a_conical_pendulum_closes_up_to_a_revolution() -> None:

@@ -10,9 +10,8 @@ from flint import arb, ctx
 import mbsym
 from mbsym.algebra.point import Balls
 from mbsym.mechanics import articulation
-from mbsym.mechanics.forward_dynamics import METHODS, forward_dynamics
 from mbsym.mechanics.oracle import Oracle, State
-from mbsym.mechanics.programs import constants
+from mbsym.mechanics.programs import METHODS, constants, forward_dynamics
 from mbsym.mechanics.states import ball_states
 from mbsym.mechanics.variables import ring_of
 from mbsym.model.system import System, acceleration_name

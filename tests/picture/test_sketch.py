@@ -15,8 +15,7 @@ import mbsym
 from mbsym.formulas.latex import latex_names
 from mbsym.formulas.mathml import mathml_names
 from mbsym.picture import lettering, picture
-from mbsym.picture.looking import projection
-from mbsym.picture.looks import principal
+from mbsym.picture.looking import principal, projection
 from mbsym.picture.outlined import hull, outlined
 from mbsym.picture.sketch import Dot, Sketch, Stroke, sketch
 from mbsym.report.html.writer import Writer as HtmlWriter

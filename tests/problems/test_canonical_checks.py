@@ -243,7 +243,7 @@ MISTAKES = [
     ),
     Mistake(
         "velocities of integrals",
-        "problems.canonical.brackets:brackets",
+        "problems.canonical.canonical:brackets",
         "canonical.velocities, strict",
         "canonical.velocities[::-1], strict",
         "spring",

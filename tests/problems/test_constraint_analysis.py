@@ -437,5 +437,3 @@ def test_what_does_not_know_constraints_has_no_result() -> None:
     stage = analysis.stage_of("programs")
     assert stage.failure is not None
     assert "relation 1" in stage.failure.reason
-    with pytest.raises(Exception, match="constraints are not taken into account"):
-        mbsym.equilibria(analysis, values={"m": 1, "l": 1, "g": 9})

@@ -85,7 +85,7 @@ def test_the_system_in_groups_has_the_same_roots_in_its_own_time(name: str) -> N
     assert analysis.stability.numerical.word == reduced.stability.numerical.word  # type: ignore[union-attr]
 
 
-def sizes(spectrum: mbsym.problems.stability.spectrum.Spectrum) -> list[float]:
+def sizes(spectrum: mbsym.problems.stability.enclosed.Spectrum) -> list[float]:
     """|lambda|^2 of every root."""
     return [float((x.ball.real * x.ball.real + x.ball.imag * x.ball.imag).mid()) for x in spectrum.roots]
 

@@ -18,8 +18,7 @@ from mbsym.algebra.base import Lowering
 from mbsym.formulas.formula import Formula
 from mbsym.problems.stability import SubsystemStability
 from mbsym.problems.stability.requirements import Requirement
-from mbsym.report.coefficients import WRITTEN_OUT, InCoefficients, in_coefficients
-from mbsym.report.conditions import Shown, statements
+from mbsym.report.conditions import WRITTEN_OUT, InCoefficients, Shown, in_coefficients, statements
 from mbsym.report.targets import TARGETS
 
 #: Banshchikov & Vetrov, condition (6).

@@ -25,7 +25,7 @@ from mbsym_cli.main import main
 #: The systems of which some problem is told, by problem; all others keep closed formulas.  The tether's equations are
 #: long in products of sines and cosines only: in sums of angles, as its paper prints them, they take less than a page.
 GYROSCOPES = {"satellite-with-gyroscope": {3}, "satellite-with-two-gyroscopes": {2, 3}}
-TOLD = {"satellite": {1, 2, 3}, "spatial-arm": {3}, **GYROSCOPES}
+TOLD = {"satellite": {1, 2, 3}, "satellite-controlled": {1, 2, 3}, "spatial-arm": {3}, **GYROSCOPES}
 TOLD_IN_PRODUCTS = TOLD | {"tethered-satellites": {3}, "satellite-with-gyroscope": {2, 3}}
 
 

@@ -14,8 +14,7 @@ from conftest import SHIPPED, compiled_latex, needs_pdflatex
 from jsonschema import Draft202012Validator
 
 import mbsym
-from mbsym.report.canonical import forms_of
-from mbsym.report.canonical_denominators import with_names
+from mbsym.report.canonical import forms_of, with_names
 from mbsym.report.code.python_module import render as module_text
 from mbsym.report.schemas import schema
 from mbsym.report.targets import TARGETS

@@ -9,8 +9,7 @@ import pytest
 
 from mbsym.analysis import Analysis
 from mbsym.report.html.formulas import inline
-from mbsym.report.html.report import render
-from mbsym.report.html.sections import PARTS, part_html, title
+from mbsym.report.html.report import PARTS, part_html, render, title
 from mbsym.source import read
 
 PENDULUM = """\

@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 from collections import Counter
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -19,10 +20,10 @@ from mbsym.report import conditions
 from mbsym.report.code.parsing import unreadable
 from mbsym.report.latex.appendix import joined
 from mbsym.report.latex.displays import written_out
-from mbsym.report.latex.labels import labels, slug
+from mbsym.report.latex.labels import labels, prefix_of, slug
 from mbsym.report.rendering import rendered
 from mbsym.report.targets import TARGETS
-from mbsym.source.meaning import meaning
+from mbsym.source.yaml_writer import meaning
 from mbsym_cli.main import main
 from tests.conftest import SHIPPED, needs_pdflatex
 
@@ -282,3 +283,9 @@ def test_formulas_of_an_appendix_are_those_that_a_person_writes() -> None:
     # Inside of a fraction no line may end.
     whole = r"\longformula[p:f]{x = \frac{" + "\\penalty0  + ".join(terms) + r"}{y}}"
     assert "hangindent" in written_out(whole)
+
+
+@pytest.mark.parametrize(("label", "written"), [("Sat_2.b", "Sat_2.b"), ("my satellite:", "my-satellite"), ("", "top")])
+def test_the_label_of_a_description_stands_in_every_label(label: str, written: str) -> None:
+    system = replace(mbsym.load(SHIPPED / "simple-pendulum.yaml").system, name="Top", label=label)
+    assert prefix_of(system) == f"mbsym:{written}:"

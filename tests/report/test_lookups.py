@@ -17,7 +17,7 @@ from scipy.interpolate import CubicSpline
 import mbsym
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.expressions.table import Tabulated
-from mbsym.report.code.lookups import c_definition, identifier
+from mbsym.report.code.functions import c_definition, identifier
 from mbsym.report.targets import FORMATS
 
 X = np.cumsum(np.random.default_rng(3).integers(1, 9, 240)) / 64

@@ -22,7 +22,7 @@ from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import NoClosedForm, NoValue, message_of
 from mbsym.analysis.stages import NoResult
 from mbsym.expressions.message import GAP, Counted, Message
-from mbsym.mechanics.forward_dynamics import ARTICULATED, FACTORISED
+from mbsym.mechanics.programs import ARTICULATED, FACTORISED
 from mbsym.model.claims import CLAIMS, SUMS
 from mbsym.model.constraints import KIND_NAMES
 from mbsym.numerics.accuracy import Lacking
@@ -187,7 +187,7 @@ def of_runs() -> Iterator[str]:
     yield from (one.title for one in vars(tableaux).values() if isinstance(one, tableaux.Tableau))
 
 
-@pytest.mark.parametrize("name", ["summary", "plan_words", "constrained_run_words", "state_run_words", "events_words"])
+@pytest.mark.parametrize("name", ["summary", "plan_words", "constrained_run_words", "state_run_words", "events"])
 def test_titles_of_what_is_said_of_a_run_are_translated(name: str) -> None:
     """The first of every pair that is yielded."""
     tree = said.trees()[f"report/runs/{name}.py"]

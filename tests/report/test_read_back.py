@@ -32,7 +32,7 @@ from mbsym.formulas.wolfram import wolfram_names
 from mbsym.problems.stability import SubsystemStability
 from mbsym.problems.stability.requirements import Case, Requirement
 from mbsym.problems.stability.word import Word
-from mbsym.report import coefficients, conditions
+from mbsym.report import conditions
 from mbsym.report.conditions import Shown
 from mbsym.report.plain_writer import Line, Writer
 from mbsym.report.targets import TARGETS
@@ -385,8 +385,7 @@ def no_letters(patch: pytest.MonkeyPatch) -> None:
 
 def two_meanings(patch: pytest.MonkeyPatch) -> None:
     """Nobody looks whether a letter is a parameter, too."""
-    for module in (coefficients, conditions):
-        patch.setattr(module, "names_in", lambda ring: frozenset())
+    patch.setattr(conditions, "names_in", lambda ring: frozenset())
 
 
 def lost_factor(patch: pytest.MonkeyPatch) -> None:

@@ -22,8 +22,7 @@ from mbsym.problems.normal_forms import Theorem
 from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.theorems import THEOREMS
 from mbsym.problems.stability.word import Word
-from mbsym.report.documents.base import Part, told_apart_by
-from mbsym.report.documents.writer import written
+from mbsym.report.documents.base import Part, told_apart_by, written
 from mbsym.report.results_json import render
 from mbsym.report.runs.simulation_json import simulation_json
 from mbsym.report.schemas import names, schema, schema_of

@@ -13,7 +13,7 @@ import pytest
 from click.testing import CliRunner
 from matplotlib.figure import Figure
 
-import mbsym.report.exports.fmu_units as fmu_units_module
+import mbsym.report.exports.fmu as fmu_units_module
 import mbsym.report.figures.figures as figures_module
 import mbsym.report.figures.motion_figure as motion_module
 from mbsym.numerics.trade.tradeoff import Tradeoff

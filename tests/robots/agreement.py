@@ -30,7 +30,7 @@ from robots import ROBOTS
 
 from mbsym.expressions.place import Complaints
 from mbsym.source.robots import convert as robot_description
-from mbsym.source.robots.numbers import angle, is_nonnegative
+from mbsym.source.robots.reader import angle, is_nonnegative
 from mbsym.source.robots.urdf import MOMENTS
 
 GRAVITY = "9.81"

@@ -19,7 +19,7 @@ import mbsym
 from mbsym.problems.regressor import regressor
 from mbsym.report.code.python_module import render
 from mbsym.report.regressor_files import regressor_module
-from mbsym.source.robots.numbers import angle, is_of_a_body, multiple_of_pi, number
+from mbsym.source.robots.reader import angle, is_of_a_body, multiple_of_pi, number
 
 pytest.importorskip("pinocchio", reason="needs the extra 'robots'")
 agreement = pytest.importorskip("agreement", reason="needs the extra 'robots'")

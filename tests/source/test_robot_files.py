@@ -18,8 +18,8 @@ from mbsym.problems.claims import DIFFERS, EXACT
 from mbsym.report.targets import TARGETS
 from mbsym.source import read, to_text
 from mbsym.source.robots import Converted, convert, is_robot
-from mbsym.source.robots.elements import MAX_DEPTH
-from mbsym.source.robots.placing import turns_about
+from mbsym.source.robots.reader import MAX_DEPTH
+from mbsym.source.robots.robot import turns_about
 from mbsym_cli.main import main
 
 PENDULUM = """<?xml version="1.0"?>
@@ -493,6 +493,16 @@ def test_an_actuator_of_mjcf_drives_its_joint_and_others_stay_passive() -> None:
     assert system is not None
     assert system.input_names == ("tau_k",)
     assert {"law of an actuator (position)", "actuator of no joint (motor)"} <= set(made.left_out)
+    gear = "gear of an actuator (the input is the torque or force in the joint)"
+    assert gear in made.left_out
+    assert gear not in converted(mujoco("", body, '<actuator><motor joint="k" gear="1"/></actuator>')).left_out
+    default = '<default><motor gear="9"/></default>'
+    assert gear in converted(mujoco(default, body, '<actuator><motor joint="k"/></actuator>')).left_out
+
+
+def test_angles_that_an_oblique_axis_needs_are_parts_of_pi_where_they_are() -> None:
+    """(1, 1, 0) is the third axis turned by pi/2 about the second and by pi/4 about the third."""
+    assert [words for _, words in turns_about(("1", "1", "0"), "q")] == ["pi/4", "pi/2", "q", "-pi/2", "-pi/4"]
 
 
 def test_armature_is_a_term_of_the_mass_matrix_and_weighs_nothing() -> None:

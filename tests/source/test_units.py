@@ -13,7 +13,7 @@ import pytest
 
 from mbsym.model.units import ENERGY, LENGTH, MASS, TIME, Units, times, written
 from mbsym.source import read, to_text, to_yaml
-from mbsym.source.units.inference import Form, Inference
+from mbsym.source.units.expressions import Form, Inference
 from mbsym.source.units.reading import COMMON, Unit, unit
 
 ROOT = Path(__file__).parents[2]

@@ -147,6 +147,7 @@ UNITS = {
         "q": "rad/s",
     },
     "satellite": {**ORBIT, "M2": "kg", "m": "kg", "m0": "kg", "l": "m", "r": "m", "Jx": MOMENTS, "Jy": MOMENTS},
+    "satellite-controlled": {**ORBIT, "m": "kg", "m0": "kg", "l": "m", "Jx": MOMENTS, "u1": "N*m", "u2": "N*m"},
     "satellite-with-damper": CARRIER,
     "satellite-with-damper-driven": CARRIER,
     "satellite-with-damper-slow": {

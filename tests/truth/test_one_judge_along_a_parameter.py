@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 import mbsym
-from mbsym.analysis.exceptional import exceptional
+from mbsym.analysis.judge import exceptional
 from mbsym.report.words.exceptional_values import as_text, lines
 
 CASES = Path(__file__).parents[1] / "cases" / "statements"

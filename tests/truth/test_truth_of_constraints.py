@@ -86,3 +86,46 @@ def test_a_false_integral_fails_its_check() -> None:
     assert check_integrals(analysis.system, ring, [first], analysis.constraints, programs).outcome == EXACT
     wrong = replace(first, formula=Formula(ring, first.formula.polynomial * ring.generator("coordinate", "x")))
     assert check_integrals(analysis.system, ring, [wrong], analysis.constraints, programs).outcome == FAILED
+
+
+@pytest.mark.parametrize("rate", ["0", "w"])
+def test_a_wheel_that_rolls_steadily_on_the_level_is_stable_but_for_a_drift(rate: str) -> None:
+    """(m + J/r^2) x'' = 0 with x' = -r phi': a disturbance keeps its velocity, whatever the speed of the wheel."""
+    found = mbsym.loads(
+        f"""
+mbsym: 1
+name: Wheel
+parameters: {{m: positive, r: positive, J: positive, w: real, g: positive}}
+bodies:
+  - {{name: W, attached to: 0, connection point: [x, r, 0], rotation: {{axes: [3], angles: [phi]}}, mass: m,
+     coordinates: [x, phi], inertia about: mass centre, inertia: [J, J, J]}}
+loads: [{{uniform gravity: {{vector: [0, -g, 0]}}}}]
+constraints: [{{rolling: {{body: W, point: [0, -r, 0], axes: 0, on: ground}}}}]
+motion: {{x: {{rate: -r*{rate}}}, phi: {{rate: {rate}}}}}
+"""
+    ).stability
+    assert found.verdict.word == "stable but for a drift of cyclic coordinates"
+
+
+@pytest.mark.parametrize(
+    ("relation", "judged"), [("y - v*t", True), ("y - v*t - l*sin(q)/3", True), ("y - v*t*t", False)]
+)
+def test_a_pendulum_whose_pivot_a_constraint_carries_along_evenly(relation: str, judged: bool) -> None:
+    """With y = v t + eta the time is nowhere: K = m g l > 0.  Of y = v t^2, the motion y = v t is none."""
+    analysis = mbsym.loads(
+        f"""
+mbsym: 1
+name: Carried
+parameters: {{m: positive, l: positive, g: positive, v: real}}
+bodies:
+  - {{name: A, attached to: 0, connection point: [y, 0, 0], coordinates: [y], mass: m}}
+  - {{name: B, attached to: A, rotation: {{axes: [3], angles: [q]}}, mass centre: [0, -l, 0], mass: m}}
+loads: [{{uniform gravity: {{vector: [0, -g, 0]}}}}]
+constraints: [{{relation: {relation} = 0}}]
+motion: {{y: {{rate: v}}, q: 0}}
+"""
+    )
+    found = analysis.optional("stability")
+    assert (found is not None) == judged
+    if found is not None:
+        assert found.verdict.word in ("stable", "stable in first approximation only")

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from itertools import count
+
+from mbsym.editing.document import understood
 from mbsym.editing.document.meaning import Json, Meant, setting, word_of
 from mbsym.editing.document.primitives import Primitive, Remove, Shift
-from mbsym.editing.document.understood import coordinates_of
-from mbsym.editing.document.words import body_renamed, pattern, places
+from mbsym.editing.document.words import body_renamed, pattern, places, words_of
 from mbsym.editing.document.written import Data, Path, Refused, Written, child, node_at, spelled_path
 from mbsym.source.bodies import is_body_name
 from mbsym.source.placed import Mapping, Node, Scalar, Sequence
+from mbsym.source.starter import JOINTS, NewBody, coordinates_of, on_its_joint, parameters_of
 
 
 def bodies_of(found: Written) -> list[tuple[str, str]]:
@@ -52,11 +55,46 @@ def _parent(found: Written, operation: Json) -> str:
 
 
 def add_body(found: Written, operation: Json) -> Meant:
+    """A new body; with a ``joint`` (of ``starter.JOINTS``; its ``axis``) its coordinates, mass and moments, in symbols.
+
+    Its parameters are positive, of value 1, and have names that nothing else has.
+    """
     name, parent = _new_name(found, word_of(operation, "name")), _parent(found, operation)
-    data: Data = {"name": name, "attached to": parent, "mass": "0"}
-    count = len(bodies_of(found))
-    path = ("bodies", count)
-    return Meant([setting(found, path, data, None)], select=path)
+    data: dict[str, Data] = {"name": name, "attached to": parent}
+    path = ("bodies", len(bodies_of(found)))
+    if "joint" not in operation:
+        return Meant([setting(found, path, {**data, "mass": "0"}, None)], select=path)
+    joint, axis = word_of(operation, "joint"), operation.get("axis")
+    if joint not in JOINTS or axis not in (None, 1, 2, 3):
+        raise Refused("bad-operation", f"a joint is one of {', '.join(JOINTS)}, its axis 1, 2 or 3")
+    body, known = NewBody(name, parent, joint, axis), words_of(found)
+    if isinstance(found.tree, Mapping):
+        for index, _ in enumerate(bodies_of(found)):
+            known |= set(own_names(found, found.tree, index))
+    number = next(k for k in count(path[1] + 1) if known.isdisjoint(_names(k, body)))
+    meanings = parameters_of(number, body)
+    below = "0" if parent == "0" else f"d{number}"
+    if parent != "0":
+        meanings[below] = f"distance from the joint of {parent} to that of {name}"
+    data |= on_its_joint(number, body, below)
+    return Meant([*_declared(found, meanings), setting(found, path, data, None)], select=path)
+
+
+def _names(number: int, body: NewBody) -> set[str]:
+    return {*parameters_of(number, body), *coordinates_of(number, body), f"d{number}"}
+
+
+def _declared(found: Written, meanings: dict[str, str]) -> list[Primitive]:
+    """Parameters with these names and meanings, positive, of value 1."""
+    new: dict[str, Data] = {
+        name: {"sign": "positive", "value": "1", "meaning": meaning} for name, meaning in meanings.items()
+    }
+    node = None if found.tree is None else child(found.tree, "parameters")
+    if isinstance(node, Mapping) and node.entries:
+        return [setting(found, ("parameters", name), one, None) for name, one in new.items()]
+    plain = node.items if isinstance(node, Sequence) else ()
+    known: dict[str, Data] = {one.text: "real" for one in plain if isinstance(one, Scalar)}
+    return [setting(found, ("parameters",), {**known, **new}, None)]
 
 
 def rename_body(found: Written, operation: Json) -> Meant:
@@ -102,7 +140,7 @@ def reattach(found: Written, operation: Json) -> Meant:
 def own_names(found: Written, tree: Mapping, index: int) -> list[str]:
     """Coordinates, speeds and vectors that a body declares."""
     body = node_at(tree, ("bodies", index))
-    own = [] if body is None else coordinates_of(found, tree, body, index)
+    own = [] if body is None else understood.coordinates_of(found, tree, body, index)
     for key in ("speeds", "orientation"):
         node = None if body is None else child(body, key)
         own += [entry.key.text for entry in node.entries] if isinstance(node, Mapping) else []

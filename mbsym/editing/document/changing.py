@@ -9,8 +9,8 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path as Folder
 from typing import Any
 
+from mbsym.editing.document.meaning import Edit, Pieces, applied
 from mbsym.editing.document.operations import Meant, meant
-from mbsym.editing.document.pieces import Edit, Pieces, applied
 from mbsym.editing.document.primitives import Remove, applied_to
 from mbsym.editing.document.text_edits import text_edits
 from mbsym.editing.document.view import complaint_view
@@ -18,8 +18,7 @@ from mbsym.editing.document.written import Data, Path, Refused, Written, data_of
 from mbsym.editing.document.yaml_edits import emptied, yaml_edits
 from mbsym.expressions.place import Complaint, Span
 from mbsym.expressions.tree import Name
-from mbsym.source.lines import normalised
-from mbsym.source.placed import MAX_TEXT, Mapping
+from mbsym.source.placed import MAX_TEXT, Mapping, normalised
 
 Json = dict[str, Any]
 

@@ -8,7 +8,6 @@ from mbsym.editing.document.branches import add_body, delete_branch, reattach, r
 from mbsym.editing.document.copies import duplicate
 from mbsym.editing.document.meaning import Json, Meant, path_of, setting, word_of
 from mbsym.editing.document.primitives import Add, Primitive, Remove, Shift
-from mbsym.editing.document.spelling import value_of
 from mbsym.editing.document.words import pattern, places, renamed, uses
 from mbsym.editing.document.written import (
     Data,
@@ -20,6 +19,7 @@ from mbsym.editing.document.written import (
     entry_of,
     is_understood,
     node_at,
+    value_of,
 )
 from mbsym.model.momenta import momentum_names
 from mbsym.model.oscillation_names import names_in, oscillating_variables, oscillation_names
@@ -74,7 +74,7 @@ def _typed(found: Written, node: Node | None, source: str) -> Data:
     typed = source.strip()
     if found.editor and typed[0] in "({" and typed[-1] in ")}" and ":" not in typed and "=" not in typed:
         from mbsym.expressions.place import Span
-        from mbsym.source.text_values import items
+        from mbsym.source.text_kinds import items
 
         listed = items(Scalar(typed, Span(1, 1, len(typed))))
         if isinstance(node, Sequence) or (isinstance(listed, Sequence) and len(listed.items) > 1):

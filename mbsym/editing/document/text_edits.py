@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from mbsym.editing.document.pieces import Edit, applied
+from mbsym.editing.document.meaning import Edit, applied
 from mbsym.editing.document.primitives import Add, Primitive, Remove, Replace, Shift
 from mbsym.editing.document.written import Data, Refused, Written, node_at
 from mbsym.source.labels import ASSUMPTIONS, SECTIONS

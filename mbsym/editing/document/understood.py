@@ -79,7 +79,7 @@ def _velocity(body: Node, rates: dict[str, Expression]) -> dict[str, Any] | None
     radius = [one for one in _trees(node) if one is not None]
     if len(radius) != 3:
         return None
-    from mbsym.editing.document.formulas import vector
+    from mbsym.editing.document.view import vector
 
     try:
         derived = [Derivation(rates)(one) for one in radius]

@@ -8,10 +8,9 @@ from collections.abc import Mapping as Map
 from dataclasses import dataclass
 from typing import Literal
 
-from mbsym.editing.document.pieces import Edit
+from mbsym.editing.document.meaning import Edit
 from mbsym.editing.document.primitives import Primitive, Rekey, Replace
-from mbsym.editing.document.spelling import scalar
-from mbsym.editing.document.written import Path, Written, is_understood
+from mbsym.editing.document.written import Path, Written, is_understood, scalar
 from mbsym.model.claims import BODY, CLAIMS
 from mbsym.source.grammar import (
     About,

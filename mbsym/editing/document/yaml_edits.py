@@ -4,10 +4,22 @@ from __future__ import annotations
 
 import re
 
-from mbsym.editing.document.pieces import Edit
+from mbsym.editing.document.meaning import Edit
 from mbsym.editing.document.primitives import Add, Primitive, Rekey, Remove, Replace, Shift, applied_to
-from mbsym.editing.document.spelling import block, flow, key, scalar, spelled
-from mbsym.editing.document.written import Data, Path, Refused, Written, data_of, entry_of, node_at
+from mbsym.editing.document.written import (
+    Data,
+    Path,
+    Refused,
+    Written,
+    block,
+    data_of,
+    entry_of,
+    flow,
+    key,
+    node_at,
+    scalar,
+    spelled,
+)
 from mbsym.source.placed import Entry, Mapping, Node, Sequence
 
 #: Sections that mean something when they are empty.

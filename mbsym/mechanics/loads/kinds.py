@@ -8,44 +8,31 @@ from typing import Any
 from mbsym.algebra.base import S
 from mbsym.algebra.vectors import Vector
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.loads import (
-    coordinate_damper,
-    coordinate_spring,
-    generalized_force,
-    isotropic_damper,
-    newtonian_gravity,
-    point_damper,
-    point_force,
-    point_spring,
-    rayleigh,
-    torque,
-    uniform_gravity,
-)
-from mbsym.mechanics.loads import force_function as free_force_function
+from mbsym.mechanics.loads import forces, gravity, springs
 from mbsym.mechanics.loads.interface import Action, Kind
 from mbsym.model import loads as model
 from mbsym.model.system import INERTIAL
 
 KINDS: dict[type, Kind[Any]] = {
-    model.NewtonianGravity: newtonian_gravity.KIND,
-    model.UniformGravity: uniform_gravity.KIND,
-    model.CoordinateSpring: coordinate_spring.KIND,
-    model.PointSpring: point_spring.KIND,
-    model.CoordinateDamper: coordinate_damper.KIND,
-    model.PointDamper: point_damper.KIND,
-    model.IsotropicDamper: isotropic_damper.KIND,
-    model.ForceFunction: free_force_function.KIND,
-    model.Rayleigh: rayleigh.KIND,
-    model.GeneralizedForce: generalized_force.KIND,
-    model.PointForce: point_force.KIND,
-    model.Torque: torque.KIND,
+    model.NewtonianGravity: gravity.NEWTONIAN_GRAVITY,
+    model.UniformGravity: gravity.UNIFORM_GRAVITY,
+    model.CoordinateSpring: springs.COORDINATE_SPRING,
+    model.PointSpring: springs.POINT_SPRING,
+    model.CoordinateDamper: springs.COORDINATE_DAMPER,
+    model.PointDamper: springs.POINT_DAMPER,
+    model.IsotropicDamper: springs.ISOTROPIC_DAMPER,
+    model.ForceFunction: forces.FORCE_FUNCTION,
+    model.Rayleigh: springs.RAYLEIGH,
+    model.GeneralizedForce: forces.GENERALIZED_FORCE,
+    model.PointForce: forces.POINT_FORCE,
+    model.Torque: forces.TORQUE,
 }
 
 
 def force_function(scene: Scene[S]) -> S:
     """U = sum of the force functions of all loads that have one."""
     total = scene.algebra.zero
-    for load in scene.system.loads:
+    for load in scene.loads:
         own = KINDS[type(load)].force_function
         if own is not None:
             total = total + own(load, scene)
@@ -54,14 +41,14 @@ def force_function(scene: Scene[S]) -> S:
 
 def actions(scene: Scene[S], potential: bool = True) -> list[Action[S]]:
     """What the loads do to the bodies; with ``potential`` false, only those that have no force function."""
-    loads = [load for load in scene.system.loads if potential or not load.conservative]
+    loads = [load for load in scene.loads if potential or not load.conservative]
     return [KINDS[type(load)].action(load, scene) for load in loads]
 
 
 def base_acceleration(scene: Scene[S]) -> Vector[S]:
     """-sum of g: the acceleration of a base that stands for all uniform fields, in inertial axes."""
     base = scene.zero(INERTIAL)
-    for load in scene.system.loads:
+    for load in scene.loads:
         field = KINDS[type(load)].field
         if field is not None:
             base = base - field(load, scene)
@@ -73,7 +60,7 @@ def actions_beyond_fields(scene: Scene[S], falling: Scene[S]) -> Iterator[Action
 
     ``falling`` is the scene seen from its falling frames, or the same scene where none falls.
     """
-    for load in scene.system.loads:
+    for load in scene.loads:
         kind = KINDS[type(load)]
         if kind.field is None:
             yield kind.action(load, falling if kind.falls else scene)

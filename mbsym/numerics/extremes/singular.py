@@ -9,7 +9,7 @@ Factors and their real zeros come from ``mbsym.algebra.zero_sets``.  On a set M 
 * if v moves something, but nothing that has mass, the model fails: it has a massless direction in that position, and no
   choice of coordinates helps.
 
-Where every joint's own body tells its velocities (``mbsym.mechanics.own_energy``), that proves M regular, however many
+Where every joint's own body tells its velocities (``mbsym.mechanics.energy``), that proves M regular, however many
 joints there are; det M itself is expanded where that is not so.  Where it is too long for the ring, the joints' maps
 are all that is proved; M is then looked at by balls at multiples of pi/12 of one coordinate at a time.
 """
@@ -28,13 +28,13 @@ from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.matrices import components, determinant
 from mbsym.algebra.rationals import ball
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.algebra.zero_kinds import UNDECIDED, Zero, Zeros, ZeroSet
 from mbsym.algebra.zero_sets import zero_sets
+from mbsym.algebra.zeros_in_boxes import UNDECIDED, Zero, Zeros, ZeroSet
 from mbsym.expressions.angles import linear_form
 from mbsym.expressions.message import Message
 from mbsym.formulas.python import python_text
+from mbsym.mechanics.energy import own_determinants
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.own_energy import own_determinants
 from mbsym.mechanics.programs import programs
 from mbsym.mechanics.rest import at_numbers
 from mbsym.mechanics.variables import ring_environment, ring_of

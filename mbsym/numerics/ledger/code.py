@@ -10,8 +10,7 @@ from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.program import Node, Program
 from mbsym.expressions.message import Message, worded
 from mbsym.mechanics import factorisation
-from mbsym.mechanics.forward_dynamics import ARTICULATED, FACTORISED, forward_dynamics
-from mbsym.mechanics.programs import Programs, programs
+from mbsym.mechanics.programs import ARTICULATED, FACTORISED, Programs, forward_dynamics, programs
 from mbsym.mechanics.variables import ring_of
 from mbsym.numerics.ledger.entry import COUNT, OPERATIONS, Measure, Saving
 from mbsym.numerics.ledger.work import Work

@@ -13,9 +13,9 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.point import Balls
 from mbsym.expressions.message import Message
 from mbsym.expressions.tree import ZERO, Expression, names
-from mbsym.mechanics.forward_dynamics import forward_dynamics
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.orbit import Orbit, central_inertia, trace
+from mbsym.mechanics.programs import forward_dynamics
 from mbsym.mechanics.variables import ring_of
 from mbsym.model.loads import EXACT, GRAVITY_ORDERS, NewtonianGravity
 from mbsym.model.system import Body, Inertia, Rotation, Tensor, acceleration_name, rational

@@ -10,8 +10,8 @@ from typing import Any, TypeVar
 
 from flint import arb
 
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure, NoClosedForm
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.point import Balls
 from mbsym.algebra.program import Node
 from mbsym.algebra.ring import Polynomial, Ring
@@ -20,9 +20,8 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.tree import Expression, Name
 from mbsym.formulas.names import free_name
 from mbsym.mechanics.energy import kinetic_energy
-from mbsym.mechanics.forward_dynamics import ForwardDynamics, forward_dynamics
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.programs import constants
+from mbsym.mechanics.programs import ForwardDynamics, constants, forward_dynamics
 from mbsym.mechanics.variables import ring_environment, ring_of
 from mbsym.model.system import Body, Parameter, System
 from mbsym.numerics.ledger.entry import COUNT, OPERATIONS, SECONDS, TERMS, Measure
@@ -65,7 +64,7 @@ class Counted:
 
 
 @dataclass(frozen=True)
-class Wanted:
+class AccuracyGoal:
     """An ``accuracy`` (relative, of every coordinate and velocity) that a motion from 0 to ``time`` is to have."""
 
     accuracy: float
@@ -75,7 +74,7 @@ class Wanted:
 class Work:
     """The model of an analysis and its counterfactuals."""
 
-    def __init__(self, analysis: Analysis, budget: float = BUDGET, wanted: Wanted | None = None) -> None:
+    def __init__(self, analysis: Analysis, budget: float = BUDGET, wanted: AccuracyGoal | None = None) -> None:
         self.analysis = analysis
         self.wanted = wanted
         self.system = analysis.system

@@ -19,7 +19,7 @@ from mbsym.algebra.failures import Failure
 from mbsym.expressions.message import Message
 from mbsym.model.loads import EXACT
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.ensembles.parametrised import Parametrised
+from mbsym.numerics.ensembles.parametrised import parametrised
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import FLOAT64
 from mbsym.numerics.methods.interface import Breakdown, Method, Setting
@@ -109,7 +109,7 @@ def richest(scenario: Scenario) -> tuple[Model, Dynamics, str]:
             return model, found, reason
         except Failure as trouble:
             reason = Message("there is no program for [[label]]: [[trouble]]", label=model.label, trouble=trouble)
-    found = Dynamics(scenario)
+    found = modelled(scenario, Model())
     assert found.right_hand_side.outputs
     return Model(), found, reason
 
@@ -152,7 +152,8 @@ def model_chosen(scene: Scene, watch: Callable[[str], None] = lambda text: None)
 def _candidates(scene: Scene) -> list[Model]:
     """Simpler models, those with fewer operations first as a rule."""
     found = []
-    if scene.scenario.system.motion:
+    system = scene.scenario.system
+    if system.motion and not system.constraints and not scene.rich.in_states:
         found.append(replace(scene.model, linear=True))
     found += [Model(order) for order in orders(scene.scenario) if order != scene.model.gravity and order != EXACT]
     return found
@@ -225,7 +226,12 @@ def _estimated(scene: Scene, model: Model, dynamics: Dynamics, truth: _Truth) ->
 
 
 def _naive(scene: Scene, simple: Dynamics) -> float:
-    """The residual's integral in the velocities and double integral in the coordinates, beside what is tolerable."""
+    """The residual's integral in the velocities and double integral in the coordinates, beside what is tolerable.
+
+    0, which says nothing, of speeds that are no velocities of positions.
+    """
+    if scene.rich.in_states:
+        return 0.0
     points = np.vstack([scene.times, scene.states])
     with np.errstate(all="ignore"):
         residual = compiled_kernel(scene.rich, "right_hand_side")(points)
@@ -297,12 +303,17 @@ def _has_program(scene: Scene, base: Model, name: str) -> bool:
 
 
 def _felt(scene: Scene, base: Model) -> Sequence[tuple[str, float]]:
-    """(name, rho of the motion that its terms alone make) for parameters that are not zero, the least felt first."""
+    """(name, rho of the motion that its terms alone make) for parameters that are not zero, the least felt first.
+
+    Nothing of speeds that are no velocities of positions.
+    """
     given = scene.scenario
+    if scene.rich.in_states:
+        return ()
     names = [name for name in droppable(given.system) if given.parameters[name] != 0]
     if not names or len(names) > MOST or scene.rich.right_hand_side.operations > LONG:
         return ()
-    program = Parametrised(scenario_of(given, base), names)
+    program = parametrised(scenario_of(given, base), names)
     try:
         accelerations = arrays.kernel(program.right_hand_side)
     except Failure:

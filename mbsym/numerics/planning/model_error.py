@@ -26,6 +26,7 @@ from mbsym.algebra.program import Node
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.methods.interface import Breakdown, Method, Setting
+from mbsym.numerics.orbits.variational import extended
 from mbsym.numerics.rows import rows
 from mbsym.numerics.specialise import Specialised, substituted
 
@@ -66,16 +67,23 @@ class Propagated(Dynamics):
     def __init__(self, simple: Dynamics, rich: Dynamics, scale: Sequence[float], unit: float) -> None:
         if simple.inputs != rich.inputs:
             raise ValueError("both models need the same coordinates")
-        super().__init__(simple.scenario, simple.ring)
+        super().__init__(extended(simple.scenario, [Fraction(0)] * simple.dimension), simple.ring)
         self._simple, self._rich = simple, rich
-        n = self._half = simple.size
         self.weights = tuple(_power_of_two(unit) * _power_of_two(float(s)) for s in scale)
-        names = [f"difference of {name}" for name in simple.inputs[1:]]
-        self.differences = tuple(names)
-        q, v = simple.inputs[1 : n + 1], simple.inputs[n + 1 :]
-        self.inputs = ("t", *q, *names[:n], *v, *names[n:])
-        self.size = 2 * n
-        self.scenario = _Started(simple.scenario.state)  # type: ignore[assignment]
+        self.differences = tuple(f"difference of {name}" for name in simple.inputs[1:])
+        self.inputs = (*simple.inputs, *self.differences)
+        # Rates keep what is on constraints there, and nothing leads back: small errors of steps are no matter here.
+        self.__dict__["constraints"] = None
+
+    @property
+    def dimension(self) -> int:
+        """Of x~ and y."""
+        return len(self.inputs) - 1
+
+    @cached_property
+    def pivots(self) -> Code:
+        """Those of the simpler model's matrices."""
+        return Code(self._simple.pivots.program, self.inputs, self._simple.pivots.outputs)
 
     @cached_property
     def _specialised(self) -> Specialised:
@@ -84,7 +92,6 @@ class Propagated(Dynamics):
     @cached_property
     def right_hand_side(self) -> Code:
         fresh = self._specialised
-        n = self._half
         plain = self._rates(fresh, self._simple)
         full = self._rates(fresh, self._rich)
         states = [fresh.input(name) for name in self._simple.inputs[1:]]
@@ -93,7 +100,7 @@ class Propagated(Dynamics):
         growth = []
         for w, along, a, b in zip(self.weights, carried, full, plain, strict=True):
             growth.append(fresh.number(1 / w) * (along + self._residual(a, b)))
-        return Code(fresh, self.inputs, (*plain[:n], *growth[:n], *plain[n:], *growth[n:]))
+        return Code(fresh, self.inputs, (*plain, *growth))
 
     @staticmethod
     def _residual(rich: Node, simple: Node) -> Node:
@@ -112,22 +119,8 @@ class Propagated(Dynamics):
 
     def split(self, states: Any) -> tuple[Any, Any]:
         """(x~, e) of states of this system, shapes (2n, m)."""
-        n = self._half
         weights = np.array([float(w) for w in self.weights])[:, np.newaxis]
-        return np.vstack([states[:n], states[2 * n : 3 * n]]), weights * np.vstack([states[n : 2 * n], states[3 * n :]])
-
-
-@dataclass(frozen=True)
-class _Started:
-    """The little that a method asks of a scenario: (q, e_q, q', e_q') at t = 0."""
-
-    given: tuple[Fraction, ...]
-
-    @property
-    def state(self) -> tuple[Fraction, ...]:
-        n = len(self.given) // 2
-        zeros = (Fraction(0),) * n
-        return (*self.given[:n], *zeros, *self.given[n:], *zeros)
+        return states[: len(weights)], weights * states[len(weights) :]
 
 
 def model_error(
@@ -145,7 +138,7 @@ def model_error(
     motion or the difference ends early, the estimate is not trusted and says why.
     """
     both = Propagated(simple, rich, [float(s) for s in scale], unit)
-    size = 2 * simple.size
+    size = simple.dimension
     try:
         found = rows(method, both, setting, times)
     except Breakdown as reason:

@@ -22,6 +22,7 @@ from mbsym.model.system import System
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.linearised import LinearisedDynamics
 from mbsym.numerics.scenario import Scenario, changed, exact
+from mbsym.numerics.states import dynamics_of
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,7 @@ def scenario_of(scenario: Scenario, model: Model) -> Scenario:
 def modelled(scenario: Scenario, model: Model) -> Dynamics:
     """The equations of a model.  Raises Failure where there is no program for them, as ``Dynamics`` does."""
     found = scenario if model == Model() else scenario_of(scenario, model)
-    return LinearisedDynamics(found) if model.linear else Dynamics(found)
+    return LinearisedDynamics(found) if model.linear else dynamics_of(found)
 
 
 def described(scenario: Scenario) -> Model:
@@ -92,10 +93,12 @@ def orders(scenario: Scenario) -> tuple[int | str | None, ...]:
 def droppable(system: System) -> tuple[str, ...]:
     """Parameters that may be taken as zero each by itself.
 
-    Nothing else follows from them: no relation, no prescribed motion, no unperturbed motion.
+    Nothing else follows from them: no relation, no prescribed motion, no unperturbed motion, no constraint and no
+    speed, so that an initial state stays what it is.
     """
     tied = {relation.name for relation in system.relations}
     parts: tuple[Any, ...] = (system.relations, system.prescribed, system.motion, system.initial)
+    parts = (*parts, system.constraints, system.speeds)
     for x in expressions(parts):
         tied |= names(x)
     used = {name for x in expressions((system.bodies, system.loads)) for name in names(x)}

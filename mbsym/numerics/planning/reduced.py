@@ -20,9 +20,8 @@ from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
 from mbsym.mechanics.states import SEED
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.methods.interface import Breakdown, Method, Piece, Run, Setting
+from mbsym.numerics.methods.interface import Breakdown, Method, Passed, Piece, Run, Setting, met_by
 from mbsym.numerics.methods.kept import compiled_kernel
-from mbsym.numerics.methods.passed import Passed, met_by
 from mbsym.numerics.methods.stages import exact_number
 from mbsym.numerics.planning.reduction import Reduction, resting
 
@@ -66,7 +65,7 @@ def reduced(dynamics: Dynamics) -> Reduced | None:
 
     Accelerations at some states tell first what is pushed, so that nothing is proved where nothing rests.
     """
-    if all(dynamics.scenario.velocities) or dynamics.size < 2 or dynamics.constraints is not None:
+    if all(dynamics.scenario.velocities) or dynamics.size < 2 or dynamics.constraints is not None or dynamics.in_states:
         return None
     try:
         unpushed = _unpushed(dynamics)

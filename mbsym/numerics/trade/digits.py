@@ -31,8 +31,7 @@ from mbsym.algebra.ring import Ring
 from mbsym.algebra.stable import stabilised
 from mbsym.mechanics.constraints.dynamics import ConstrainedDynamics
 from mbsym.mechanics.falling import relative_lagrangian
-from mbsym.mechanics.forward_dynamics import ForwardDynamics, forward_dynamics
-from mbsym.mechanics.programs import programs, scene_without_accelerations
+from mbsym.mechanics.programs import ForwardDynamics, forward_dynamics, programs, scene_without_accelerations
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import System
 from mbsym.numerics.compensation import Compensation, compensated_code

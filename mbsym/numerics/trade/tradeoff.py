@@ -31,8 +31,7 @@ from typing import Any
 import numpy as np
 
 from mbsym.algebra.failures import Defect, Failure
-from mbsym.expressions.counting import duration
-from mbsym.expressions.message import Message
+from mbsym.expressions.message import Message, duration
 from mbsym.numerics.conservation import Standing, energy_standing, visited
 from mbsym.numerics.constrained import drift
 from mbsym.numerics.dynamics import Dynamics

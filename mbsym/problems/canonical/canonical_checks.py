@@ -28,8 +28,7 @@ from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.states import Oracles
 from mbsym.mechanics.variables import ring_environment
 from mbsym.model.system import acceleration_name, velocity_name
-from mbsym.problems.canonical.brackets import Brackets, rate_along
-from mbsym.problems.canonical.canonical import Hamilton, Routh
+from mbsym.problems.canonical.canonical import Brackets, Hamilton, Routh, rate_along
 from mbsym.problems.checks import D_ALEMBERT, FAILED, HOW_EQUAL, Check, Pair, compare, extent, how_equal
 from mbsym.problems.integrals import total_rate
 

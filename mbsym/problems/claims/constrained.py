@@ -4,7 +4,7 @@ Energies, places and velocities are those of the bodies; a claimed one that diff
 wherever the constraints hold.  An equation of motion is an expression that vanishes on every motion, so that neither
 multipliers nor a choice of independent velocities matter; a first integral one whose rate does.  Both are tried at
 exact states on the constraints with the accelerations of the equations without multipliers, and proved in the ring
-(``mbsym.problems.constraints.along``).
+(``mbsym.problems.constraints.integrals``).
 
 The first approximation is that of the independent coordinates; conditions are judged as those of other systems.
 """
@@ -32,10 +32,8 @@ from mbsym.problems.claims.comparison import examined_formula
 from mbsym.problems.claims.conditions import examined_condition
 from mbsym.problems.claims.counterexample import Counterexample, shown
 from mbsym.problems.claims.equations import NOTHING, power_of
-from mbsym.problems.claims.forms import in_parameters, scene_of_claims
-from mbsym.problems.claims.in_momenta import IN_MOMENTA
 from mbsym.problems.claims.numbers import examined_number
-from mbsym.problems.claims.quantities import derived_quantity, of_first_approximation
+from mbsym.problems.claims.quantities import IN_MOMENTA, derived_quantity, of_first_approximation
 from mbsym.problems.claims.result import (
     EXACT,
     FAILS,
@@ -43,9 +41,11 @@ from mbsym.problems.claims.result import (
     UNDECIDED,
     ClaimResult,
     Derived,
+    in_parameters,
+    scene_of_claims,
 )
 from mbsym.problems.claims.symbols import Symbols
-from mbsym.problems.constraints.along import STATES, AlongMotion
+from mbsym.problems.constraints.integrals import STATES, AlongMotion
 from mbsym.problems.constraints.result import Constraints
 from mbsym.problems.integrals import total_rate
 

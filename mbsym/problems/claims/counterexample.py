@@ -35,7 +35,7 @@ from mbsym.mechanics.oracle import State
 from mbsym.mechanics.programs import Programs, accelerated
 from mbsym.mechanics.states import SEED
 from mbsym.model.admissibility import ROUNDING, body_violation
-from mbsym.model.comparison import has_sign, holds
+from mbsym.model.assumptions import has_sign, holds
 from mbsym.model.system import Body, System, rational, velocity_name
 from mbsym.problems.stability.exact import is_positive
 from mbsym.problems.stability.sentences import with_theorem

@@ -25,10 +25,8 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.speeds import SpeedForm
+from mbsym.problems.claims.comparison import closest_multiple, differing, exceptions
 from mbsym.problems.claims.counterexample import rate_at_states
-from mbsym.problems.claims.differences import differing
-from mbsym.problems.claims.forms import by_place, in_parameters, on_relations
-from mbsym.problems.claims.multiples import closest_multiple, exceptions
 from mbsym.problems.claims.result import (
     ALONG,
     DIFFERS,
@@ -38,6 +36,9 @@ from mbsym.problems.claims.result import (
     UNDECIDED,
     ClaimResult,
     Derived,
+    by_place,
+    in_parameters,
+    on_relations,
 )
 from mbsym.problems.claims.signs_under_roots import decided
 from mbsym.problems.claims.symbols import Symbols

@@ -13,8 +13,8 @@ from itertools import combinations
 from typing import Any
 
 from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.point import Rationals
 from mbsym.algebra.ring import ParameterRing, Polynomial
 from mbsym.algebra.semialgebraic import atom, where
@@ -22,9 +22,8 @@ from mbsym.algebra.signs import MOST_TERMS, ContradictionError, Signs, coefficie
 from mbsym.expressions.message import Message
 from mbsym.expressions.tree import is_number
 from mbsym.model.claims import Claim
-from mbsym.problems.claims.forms import in_parameters, on_relations
 from mbsym.problems.claims.remarks import Remark, Said, said
-from mbsym.problems.claims.result import Derived
+from mbsym.problems.claims.result import Derived, in_parameters, on_relations
 from mbsym.problems.knowledge import signs as signs_now
 from mbsym.problems.stability import SubsystemStability
 from mbsym.problems.stability.covering import Cell, Lift, atoms, cells_of, everywhere, joined

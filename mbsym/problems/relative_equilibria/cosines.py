@@ -23,7 +23,7 @@ from typing import Any
 
 from flint import fmpq, fmpq_mat
 
-from mbsym.algebra.generators import occurring
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.matrices import reduced_rows
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.mechanics.charts import Joint, rows

@@ -5,6 +5,10 @@ at a constant rate; prescribed quantities go on running.  With  M(q) q'' = f(q, 
 
     f_i(q, rates, t) = 0,        i = 1..n,  identically in t
 
+and under constraints, with multipliers that are eliminated case by case (``multipliers``),
+
+    f + J^T lambda = 0,    phi(q, t) = 0,    J q' + j = 0
+
 Where the f_i are polynomials in sines, cosines and plain coordinates (roots and reciprocals included), the system with
 s^2 + c^2 = 1 for every angle is solved exactly (``algebra.polynomial_systems``): a solution is a point of a number
 field, every f_i is zero there exactly, and the list is complete.  Where that outgrows its limits, direction cosines in
@@ -25,31 +29,37 @@ enclosures of the roots.  Solutions that are not isolated are families.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from flint import fmpq_poly
 
-from mbsym.algebra.polynomial_systems import AlgebraicPoint, Family, Limits, solve
-from mbsym.expressions.message import Message, joined
-from mbsym.mechanics.charts import charts, with_cyclic_last_angles
-from mbsym.mechanics.constraints.refusal import refuse_constraints
+from mbsym.algebra.failures import Constrained
+from mbsym.algebra.polynomial_systems import AlgebraicPoint, Family, Limits, Solutions, solve
+from mbsym.algebra.ring import Polynomial
+from mbsym.expressions.message import Counted, Message, joined
+from mbsym.mechanics.charts import Chart, charts, with_cyclic_last_angles
+from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.rest import Rest, Value, at_numbers, rest
+from mbsym.mechanics.variables import ring_environment
 from mbsym.model.system import System
-from mbsym.problems.relative_equilibria.listing import Solution, groups
-from mbsym.problems.relative_equilibria.oriented import orientations
-from mbsym.problems.relative_equilibria.place import PRECISION, Place, angle_of, exact_rates
-from mbsym.problems.relative_equilibria.result import (
+from mbsym.problems.relative_equilibria.conditions import Case, Polynomials, cases
+from mbsym.problems.relative_equilibria.listing import (
     CERTIFIED,
+    ELSEWHERE,
     EXACT,
     CoordinateValue,
     Equilibria,
     EquilibriumFamily,
     RelativeEquilibrium,
+    Solution,
+    groups,
 )
+from mbsym.problems.relative_equilibria.oriented import orientations
+from mbsym.problems.relative_equilibria.place import PRECISION, Place, Unknowns, angle_of, exact_rates
 from mbsym.problems.relative_equilibria.sampling import STARTS
 from mbsym.problems.relative_equilibria.search import WITHIN, SearchInBoxes
-from mbsym.problems.relative_equilibria.unknowns import Unknowns
+from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.word import Word
 
 __all__ = [
@@ -71,10 +81,18 @@ def equilibria(
     """All relative equilibria of a system at parameter values.
 
     Raises KeyError for a missing value, NoClosedForm where the equations outgrow their budget, SingularPoint,
-    Constrained.
+    Constrained where no position keeps the constraints, they contradict one another, or tie what moves.
     """
-    refuse_constraints(system, Message("relative equilibria"))
     first = rest(at_numbers(system, values))
+    if first.tied_in_motion:
+        raise Constrained(
+            Message(
+                "relative equilibria: constraints tie what moves ([[names]]), and which velocities go with it is not "
+                "looked for",
+                names=", ".join(first.tied_in_motion),
+            ),
+            remedy="'mbsym run' judges such a motion where the description gives it",
+        )
     found = _listed(first, first.system, within, limits or Limits())
     if found.complete or not found.families:
         return found
@@ -100,16 +118,20 @@ def _listed(first: Rest, described_by: System, within: float, limits: Limits) ->
     families: list[EquilibriumFamily] = []
     complete = True
     covering = charts(first, described_by)
+    rank = _rank(first) if first.rows else None
     for chart in covering:
-        search = _ChartSearch(chart, within, limits)
-        search.run()
-        if families and chart.restrictions:
-            search.points = _off_families(search, within, limits)
-        found += search.points
-        families += search.families
-        remarks += search.remarks
-        complete = complete and search.complete
-        if not search.equations and not search.impossible:  # everywhere: other angles have nothing to add
+        searches = list(_searches(chart, within, limits, rank))
+        for search in searches:
+            search.run()
+            if families and chart.restrictions:
+                search.points = _off_families(search, within, limits)
+        _counted_once(searches)
+        for search in searches:
+            found += search.points
+            families += search.families
+            remarks += search.remarks
+            complete = complete and search.complete
+        if any(not x.equations and not x.impossible for x in searches):  # everywhere: other angles add nothing
             break
     listed = [_described(group) for group in groups(found)]
     listed.sort(key=lambda x: (_ORDER[x.verdict.word], x.coordinates_of, _sort_key(x)))
@@ -123,6 +145,12 @@ def _listed(first: Rest, described_by: System, within: float, limits: Limits) ->
                 "which is to be seen in other coordinates"
             )
         )
+    if lost := [x for x in listed if x.verdict.because(Because.RANK_LOST)]:
+        text = (
+            "[[count]]: there the constraints are singular (links in line, branches of motion that meet), and nothing "
+            "is said of stability; a rest that only unbounded reactions would hold is none"
+        )
+        remarks.append(Message(text, count=Counted(len(lost), "relative equilibrium", "relative equilibria")))
     if families and covering[0].joints:
         remarks.append(
             Message("families are listed in coordinates: one set of configurations may be described more than once")
@@ -143,19 +171,59 @@ def _listed(first: Rest, described_by: System, within: float, limits: Limits) ->
     )
 
 
+def _rank(first: Rest) -> int:
+    """How many constraints are independent near positions that keep them.  Raises Constrained."""
+    from mbsym.problems.constraints import constraints  # most systems have none
+
+    plain = first.system.without_speeds
+    return constraints(Scene(plain, first.ring, ring_environment(plain, first.ring), first.ring)).velocity_rank
+
+
+def _searches(chart: Chart, within: float, limits: Limits, rank: int | None) -> Iterator[_ChartSearch]:
+    """One search for each case of the rank of constraints."""
+    left_out = []
+
+    def possible(zero: Polynomials, nonzero: Polynomials) -> bool:
+        probe = _ChartSearch(chart, within, limits, Case((), zero, nonzero))
+        there = probe.exists()
+        if there and probe.reason:  # of equations that are not algebraic only the case of all others is searched
+            left_out.append(probe)
+            return False
+        return there
+
+    for case in cases(chart.found, possible):
+        search = _ChartSearch(chart, within, limits, case, rank)
+        if left_out:
+            search.leaves_out_singular()
+        yield search
+
+
+def _counted_once(searches: Sequence[_ChartSearch]) -> None:
+    """What in one case of the rank is only the limit of a larger set of another is left out."""
+    closures = [closure for search in searches for closure in search.closures()]
+    for search in searches:
+        if len(searches) == 1 or not search.case.zero:
+            continue
+        search.points = [x for x in search.points if not _on_any(x.place, [y for _, y in closures])]
+        kept = [
+            not _on_any(place, [y for dimension, y in closures if dimension > x.dimension])
+            for x, place in zip(search.families, search.family_places, strict=True)
+        ]
+        for name in ("families", "family_places", "family_equations"):
+            setattr(search, name, [x for x, keep in zip(getattr(search, name), kept, strict=True) if keep])
+
+
+def _on_any(place: Place, closures: Sequence[Sequence[Polynomial]]) -> bool:
+    """Whether a place is on the closure of a family, told by equations."""
+    return any(all((value := place.residue(x)) is not None and value == 0 for x in equations) for equations in closures)
+
+
 def _off_families(search: _ChartSearch, within: float, limits: Limits) -> list[Solution]:
     """The points of a chart that are not limits of families which run on outside its restrictions."""
-    whole = _ChartSearch(replace(search.chart, restrictions=()), within, limits)
+    whole = _ChartSearch(replace(search.chart, restrictions=()), within, limits, search.case)
     whole.run()
     search.complete = search.complete and whole.complete
-    return [
-        point
-        for point in search.points
-        if not any(
-            all((value := point.place.residue(x)) is not None and value == 0 for x in equations)
-            for equations in whole.family_equations
-        )
-    ]
+    return [point for point in search.points if not _on_any(point.place, whole.family_equations)]
 
 
 _ORDER = {word: k for k, word in enumerate(Word)}
@@ -199,15 +267,44 @@ class _ChartSearch(SearchInBoxes):
             return
         self._solve_exactly()
 
-    def _solve_exactly(self) -> None:
+    def closures(self) -> list[tuple[int, list[Polynomial]]]:
+        """Dimensions and equations of sets that other cases touch: of families, and where coordinates are any."""
+        found = [(x.dimension, y) for x, y in zip(self.families, self.family_equations, strict=True)]
+        open_ = any(self.ring.dependencies(x, self.free) for x in self.case.nonzero)
+        return [*found, *([(len(self.free), self.equations)] if open_ and not self.impossible else [])]
+
+    def leaves_out_singular(self) -> None:
+        """Says that positions in which the constraints may be singular are not searched."""
+        self._incomplete("positions in which the constraints may be singular were not searched")
+
+    def _vanishes(self, x: Polynomial, place: Place) -> bool:
+        """Whether x is zero there whatever the coordinates that may have any value."""
+        varying = self.ring.dependencies(x, self.free)
+        places = [place.elsewhere(varying, t) for t in ELSEWHERE] if varying else [place]
+        return all((value := one.residue(x)) is not None and value == 0 for one in places)
+
+    def exists(self) -> bool:
+        """Whether there may be a solution: False is proved."""
+        self._conditions()
+        if self.impossible or not self.equations or self.reason:
+            return not self.impossible
+        _, result = self._solutions()
+        return bool(result.points or result.families or result.unfinished)
+
+    def _solutions(self) -> tuple[Unknowns, Solutions]:
         table = Unknowns(self.ring, [*self.equations, *self.singular_where])
         equations = [table.polynomial(x) for x in self.equations] + table.relations()
         usable = [x for x in self.nonzero if table.holds(x)]
-        result = solve(equations, [table.polynomial(x) for x in usable], table.bounded(), self.limits)
+        return table, solve(equations, [table.polynomial(x) for x in usable], table.bounded(), self.limits)
+
+    def _solve_exactly(self) -> None:
+        table, result = self._solutions()
         for point in result.points:
             if not table.roots_agree(point):
                 continue
-            self._add(self._place(table, point), EXACT)
+            place = self._place(table, point)
+            if not any(self._vanishes(x, place) for x in self.case.nonzero):
+                self._add(place, EXACT)
         for family in result.families:
             if table.roots_agree(family.sample):
                 self._add_family(table, family)
@@ -226,7 +323,7 @@ class _ChartSearch(SearchInBoxes):
 
     def _solve_in_direction_cosines(self) -> bool:
         """The second way to a complete list; False where it does not lead to one."""
-        if self.families:
+        if self.families or self.found.rows:
             return False
         found = orientations(self.chart, self.occurring, self.nonzero, self._for_all_times, self.limits)
         if found is None or any(not self._may_rest(place) for place in found.places):
@@ -265,6 +362,7 @@ class _ChartSearch(SearchInBoxes):
         free = [self.ring.generators[table.indices[k]] for k in family.free]
         names = [g.name if g.argument is None else table.names[k] for k, g in zip(family.free, free, strict=True)]
         texts = tuple(table.text(x) for x in family.equations if not table.is_relation(x))
+        self.family_places.append(place)
         self.family_equations.append([table.back(x) for x in family.equations])
         self.families.append(
             EquilibriumFamily(

@@ -7,22 +7,26 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import combinations
+from typing import Any
 
 from flint import ctx, fmpq, fmpq_mpoly_ctx
 
-from mbsym.algebra.failures import Failure, NotRational
-from mbsym.algebra.matrices import ScalarMatrix, added, skew, symmetric
+from mbsym.algebra.base import Algebra
+from mbsym.algebra.failures import NOT_THERE, Failure, NotRational
+from mbsym.algebra.matrices import ScalarMatrix, added, echelon, null_vectors, skew, symmetric
+from mbsym.algebra.point import Balls
 from mbsym.algebra.ring import Polynomial
+from mbsym.expressions.message import Message
 from mbsym.mechanics.rest import Rest
 from mbsym.mechanics.symmetry import free_spin
 from mbsym.problems import dissipation, knowledge
 from mbsym.problems import energy as energies
 from mbsym.problems.conserved import Conserved, by_integrals, conserved
+from mbsym.problems.constrained_balance import ConstrainedBalance
 from mbsym.problems.dissipation import EnergyLaw
 from mbsym.problems.energy import Energy
 from mbsym.problems.relative_equilibria.place import PRECISION, Place
-from mbsym.problems.stability.bundle import Element, NumberField
-from mbsym.problems.stability.degenerate import Extremum, in_one_coordinate, of_fourth_order
+from mbsym.problems.stability.bundle import Element, Extremum, NumberField, in_one_coordinate, of_fourth_order
 from mbsym.problems.stability.enclosed import blocks, enclosed_verdict_with_cyclic
 from mbsym.problems.stability.exact import verdict_at
 from mbsym.problems.stability.linear_form import LinearSystem, null_rows
@@ -30,13 +34,16 @@ from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.theorems import Fact
 from mbsym.problems.stability.verdict import Verdict, combine, concluded, drifting, undecided
 
+#: Matrices by their entries, which are numbers.
+Rows = list[list[list[Any]]]
+
 #: Derivatives of fourth order of a potential in more coordinates than this are not formed.
 MOST_DEGENERATE = 4
 
 
 @dataclass(frozen=True)
 class LinearAtRest:
-    """M, D, G, K, N as formulas in the coordinates, valid wherever f vanishes.
+    """M, D, G, K, N as formulas in the coordinates, valid wherever f vanishes; of the open tree where it is tied.
 
     ``law``: what the energy does near all of these states; ``ignorable``: coordinates that no equation contains.
     """
@@ -61,6 +68,8 @@ class LinearAtRest:
     def decided(self, verdict: Verdict, place: Place) -> Verdict:
         """An open verdict decided by terms of higher order of the energy, or by further integrals; else as it is."""
         if not verdict.word.open or verdict.coordinates_singular or self.varying or place.modulus is None:
+            return verdict
+        if self.found.rows:
             return verdict
         field = NumberField(place.modulus, place.enclose)
         try:
@@ -114,6 +123,12 @@ class LinearAtRest:
         return self.law.bounded
 
     @cached_property
+    def bends(self) -> list[list[list[Polynomial]]]:
+        """dJ/dq, a symmetric matrix for each constraint."""
+        ring, names = self.found.ring, self.found.system.coordinates
+        return [[[ring.derivative(x, name) for name in names] for x in row.partials] for row in self.found.rows]
+
+    @cached_property
     def _conserved(self) -> Conserved | None:
         """The integrals, where the energy is conserved and some momentum is."""
         if self.energy is None or not self.conservative:
@@ -123,19 +138,68 @@ class LinearAtRest:
     def _by_first_approximation(self, place: Place) -> Verdict:
         if self.varying:
             return undecided(Because.VARIES, ", ".join(self.varying))
+        if self.found.rows:
+            return self._constrained(place)
         values = [[[place.ball(x) for x in row] for row in rows_] for rows_ in self.matrices]
         exact = [[[place.residue(x) for x in row] for row in rows_] for rows_ in self.matrices]
+        return self._of(values, exact, place, range(len(self.found.system.coordinates)))
+
+    def _constrained(self, place: Place) -> Verdict:
+        """M, D, G, K, N on the displacements Y that constraints allow, K with the curvature of the constraints:
+
+        Y^T X Y,    Y^T (K - sum lambda_k dJ_k/dq) Y,    J Y = 0,    f + J^T lambda = 0
+        """
+        if not all(row.name.holonomic for row in self.found.rows):
+            return undecided(Because.NO_EQUATIONS, _OF_VELOCITIES)
+        numbers: Algebra[Any] = Balls({}) if place.modulus is None else NumberField(place.modulus, place.enclose)
+        look = place.ball if place.modulus is None else place.residue
+        n = len(self.found.system.coordinates)
+        with ctx.workprec(PRECISION):
+            try:
+                parts = [[[look(x) for x in row] for row in rows_] for rows_ in self.matrices]
+                jacobian = [[look(x) for x in row.partials] for row in self.found.rows]
+                table = [
+                    [*column, -look(f)]
+                    for column, f in zip(zip(*jacobian, strict=True), self.found.at_rest, strict=True)
+                ]
+                bends = [[[look(x) for x in line] for line in bend] for bend in self.bends]
+                if any(x is None for rows_ in (*parts, jacobian, table, *bends) for row in rows_ for x in row):
+                    return undecided(Because.NOT_ENCLOSED)
+                reduced, pivots = echelon(numbers, jacobian, n)
+                basis = null_vectors(numbers, dict(zip(pivots, reduced, strict=False)), n)
+                solved, taken = echelon(numbers, table, len(jacobian))
+                multipliers = dict(zip(taken, (row[-1] for row in solved), strict=False))
+                for k, multiplier in multipliers.items():
+                    parts[3] = [
+                        [x - numbers.times(multiplier, y) for x, y in zip(*lines, strict=True)]
+                        for lines in zip(parts[3], bends[k], strict=True)
+                    ]
+                images = [[[numbers.dot(row, y) for row in rows_] for y in basis] for rows_ in parts]
+                made = [[[numbers.reduce(numbers.dot(x, z)) for z in of] for x in basis] for of in images]
+            except (ZeroDivisionError, *NOT_THERE):
+                return undecided(Because.NOT_ENCLOSED)
+            if place.modulus is None:
+                if not all(x.is_finite() for rows_ in made for row in rows_ for x in row):
+                    return undecided(Because.NOT_ENCLOSED)
+                exact: Rows = [[[None for _ in row] for row in rows_] for rows_ in made]
+                values = made
+            else:
+                exact, values = made, [[[place.enclose(x) for x in row] for row in rows_] for rows_ in made]
+        return self._of(values, exact, place, [k for k in range(n) if k not in pivots])
+
+    def _of(self, values: Rows, exact: Rows, place: Place, kept: Sequence[int]) -> Verdict:
+        """The verdict on matrices in the coordinates ``kept``."""
         rational = all(x is not None and x.degree() <= 0 for rows_ in exact for row in rows_ for x in row)
         verdicts = []
         for indices in blocks(*values):
             cyclic = tuple(
                 at
                 for at, i in enumerate(indices)
-                if i in self.cyclic and all(values[m][i][j] == 0 for m in (3, 4) for j in indices)
+                if kept[i] in self.cyclic and all(values[m][i][j] == 0 for m in (3, 4) for j in indices)
             )
             if rational:
                 parts = [[[exact[m][i][j][0] for j in indices] for i in indices] for m in range(5)]
-                names = tuple(self.found.system.coordinates[i] for i in indices)
+                names = tuple(self.found.system.coordinates[kept[i]] for i in indices)
                 rate = self._rate(place) if {*self.tilts} <= {*indices} else None
                 verdicts.append(_rational_verdict(parts, self.conservative, cyclic, rate, names, self.exact))
             else:
@@ -158,21 +222,22 @@ def linear_at_rest(found: Rest) -> LinearAtRest:
     C = -ScalarMatrix(ring, slopes).map(lambda x: ring.substitute(x, dict(rates)))
     S = -ScalarMatrix(ring, [[ring.derivative(f, name) for name in names] for f in found.at_rest])
     moving = [*found.turning, *(item.name for item in found.system.prescribed), "t"]
-    every = (x for rows_ in (mass, C, S) for row in rows_ for x in row)
+    every = (x for rows_ in (mass, C, S, [row.partials for row in found.rows]) for row in rows_ for x in row)
     varying = tuple(dict.fromkeys(name for x in every for name in ring.dependencies(x, moving)))
     scene = found.scene
     try:
         known = energies.energy(scene)
     except Failure:
         known = None
-    balance = dissipation.balance(scene, known, knowledge.signs(scene), somewhere=True)
+    of = ConstrainedBalance if found.rows else dissipation.Balance
+    balance = of(scene, known, knowledge.signs(scene), {}, somewhere=True)
     cyclic = tuple(names.index(name) for name in balance.ignorable if name not in balance.driven)
     # Momenta of cyclic coordinates have to be those of the equations, too, not of an L that knows the time.
     law = balance.law
-    if not law.bounded and all(found.at_rest[i].is_zero() for i in cyclic) and has_energy(found):
+    if not law.bounded and not found.rows and all(found.at_rest[i].is_zero() for i in cyclic) and has_energy(found):
         law = EnergyLaw.CONSERVED
     parts = (mass, symmetric(C).rows, skew(C).rows, symmetric(S).rows, skew(S).rows)
-    spin = free_spin(found.system)
+    spin = None if found.rows else free_spin(found.system)
     tilts = () if spin is None else tuple(names.index(name) for name in spin.tilts)
     rate = None if spin is None else rates[ring.index("velocity", spin.coordinate)]
     ignorable = tuple(names[i] for i in cyclic)
@@ -207,6 +272,7 @@ def has_energy(found: Rest) -> bool:
         return False
 
 
+_OF_VELOCITIES = Message("constraints of velocities: 'mbsym run' judges a rest that the description gives")
 _CONSTANTS = fmpq_mpoly_ctx.get(["unused"])
 
 

@@ -26,7 +26,7 @@ from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import Signs
-from mbsym.problems.stabilisation.clearing import Cleared, Rows
+from mbsym.problems.stabilisation.gyroscopic import Cleared, Rows
 from mbsym.problems.stabilisation.result import Locus, Rank
 
 #: So many maximal minors are formed, of so many rows at most.

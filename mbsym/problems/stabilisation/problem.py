@@ -30,7 +30,7 @@ from mbsym.model.system import velocity_name
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.linearisation import Linearisation
 from mbsym.problems.stabilisation import gyroscopic, numbers
-from mbsym.problems.stabilisation.clearing import Cleared, Rows, cleared
+from mbsym.problems.stabilisation.gyroscopic import Cleared, Rows, cleared
 from mbsym.problems.stabilisation.hautus import MOST_BLOCKS, _open_factors, annihilator, rank_of
 from mbsym.problems.stabilisation.numbers import AtValues
 from mbsym.problems.stabilisation.result import (

@@ -12,8 +12,8 @@ from typing import Any
 
 from flint import fmpq, fmpq_poly
 
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import NOT_THERE
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.plane.elements import Element, ElementMatrix
 from mbsym.algebra.plane.point_field import SimpleField
 from mbsym.algebra.ring import ParameterRing, Polynomial, Ring

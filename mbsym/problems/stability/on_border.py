@@ -11,9 +11,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from mbsym.algebra.characteristic import Matrix, Polynomial
-from mbsym.algebra.factors import irreducible_factors
+from mbsym.algebra.factors import irreducible_factors, occurring
 from mbsym.algebra.failures import Failure
-from mbsym.algebra.generators import occurring
 from mbsym.algebra.signs import ContradictionError, Signs
 from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.verdict import Verdict, depends, weakest

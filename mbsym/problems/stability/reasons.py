@@ -77,6 +77,7 @@ class Because(Enum):
     MASS_SINGULAR = auto()
     ORDER_LOWER = auto()
     VARIES = auto()  # (with what)
+    RANK_LOST = auto()  # (rank there, rank near it)
     NOT_THE_VALUE = auto()  # (of which parameter)
     MOTION_NOT_THERE = auto()  # (condition, value)
     MOTION_OPEN = auto()  # (condition)

@@ -177,6 +177,7 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
     Because.MASS_SINGULAR: "The mass matrix is singular.",
     Because.ORDER_LOWER: "The mass matrix is singular, so the order of the equations is lower.",
     Because.VARIES: "The first approximation varies with [[1]]; nothing is claimed.",
+    Because.RANK_LOST: "The constraints are singular there: [[1]] of them are independent, [[2]] near by.",
     Because.NOT_THE_VALUE: "The motion does not exist there: [[1]] has another value.",
     Because.MOTION_NOT_THERE: "The motion does not exist there: [[1]] = [[2]], not 0.",
     Because.MOTION_OPEN: "Whether the motion exists there is open: [[1]] is about 0.",

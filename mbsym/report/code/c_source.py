@@ -18,15 +18,14 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.expressions.table import Tabulated
 from mbsym.expressions.tree import Expression, names, text
 from mbsym.formulas.names import injective
-from mbsym.formulas.straight_line import Dialect
+from mbsym.formulas.straight_line import Dialect, angle_name
 from mbsym.mechanics.programs import generalized_energy
 from mbsym.model.quantities import marked, told_units
 from mbsym.model.speeds import Quaternion
 from mbsym.model.system import Parameter, System
 from mbsym.numerics.scenario import exact
-from mbsym.report.code.functions import Function, Functions, prescribed_value
+from mbsym.report.code.functions import Function, Functions, c_definition, identifier, prescribed_value
 from mbsym.report.code.identifiers import prefix_of
-from mbsym.report.code.lookups import c_definition, identifier
 from mbsym.report.code.model_code import programs_of, solved, undetermined
 from mbsym.report.code.named_dynamics import bodies as bodies_of
 from mbsym.report.code.named_dynamics import named_dynamics
@@ -85,9 +84,8 @@ def call(function: str, argument: str) -> str:
 
 DIALECT = Dialect(
     call=call,
-    local=lambda count: f"s{count}",
     number=number,
-    angle=lambda function, name: f"{function}_{name}",
+    angle=angle_name,
     tables=True,
 )
 

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 from mbsym.algebra.base import Lowering
+from mbsym.algebra.failures import Failure
 from mbsym.algebra.program import Node, Program
 from mbsym.expressions.table import Tabulated
-from mbsym.expressions.tree import ZERO, Expression, Name, add, multiply
+from mbsym.expressions.tree import ZERO, Expression, Name, add, multiply, names
 from mbsym.formulas.names import injective
 from mbsym.formulas.straight_line import Dialect, Listing, listing
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.inputs import force_names
+from mbsym.model.quantities import marked
 from mbsym.model.system import Prescribed, System, acceleration_name
-from mbsym.report.code.lookups import identifiers
+from mbsym.numerics.scenario import exact
+from mbsym.report.numbers import number
 
 
 @dataclass(frozen=True)
@@ -105,3 +109,202 @@ class Functions:
         found = listing(program, values, self.names, self.dialect, self.reserved | taken)
         named = tuple((self.names[item.name], x) for item, x in zip(wanted, found.results, strict=True))
         return Listing((*found.assignments, *named), (), found.inputs)
+
+
+# Tables in generated code: a search among the knots and a polynomial, one function for each derivative that is used.
+#
+#     lookup__push__0(x) = f(x),    lookup__push__1(x) = f'(x), at a knot that of the piece behind it
+#
+# Rows hold the base of a piece and its coefficients by rising powers.  Where a table says nothing outside of its
+# points, the value there is NaN.
+
+
+def identifier(name: Tabulated) -> str:
+    """What the function of a table is called."""
+    return f"lookup__{name.table.name}__{name.curve.order}"
+
+
+def identifiers(system: System) -> frozenset[str]:
+    """What no other name may be: those of up to four derivatives of all tables, and of their numbers."""
+    own = [f"lookup__{table.name}__{order}" for table in system.tables for order in range(5)]
+    return frozenset(own + [f"{one}_{part}" for one in own for part in ("at", "rows")])
+
+
+def _numbers(name: Tabulated) -> tuple[list[str], list[list[str]]]:
+    curve = name.curve
+    rows = [(base, *own) for base, own in zip(curve.bases, curve.polynomials, strict=True)]
+    return [number(x) for x in curve.knots], [[number(x) for x in row] for row in rows]
+
+
+def _horner(terms: list[str]) -> str:
+    """c0 + u*(c1 + u*(...))."""
+    *before, total = terms
+    for count, term in enumerate(reversed(before)):
+        total = f"{term} + u*{total}" if count == 0 else f"{term} + u*({total})"
+    return total
+
+
+def _lines(items: Iterable[str], indent: str, width: int = 108) -> list[str]:
+    """Items with commas behind them, as many on a line as fit."""
+    found, line = [], indent
+    for item in items:
+        if len(line) + len(item) + 2 > width and line.strip():
+            found.append(line.rstrip())
+            line = indent
+        line += f"{item}, "
+    return [*found, line.rstrip()]
+
+
+def c_definition(name: Tabulated) -> str:
+    """A static function of C, with its numbers."""
+    own, (at, rows) = identifier(name), _numbers(name)
+    width = len(rows[0])
+    lines = [
+        f"static const double {own}_at[{len(at)}] = {{",
+        *_lines(at, "    "),
+        "};",
+        f"static const double {own}_rows[{width * len(rows)}] = {{",
+        *_lines((x for row in rows for x in row), "    "),
+        "};",
+        "",
+        f"static double {own}(double x)",
+        "{",
+        f"    int low = 0, high = {len(at)};",
+        "    while (low < high) {",
+        "        const int middle = low + (high - low)/2;",
+        f"        if (x >= {own}_at[middle])",
+        "            low = middle + 1;",
+        "        else",
+        "            high = middle;",
+        "    }",
+    ]
+    if name.curve.bounded:
+        lines += [f"    if (x < {own}_at[0] || x > {own}_at[{len(at) - 1}])", "        return NAN;"]
+    terms = [f"row[{k}]" for k in range(1, width)]
+    lines.append(f"    const double *row = {own}_rows + {width}*low;")
+    if width > 2:
+        lines += ["    const double u = x - row[0];", f"    return {_horner(terms)};"]
+    else:
+        lines.append("    return x == x ? row[1] : x;")
+    return "\n".join([*lines, "}", ""])
+
+
+def python_definition(name: Tabulated, module: str, typed: bool) -> str:
+    """Its numbers and a function of Python over arrays of ``module`` (np or jnp); ``typed``: with annotations."""
+    own, (at, rows) = identifier(name), _numbers(name)
+    columns = list(zip(*rows, strict=True))
+    hint = ": Array" if typed else ""
+    lines = [f"{own}_at{hint} = {'np.array(' if typed else ''}(", *_lines(at, "    "), f"){')' if typed else ''}"]
+    lines.append(f"{own}_rows{hint} = {'np.array(' if typed else ''}(")
+    for column in columns:
+        lines += ["    (", *_lines(column, "        "), "    ),"]
+    lines += [f"){')' if typed else ''}", "", ""]
+    lines.append(f"def {own}(x{': Any' if typed else ''}){' -> Any' if typed else ''}:")
+    what = name.table.name + "'" * name.curve.order
+    lines.append(f'    """The table {what}: {len(at)} knots."""')
+    known = own if typed else f"{module}.asarray({own}"
+    end = "" if typed else ")"
+    lines += [
+        f'    row = {known}_rows{end}[:, {module}.searchsorted({known}_at{end}, x, side="right")]',
+        "    u = x - row[0]",
+    ]
+    total = _horner([f"row[{k}]" for k in range(1, len(columns))])
+    if name.curve.bounded:
+        total = f"{module}.where((x < {known}_at{end}[0]) | (x > {known}_at{end}[-1]), {module}.nan, {total})"
+    return "\n".join([*lines, f"    return {total}", ""])
+
+
+# The numbers of a description as generated code holds them: parameters, relations between them, the initial state.
+
+
+@dataclass(frozen=True)
+class Value:
+    """A parameter: ``local`` its name in the language, ``text`` its value there, empty where it has none.
+
+    ``needs`` are the parameters that a relation makes it of, in the order of the description.
+    """
+
+    name: str
+    local: str
+    text: str
+    meaning: str
+    needs: tuple[str, ...] = ()
+    unit: str = ""
+
+    @property
+    def told(self) -> str:
+        """What it means, and its unit."""
+        return marked(self.meaning, self.unit).strip()
+
+
+def parameters_of(system: System, writer: Functions) -> list[Value]:
+    """A relation gives a value unless it goes round in a circle; else the description's number does."""
+    related = {item.name: item.value for item in system.relations}
+    related |= {p.name: p.value for p in system.parameters if p.name not in related and p.value and _made(p.value)}
+    found = []
+    for item in system.parameters:
+        written, needs = "", set[str]()
+        if item.name in related and not _circular(item.name, related):
+            with suppress(Failure):  # a power that no program has: then its number has to do
+                written, needs = writer.expression(related[item.name]), names(related[item.name])
+        if not written and item.value is not None and not _made(item.value):
+            written = number(exact(item.value, {}))
+        unit = system.units.of(item.name) or ""
+        used = tuple(name for name in system.parameter_names if name in needs)
+        found.append(Value(item.name, writer.names[item.name], written, " ".join(item.meaning.split()), used, unit))
+    return found
+
+
+def _made(value: Expression) -> bool:
+    """Whether it is made of other parameters."""
+    return bool(names(value) - {"pi"})
+
+
+def _circular(name: str, related: dict[str, Expression]) -> bool:
+    seen: set[str] = set()
+    pending = [name]
+    while pending:
+        for other in names(related.get(pending.pop(), ZERO)) - seen:
+            if other == name:
+                return True
+            seen.add(other)
+            pending.append(other)
+    return False
+
+
+def ordered(parameters: Sequence[Value]) -> tuple[Value, ...]:
+    """Those without a relation first, then relations, each after what it needs."""
+    done = [item for item in parameters if not item.needs]
+    left = [item for item in parameters if item.needs]
+    while left:
+        known = {item.name for item in done}
+        ready = [item for item in left if known.issuperset(item.needs)]
+        done += ready
+        left = [item for item in left if item not in ready]
+        assert ready
+    return tuple(done)
+
+
+def initial_values(system: System, writer: Functions) -> list[tuple[str, str]]:
+    """(name, value) of q and q'; velocities that are not given are zero, as in simulations."""
+    given = {item.coordinate: item for item in system.begun}
+    placed: list[tuple[str, str]] = []
+    moving: list[tuple[str, str]] = []
+    for name, rate in zip(system.coordinates, system.velocities, strict=True):
+        entry = given.get(name)
+        position = entry.position if entry is not None else None
+        velocity = entry.velocity if entry is not None else None
+        placed.append((name, "" if position is None else _value(writer, position)))
+        moving.append((rate, _value(writer, ZERO if velocity is None else velocity)))
+    return placed + moving
+
+
+def _value(writer: Functions, value: Expression) -> str:
+    return writer.expression(value) if _made(value) else number(exact(value, {}))
+
+
+def starting(system: System, parameters: Sequence[Value]) -> list[tuple[int, str]]:
+    """The parameters of which initial values are made: place, and name in the language."""
+    values = [x for item in system.begun for x in (item.position, item.velocity) if x is not None]
+    used = {name for value in values for name in names(value)}
+    return [(place, item.local) for place, item in enumerate(parameters) if item.name in used]

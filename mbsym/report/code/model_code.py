@@ -1,7 +1,7 @@
 """What generated code computes, as nodes of straight-line programs: made once, written by every language.
 
 M, f           mass matrix and forcing,  M(q) q'' = f(q, q', t)
-q''            by the cheaper route of ``mbsym.mechanics.forward_dynamics``; no inverse is formed; with constraints by
+q''            by the cheaper route of ``mbsym.mechanics.programs``; no inverse is formed; with constraints by
                ``mbsym.mechanics.constraints.dynamics``, their rows and multipliers beside
 d q''/d(q, q') by the chain rule along the program of q'': exact, no differences
 energies, first integrals of problem 7, places of the bodies
@@ -21,9 +21,15 @@ from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.program import Node, Program
 from mbsym.formulas.names import injective
-from mbsym.mechanics.forward_dynamics import ForwardDynamics, forward_dynamics
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.programs import Programs, generalized_energy, momenta, scene_without_accelerations
+from mbsym.mechanics.programs import (
+    ForwardDynamics,
+    Programs,
+    forward_dynamics,
+    generalized_energy,
+    momenta,
+    scene_without_accelerations,
+)
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import INERTIAL, acceleration_name
 from mbsym.problems.integrals import ENERGY, WITH_FORCES, Integral, identifiers, whole_momenta

@@ -1,7 +1,7 @@
 """What robotics calls by name: inverse and forward dynamics, Coriolis and gravity terms, poses and Jacobians of frames.
 
     tau = M q'' + c(q, q') + g(q) - d      inverse_dynamics; d are the forces of the other loads, inputs being zero
-    q'' = M^-1 (tau - c - g + d)           forward_dynamics, by ``mbsym.mechanics.forward_dynamics``
+    q'' = M^-1 (tau - c - g + d)           forward_dynamics, by ``mbsym.mechanics.programs``
     c                                      coriolis: what inertia needs at q'' = 0, C(q, q') q' where nothing moves as
                                            prescribed
     g = -dU/dq                             gravity: U of the fields of gravity alone
@@ -23,11 +23,10 @@ from mbsym.algebra.program import Node, Program
 from mbsym.algebra.vectors import Vector, axis_vector
 from mbsym.mechanics.articulation import Articulation, articulation
 from mbsym.mechanics.bias_forces import bias_forces, forcing
-from mbsym.mechanics.forward_dynamics import forward_dynamics
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import force_function
 from mbsym.mechanics.newton_euler import residuals
-from mbsym.mechanics.programs import scene_without_accelerations
+from mbsym.mechanics.programs import forward_dynamics, scene_without_accelerations
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.inputs import force_names
 from mbsym.model.loads import NewtonianGravity, UniformGravity

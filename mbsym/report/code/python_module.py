@@ -9,35 +9,48 @@ import builtins
 import keyword
 import re
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from textwrap import fill, wrap
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.evaluate import Carrier
-from mbsym.algebra.failures import Limit, NoClosedForm
-from mbsym.algebra.program import Program
+from mbsym.algebra.failures import Failure, Limit, NoClosedForm
+from mbsym.algebra.program import Node, Program
+from mbsym.algebra.ring import Ring
 from mbsym.expressions.table import Tabulated
 from mbsym.expressions.tree import Expression, names, text
-from mbsym.formulas.straight_line import Dialect, listing
+from mbsym.formulas.formula import Formula
+from mbsym.formulas.names import injective
+from mbsym.formulas.straight_line import Dialect, angle_name, listing
 from mbsym.mechanics.programs import Programs, generalized_energy
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.quantities import told_units, unit_of
 from mbsym.model.speeds import Quaternion
 from mbsym.model.system import System, rational
 from mbsym.problems.linearisation import Linearisation
-from mbsym.report.code.formula_code import formula_functions
-from mbsym.report.code.functions import Function, Functions, prescribed_value, words_of_inputs
+from mbsym.report.code.functions import (
+    Function,
+    Functions,
+    identifier,
+    initial_values,
+    ordered,
+    parameters_of,
+    prescribed_value,
+    python_definition,
+    starting,
+    words_of_inputs,
+)
 from mbsym.report.code.identifiers import prefix_of
-from mbsym.report.code.lookups import identifier, python_definition
 from mbsym.report.code.model_code import Solved, first_integrals, programs_of, solved, undetermined
-from mbsym.report.code.model_values import initial_values, ordered, parameters_of, starting
 from mbsym.report.code.named_dynamics import bodies, named_dynamics
 from mbsym.report.environment import rendered
+from mbsym.report.sections import section_of
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+
 
 #: What the module itself calls something.
 RESERVED = {
@@ -74,8 +87,7 @@ def _called(function: str) -> str:
 
 DIALECT = Dialect(
     call=lambda function, argument: f"{_called(function)}({argument})",
-    local=lambda count: f"s{count}",
-    angle=lambda function, name: f"{function}_{name}",
+    angle=angle_name,
     tables=True,
 )
 
@@ -272,3 +284,72 @@ class _Module(Functions):
         program = Program()
         lower = Lowering(program, program_environment(self.system, program))
         return self.function(program, [lower(one.held) for one in self.system.inputs])
+
+
+# Problems 9 to 12 in ``model.py``: a function for each, with every formula of its result by what it is.
+
+
+#: What a formula is, and the formula.
+Told = tuple[str, Formula]
+
+#: The problems from here on have their formulas in functions.
+FIRST = 9
+
+
+@dataclass(frozen=True)
+class FormulaFunction:
+    """A function of a module: ``unpacked`` are declared names and what the code calls them, ``results`` by what they
+    are.  ``missing``: why there is none.
+    """
+
+    number: int
+    name: str
+    unpacked: tuple[tuple[str, str], ...] = ()
+    assignments: tuple[tuple[str, str], ...] = ()
+    results: tuple[tuple[str, str], ...] = ()
+    missing: str = ""
+
+
+def formula_functions(analysis: Analysis, problems: Sequence[int], writer: Functions) -> list[FormulaFunction]:
+    """Of those problems that are asked for and have formulas."""
+    from mbsym.analysis import PROBLEMS
+
+    found = []
+    for number in (number for number in problems if number >= FIRST):
+        stage, name = analysis.stage(number), PROBLEMS[number].attribute
+        if stage.failure is not None:
+            found.append(FormulaFunction(number, name, missing=stage.failure.reason))
+            continue
+        told = list(section_of(PROBLEMS[number]).formulas(stage.value, analysis.system))
+        if not told:
+            continue
+        try:
+            found.append(_function(number, name, told, writer))
+        except Failure as reason:
+            found.append(FormulaFunction(number, name, missing=str(reason)))
+    return found
+
+
+def _function(number: int, name: str, told: Sequence[Told], writer: Functions) -> FormulaFunction:
+    program = Program()
+    carriers: dict[int, Carrier] = {}
+    nodes: list[Node] = []
+    names: dict[str, None] = {}
+    for _, formula in told:
+        ring: Ring = formula.ring
+        if id(ring) not in carriers:
+            names |= dict.fromkeys(ring.names())
+            environment = {x: program.input(x) for x in (*ring.names(), "t", "pi")}
+            carriers[id(ring)] = Carrier(ring, program, environment)
+        nodes.append(carriers[id(ring)](formula.polynomial))
+    own = [x for x in names if x not in writer.names]
+    called = writer.names | injective(own, _plain, taken={*writer.names.values(), *writer.reserved})
+    body = listing(program, nodes, called, writer.dialect, writer.reserved)
+    unpacked = tuple((x, called[x]) for x in body.inputs if x != "pi")
+    keys = [key for key, _ in told]
+    assert len(set(keys)) == len(keys), keys
+    return FormulaFunction(number, name, unpacked, body.assignments, tuple(zip(keys, body.results, strict=True)))
+
+
+def _plain(name: str) -> str:
+    return name

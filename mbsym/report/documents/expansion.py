@@ -7,8 +7,7 @@ from typing import Annotated, Generic, TypeVar
 from msgspec import UNSET, UnsetType, field
 
 from mbsym.problems.small_parameter.result import Outcome
-from mbsym.report.documents.base import ASIDE, Format, Part, SystemName, Version, told_apart_by
-from mbsym.report.documents.writer import version
+from mbsym.report.documents.base import ASIDE, Format, Part, SystemName, Version, told_apart_by, version
 
 #: Text, or in results.json text or its length.
 F = TypeVar("F")

@@ -7,8 +7,7 @@ from typing import Annotated, Literal
 from msgspec import field
 
 from mbsym.problems.polynomial_integrals.result import Obstacle
-from mbsym.report.documents.base import Format, Part, SystemName, Version, told_apart_by, words
-from mbsym.report.documents.writer import version
+from mbsym.report.documents.base import Format, Part, SystemName, Version, told_apart_by, version, words
 
 
 class Integral(Part, frozen=True):

@@ -6,8 +6,7 @@ from typing import Annotated, Literal
 
 from msgspec import field
 
-from mbsym.report.documents.base import Format, Part, SystemName, Version, told_apart_by, words
-from mbsym.report.documents.writer import version
+from mbsym.report.documents.base import Format, Part, SystemName, Version, told_apart_by, version, words
 
 
 class Symmetry(Part, frozen=True):

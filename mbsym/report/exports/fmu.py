@@ -27,15 +27,17 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.expressions.tree import Expression, names
 from mbsym.formulas.names import free_name, injective
 from mbsym.model.system import System
+from mbsym.model.units import ENERGY, MULTIPLES, NONE, RATE, TIME, Dimension, times
 from mbsym.numerics.scenario import exact
 from mbsym.report.code import c_source
 from mbsym.report.code.model_code import programs_of, solved
 from mbsym.report.environment import rendered
-from mbsym.report.exports.fmu_units import Unit, time_and_energy, variable_unit
 from mbsym.report.exports.interface import Export, Language, export, told_in
+from mbsym.report.unit_text import in_base_units
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+
 
 #: Names of this FMU's own C code.
 _WORDS = """
@@ -312,3 +314,40 @@ def _zip(files: Mapping[str, bytes]) -> bytes:
             entry.external_attr = (0o755 if name.startswith("binaries/") else 0o644) << 16
             archive.writestr(entry, files[name])
     return whole.getvalue()
+
+
+# The units of the variables of an FMU, with what they are in SI.
+
+
+@dataclass(frozen=True)
+class Unit:
+    """``name`` as variables have it; ``base`` the exponents of SI base units and of rad, ``factor`` its size in SI."""
+
+    name: str
+    base: tuple[tuple[str, int], ...]
+    factor: float
+
+
+def time_and_energy(system: System) -> tuple[Unit | None, Unit | None]:
+    """The units of the time and of energies; None where they do not follow."""
+    return _unit(system, TIME), _unit(system, ENERGY)
+
+
+def variable_unit(system: System, name: str, order: int = 0) -> Unit | None:
+    """The unit of a name or of its derivative of an order; None where it is not known, and for a pure number."""
+    own = dict(system.units.inferred).get(name)
+    return None if own is None else _unit(system, times(own, RATE, order), system.units.of(name) == "rad")
+
+
+def _unit(system: System, dimension: Dimension, angle: bool = False) -> Unit | None:
+    name = in_base_units(system, dimension, angle)
+    if not name or any(exponent.denominator != 1 for _, exponent in dimension):
+        return None
+    base = [(unit, int(exponent)) for unit, exponent in dimension] + ([("rad", 1)] if angle else [])
+    factor = 1.0
+    if dimension != NONE:
+        called = dict(system.units.base)
+        for unit, exponent in dimension:
+            sizes = {known: size for size, known in MULTIPLES.get(unit, {}).items()}
+            factor *= sizes.get(called[unit], 1.0) ** int(exponent)
+    return Unit(name, tuple(base), factor)

@@ -19,8 +19,7 @@ from mbsym.model.system import System
 from mbsym.report.figures.drawing import BLUE, GREY, pictures
 from mbsym.report.maps.verdict_colours import colour_of
 from mbsym.sweeps.judged import WORDS
-from mbsym.sweeps.measure import Column
-from mbsym.sweeps.points import Points
+from mbsym.sweeps.points import Column, Points
 
 #: A plane has so many cells on a side at most: more than a picture shows.
 MOST_CELLS = 1_600

@@ -5,26 +5,32 @@ What was found stands first.  Formulas are MathML; long ones are folded away beh
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from mbsym import __version__
-from mbsym.formulas.mathml import mathml_names
+from mbsym.expressions.message import Message, counted
+from mbsym.expressions.tree import text
+from mbsym.formulas.mathml import letter, mathml_names
+from mbsym.formulas.names import parts
+from mbsym.model.system import System
 from mbsym.problems import NUMBERS
+from mbsym.report.code.interconnection import Interconnection, Joint, Kind, Node, interconnection
 from mbsym.report.content import Said
-from mbsym.report.html.diagram import diagram
-from mbsym.report.html.environment import page
-from mbsym.report.html.motion import asked_motion
+from mbsym.report.html.environment import fragment, page
 from mbsym.report.html.writer import Writer
 from mbsym.report.language import Language
 from mbsym.report.lengths import COUNTED, PAPER, withheld
 from mbsym.report.results import contents, results
-from mbsym.source.meaning import meaning
+from mbsym.source.yaml_writer import meaning
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+    from mbsym.report.figures.animation_page import Motion
+
 
 #: The order of the sections: as a reader wants them, as in report.tex.
 ORDER = tuple(NUMBERS)
@@ -80,3 +86,184 @@ def title_in(analysis: Analysis, part: int | str) -> Markup:
     if isinstance(part, str):
         return writer.said(Said(part))
     return writer.said(contents(results(analysis, (part,)), writer.document)[part].title)
+
+
+# The motion in ``report.html``: integrated only where that was asked for, and told why there is none.
+
+
+def asked_motion(system: System, time: float | None, language: Language) -> tuple[Motion | None, str]:
+    """(the motion from 0 to ``time``, "") or (None, why there is none); (None, "") where it was not asked for."""
+    if time is None:
+        return None, ""
+    from mbsym.algebra.failures import Failure, message_of
+    from mbsym.numerics.scenario import Incomplete, scenario
+    from mbsym.report.figures.animation import animation
+    from mbsym.report.figures.animation_page import run_motion
+    from mbsym.simulation import Request, simulate
+    from mbsym.simulation.request import COORDINATES
+
+    try:
+        run = simulate(scenario(system), Request(time, variables=COORDINATES))
+    except (Incomplete, Failure) as reason:
+        return None, language.say(message_of(reason))
+    found = animation(run)
+    nothing = language.say(Message("no body has a place that could be drawn"))
+    return (None, nothing) if found is None else (run_motion(found, run, language), "")
+
+
+# The interconnection of the bodies as SVG, drawn from its layout; text of the page's own fonts and colours.
+
+
+#: Pixels: the distance of neighbours, and the size of a body's box.
+ACROSS, DOWN, WIDE, TALL, MARGIN = 190, 104, 150, 46, 14
+#: So many letters of a name fit into a box, so many of a joint beside its line.
+LETTERS, ANGLES = 20, 26
+#: A page is so many boxes wide.
+COLUMNS = 5
+
+
+def diagram(system: System) -> Markup:
+    """An ``<svg>`` with a title and a description for those who cannot see it."""
+    found = interconnection(system, most_columns=COLUMNS)
+    beside = max((7 * len(_beside(joint)) - WIDE / 2 for joint in found.joints), default=0)
+    width = (found.columns - 1) * ACROSS + WIDE + MARGIN + max(MARGIN, beside)
+    height = (found.rows - 1) * DOWN + TALL + 2 * MARGIN
+    body = "".join([*_lines(found), *_loads(found), *(_node(node) for node in found.nodes)])
+    said = f"Interconnection of {counted(len(system.bodies), 'body', 'bodies')}"
+    told = "; ".join(_told(found))
+    return Markup(
+        f'<svg class="diagram" role="img" aria-labelledby="diagram-title diagram-text" width="{width:g}" '
+        f'height="{height:g}" viewBox="0 0 {width:g} {height:g}"><title id="diagram-title">{escape(said)}</title>'
+        f'<desc id="diagram-text">{escape(told)}</desc>{body}</svg>'
+    )
+
+
+def _told(found: Interconnection) -> Iterator[str]:
+    for joint in found.joints:
+        before, after = found.nodes[joint.before], found.nodes[joint.after]
+        yield f"{after.name} on {_named(before)} by {_joint_words(joint)}"
+    for load in found.interactions:
+        yield f"{load.kind} between {_named(found.nodes[load.first])} and {_named(found.nodes[load.second])}"
+
+
+def _named(node: Node) -> str:
+    return "the inertial frame" if node.kind is Kind.INERTIAL else node.name
+
+
+def _joint_words(joint: Joint) -> str:
+    turns = ", ".join(f"{axis}: {_readable(text(angle))}" for axis, angle in joint.turns)
+    parts_of = [f"turns {turns}"] if turns else []
+    if joint.slides:
+        parts_of.append("a moving connection point")
+    return " and ".join(parts_of) or "a fixed joint"
+
+
+def _place(node: Node) -> tuple[float, float]:
+    """The middle of the box."""
+    return MARGIN + WIDE / 2 + node.column * ACROSS, MARGIN + TALL / 2 + node.row * DOWN
+
+
+def _node(node: Node) -> str:
+    x, y = _place(node)
+    kind = {Kind.INERTIAL: "ground", Kind.FRAME: "frame", Kind.BODY: "body"}[node.kind]
+    again = " again" if node.repeated else ""
+    label = "inertial frame" if node.kind is Kind.INERTIAL else f"{node.number}. {node.name}"
+    box = (
+        f'<rect class="{kind}{again}" x="{x - WIDE / 2:g}" y="{y - TALL / 2:g}" width="{WIDE}" height="{TALL}" rx="7"/>'
+    )
+    lines = [label] if len(label) <= LETTERS else _two(label)
+    step = 16
+    first = y - step * (len(lines) - 1) / 2
+    words = "".join(
+        f'<text x="{x:g}" y="{first + k * step:g}" class="middle">{escape(line)}</text>' for k, line in enumerate(lines)
+    )
+    return f"<g><title>{escape(_named(node))}</title>{box}{words}</g>"
+
+
+def _two(label: str) -> list[str]:
+    """Two lines, broken at a space where there is one, the rest cut."""
+    at = label.rfind(" ", 0, LETTERS + 1)
+    first, rest = (label[:at], label[at + 1 :]) if at > 2 else (label[:LETTERS], label[LETTERS:])
+    return [first, _cut(rest, LETTERS)]
+
+
+def _cut(words: str, most: int) -> str:
+    return words if len(words) <= most else words[: most - 1] + "\u2026"
+
+
+def _lines(found: Interconnection) -> Iterator[str]:
+    for joint in found.joints:
+        (x0, y0), (x1, y1) = _place(found.nodes[joint.before]), _place(found.nodes[joint.after])
+        y0, y1 = y0 + TALL / 2, y1 - TALL / 2
+        slides = ' class="slides"' if joint.slides else ""
+        yield f'<path d="M{x0:g} {y0:g}L{x1:g} {y1:g}"{slides}/>'
+        words = _beside(joint)
+        if words:
+            side = "end" if x1 < x0 else "start"
+            x, y = x1 + (-8 if side == "end" else 8), y1 - 10
+            yield f'<text x="{x:g}" y="{y:g}" class="joint {side}">{escape(words)}</text>'
+
+
+def _beside(joint: Joint) -> str:
+    """``3: \u03b4, 1: \u03c3; s``: turns about axes by angles, then the other coordinates."""
+    turns = ", ".join(f"{axis}: {_readable(text(angle))}" for axis, angle in joint.turns)
+    others = ", ".join(map(_readable, joint.others))
+    return _cut("; ".join(filter(None, (turns, others))), ANGLES)
+
+
+def _loads(found: Interconnection) -> Iterator[str]:
+    for load in found.interactions:
+        (x0, y0), (x1, y1) = _place(found.nodes[load.first]), _place(found.nodes[load.second])
+        bend = -DOWN / 2 if y0 == y1 else 0
+        side = -ACROSS / 3 if x0 == x1 else 0
+        middle = (x0 + x1) / 2 + side, (y0 + y1) / 2 + bend
+        yield f'<path class="load" d="M{x0:g} {y0:g}Q{middle[0]:g} {middle[1]:g} {x1:g} {y1:g}"/>'
+        x, y = (x0 + x1) / 4 + middle[0] / 2, (y0 + y1) / 4 + middle[1] / 2
+        yield f'<text class="load middle" x="{x:g}" y="{y:g}">{escape(load.kind)}</text>'
+
+
+_SUBSCRIPTS = str.maketrans("0123456789", "\u2080\u2081\u2082\u2083\u2084\u2085\u2086\u2087\u2088\u2089")
+
+
+def _readable(words: str) -> str:
+    """An expression with Greek letters, indices that are numbers below the line, and a proper minus."""
+    return re.sub(r"[A-Za-z_]\w*", lambda found: _name(found[0]), words).replace("-", "\u2212").replace("*", "\u2009")
+
+
+def _name(name: str) -> str:
+    split = parts(name)
+    if not all(piece.isdigit() for piece in split.indices):
+        return name
+    return (letter(split.greek) if split.greek else split.stem) + "".join(split.indices).translate(_SUBSCRIPTS)
+
+
+# Parts of ``report.html`` one by one, as fragments for a page that fills while results are derived.
+#
+# A fragment is what the same part of the report is, word for word, and its formulas carry what other programs read
+# (``html.formulas.spellings``).  Everything that comes from a description is escaped.
+
+
+#: What a report shows beside problems, with the titles that it gives them.
+PARTS = {
+    "summary": "What was found",
+    "system": "The system",
+    "claims": "Claims",
+    "checks": "Self-check",
+    "conventions": "Conventions",
+}
+
+
+def title(analysis: Analysis, part: str | int) -> str:
+    """As the report has it: ``Problem 6. Stability``, ``The system``."""
+    return str(title_in(analysis, part if isinstance(part, int) else PARTS[part]))
+
+
+def part_html(analysis: Analysis, part: str | int, problems: Sequence[int]) -> str:
+    """A part, or a problem by its number, told beside the results of ``problems``.
+
+    Raises KeyError for a part that there is not.
+    """
+    if isinstance(part, str) and part not in PARTS:
+        raise KeyError(part)
+    known, values = context(analysis, problems, part in ("summary", "claims", "checks"), spelled=True)
+    return fragment("part.html.j2", known, part=part, **values)

@@ -6,6 +6,8 @@ import hashlib
 import re
 from collections.abc import Collection
 
+from mbsym.model.system import System
+
 _LONGEST = 40
 
 
@@ -20,9 +22,10 @@ def slug(name: str) -> str:
     return plain or "system-" + hashlib.sha256(name.encode()).hexdigest()[:8]
 
 
-def prefix_of(name: str) -> str:
-    """What every label of a system begins with."""
-    return f"mbsym:{slug(name)}:"
+def prefix_of(system: System) -> str:
+    """What every label of a system begins with: its own label as it is but for what no label takes, else its name."""
+    own = re.sub(r"[^A-Za-z0-9._+-]+", "-", system.label).strip("-")
+    return f"mbsym:{own or slug(system.name)}:"
 
 
 class Labels:

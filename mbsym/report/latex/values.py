@@ -6,16 +6,19 @@ What is printed of a formula, a matrix or a passage is printed once for all file
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar
 from weakref import WeakKeyDictionary
 
 from mbsym import __version__
-from mbsym.formulas.latex import latex_names
+from mbsym.formulas.latex import LatexNames, latex_names
 from mbsym.formulas.letters import letters
 from mbsym.formulas.tree import angles_or
+from mbsym.model.system import System
+from mbsym.report.code.interconnection import Interconnection, Joint, Kind, Node, interconnection
 from mbsym.report.content import Said, Verbatim
 from mbsym.report.language import Language
-from mbsym.report.latex.diagram import diagram
+from mbsym.report.latex.description import expression
 from mbsym.report.latex.form import Form, heading
 from mbsym.report.latex.formulas import measured_matrix
 from mbsym.report.latex.labels import Labels, prefix_of
@@ -24,10 +27,11 @@ from mbsym.report.latex.writer import Writer
 from mbsym.report.lengths import COUNTED, PAPER, PAPER_FORMS, withheld
 from mbsym.report.references import references
 from mbsym.report.results import contents, results
-from mbsym.source.meaning import meaning
+from mbsym.source.yaml_writer import meaning
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+
 
 T = TypeVar("T")
 Filters = dict[str, Callable[..., Any]]
@@ -56,7 +60,7 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
     system, once = analysis.system, _PRINTED.setdefault(analysis, Printed())
     names = latex_names(analysis.ring)
     tongue = Language(analysis.language or system.language)
-    labels = Labels(prefix_of(system.name))
+    labels = Labels(prefix_of(system))
     known = results(analysis, problems)
     long = withheld([known.found[number] for number in COUNTED if number in known.found], PAPER)
     long |= withheld(known.forms.forms.results, PAPER_FORMS)
@@ -80,3 +84,81 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
         "cyrillic": tongue.name == "ru" or is_cyrillic(system),
     }
     return {"tex": escaped}, values
+
+
+# The interconnection of the bodies as a TikZ picture.
+
+
+#: In centimetres: the distance of neighbours at most, and what a box with a name, or a label at a line, needs.
+MOST_ACROSS, MOST_DOWN, NAMED, LABELLED = 5.2, 1.7, 2.3, 3.4
+#: The longest word, and the longest name, that a box holds.
+LONGEST_WORD, LONGEST_NAME = 12, 24
+
+#: Bodies that a picture of this height (in cm) may show are told by number.
+HEIGHT = 17.0
+
+_STYLES = {
+    Kind.INERTIAL: "draw=none, fill=black!12",
+    Kind.FRAME: "draw, dashed, rounded corners=2pt",
+    Kind.BODY: "draw, rounded corners=2pt",
+}
+
+
+@dataclass(frozen=True)
+class _Scale:
+    across: float
+    down: float
+
+    @property
+    def named(self) -> bool:
+        return self.across >= NAMED and self.down >= 1.0
+
+    @property
+    def labelled(self) -> bool:
+        return self.across >= LABELLED and self.down >= 1.1
+
+
+def diagram(
+    system: System, names: LatexNames, escaped: Callable[[str], str], inertial: str, width: float = 15.0
+) -> str:
+    """A ``tikzpicture`` of at most ``width`` cm; ``inertial`` is what the inertial frame is called."""
+    found = interconnection(system)
+    scale = _Scale(min(MOST_ACROSS, width / max(1.0, found.columns)), min(MOST_DOWN, HEIGHT / max(1, found.rows)))
+    size = r"\small" if scale.named else r"\scriptsize"
+    lines = [
+        f"\\begin{{tikzpicture}}[x={scale.across:.2f}cm, y=-{scale.down:.2f}cm, font={size}]",
+        *(_node(k, node, scale, escaped, inertial) for k, node in enumerate(found.nodes)),
+        *(_joint(joint, found, scale, names) for joint in found.joints),
+        *_interactions(found),
+        "\\end{tikzpicture}",
+    ]
+    return "\n".join(lines)
+
+
+def _node(k: int, node: Node, scale: _Scale, escaped: Callable[[str], str], inertial: str) -> str:
+    name = inertial if node.kind is Kind.INERTIAL else escaped(node.name)
+    fits = len(name) <= LONGEST_NAME and max(map(len, name.split()), default=0) <= LONGEST_WORD
+    text = f"{node.number}. {name}" if scale.named and fits else str(node.number)
+    style = _STYLES[node.kind] + (", densely dotted, draw" if node.repeated else "")
+    room = f", align=center, text width={min(scale.across, 3.4) - 0.5:.2f}cm" if scale.named and fits else ""
+    inner = "3pt" if scale.named else "2pt"
+    return f"\\node[{style}, inner sep={inner}{room}] (n{k}) at ({node.column:g}, {node.row}) {{{text}}};"
+
+
+def _joint(joint: Joint, found: Interconnection, scale: _Scale, names: LatexNames) -> str:
+    label = ""
+    if scale.labelled:
+        turns = [f"{axis}\\colon {expression(angle, names)}" for axis, angle in joint.turns]
+        shifts = [str(names[name]) for name in joint.others]
+        written = ",\\; ".join([*turns, *shifts])
+        if written and len(turns) + len(shifts) <= 4:
+            upright = found.nodes[joint.before].column == found.nodes[joint.after].column
+            place = "right" if upright else "fill=white, inner sep=1pt"
+            label = f" node[midway, {place}, font=\\scriptsize] {{${written}$}}"
+    style = "double, double distance=1.2pt" if joint.slides else "-"
+    return f"\\draw[{style}] (n{joint.before}) --{label} (n{joint.after});"
+
+
+def _interactions(found: Interconnection) -> list[str]:
+    pairs = dict.fromkeys((min(i.first, i.second), max(i.first, i.second)) for i in found.interactions)
+    return [f"\\draw[dotted, thick] (n{first}) to[bend left=25] (n{second});" for first, second in pairs]

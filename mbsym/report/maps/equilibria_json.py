@@ -16,7 +16,7 @@ from mbsym.problems.relative_equilibria.equilibria import CoordinateValue, Equil
 from mbsym.problems.relative_equilibria.permanent_rotations import PermanentRotations
 from mbsym.report.documents import equilibria as doc
 from mbsym.report.documents import parts
-from mbsym.report.documents.writer import written
+from mbsym.report.documents.base import written
 from mbsym.report.sections.stability import verdict_data
 
 

@@ -32,8 +32,7 @@ from mbsym.maps.boxes import BoxMap
 from mbsym.maps.branches_result import Branches
 from mbsym.maps.mapping import float_of
 from mbsym.maps.result import Cell, Lack, Map, Of
-from mbsym.maps.seen import stands_out
-from mbsym.maps.slices import Picture, Stack
+from mbsym.maps.slices import Picture, Stack, stands_out
 from mbsym.model.quantities import unit_of
 from mbsym.model.system import System
 from mbsym.report.figures.drawing import pictures

@@ -116,7 +116,7 @@ def figure_lines(system: System, name: str, caption: str, command: str) -> list[
         r"\begin{figure}",
         r"\centering",
         rf"\includegraphics[width=\columnwidth]{{{name}.pdf}}",
-        rf"\caption{{{caption}}}\label{{{prefix_of(system.name)}fig:{name}}}",
+        rf"\caption{{{caption}}}\label{{{prefix_of(system)}fig:{name}}}",
         r"\end{figure}",
     ]
 

@@ -6,8 +6,7 @@ from collections.abc import Iterator
 from math import ceil, floor, isfinite, log10
 from typing import Any
 
-from mbsym.expressions.counting import duration
-from mbsym.expressions.message import Message, joined
+from mbsym.expressions.message import Message, duration, joined
 from mbsym.model.quantities import marked, time_unit, unit_of, with_unit
 from mbsym.model.system import System
 from mbsym.numerics.enclosure.compare import Certificate

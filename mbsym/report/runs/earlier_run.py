@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from mbsym.expressions.counting import counted
+from mbsym.expressions.message import counted
 from mbsym.model.quantities import marked
 from mbsym.model.system import System
 from mbsym.numerics.kernels.interface import EXTENDED
@@ -21,9 +21,8 @@ from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.models import Model, scenario_of
 from mbsym.numerics.scenario import Scenario
 from mbsym.report.runs.trajectory_csv import column_units
-from mbsym.simulation.earlier import Earlier
-from mbsym.simulation.request import TOLERANCE
-from mbsym.source.meaning import meaning
+from mbsym.simulation.request import TOLERANCE, Earlier
+from mbsym.source.yaml_writer import meaning
 
 #: No file of this kind is larger.
 LARGEST = 20_000_000

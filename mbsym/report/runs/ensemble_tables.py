@@ -6,11 +6,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import isfinite
 from typing import Any
 
-import numpy as np
 from msgspec import UNSET
 
 from mbsym.expressions.message import Counted, Message
@@ -18,10 +17,11 @@ from mbsym.model.quantities import marked, unit_of
 from mbsym.numerics.ensembles.ensemble import QUANTILES, Ensemble
 from mbsym.numerics.ensembles.variation import Grid, Variation
 from mbsym.report.documents import ensemble as doc
-from mbsym.report.documents.writer import written as document
+from mbsym.report.documents.base import finite
+from mbsym.report.documents.base import written as document
 from mbsym.report.runs.simulation_words import laws_json
-from mbsym.report.runs.trajectory_csv import written
-from mbsym.source.meaning import meaning
+from mbsym.report.runs.trajectory_csv import text_table, written
+from mbsym.source.yaml_writer import meaning
 
 #: So many members that ended early are named one by one in sentences.
 NAMED = 5
@@ -56,22 +56,13 @@ def members_csv(found: Ensemble) -> str:
     ended = {fate.member: fate for fate in found.fates}
     varied = [marked(name, unit_of(system, name)) for name in found.members.names]
     final = [marked(f"{name}_final", unit_of(system, name)) for name in found.quantities]
-    lines = [",".join(["member", *varied, *final, "ended", "at"])]
+    rows: list[Sequence[object]] = []
     for member in range(found.count):
         fate = ended.get(member)
-        state = found.final[:, member]
-        lines.append(
-            ",".join(
-                [
-                    str(member),
-                    *(f"{value:.17g}" for value in found.members.values[:, member]),
-                    *(f"{value:.17g}" if isfinite(value) else "" for value in state),
-                    fate.kind if fate else "",
-                    f"{fate.time:.9g}" if fate else "",
-                ]
-            )
-        )
-    return "\n".join([*lines, ""])
+        values = (f"{value:.17g}" for value in found.members.values[:, member])
+        state = (f"{value:.17g}" if isfinite(value) else "" for value in found.final[:, member])
+        rows.append((member, *values, *state, *((fate.kind, f"{fate.time:.9g}") if fate else ("", ""))))
+    return text_table(["member", *varied, *final, "ended", "at"], rows)
 
 
 def ensemble_json(
@@ -104,18 +95,18 @@ def ensemble_json(
         ],
         final={
             name: doc.Final(
-                mean=_finite(spread.mean[-1, place]),
-                std=_finite(spread.deviation[-1, place]),
-                min=_finite(spread.least[-1, place]),
-                max=_finite(spread.greatest[-1, place]),
+                mean=finite(spread.mean[-1, place]),
+                std=finite(spread.deviation[-1, place]),
+                min=finite(spread.least[-1, place]),
+                max=finite(spread.greatest[-1, place]),
                 quantiles={
-                    f"{chance:g}": _finite(row[-1, place])
+                    f"{chance:g}": finite(row[-1, place])
                     for chance, row in zip(QUANTILES, spread.quantiles, strict=True)
                 },
             )
             for place, name in enumerate(found.quantities)
         },
-        compared=doc.Compared(members=list(compared.members), largest=_finite(compared.largest)),
+        compared=doc.Compared(members=list(compared.members), largest=finite(compared.largest)),
         steps=found.steps,
         files=files,
     )
@@ -128,10 +119,6 @@ def _variation(one: Variation) -> doc.Varied:
     if one.kind == "normal":
         return doc.Varied(name=one.name, kind="normal", mean=one.first, deviation=one.second)
     return doc.Varied(name=one.name, kind="uniform", from_=one.first, to=one.second)
-
-
-def _finite(value: Any) -> float | None:
-    return float(value) if np.isfinite(value) else None
 
 
 def sentences(found: Ensemble) -> Iterator[tuple[str, str]]:

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterator, Sequence
-from math import isfinite
 from typing import Any
 
 from msgspec import UNSET
@@ -18,7 +15,8 @@ from mbsym.numerics.extremes.singular_positions import SingularPositions
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
 from mbsym.numerics.trade.digits import FULL
 from mbsym.report.documents import extremes as doc
-from mbsym.report.documents.writer import written
+from mbsym.report.documents.base import finite, written
+from mbsym.report.runs.trajectory_csv import text_table
 
 HEADER = (
     "kind",
@@ -38,21 +36,19 @@ HEADER = (
 
 def extremes_csv(found: Extremes) -> str:
     """One line for each quantity on each rung; verdicts of stability follow as quantity ``stability``."""
-    out = io.StringIO()
-    write = csv.writer(out, lineterminator="\n").writerow
-    write(HEADER)
+    rows: list[Sequence[object]] = []
     for row in found.rows:
         d = row.found
         digits = [d.digits[FLOAT32], d.digits[FLOAT64], d.worst[FLOAT32], d.worst[FLOAT64], d.formula]
         numbers = [f"{x:.2f}" for x in digits]
-        write(
-            [row.kind, row.subject, f"{row.size:.0e}", row.quantity, *numbers, f"{d.condition:.3e}", d.verdict, d.bits]
-        )
+        about = (row.kind, row.subject, f"{row.size:.0e}", row.quantity)
+        rows.append((*about, *numbers, f"{d.condition:.3e}", d.verdict, d.bits))
     for item in found.verdicts:
         judged = item.judged
         said = [judged.floats[FLOAT32], judged.floats[FLOAT64]]
-        write([item.kind, item.subject, f"{item.size:.0e}", "stability", *said, "", "", "", "", judged.exact.word, ""])
-    return out.getvalue()
+        about = (item.kind, item.subject, f"{item.size:.0e}", "stability")
+        rows.append((*about, *said, "", "", "", "", judged.exact.word, ""))
+    return text_table(HEADER, rows)
 
 
 def extremes_json(found: Extremes) -> str:
@@ -66,7 +62,7 @@ def extremes_json(found: Extremes) -> str:
             digits=_rounded(row.found.digits),
             digits_of_worst_entry=_rounded(row.found.worst),
             formula_digits=round(row.found.formula, 2),
-            condition=row.found.condition if isfinite(row.found.condition) else None,
+            condition=finite(row.found.condition),
             verdict=row.found.verdict,
             bits=row.found.bits,
         )
@@ -144,7 +140,7 @@ def _singular(found: Singularities | None) -> doc.Singular | None:
 def _positions(found: SingularPositions) -> doc.SingularPositions:
     """Where constraints lose their rank."""
     listed = [
-        doc.Found(
+        doc.SingularPosition(
             place=dict(one.place),
             labels=dict(one.labels),
             rank=one.rank,

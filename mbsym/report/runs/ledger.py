@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import csv
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from io import StringIO
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.expressions.message import Message, joined, worded
 from mbsym.numerics.ledger.entry import NEEDED, NOT_NEEDED, OPEN, SECONDS, Ledger, Measure, Saving
 from mbsym.report.content import Block, Fact, Facts, Graded, Phrase, Subheading, paragraph
+from mbsym.report.documents.base import plain
 from mbsym.report.documents.results import ledger as doc
-from mbsym.report.documents.writer import plain
+from mbsym.report.runs.trajectory_csv import text_table
 
 COLUMNS = ("kind", "what", "why", "how", "quantity", "unit", "without", "with", "saved", "at_least", "standing")
 
@@ -99,17 +98,13 @@ def _number(value: float, item: Measure) -> str:
 
 def ledger_csv(found: Ledger) -> str:
     """One row a measure."""
-    stream = StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(COLUMNS)
+    rows: list[Sequence[object]] = []
     for saving in found.savings:
         head = (saving.kind, "; ".join(saving.what), saving.why, saving.how)
         for item in saving.measures:
             numbers = (f"{x:.6g}" if item.unit == SECONDS else int(x) for x in (item.without, item.taken, item.saved))
-            writer.writerow(
-                (*head, item.quantity, item.unit, *numbers, "yes" if item.at_least else "no", saving.standing)
-            )
-    return stream.getvalue()
+            rows.append((*head, item.quantity, item.unit, *numbers, "yes" if item.at_least else "no", saving.standing))
+    return text_table(COLUMNS, rows)
 
 
 def ledger_data(found: Ledger) -> doc.Ledger:

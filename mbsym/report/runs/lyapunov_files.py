@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from math import isfinite
-from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -15,11 +14,12 @@ from matplotlib.figure import Figure
 from mbsym.expressions.message import Message
 from mbsym.model.system import System
 from mbsym.numerics.orbits.lyapunov import Exponents, Parting
-from mbsym.report.documents import lyapunov as doc
-from mbsym.report.documents.writer import written as document
+from mbsym.report.documents import orbit as doc
+from mbsym.report.documents.base import finite
+from mbsym.report.documents.base import written as document
 from mbsym.report.figures.drawing import BLUE, GREY, pictures
 from mbsym.report.runs.trajectory_csv import written
-from mbsym.source.meaning import meaning
+from mbsym.source.yaml_writer import meaning
 
 
 def lyapunov_csv(found: Exponents) -> str:
@@ -34,12 +34,12 @@ def lyapunov_json(system: System, found: Exponents) -> str:
         description_sha256=meaning(system),
         time=found.time,
         exponents=[
-            doc.Exponent(value=_finite(value), uncertainty=_finite(doubt))
+            doc.Exponent(value=finite(value), uncertainty=finite(doubt))
             for value, doubt in zip(found.values, found.uncertainty, strict=True)
         ],
         largest=found.parting.name.lower().removesuffix("_over_this_time") if len(found.times) else None,
-        divergence=_finite(found.divergence),
-        sum_error=_finite(found.sum_error),
+        divergence=finite(found.divergence),
+        sum_error=finite(found.sum_error),
         ended=None if found.ended is None else str(found.ended),
     )
     return document(content)
@@ -127,7 +127,3 @@ def _judged(found: Exponents) -> Message:
         "log(T)/T = [[bound]]: whether the motion is regular or chaotic is undecided",
         bound=bound,
     )
-
-
-def _finite(value: Any) -> float | None:
-    return float(value) if np.isfinite(value) else None

@@ -14,10 +14,11 @@ from mbsym.expressions.message import Counted, Message
 from mbsym.model.quantities import marked, unit_of
 from mbsym.numerics.orbits.periodic import Orbit
 from mbsym.report.documents import orbit as doc
-from mbsym.report.documents.writer import written as document
+from mbsym.report.documents.base import finite
+from mbsym.report.documents.base import written as document
 from mbsym.report.runs.trajectory_csv import written
 from mbsym.simulation.motions import PeriodicMotion
-from mbsym.source.meaning import meaning
+from mbsym.source.yaml_writer import meaning
 
 
 def orbit_csv(found: PeriodicMotion) -> str:
@@ -34,10 +35,11 @@ def orbit_json(found: PeriodicMotion) -> str:
         description_sha256=meaning(system),
         initial=dict(zip(orbit.names, map(float, orbit.state), strict=True)),
         period=orbit.period,
+        repeats=found.repeats,
         turns={name: float(turn) for name, turn in zip(orbit.names, orbit.turns, strict=True) if turn},
         energy=orbit.energy,
         closure=orbit.closure,
-        verified=doc.Verified(closure=orbit.verified if isfinite(orbit.verified) else None, method=orbit.verifier),
+        verified=doc.Verified(closure=finite(orbit.verified), method=orbit.verifier),
         newton_steps=orbit.steps,
         autonomous=orbit.autonomous,
         multipliers=[
@@ -58,7 +60,10 @@ def orbit_json(found: PeriodicMotion) -> str:
 def sentences(found: PeriodicMotion) -> Iterator[tuple[str, str]]:
     """(title, text)."""
     orbit = found.orbit
-    yield Message("period"), f"{orbit.period:.15g}"
+    period, n = f"{orbit.period:.15g}", found.repeats
+    told = "[[period]], in which the motion is run through [[n]] times: it repeats after [[shorter]]"
+    shorter = f"{orbit.period / n:.15g}"
+    yield Message("period"), Message(told, period=period, n=n, shorter=shorter) if n > 1 else period
     yield Message("motion"), _judged(orbit)
     values = zip(orbit.names, orbit.state, strict=True)
     yield Message("state"), ", ".join(f"{name} = {value:.12g}" for name, value in values)

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 from msgspec import UNSET
 
 from mbsym.algebra.certainty import Certainty
-from mbsym.expressions.counting import duration
-from mbsym.expressions.message import Message, joined, worded
+from mbsym.expressions.message import Message, duration, joined, worded
 from mbsym.model.quantities import with_unit
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.planning.kinds import (

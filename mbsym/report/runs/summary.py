@@ -14,7 +14,7 @@ from mbsym.numerics.breakdowns import least_pivot
 from mbsym.report.runs.between_steps import passed_over, switch_line
 from mbsym.report.runs.certificate import certificate_lines
 from mbsym.report.runs.constrained_run_words import constraint_lines
-from mbsym.report.runs.events_words import events_lines
+from mbsym.report.runs.events import events_lines
 from mbsym.report.runs.plan_words import bound_lines, choice_lines
 from mbsym.report.runs.simulation_words import (
     change_lines,

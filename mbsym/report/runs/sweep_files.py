@@ -7,20 +7,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from io import BytesIO
-from math import isfinite
 from typing import Any
 
 import numpy as np
 
 from mbsym.model.system import System
 from mbsym.numerics.ensembles.variation import Grid, Variation
-from mbsym.report.documents import sweep as doc
-from mbsym.report.documents.writer import written
+from mbsym.report.documents import ensemble as doc
+from mbsym.report.documents.base import finite, written
 from mbsym.report.runs.trajectory_csv import header, rows
-from mbsym.source.meaning import meaning
+from mbsym.source.yaml_writer import meaning
 from mbsym.sweeps.judged import VERDICT
-from mbsym.sweeps.measure import Column
-from mbsym.sweeps.points import Points
+from mbsym.sweeps.points import Column, Points
 from mbsym.sweeps.statistics import LEVEL, Share, Totals
 
 Part = tuple[Any, Mapping[str, Any]]
@@ -111,9 +109,9 @@ def sweep_json(
         ranges=[
             doc.Range(
                 column=one.column,
-                least=_finite(one.least),
-                mean=_finite(one.mean),
-                greatest=_finite(one.greatest),
+                least=finite(one.least),
+                mean=finite(one.mean),
+                greatest=finite(one.greatest),
                 missing=one.missing,
             )
             for one in totals.ranges()
@@ -124,10 +122,10 @@ def sweep_json(
     return written(content)
 
 
-def _variation(one: Variation) -> doc.Varied:
+def _variation(one: Variation) -> doc.Swept:
     if isinstance(one, Grid):
-        return doc.Varied(name=one.name, kind="grid", low=one.low, high=one.high, count=one.count)
-    return doc.Varied(name=one.name, kind=one.kind, first=one.first, second=one.second)
+        return doc.Swept(name=one.name, kind="grid", low=one.low, high=one.high, count=one.count)
+    return doc.Swept(name=one.name, kind=one.kind, first=one.first, second=one.second)
 
 
 def _share(one: Share) -> doc.Share:
@@ -135,7 +133,3 @@ def _share(one: Share) -> doc.Share:
     if one.interval is not None:
         found = doc.Interval(low=one.interval[0], high=one.interval[1], confidence=LEVEL)
     return doc.Share(word=one.word, count=one.count, total=one.total, interval=found)
-
-
-def _finite(value: float) -> float | None:
-    return value if isfinite(value) else None

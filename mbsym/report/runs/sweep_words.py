@@ -6,8 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from mbsym.expressions.message import Counted, Message
 from mbsym.sweeps.judged import VERDICT
-from mbsym.sweeps.measure import Column
-from mbsym.sweeps.points import Points
+from mbsym.sweeps.points import Column, Points
 from mbsym.sweeps.statistics import LEVEL, Share, Totals
 
 #: Dependences below this are noise and are not listed.

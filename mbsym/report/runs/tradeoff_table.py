@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Iterable, Sequence
-from io import StringIO
+from collections.abc import Sequence
 from math import inf, isfinite
 from typing import Any
 
-from mbsym.expressions.counting import duration
-from mbsym.expressions.message import Message, joined, worded
+from mbsym.expressions.message import Message, duration, joined, worded
 from mbsym.model.quantities import marked
 from mbsym.numerics.kernels.interface import FLOAT64
 from mbsym.numerics.trade.fidelity import RESOLVED, ModelError
 from mbsym.numerics.trade.tradeoff import Measured, Tradeoff
+from mbsym.report.runs.trajectory_csv import text_table
 
 COLUMNS = (
     "method", "arithmetic", "tolerance", "step", "error", "drift", "evaluations", "steps", "seconds", "cost", "front",
@@ -28,7 +26,7 @@ def tradeoff_csv(found: Tradeoff, time: str | None = None) -> str:
     """One row a run; an empty field where there is no number.  ``time`` is the unit of the step, if it is known."""
     tied = constrained(found.rows)
     names = _with_strayed(COLUMNS, STRAYED if tied else ())
-    return _csv(
+    return text_table(
         [marked(name, time if name == "step" else "") for name in names], (_row(row, tied) for row in found.rows)
     )
 
@@ -50,15 +48,7 @@ def fidelity_csv(rows: Sequence[ModelError]) -> str:
     for row in rows:
         what = (row.variant.label, row.variant.neglected)
         lines.append((*what, _number(row.error), row.operations, row.evaluations, _number(row.seconds), row.trouble))
-    return _csv(MODEL_COLUMNS, lines)
-
-
-def _csv(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    stream = StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(header)
-    writer.writerows(rows)
-    return stream.getvalue()
+    return text_table(MODEL_COLUMNS, lines)
 
 
 def _row(row: Measured, tied: bool) -> Sequence[object]:

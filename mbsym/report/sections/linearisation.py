@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from msgspec import UNSET
 
+from mbsym.algebra.failures import Failure, message_of
 from mbsym.expressions.message import worded
 from mbsym.expressions.tree import text
 from mbsym.model.system import System
@@ -30,10 +31,10 @@ from mbsym.report.content import (
     speeds,
 )
 from mbsym.report.documents.results import linearisation as doc
-from mbsym.report.first_order import first_order
 from mbsym.report.plain import Write, Written, matrix_text
 
 if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
     from mbsym.problems.first_order import FirstOrder
     from mbsym.problems.reduction import Reduction
     from mbsym.report.results import Results
@@ -221,3 +222,16 @@ def _in_speeds(state: FirstOrder) -> Iterator[Block]:
 
 def _five(found: Any, write: Write) -> dict[str, list[list[Written]]]:
     return {name: matrix_text(getattr(found, name), write) for name in "MDGKN"}
+
+
+# The first-order form of problem 5 as reports show it: for systems with inputs or outputs alone.
+
+
+def first_order(analysis: Analysis, linear: Linearisation | None) -> dict[str, Any]:
+    """``first_order``: A, B, C, D, or None; ``no_first_order``: why there are none although there might be."""
+    if linear is None or not (analysis.system.inputs or analysis.system.outputs):
+        return {"first_order": None, "no_first_order": ""}
+    try:
+        return {"first_order": analysis.state_space, "no_first_order": ""}
+    except Failure as reason:
+        return {"first_order": None, "no_first_order": message_of(reason)}

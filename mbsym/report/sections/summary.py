@@ -16,7 +16,7 @@ from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.integrals import Integral
 from mbsym.problems.stabilisation import Stabilisation
 from mbsym.problems.stability import Stability, SubsystemStability
-from mbsym.problems.stability.spectrum import numbers
+from mbsym.problems.stability.enclosed import numbers
 from mbsym.problems.stability.word import Word
 from mbsym.report.brief import claims_counted, ranges, self_check, worst
 from mbsym.report.conditions import OPPOSITE, CaseStatement, Statement, cases, label_meanings

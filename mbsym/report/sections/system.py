@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from mbsym.expressions.message import worded
 from mbsym.expressions.tree import ZERO, Expression
+from mbsym.model.admissibility import body_violation, known_values
 from mbsym.model.speeds import UnitVector
 from mbsym.model.system import INERTIAL, Body, System
 from mbsym.report.code.functions import moving
@@ -35,7 +36,6 @@ from mbsym.report.content import (
     paragraph,
     say,
 )
-from mbsym.report.inertias import accepted_inertias
 from mbsym.report.results import Results
 from mbsym.report.words.description import constraint, load, separated, vector
 
@@ -234,3 +234,17 @@ def _values(system: System) -> Iterator[Block]:
         declared = [Relation(Name(x.coordinate, at="0"), "=", x.position or ZERO) for x in system.start]
         text = "Initial values of declared variables, from which velocities that are not given follow"
         yield paragraph(Said(text), ": ", *separated(declared), ".")
+
+
+# Inertias that are taken as given although no body has them: said wherever a report lists the bodies.
+
+
+def accepted_inertias(system: System) -> dict[str, str]:
+    """For each body whose inertia is accepted, the inequality that it breaks, as far as the given numbers tell."""
+    values = known_values(system)
+    accepted = [body for body in system.bodies if _is_accepted(body)]
+    return {body.name: body_violation(body, values) or "" for body in accepted}
+
+
+def _is_accepted(body: Body) -> bool:
+    return body.inertia is not None and body.inertia.accepted

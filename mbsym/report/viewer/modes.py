@@ -24,7 +24,7 @@ from mbsym.picture.encode import number
 from mbsym.problems.linearisation import Linearisation
 from mbsym.problems.stability.problem import matrices_at, parameter_values, ring_numbers
 from mbsym.problems.stability.verdict import Verdict
-from mbsym.report.documents.writer import plain
+from mbsym.report.documents.base import plain
 from mbsym.report.sections.stability import verdict_data
 
 #: A singular value of the pencil below this part of its largest belongs to a shape.

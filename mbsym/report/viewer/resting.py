@@ -15,7 +15,7 @@ from mbsym.model.system import System
 from mbsym.picture.encode import number
 from mbsym.problems.relative_equilibria.equilibria import CoordinateValue
 from mbsym.problems.stability.verdict import Verdict
-from mbsym.report.documents.writer import plain
+from mbsym.report.documents.base import plain
 from mbsym.report.sections.stability import verdict_data
 
 

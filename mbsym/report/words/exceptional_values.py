@@ -13,7 +13,7 @@ from mbsym.problems.normal_forms.along import Along, Special
 from mbsym.problems.stability.sentences import with_theorem
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.report.documents import nonlinear as doc
-from mbsym.report.documents.writer import written
+from mbsym.report.documents.base import written
 from mbsym.report.sections.normal_forms import enclosure
 from mbsym.report.words.normal_form_words import REASONS, decimal
 

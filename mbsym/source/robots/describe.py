@@ -16,9 +16,20 @@ from fractions import Fraction
 
 from mbsym.expressions.rates import is_rate
 from mbsym.source.bodies import is_body_name
-from mbsym.source.robots.numbers import NOWHERE, Texts, is_of_a_body, opposite
-from mbsym.source.robots.placing import Moving, Step, steps
-from mbsym.source.robots.robot import GROUND, Inertial, Joint, JointTie, Link, PointTie, Robot, Shape
+from mbsym.source.robots.reader import NOWHERE, Texts, is_of_a_body, opposite
+from mbsym.source.robots.robot import (
+    GROUND,
+    Inertial,
+    Joint,
+    JointTie,
+    Link,
+    Moving,
+    PointTie,
+    Robot,
+    Shape,
+    Step,
+    steps,
+)
 from mbsym.source.scope import MAX_NAME
 from mbsym.source.yaml_writer import scalar_text
 

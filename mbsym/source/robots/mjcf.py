@@ -12,14 +12,10 @@ from fractions import Fraction
 
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints
-from mbsym.source.robots.elements import Element
 from mbsym.source.robots.geoms import checked, is_solid, matter_of, shape_of, weighs
-from mbsym.source.robots.numbers import NOWHERE, Texts, decimal, degrees, number
 from mbsym.source.robots.orientation import TURNING, Angles, orientation
-from mbsym.source.robots.reader import Reader
-from mbsym.source.robots.robot import GROUND, Inertial, Joint, Link, Robot, Turns
-from mbsym.source.robots.spelling import check_spelling
-from mbsym.source.robots.ties import ties
+from mbsym.source.robots.reader import NOWHERE, Element, Reader, Texts, check_spelling, decimal, degrees, number
+from mbsym.source.robots.robot import GROUND, Inertial, Joint, Link, Robot, Turns, ties
 
 _KINDS = {"hinge": "turn", "slide": "slide", "ball": "ball", "free": "free"}
 
@@ -129,14 +125,14 @@ def _gravity(root: Element, reader: Reader) -> Texts:
     return NOWHERE if _together(option, "flag").get("gravity") == "disable" else gravity
 
 
-def _driven(root: Element, reader: Reader) -> set[str]:
+def _driven(root: Element, reader: Reader, defaults: Defaults) -> set[str]:
     """The joints that an actuator drives; what else actuators do is left out.
 
     The input is the torque or force in the joint: that of an actuator times its gear.
     """
     found = set()
     for section in root.all("actuator"):
-        for element in section.children:
+        for element in (defaults.of(child, "") for child in section.children):
             joint = element.get("joint") or element.get("jointinparent")
             if not joint:
                 reader.leave_out(f"actuator of no joint ({element.tag})")
@@ -144,6 +140,8 @@ def _driven(root: Element, reader: Reader) -> set[str]:
             found.add(joint)
             if element.tag != "motor":
                 reader.leave_out(f"law of an actuator ({element.tag})")
+            if float((element.get("gear") or "1").split()[0]) != 1:
+                reader.leave_out("gear of an actuator (the input is the torque or force in the joint)")
     return found
 
 
@@ -162,7 +160,7 @@ class _Bodies:
         self.groups = tuple(map(float, reader.numbers(section, "inertiagrouprange", 2, "0 5")))
         self.angles = Angles(compiler.get("angle", "degree") != "radian", compiler.get("eulerseq", "xyz"))
         self.autolimits = compiler.get("autolimits", "true") != "false"
-        self.driven = _driven(root, reader)
+        self.driven = _driven(root, reader, self.defaults)
         self.from_geoms = compiler.get("inertiafromgeom", "auto")
         self.names: set[str] = set()
         self.sites: set[str] = set()

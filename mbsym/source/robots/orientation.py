@@ -6,9 +6,7 @@ import math
 from dataclasses import dataclass
 
 from mbsym.expressions.parser import ascii_safe
-from mbsym.source.robots.elements import Element
-from mbsym.source.robots.numbers import angle, degrees, number
-from mbsym.source.robots.reader import Reader
+from mbsym.source.robots.reader import Element, Reader, angle, degrees, number
 from mbsym.source.robots.robot import Turns
 
 Row = tuple[float, float, float]

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from decimal import Context, Decimal, InvalidOperation
+from fractions import Fraction
+from xml.parsers import expat
 
-from mbsym.expressions.counting import counted
-from mbsym.expressions.parser import ascii_safe
-from mbsym.expressions.place import Complaints
-from mbsym.source.robots.elements import Element
-from mbsym.source.robots.numbers import NOWHERE, Texts, angle, decimal, number
+from mbsym.expressions.message import counted
+from mbsym.expressions.parser import MAX_DIGITS, ascii_safe
+from mbsym.expressions.place import Complaints, Span
+from mbsym.model.admissibility import principal_minors
+from mbsym.source.scope import closest
 
 
 @dataclass
@@ -89,3 +94,292 @@ class Reader:
 def _three(text: str) -> Texts:
     first, second, third = text.split()
     return first, second, third
+
+
+# Attributes and elements of MJCF that are none (MuJoCo 3, XML reference): a misspelt one must not go by in silence.
+
+
+_TURNS = "quat axisangle xyaxes zaxis euler"
+
+#: What matters here: what weighs, turns, slides, and how all of it is read.
+_ATTRIBUTES = {
+    tag: frozenset(words.split())
+    for tag, words in {
+        "compiler": "autolimits boundmass boundinertia settotalmass balanceinertia strippath coordinate angle fitaabb "
+        "eulerseq meshdir texturedir assetdir discardvisual usethread fusestatic inertiafromgeom inertiagrouprange "
+        "saveinertial exactmeshinertia convexhull alignfree",
+        "option": "timestep apirate impratio gravity wind magnetic density viscosity o_margin o_solref o_solimp "
+        "o_friction integrator collision cone jacobian solver iterations tolerance ls_iterations ls_tolerance "
+        "noslip_iterations noslip_tolerance mpr_iterations mpr_tolerance ccd_iterations ccd_tolerance sleep_tolerance "
+        "sdf_iterations sdf_initpoints actuatorgroupdisable",
+        "worldbody": f"name childclass pos {_TURNS} gravcomp mocap sleep user",
+        "body": f"name childclass pos {_TURNS} gravcomp mocap sleep user",
+        "frame": f"name childclass pos {_TURNS}",
+        "inertial": f"pos {_TURNS} mass diaginertia fullinertia",
+        "joint": "name class type group pos axis springdamper limited actuatorfrclimited solreflimit solimplimit "
+        "solreffriction solimpfriction stiffness range actuatorfrcrange actuatorgravcomp margin ref springref armature "
+        "damping frictionloss user",
+        "freejoint": "name group align",
+        "geom": "name class type contype conaffinity condim group priority size material friction mass density "
+        f"shellinertia solmix solref solimp margin gap fromto pos {_TURNS} hfield mesh fitscale rgba fluidshape "
+        "fluidcoef user",
+    }.items()
+}
+
+#: What may stand in a body.
+_ELEMENTS = "body inertial joint freejoint geom site camera light plugin composite flexcomp attach frame replicate"
+_INSIDE = frozenset(_ELEMENTS.split())
+
+#: So much has a slip of the pen in common with what was meant (``mas``, ``dampng``, ``diagInertia``).
+_ALIKE = 0.75
+
+
+def check_spelling(root: Element, reader: Reader) -> None:
+    """Complains about what looks like a slip of the pen, at its element; what looks like nothing known is left out.
+
+    The latter may be of a later MuJoCo.  Only what is read here is looked at: sections that are left out have elements
+    of the same names with other attributes.
+    """
+    for element in _read(root):
+        known = _ATTRIBUTES.get(element.tag, frozenset())
+        for name in element.attributes if known else ():
+            if name not in known:
+                _tell(f"attribute {ascii_safe(name)} of <{element.tag}>", name, known, element, reader)
+        for child in element.children if element.tag in ("body", "worldbody", "frame") else ():
+            if child.tag not in _INSIDE:
+                _tell(
+                    f"element <{ascii_safe(child.tag).strip(chr(39))}> in <{element.tag}>",
+                    child.tag,
+                    _INSIDE,
+                    child,
+                    reader,
+                )
+
+
+def _tell(what: str, word: str, known: frozenset[str], element: Element, reader: Reader) -> None:
+    meant = closest(word, sorted(known), _ALIKE)
+    if meant is None:
+        reader.leave_out(f"unknown {what}")
+    else:
+        reader.error("unknown-key", f"unknown {what}", element, f"did you mean '{meant}'?")
+
+
+def _read(root: Element) -> Iterator[Element]:
+    """What is read: settings, default classes, and bodies with what stands in them."""
+    for section in root.children:
+        if section.tag in ("compiler", "option"):
+            yield section
+        elif section.tag in ("default", "worldbody"):
+            yield from _within(section)
+
+
+def _within(element: Element) -> Iterator[Element]:
+    yield element
+    for child in element.children:
+        if child.tag in ("body", "frame", "default"):
+            yield from _within(child)
+        else:
+            yield child
+
+
+# Numbers as they are printed in a file: exact decimals, and angles that are rounded parts of pi.
+
+
+Texts = tuple[str, str, str]
+NOWHERE: Texts = ("0", "0", "0")
+
+#: Angles printed with fewer digits are not taken for a rounded part of pi: 0.5 is no pi/6.
+FEWEST_DIGITS = 4
+
+#: A printed number beyond this power of ten is refused; what is below the last digit of a description is rounded.
+_LARGEST_POWER = MAX_DIGITS - 1
+_SMALLEST, _EXACTLY = Decimal(1).scaleb(-MAX_DIGITS), Context(prec=2 * MAX_DIGITS + 1)
+
+#: What is longer than this many characters as a plain decimal is written with an exponent.
+_PLAIN_POWER = 6
+
+
+def decimal(text: str) -> Decimal | None:
+    """The number that a text is, or None: infinities and monsters are none."""
+    try:
+        value = Decimal(text.strip())
+    except InvalidOperation:
+        return None
+    if not value.is_finite() or len(value.as_tuple().digits) > MAX_DIGITS:
+        return None
+    return value if value == 0 or value.adjusted() <= _LARGEST_POWER else None
+
+
+def number(text: str) -> str:
+    """The number as it is printed, in a form that descriptions accept; zero is 0."""
+    value = Decimal(text)
+    if int(value.as_tuple().exponent) < -MAX_DIGITS:
+        value = value.quantize(_SMALLEST, context=_EXACTLY)
+    if value == 0:
+        return "0"
+    return f"{value.normalize():f}" if abs(value.adjusted()) < _PLAIN_POWER else str(value.normalize())
+
+
+def angle(text: str) -> str:
+    """A multiple of pi/4 or pi/6, if ``text`` is one rounded to the digits that are printed; else the number.
+
+    >>> angle("1.5708"), angle("-0.52359877559"), angle("0.5")
+    ('pi/2', '-pi/6', '0.5')
+    """
+    value = Decimal(text)
+    _, digits, exponent = value.as_tuple()
+    assert isinstance(exponent, int)
+    if len(digits) >= FEWEST_DIGITS:
+        for part in (4, 6):
+            turns = Fraction(round(float(value) / math.pi * part), part)
+            if turns and abs(float(value) - float(turns) * math.pi) <= max(0.5 * 10.0**exponent, 1e-15):
+                return multiple_of_pi(turns)
+    return number(text)
+
+
+def multiple_of_pi(turns: Fraction) -> str:
+    """``-3*pi/4``."""
+    up = {1: "pi", -1: "-pi"}.get(turns.numerator, f"{turns.numerator}*pi")
+    return up if turns.denominator == 1 else f"{up}/{turns.denominator}"
+
+
+def degrees(text: str) -> str:
+    """An angle in degrees, exactly, in radians: a fraction of pi.
+
+    >>> degrees("90"), degrees("-22.5"), degrees("0")
+    ('pi/2', '-pi/8', '0')
+    """
+    turns = Fraction(Decimal(text)) / 180
+    return multiple_of_pi(turns) if turns else "0"
+
+
+def opposite(text: str) -> str:
+    """The number of the other sign."""
+    return text[1:] if text.startswith("-") else text if text == "0" else "-" + text
+
+
+def is_zero(values: Texts) -> bool:
+    """Whether three printed numbers are zero."""
+    return all(Decimal(value) == 0 for value in values)
+
+
+def numbers(values: Texts) -> Texts:
+    first, second, third = map(number, values)
+    return first, second, third
+
+
+def is_of_a_body(xx: Fraction, xy: Fraction, xz: Fraction, yy: Fraction, yz: Fraction, zz: Fraction) -> bool:
+    """Whether the second moments tr(J)/2 1 - J are positive semidefinite."""
+    half = (xx + yy + zz) / 2
+    return is_nonnegative(half - xx, -xy, -xz, half - yy, -yz, half - zz)
+
+
+def is_nonnegative(xx: Fraction, xy: Fraction, xz: Fraction, yy: Fraction, yz: Fraction, zz: Fraction) -> bool:
+    """Whether a symmetric matrix is positive semidefinite: all its principal minors are nonnegative."""
+    return all(minor >= 0 for minor in principal_minors(((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))))
+
+
+# XML as elements that know their place, read by expat; what could grow without bound is refused before it does.
+
+
+#: A file has at most so many characters, elements, and elements within each other.
+MAX_XML, MAX_ELEMENTS, MAX_DEPTH = 8_000_000, 50_000, 200
+
+
+@dataclass(slots=True)
+class Element:
+    """A tag with its attributes, the elements inside it, and where it begins."""
+
+    tag: str
+    attributes: dict[str, str]
+    span: Span
+    children: list[Element] = field(default_factory=list)
+
+    def all(self, tag: str) -> list[Element]:
+        """The direct children of a tag."""
+        return [child for child in self.children if child.tag == tag]
+
+    def first(self, tag: str) -> Element | None:
+        return next(iter(self.all(tag)), None)
+
+    def walk(self) -> Iterator[Element]:
+        """This element and all inside it."""
+        yield self
+        for child in self.children:
+            yield from child.walk()
+
+    def get(self, name: str, default: str = "") -> str:
+        return self.attributes.get(name, default).strip()
+
+
+class _Stop(Exception):
+    """Internal: reading was given up; the complaint has been made."""
+
+
+def parsed(text: str, complaints: Complaints) -> Element | None:
+    """The root element, or None with a complaint: no XML, too large, or with a document type of its own."""
+    if len(text) > MAX_XML:
+        complaints.error("too-large", f"the file has more than {MAX_XML} characters")
+        return None
+    parser = expat.ParserCreate()
+    roots: list[Element] = []
+    opened: list[Element] = []
+    count = 0
+
+    def place() -> Span:
+        return Span(parser.CurrentLineNumber, parser.CurrentColumnNumber + 1)
+
+    def stop(code: str, message: str) -> None:
+        complaints.error(code, message, place())
+        raise _Stop
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        nonlocal count
+        count += 1
+        if count > MAX_ELEMENTS or len(opened) > MAX_DEPTH:
+            stop("too-large", f"there are at most {MAX_ELEMENTS} elements, {MAX_DEPTH} within each other")
+        element = Element(tag, attributes, Span(place().line, place().column, len(tag) + 1))
+        (opened[-1].children if opened else roots).append(element)
+        opened.append(element)
+
+    def doctype(*_: object) -> None:
+        stop("unsupported", "a document type is not read: its entities could be anything")
+
+    parser.StartElementHandler = start
+    parser.EndElementHandler = lambda _: opened.pop()
+    parser.StartDoctypeDeclHandler = doctype
+    try:
+        parser.Parse(text, True)
+    except _Stop:
+        return None
+    except expat.ExpatError as error:
+        message = f"this is no XML: {ascii_safe(expat.ErrorString(error.code)).strip(chr(39))}"
+        complaints.error("syntax", message, Span(error.lineno, error.offset + 1))
+        return None
+    return roots[0]
+
+
+def include(root: Element, beside: Callable[[str], str | None], complaints: Complaints, seen: set[str]) -> None:
+    """Puts what other files hold in place of ``<include file="...">``, each file once.
+
+    Complaints about it have the place of the <include>.  One that cannot be read stays, for whoever reads on.
+    """
+    children: list[Element] = []
+    for child in root.children:
+        file = child.get("file") if child.tag == "include" else ""
+        text = beside(file) if file and file not in seen else None
+        if child.tag == "include" and text is not None:
+            seen.add(file)
+            own = Complaints()
+            found = parsed(text, own)
+            for one in own.items:
+                complaints.error(one.code, f"in {ascii_safe(file)}: {one.message}", child.span)
+            if found is not None:
+                for element in found.walk():
+                    element.span = child.span
+                include(found, beside, complaints, seen)
+                children += found.children
+            continue
+        include(child, beside, complaints, seen)
+        children.append(child)
+    root.children = children

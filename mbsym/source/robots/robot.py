@@ -1,14 +1,17 @@
-"""What both formats describe: a tree of links, each placed on its parent, moved by joints, with inertia and shapes.
+"""What both formats describe: links, each placed on its parent and moved by joints, ties, inertia, shapes.
 
 Numbers are texts as they are printed.  Turns are passive and in the order of turning, as in descriptions.
 """
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
+from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Span
-from mbsym.source.robots.numbers import NOWHERE, Texts
+from mbsym.source.robots.reader import NOWHERE, Element, Reader, Texts, angle, number, opposite
 
 #: (axis, angle) of the turns that lead from one set of axes to another.
 Turns = tuple[tuple[int, str], ...]
@@ -112,3 +115,227 @@ class Robot:
     left_out: tuple[str, ...] = ()
     snapped: tuple[str, ...] = ()
     ties: tuple[JointTie | PointTie, ...] = ()
+
+
+# What ``<equality>`` of MJCF demands, as ties between joints and points.
+#
+# MuJoCo pulls towards these with springs of its own; here they hold exactly.
+
+
+#: Coordinates of a point that is found by turning are rounded to so many decimals.
+_DECIMALS = 15
+
+#: Of a relation between joints, as far as it is not given: y = x.
+_COEFFICIENTS = ("0", "1", "0", "0", "0")
+
+
+def ties(
+    root: Element, links: Mapping[str, Link], sites: Mapping[str, str], reader: Reader
+) -> Iterator[JointTie | PointTie]:
+    """Those that are active; ``sites`` are the links that stand for sites."""
+    joints = {joint.name for link in links.values() for joint in link.joints if joint.kind in ("turn", "slide")}
+    for element in (child for section in root.all("equality") for child in section.children):
+        if element.get("active") == "false":
+            reader.leave_out(f"inactive constraint (<{element.tag}>)")
+            continue
+        found: JointTie | PointTie | None = None
+        if element.tag == "joint":
+            found = _of_joints(element, joints, reader)
+        elif element.tag == "connect":
+            found = _of_points(element, links, sites, reader)
+        else:
+            reader.leave_out(f"constraint (<{element.tag}> in <equality>)")
+            continue
+        if found is not None:
+            reader.leave_out("softness of constraints (they hold exactly)")
+            yield found
+
+
+def _of_joints(element: Element, joints: set[str], reader: Reader) -> JointTie | None:
+    first, second = reader.name(element, "joint1"), element.get("joint2")
+    unknown = [name for name in (first, second) if name and name not in joints]
+    if unknown:
+        reader.error("unknown-name", f"there is no hinge or slide {ascii_safe(unknown[0])}", element)
+    given = list(_COEFFICIENTS)
+    count = len(element.get("polycoef").split()) or len(given)
+    if count > len(given):
+        reader.error("wrong-shape", "'polycoef' has at most five numbers", element)
+    else:
+        given[:count] = reader.numbers(element, "polycoef", count, " ".join(given[:count]))
+    return None if unknown or not first else JointTie(first, second, tuple(given if second else given[:1]))
+
+
+def _of_points(
+    element: Element, links: Mapping[str, Link], sites: Mapping[str, str], reader: Reader
+) -> PointTie | None:
+    if element.get("site1"):
+        ends = [element.get("site1"), reader.name(element, "site2")]
+        unknown = [name for name in ends if name not in sites]
+        if unknown:
+            reader.error("unknown-name", f"there is no site {ascii_safe(unknown[0])}", element)
+            return None
+        return PointTie(sites[ends[0]], NOWHERE, sites[ends[1]], NOWHERE)
+    first, second = reader.name(element, "body1"), element.get("body2") or GROUND
+    second = GROUND if second == "world" else second
+    unknown = [name for name in (first, second) if name != GROUND and name not in links]
+    if unknown:
+        reader.error("unknown-name", f"there is no body {ascii_safe(unknown[0])}", element)
+        return None
+    anchor = reader.three(element, "anchor")
+    return PointTie(first, anchor, second, _seen_from(first, second, anchor, links))
+
+
+def _seen_from(first: str, second: str, point: Texts, links: Mapping[str, Link]) -> Texts:
+    """The point in the axes of another link where all joints are at zero."""
+    seen = [float(x) for x in point]
+    for link in _path(first, links):
+        for axis, turn in reversed(link.turned):
+            seen = _turned(seen, axis, _value(turn))
+        seen = [float(x) + y for x, y in zip(link.place, seen, strict=True)]
+    for link in reversed(list(_path(second, links))):
+        seen = [y - float(x) for x, y in zip(link.place, seen, strict=True)]
+        for axis, turn in link.turned:
+            seen = _turned(seen, axis, -_value(turn))
+    x, y, z = (number(repr(round(value, _DECIMALS))) for value in seen)
+    return x, y, z
+
+
+def _path(name: str, links: Mapping[str, Link]) -> Iterator[Link]:
+    """A link and those that carry it, to the ground."""
+    while name != GROUND:
+        yield links[name]
+        name = links[name].parent
+
+
+def _turned(v: list[float], axis: int, angle: float) -> list[float]:
+    """Rotated about a coordinate axis, actively."""
+    i, j = axis % 3, (axis + 1) % 3
+    c, s = math.cos(angle), math.sin(angle)
+    found = list(v)
+    found[i], found[j] = c * v[i] - s * v[j], s * v[i] + c * v[j]
+    return found
+
+
+def _value(words: str) -> float:
+    """``-3*pi/4``, ``0.2``."""
+    top, _, bottom = words.partition("/")
+    product = -1.0 if top.startswith("-") else 1.0
+    for factor in top.removeprefix("-").split("*"):
+        product *= math.pi if factor == "pi" else float(factor)
+    return product / float(bottom or 1)
+
+
+# From a link's pose and joints to bodies: displacements and turns in a row, as few bodies as they fit in.
+#
+# A body of a description is placed by one displacement in the axes of its carrier, followed by up to three turns.
+
+
+#: What a body can turn about.
+MOST_TURNS = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """A displacement and the turns after it; ``coordinates`` are those that it introduces."""
+
+    place: Texts = NOWHERE
+    turns: Turns = ()
+    coordinates: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Moving:
+    """A joint with the coordinates that it introduces; one that turns or slides does so by ``value``."""
+
+    joint: Joint
+    names: tuple[str, ...]
+    value: str = ""
+
+
+def steps(place: Texts, turned: Turns, joints: tuple[Moving, ...]) -> tuple[Step, ...]:
+    """The steps that lead over a link's pose and its joints to its axes."""
+    moves = [Step(place), *(Step(turns=(turn,)) for turn in turned)]
+    for moving in joints:
+        moves += _moves(moving)
+    return tuple(_joined(moves))
+
+
+def _moves(moving: Moving) -> list[Step]:
+    """A joint as elementary steps; a turn about a point elsewhere goes there and comes back."""
+    joint, names, value = moving.joint, moving.names, moving.value
+    match joint.kind:
+        case "slide":
+            return [Step(along(joint.axis, value), (), names)]
+        case "turn":
+            turns = [
+                Step(turns=(turn,), coordinates=names if value in turn[1] else ())
+                for turn in turns_about(joint.axis, value)
+            ]
+        case _:
+            angles = names[-3:]
+            turns = [
+                Step(turns=((axis, name),), coordinates=(name,)) for axis, name in zip((3, 2, 1), angles, strict=True)
+            ]
+    if joint.kind == "free":
+        return [Step((names[0], names[1], names[2]), (), names[:3]), *turns]
+    there, back = joint.anchor, tuple(map(opposite, joint.anchor))
+    return turns if there == NOWHERE else [Step(there), *turns, Step((back[0], back[1], back[2]))]
+
+
+def _joined(moves: list[Step]) -> Iterator[Step]:
+    """Steps put together as far as a body can hold them."""
+    now = Step()
+    for move in moves:
+        names = (*now.coordinates, *move.coordinates)
+        if move.place != NOWHERE:
+            if now.turns:
+                yield now
+                now = move
+            else:
+                now = Step(_sum(now.place, move.place), move.turns, names)
+        elif len(now.turns) + len(move.turns) > MOST_TURNS:
+            yield now
+            now = move
+        else:
+            now = Step(now.place, now.turns + move.turns, names)
+    yield now
+
+
+def _sum(one: Texts, other: Texts) -> Texts:
+    added = [
+        b if a == "0" else a if b == "0" else f"{a} - {b[1:]}" if b.startswith("-") else f"{a} + {b}"
+        for a, b in zip(one, other, strict=True)
+    ]
+    return added[0], added[1], added[2]
+
+
+def turns_about(axis: Texts, name: str) -> Turns:
+    """The turn by a name or formula about an axis: e_3 = Ry(b) Rz(a) turned onto it, where it is no coordinate axis."""
+    x, y, z = map(float, axis)
+    on = [k for k, value in enumerate((x, y, z), start=1) if value != 0]
+    if len(on) == 1:
+        positive = (x, y, z)[on[0] - 1] > 0
+        return ((on[0], name if positive else _negative(name)),)
+    azimuth, slope = angle(repr(math.atan2(y, x))), angle(repr(math.atan2(math.hypot(x, y), z)))
+    return tuple(
+        turn
+        for turn in ((3, azimuth), (2, slope), (3, name), (2, opposite(slope)), (3, opposite(azimuth)))
+        if turn[1] != "0"
+    )
+
+
+def _negative(name: str) -> str:
+    return f"-{name}" if name.isidentifier() else f"-({name})"
+
+
+def along(axis: Texts, name: str) -> Texts:
+    """``name`` (or a formula) times the unit vector of an axis."""
+    name = name if name.isidentifier() else f"({name})"
+    components = list(map(float, axis))
+    length = math.hypot(*components)
+    moved = []
+    for component in components:
+        size = number(repr(abs(component) / length))
+        step = "0" if size == "0" else name if size == "1" else f"{size}*{name}"
+        moved.append(f"-{step}" if component < 0 and step != "0" else step)
+    return moved[0], moved[1], moved[2]

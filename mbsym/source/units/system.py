@@ -36,8 +36,7 @@ from mbsym.model.units import (
     times,
 )
 from mbsym.source.reading import Reading
-from mbsym.source.units.expressions import Dimensions
-from mbsym.source.units.inference import Form, Inference
+from mbsym.source.units.expressions import Dimensions, Form, Inference
 from mbsym.source.units.reading import Unit, unit
 
 _EXACT = 1e-9
@@ -82,6 +81,21 @@ def checked_units(system: System, declared: tuple[Declared, ...], reading: Readi
     follows = ((name, inference.dimension(name)) for name in (*names, *more))
     inferred = tuple((name, found) for name, found in follows if found is not None)
     return Units(declared, inferred, base)
+
+
+def dimensions_of(
+    system: System, complain: Callable[[str, Span | None, str | None], None], given: dict[str, Form]
+) -> Dimensions:
+    """The dimensions that follow from the places of a description and from those that are ``given``.
+
+    ``complain`` is told of what is asked afterwards, not of what contradicts itself in the description.
+    """
+    known = {
+        one.name: Form(found.dimension) for one in system.units.declared if isinstance(found := unit(one.text), Unit)
+    }
+    inference = Inference({**known, **given})
+    _System(system, Dimensions(inference, _form_of(system), lambda *_: None)).check()
+    return Dimensions(inference, _form_of(system), complain)
 
 
 def _form_of(system: System) -> Callable[[str], Form]:

@@ -36,8 +36,9 @@ class Request:
     Needs a number for every parameter, from the description (values:) or from --set, taken exactly.  Where the
     equations are polynomials in sines and cosines the solution is exact; elsewhere each equilibrium is proved to exist
     in a small box.  The list says whether it is complete.  Orientations behind the singularity of the description's
-    angles are found with other angles.  Each equilibrium is judged as in problem 6.  For a body about a fixed point the
-    axes and rates of all permanent rotations are printed besides (Staude's cone).
+    angles are found with other angles.  Each equilibrium is judged as in problem 6.  Under constraints the
+    reactions are eliminated, whatever the rank of the constraints, and singular positions are told as such.  For a body
+    about a fixed point the axes and rates of all permanent rotations are printed besides (Staude's cone).
 
     With --vary a parameter runs through an interval: how many equilibria there are between exact critical values,
     where branches fold, cross or split (named by exact derivatives), and how stable each is.  Written are branches.svg,
@@ -192,7 +193,7 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
 
 STUDY = Study(
     "equilibria", Request, derive, answer, refusal, unfit, as_json,
-    timed=True, writes=lambda typed: "vary" in typed,
+    constraints=True, timed=True, writes=lambda typed: "vary" in typed,
     out=Folder(
         "With --vary, print nothing but complaints.", UNWRITTEN, "With --vary, folder.  [default: reports/NAME]",
         alone=("with-vary", "branches are written to a file", "use --format json"),

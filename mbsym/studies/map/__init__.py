@@ -138,9 +138,8 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Map:
     """Raises NotFit where the section cannot be made."""
     from mbsym.algebra.failures import Failure, TooLargeError, message_of
     from mbsym.analysis import Analysis
-    from mbsym.maps.boxes import box_map
+    from mbsym.maps.boxes import box_map, irrational
     from mbsym.maps.given import Unfit as Wrong
-    from mbsym.maps.irrational import irrational
     from mbsym.maps.mapping import exact_map
     from mbsym.maps.result import Of
     from mbsym.maps.slices import stack

@@ -12,7 +12,7 @@ from flint import arb
 from jsonschema import Draft202012Validator
 
 import mbsym
-from mbsym.analysis.exceptional import exceptional
+from mbsym.analysis.judge import exceptional
 from mbsym.analysis.stages import Unavailable
 from mbsym.problems.normal_forms import Outcome, Theorem, Why
 from mbsym.problems.normal_forms.along import NotAlong

@@ -11,7 +11,7 @@ from flint import acb, arb, ctx
 
 import mbsym
 from mbsym.algebra.truncated import Space, Truncated
-from mbsym.analysis.exceptional import exceptional
+from mbsym.analysis.judge import exceptional
 from mbsym.problems.normal_forms import Judged, Outcome, Theorem, Why, equal, zero_root
 from mbsym.problems.normal_forms.equal import equal_frequencies
 from mbsym.problems.normal_forms.twist import NotVerified

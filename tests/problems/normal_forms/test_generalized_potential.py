@@ -10,8 +10,8 @@ import sympy
 
 import mbsym
 from mbsym.algebra.failures import Failure
-from mbsym.analysis.exceptional import exceptional
 from mbsym.analysis.higher import ignorable
+from mbsym.analysis.judge import exceptional
 from mbsym.problems.normal_forms import NormalForms, Outcome, Theorem, generalized_potential
 from mbsym.report.words.exceptional_values import lines
 

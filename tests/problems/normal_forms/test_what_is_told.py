@@ -12,7 +12,7 @@ from jsonschema import Draft202012Validator
 from terminal import told
 
 import mbsym
-from mbsym.analysis.exceptional import exceptional
+from mbsym.analysis.judge import exceptional
 from mbsym.mechanics.rest import given_values
 from mbsym.problems.normal_forms import NormalForms, Outcome, Theorem, Why
 from mbsym.report.messages import messages

@@ -431,3 +431,29 @@ def test_a_part_that_drifts_says_nothing_of_a_whole_that_grows_otherwise() -> No
     found = mbsym.loads(LINE.format("linear system: {coordinates: [x, y], K: [[0, 0], [0, -1]]}")).stability
     assert [p.theory.verdict.because(Because.LINEAR_DRIFTS) for p in found.subsystems] == [True, False]
     assert not found.verdict.because(Because.LINEAR_DRIFTS)
+
+
+@pytest.mark.parametrize(
+    ("v", "damping", "word"),
+    [
+        ("positive", "", Word.STABLE),
+        ("positive", " - c*x_dot", Word.ASYMPTOTIC),
+        ("negative", "", Word.STABLE),
+        ("real", "", Word.CRITICAL),
+    ],
+)
+def test_dry_friction_is_a_constant_force_while_it_slides(v, damping, word):
+    """m x'' + k x = mu m g sign(v) as long as x' != v: there are no terms of higher order near x' = 0."""
+    text = f"""
+mbsym: 1
+name: Block on a belt
+parameters: {{m: positive, k: positive, mu: positive, v: {v}, g: positive, c: positive}}
+bodies: [{{name: B, attached to: 0, connection point: [x, 0, 0], coordinates: [x], mass: m}}]
+loads: [{{spring: {{coordinate: x, stiffness: k}}}}, {{generalized force: {{x: -mu*m*g*sign(x_dot - v){damping}}}}}]
+motion: {{x: {"-" if v == "negative" else ""}mu*m*g/k}}
+values: {{m: 1, k: 2, mu: 1/2, v: {-3 if v == "negative" else 3}, g: 10, c: 1}}
+"""
+    found = mbsym.loads(text).stability
+    assert found.verdict.word is word
+    if v == "real":  # where v is a number its sign is known
+        assert found.numerical.word is Word.STABLE

@@ -14,7 +14,7 @@ from click.testing import CliRunner
 from conftest import SHIPPED
 
 import mbsym
-from mbsym.problems.stability.spectrum import RootNumbers, numbers
+from mbsym.problems.stability.enclosed import RootNumbers, numbers
 from mbsym.report.formulas_by_name import root_text
 from mbsym.report.targets import TARGETS
 from mbsym_cli.main import main

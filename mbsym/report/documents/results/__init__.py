@@ -8,7 +8,7 @@ from msgspec import UNSET, Meta, UnsetType, field
 
 from mbsym.algebra.failures import Limit, Severity
 from mbsym.expressions.table import CUBIC, ENDS, EXTRAPOLATE, HOLD, LINEAR, OUTSIDE_ZERO
-from mbsym.report.documents.base import ASIDE, Format, Part, Version, told_apart_by, words
+from mbsym.report.documents.base import ASIDE, Format, Part, Version, told_apart_by, version, words
 from mbsym.report.documents.parts import Formula
 from mbsym.report.documents.results.canonical import Brackets, Hamilton, Routh
 from mbsym.report.documents.results.claims import Claim
@@ -19,7 +19,6 @@ from mbsym.report.documents.results.ledger import Ledger
 from mbsym.report.documents.results.linearisation import FirstOrder, Linearisation, StateSpace
 from mbsym.report.documents.results.stabilisation import Stabilisation
 from mbsym.report.documents.results.stability import Stability
-from mbsym.report.documents.writer import version
 
 if TYPE_CHECKING:
     from mbsym.report.documents.results.invariant_sets import InvariantSets

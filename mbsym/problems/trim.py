@@ -1,0 +1,113 @@
+"""Trim: which values of inputs or parameters make the described motion one that satisfies the equations.
+
+The residuals of problem 4 on the motion, under constraints those of the constraints and the projected equations, are
+
+    r = R x + s = 0,        R and s without x
+
+for unknowns x that enter linearly: forces, torques, preloads, masses.  R is brought to echelon form; what is left of s
+in rows without a pivot is a condition on the motion itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from mbsym.algebra.factors import occurring
+from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.signs import Signs
+from mbsym.expressions.message import Message
+from mbsym.formulas.formula import Formula
+from mbsym.formulas.notebook import Shown
+from mbsym.mechanics.constraints.expansion import Row, echelon
+from mbsym.mechanics.kinematics import Scene
+from mbsym.problems.equilibrium import equilibrium, essential
+
+
+@dataclass(frozen=True, repr=False)
+class Trim(Shown):
+    """``solved``: unknowns in terms of the ``free`` ones, which may have any value.
+
+    So where none of ``assumed`` vanishes and all ``conditions`` do; ``impossible`` are conditions that never hold.
+    """
+
+    solved: tuple[tuple[str, Formula], ...]
+    free: tuple[str, ...]
+    assumed: tuple[Formula, ...]
+    conditions: tuple[Formula, ...]
+    impossible: tuple[Formula, ...]
+
+
+def trim(
+    scene: Scene, residuals: Sequence[Polynomial], unknowns: Sequence[str], signs: Signs, assumed: Sequence[Polynomial]
+) -> Trim:
+    """The unknowns, parameters by their names, from the residuals of problem 4 on the motion.
+
+    ``assumed`` were divided by where these were made.  Raises NoClosedForm where an unknown does not enter linearly.
+    """
+    ring = scene.ring
+    told = [x for x in residuals if _within(ring, x, unknowns)]
+    posture = equilibrium(scene, [x for x in residuals if not any(x == y for y in told)], signs, on_motion=True)
+    images = posture.determined(scene)
+    found = echelon(ring, signs, [_row(ring, ring.substitute(x, images), unknowns) for x in told], range(len(unknowns)))
+    left = [x for row in found.rest if (x := essential(scene, row.get(_REST, ring.zero), signs)) is not None]
+    never = [x for x in left if x.is_constant() or signs.never_zero(x)]
+    solved = []
+    for k, row in sorted(found.pivots.items()):
+        value = ring.zero - row.get(_REST, ring.zero)
+        for j, name in enumerate(unknowns):
+            if j != k and j in row:
+                value = value - ring.times(row[j], ring.generator("parameter", name))
+        solved.append((unknowns[k], Formula(ring, _cleared(ring, ring.reduce(value)))))
+    divided = [ring.substitute(x, images) for x in (*assumed, *found.assumed)]
+    divided = [x for y in divided if (x := essential(scene, y, signs)) is not None and not x.is_constant()]
+    return Trim(
+        tuple(solved),
+        tuple(name for k, name in enumerate(unknowns) if k not in found.pivots),
+        tuple(Formula(ring, x) for k, x in enumerate(divided) if x not in divided[:k] and not signs.never_zero(x)),
+        (*posture.conditions, *(Formula(ring, x) for x in left)),
+        (*posture.impossible, *(Formula(ring, x) for x in never)),
+    )
+
+
+#: The column of what no unknown is a factor of.
+_REST = -1
+
+
+def _row(ring: Ring, x: Polynomial, unknowns: Sequence[str]) -> Row:
+    places = [ring.index("parameter", name) for name in unknowns]
+    row: Row = {j: x.derivative(k) for j, k in enumerate(places)}
+    row[_REST] = x - sum((ring.times(row[j], ring.context.gen(k)) for j, k in enumerate(places)), ring.zero)
+    for part in row.values():
+        if names := _within(ring, part, unknowns):
+            told = Message("[[names]]: not linear in the equations", names=", ".join(names))
+            raise NoClosedForm(told)
+    return row
+
+
+def _within(ring: Ring, x: Polynomial, names: Sequence[str]) -> list[str]:
+    """Which parameters occur, be it under sine and cosine, roots and reciprocals."""
+    pending, seen = [*occurring([x])], set()
+    while pending:
+        k = pending.pop()
+        if k not in seen:
+            seen.add(k)
+            argument = ring.generators[k].argument
+            pending += [] if argument is None else occurring([argument])
+    found = {ring.generators[k].name for k in seen if ring.generators[k].kind in ("parameter", "sine", "cosine")}
+    return [name for name in names if name in found]
+
+
+def _cleared(ring: Ring, x: Polynomial) -> Polynomial:
+    """x with reciprocals of sums of reciprocals as plain fractions."""
+    top, bottoms = ring.fraction(x)
+    bottom = ring.one
+    for factor, exponent in bottoms:
+        above, below = ring.fraction(factor)
+        bottom = ring.times(bottom, ring.power(above, exponent))
+        for one, times in below:
+            top = ring.times(top, ring.power(one, times * exponent))
+    if not bottoms:
+        return x
+    return ring.reduce(ring.times(ring.reduce(top), ring.reciprocal(ring.reduce(bottom))))

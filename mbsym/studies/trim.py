@@ -1,0 +1,125 @@
+"""``mbsym trim``: inputs or parameters that make the described motion one of the system."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from dataclasses import KW_ONLY, dataclass, replace
+from typing import TYPE_CHECKING, Annotated
+
+from mbsym.expressions.message import Message
+from mbsym.report.content import Block, Strong, Subheading, paragraph
+from mbsym.studies.described import Source, analysis_of, public
+from mbsym.studies.request import Names
+from mbsym.studies.study import DESCRIPTION, Answer, Asked, Refusal, Study, Unfit, Watch, failed
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+    from mbsym.model.system import System
+    from mbsym.problems.trim import Trim
+
+
+@dataclass(frozen=True)
+class Request:
+    """Find the inputs, or parameters, with which FILE's unperturbed motion (motion:) satisfies the equations.
+
+    In symbols: the torque that holds a linkage in a posture, the preload of a suspension.  All that is asked for has to
+    enter the equations linearly; constraints are taken into account.  What the motion has to satisfy whatever their
+    values is told besides, and so is what is divided by.
+
+    Exit codes: 0 found, 1 there are no such values (the reason is given), 2 something is wrong.
+
+    \b
+    Examples:
+      mbsym trim systems/cart-pole.yaml
+      mbsym trim systems/spring-pendulum.yaml --solve l0
+    """
+
+    _: KW_ONLY
+    solve: Annotated[tuple[str, ...], Names("NAME", "An input or parameter; repeatable.  [default: all inputs]")] = ()
+
+
+def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
+    names = (*system.input_names, *system.parameter_names)
+    for name in request.solve or ():
+        if name not in names:
+            told = Message("there is no input or parameter '[[name]]'", name=name)
+            yield Unfit("--solve", "unknown-name", told, Message("there are [[names]]", names=", ".join(names)), name)
+        elif name in {item.name for item in system.relations}:
+            yield Unfit("--solve", "misplaced-name", Message("'[[name]]' follows from a relation", name=name), "", name)
+    if not request.solve and not system.inputs:
+        told = Message("the system has no inputs")
+        yield Unfit(DESCRIPTION, "no-inputs", told, "add --solve NAME of a parameter")
+
+
+def _asked(source: Source, request: Request) -> Asked:
+    """The system with its inputs, which are looked for."""
+    from mbsym.analysis.given import refuse_matrices
+
+    system = analysis_of(source).system
+    refuse_matrices(system, "no posture is held")
+    for one in unfit(request, system, ()):
+        raise ValueError(one.message)
+    return Asked(system)
+
+
+@public(Request, _asked)
+def trim(asked: Asked, request: Request, watch: Watch) -> Trim:
+    """Inputs or parameters with which the described motion satisfies the equations: ``mbsym trim``.
+
+    Raises DescriptionError, ``mbsym.algebra.failures.Failure``.
+    """
+    from mbsym.problems.trim import trim as found_of
+
+    watch("deriving")
+    analysis = _with_letters(asked.system, request.solve)
+    unknowns = request.solve or asked.system.input_names
+    found = analysis.equilibrium
+    if found.unsteady:
+        from mbsym.algebra.failures import NoClosedForm
+
+        told = Message("the equations vary with [[names]] on this motion", names=", ".join(found.unsteady))
+        raise NoClosedForm(told)
+    assumed = [x.polynomial for x in analysis.reduced.about.assumed] if analysis.system.constraints else []
+    residuals = [x.polynomial for x in found.residuals]
+    return found_of(analysis.parameters_scene, residuals, unknowns, analysis.signs, assumed)
+
+
+def _with_letters(system: System, solve: Collection[str]) -> Analysis:
+    """The system whose inputs are parameters, but for those that are held and not asked for."""
+    from mbsym.analysis import Analysis
+    from mbsym.expressions.tree import Name
+    from mbsym.model.substitution import driven
+    from mbsym.model.system import Parameter
+
+    asked = [one for one in system.inputs if not solve or one.name in solve]
+    laws = {one.name: Name(one.name) for one in asked}
+    letters = tuple(Parameter(one.name, meaning=one.meaning) for one in asked)
+    return Analysis(replace(driven(system, laws), parameters=(*system.parameters, *letters)), ())
+
+
+def answer(asked: Asked, request: Request, found: Trim) -> Answer:
+    return Answer(_lines(found))
+
+
+def _lines(found: Trim) -> Iterator[Block]:
+    if found.impossible:
+        yield paragraph(Strong(Message("no values make this motion one of the system")))
+    for name, value in found.solved if not found.impossible else ():
+        yield paragraph(Message("[[name]] = [[value]]", name=name, value=value))
+    for name in found.free if not found.impossible else ():
+        yield paragraph(Message("[[name]]: any value", name=name))
+    for title, formulas, sign in (
+        (Message("divided by, not to be 0"), found.assumed, " != 0"),
+        (Message("the motion itself has to satisfy"), found.conditions, " = 0"),
+    ):
+        if formulas:
+            yield Subheading((title,))
+        for x in formulas:
+            yield paragraph("  ", str(x), sign)
+
+
+def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+    return failed(error, "no values found")
+
+
+STUDY = Study("trim", Request, trim.derive, answer, refusal, unfit, constraints=True, held=False, out=None)

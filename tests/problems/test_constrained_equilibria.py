@@ -1,0 +1,287 @@
+"""Rests under constraints: lists and verdicts by hand, and against the angle that the constraints leave free."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from fractions import Fraction
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+import mbsym
+from mbsym.algebra.failures import Constrained
+from mbsym.analysis.resting import relative_equilibria
+from mbsym.mechanics.rest import given_values
+from mbsym.problems.relative_equilibria.equilibria import Equilibria
+from mbsym.problems.stability.reasons import Because
+from mbsym.source import read
+
+HEAD = "mbsym: 1\nname: Tied\n"
+
+LADDER = (
+    HEAD
+    + """
+parameters: {m: {positive: true, value: 2}, l: {positive: true, value: 1}, k: {positive: true, value: 20},
+  g: {positive: true, value: 10}}
+bodies:
+  - {name: rod, attached to: 0, connection point: [x, y, 0], rotation: {axes: [3], angles: [q]}, coordinates: [x, y, q],
+     mass: m, inertia about: mass centre, inertia: [0, m*l**2/12, m*l**2/12]}
+loads:
+  - uniform gravity: {vector: [0, -g, 0]}
+  - spring: {between: [{body: rod, point: [l/2, 0, 0]}, {body: 0, point: [0, 0, 0]}], stiffness: k, length: 0}
+constraints: [{relation: y + l/2*sin(q) = 0}, {relation: x - l/2*cos(q) = 0}]
+"""
+)
+
+BOWL = (
+    HEAD
+    + """
+parameters: {a: {positive: true, value: 1}, b: {positive: true, value: 2}, g: {value: 10}, h: {value: 3}}
+bodies: [{name: P, attached to: 0, connection point: [x, y, z], coordinates: [x, y, z], mass: 1}]
+loads: [{uniform gravity: {vector: [h, 0, -g]}}]
+constraints: [{relation: z - (a*x**2 + b*y**2)/2 = 0}]
+"""
+)
+
+SPHERE = (
+    HEAD
+    + """
+bodies: [{name: P, attached to: 0, connection point: [x, y, z], coordinates: [x, y, z], mass: 1}]
+loads: [{uniform gravity: {vector: [0, 0, -10]}}]
+constraints: [{relation: x**2 + y**2 + z**2 = 1}]
+"""
+)
+
+DOUBLE = (
+    HEAD
+    + """
+parameters: {l1: {positive: true, value: 1}, l2: {positive: true, value: 3/2}}
+bodies:
+  - {name: A, attached to: 0, connection point: [x1, y1, 0], coordinates: [x1, y1], mass: 1}
+  - {name: B, attached to: 0, connection point: [x2, y2, 0], coordinates: [x2, y2], mass: 2}
+loads: [{uniform gravity: {vector: [0, -10, 0]}}]
+constraints:
+  - distance: {between: [{body: A, point: [0, 0, 0]}, {body: 0, point: [0, 0, 0]}], length: l1}
+  - distance: {between: [{body: B, point: [0, 0, 0]}, {body: A, point: [0, 0, 0]}], length: l2}
+"""
+)
+
+#: A bar is m = 1; lengths A, B, C; the ground D.
+FOUR_BAR = (
+    HEAD
+    + """
+parameters: {A: {positive: true, value: 1}, B: {positive: true, value: 2}, C: {positive: true, value: 3/2},
+  D: {positive: true, value: 2}, gx: {value: 0}, gy: {value: -10}}
+bodies:
+  - {name: a, attached to: 0, rotation: {axes: [3], angles: [p]}, mass centre: [A/2, 0, 0], mass: 1,
+     inertia about: mass centre, inertia: [0, A**2/12, A**2/12]}
+  - {name: b, attached to: a, connection point: [A, 0, 0], rotation: {axes: [3], angles: [q]}, mass centre: [B/2, 0, 0],
+     mass: 1, inertia about: mass centre, inertia: [0, B**2/12, B**2/12]}
+  - {name: c, attached to: 0, connection point: [D, 0, 0], rotation: {axes: [3], angles: [s]},
+     mass centre: [C/2, 0, 0], mass: 1, inertia about: mass centre, inertia: [0, C**2/12, C**2/12]}
+loads: [{uniform gravity: {vector: [gx, gy, 0]}}]
+constraints: [{coincide: [{body: b, point: [B, 0, 0]}, {body: c, point: [C, 0, 0]}]}]
+"""
+)
+
+SLIDER_CRANK = (
+    HEAD
+    + """
+parameters: {r: {positive: true, value: 1}, l: {positive: true, value: 3}, k: {positive: true, value: 5}}
+bodies:
+  - {name: crank, attached to: 0, rotation: {axes: [3], angles: [a]}, mass centre: [r/2, 0, 0], mass: 1,
+     inertia about: mass centre, inertia: [0, 1/12, 1/12]}
+  - {name: rod, attached to: crank, connection point: [r, 0, 0], rotation: {axes: [3], angles: [b]},
+     mass centre: [l/2, 0, 0], mass: 1, inertia about: mass centre, inertia: [0, 1/12, 1/12]}
+loads:
+  - uniform gravity: {vector: [0, -10, 0]}
+  - spring: {between: [{body: rod, point: [l, 0, 0]}, {body: 0, point: [3, 0, 0]}], stiffness: k, length: 0}
+constraints: [{relation: r*sin(a) + l*sin(a + b) = 0}]
+"""
+)
+
+
+def listed(text: str, **values: Fraction | int) -> Equilibria:
+    system = read(text)[0]
+    assert system is not None
+    return relative_equilibria(system, given_values(system, {name: Fraction(x) for name, x in values.items()}))
+
+
+def states(found: Equilibria) -> dict[tuple[float, ...], str]:
+    return {tuple(round(x.value, 6) for x in one.values): str(one.verdict.word) for one in found.equilibria}
+
+
+def approx(expected: Mapping[tuple[float, ...], str]) -> dict[tuple[float, ...], str]:
+    return {tuple(round(x, 6) + 0.0 for x in place): word for place, word in expected.items()}
+
+
+def test_a_ladder_held_by_a_spring() -> None:
+    """V = m g l/2 sin b + k l^2/2 cos^2 b with b = -q:  cos b = 0, or sin b = m g/(2 k l) = 1/2, where
+
+    V'' = -m g l/2 sin b - k l^2 cos 2b = -15 < 0; at b = +-pi/2 it is 20 -+ 10 > 0.
+    """
+    found = listed(LADDER)
+    assert found.complete
+    h, c = math.pi / 2, math.sqrt(3) / 4
+    expected = {(0, 0.5, -h): "stable", (0, -0.5, h): "stable"}
+    expected |= {(c, 0.25, -math.pi / 6): "unstable", (-c, 0.25, -5 * math.pi / 6): "unstable"}
+    assert states(found) == approx(expected)
+
+
+def test_a_stiff_ladder_hangs_or_leans_and_a_soft_one_only_hangs() -> None:
+    """m g/(2 k l) = 2 > 1: of cos b = 0 the upper place has V'' = k l^2 - m g l/2 = 5 - 10 < 0."""
+    assert states(listed(LADDER, k=5)) == approx({(0, -0.5, math.pi / 2): "stable", (0, 0.5, -math.pi / 2): "unstable"})
+
+
+@pytest.mark.parametrize(("g", "word"), [(10, "stable"), (-10, "unstable")])
+def test_a_ball_in_a_tilted_bowl_and_on_a_dome(g: int, word: str) -> None:
+    """V = g z - h x on z = (a x^2 + b y^2)/2: a x = h/g, y = 0; Hess V = g diag(a, b)."""
+    x = 3 / g
+    assert states(listed(BOWL, g=g)) == approx({(x, 0, x * x / 2): word})
+
+
+def test_a_particle_on_a_sphere_told_by_three_coordinates() -> None:
+    found = listed(SPHERE)
+    assert found.complete
+    assert states(found) == {(0, 0, -1): "stable", (0, 0, 1): "unstable"}
+
+
+def test_a_double_pendulum_told_by_constraints_is_that_in_angles() -> None:
+    """Four places, each mass below or above what carries it; only the lowest is a minimum."""
+    found = listed(DOUBLE)
+    assert found.complete
+    expected = {(0, -1, 0, -2.5): "stable"}
+    expected |= dict.fromkeys([(0, 1, 0, 2.5), (0, 1, 0, -0.5), (0, -1, 0, 0.5)], "unstable")
+    assert states(found) == approx(expected)
+
+
+def four_bar_by_hand(a: float, b: float, c: float, d: float, gx: float, gy: float) -> dict[tuple[float, ...], str]:
+    """The loop is closed by hand for every crank angle; extrema of the potential along both branches."""
+    found = {}
+    for branch in (1, -1):
+
+        def closed(p: float, branch: int = branch) -> tuple[float, float, float] | None:
+            x, y = a * math.cos(p), a * math.sin(p)
+            far = math.hypot(d - x, -y)
+            cosine = (b * b + far * far - c * c) / (2 * b * far)
+            if abs(cosine) > 1:
+                return None
+            direction = math.atan2(-y, d - x) + branch * math.acos(cosine)
+            ex, ey = x + b * math.cos(direction), y + b * math.sin(direction)
+            return direction, ex, ey
+
+        def potential(p: float) -> float:
+            place = closed(p)
+            assert place is not None
+            _, ex, ey = place
+            x, y = a * math.cos(p), a * math.sin(p)
+            return -gx * (x / 2 + (x + ex) / 2 + (d + ex) / 2) - gy * (y / 2 + (y + ey) / 2 + ey / 2)
+
+        def slope(p: float) -> float:
+            return (potential(p + 1e-5) - potential(p - 1e-5)) / 2e-5
+
+        grid = np.linspace(-math.pi + 0.0003, math.pi + 0.0003, 4000)
+        for low, high in pairwise(grid):
+            if any(closed(x + e) is None for x in (low, high) for e in (-1e-4, 1e-4)) or slope(low) * slope(high) > 0:
+                continue
+            rising = slope(high) > 0
+            for _ in range(60):
+                middle = (low + high) / 2
+                low, high = (low, middle) if (slope(middle) > 0) == rising else (middle, high)
+            place = closed(low)
+            assert place is not None
+            direction, ex, ey = place
+            angles = (low, direction - low, math.atan2(ey, ex - d))
+            turned = tuple(round(math.remainder(x, 2 * math.pi), 3) + 0.0 for x in angles)
+            found[turned] = "stable" if rising else "unstable"
+    return found
+
+
+@pytest.mark.parametrize("gravity", [(0, -10), (4, -7)])
+def test_a_four_bar_under_gravity(gravity: tuple[int, int]) -> None:
+    """Grashof: the crank turns wholly, and no position is singular."""
+    found = listed(FOUR_BAR, gx=gravity[0], gy=gravity[1])
+    assert found.complete
+    assert all(x.proof == "exact" for x in found.equilibria)
+    rounded = {tuple(round(x.value, 3) + 0.0 for x in one.values): one.verdict.word for one in found.equilibria}
+    assert rounded == four_bar_by_hand(1, 2, 1.5, 2, *gravity)
+
+
+def test_a_rest_in_a_singular_position_is_told_as_such() -> None:
+    """A parallelogram with all links in line along gravity: J has rank 1 there, 2 elsewhere; f = J^T lambda holds."""
+    found = listed(FOUR_BAR, A=1, C=1, B=2, D=2, gx=10, gy=0)
+    singular = [x for x in found.equilibria if x.verdict.because(Because.RANK_LOST)]
+    assert {tuple(x.text for x in one.values) for one in singular} == {("0", "0", "0"), ("pi", "pi", "pi")}
+    assert {one.verdict.word for one in singular} == {"undecided"}
+    assert any("constraints are singular" in str(x) for x in found.remarks)
+
+
+def test_a_slider_crank_with_a_spring() -> None:
+    """V = 10 (sin a/2 + sin a/2) + 5/2 (e - 3)^2 along both branches e = cos a +- sqrt(9 - sin^2 a)."""
+    expected = {}
+    for branch in (1, -1):
+
+        def potential(a: float, branch: int = branch) -> float:
+            return 10 * math.sin(a) + 2.5 * (math.cos(a) + branch * math.sqrt(9 - math.sin(a) ** 2) - 3) ** 2
+
+        grid = np.linspace(-math.pi, math.pi, 20001)
+        values = [potential(x) for x in grid]
+        for k in range(1, len(grid) - 1):
+            if (values[k] - values[k - 1]) * (values[k + 1] - values[k]) < 0:
+                expected[round(float(grid[k]), 2), branch] = "stable" if values[k] < values[k - 1] else "unstable"
+    found = listed(SLIDER_CRANK)
+    assert found.complete
+    told = {}
+    for one in found.equilibria:
+        a, b = (x.value for x in one.values)
+        told[round(a, 2), 1 if math.cos(a + b) > 0 else -1] = str(one.verdict.word)
+    assert told == expected
+
+
+def test_angles_outside_sines_are_searched_and_the_list_says_so() -> None:
+    """A torsional spring in the crank: 10 cos a + 5 a = 0 has one root, -1.0299; two branches of the rod."""
+    spring = "  - spring: {coordinate: a, stiffness: k}\n"
+    text = "".join(spring if "between" in line else line for line in SLIDER_CRANK.splitlines(keepends=True))
+    found = listed(text)
+    assert not found.complete
+    assert sorted(round(one.values[0].value, 4) for one in found.equilibria) == [-1.0299, -1.0299]
+    assert {one.verdict.word for one in found.equilibria} == {"stable"}
+
+
+def test_a_knife_edge_rests_where_gravity_is_across_it() -> None:
+    """f + J^T lambda = (g + lambda sin psi, -lambda cos psi, 0): cos psi = 0, wherever it is."""
+    text = (
+        HEAD
+        + """
+bodies:
+  - {name: B, attached to: 0, connection point: [x, y, 0], rotation: {axes: [3], angles: [psi]},
+     coordinates: [x, y, psi], mass: 1, inertia about: mass centre, inertia: [1, 1, 1]}
+loads: [{uniform gravity: {vector: [10, 0, 0]}}]
+constraints: [{velocity: x_dot*sin(psi) - y_dot*cos(psi) = 0}]
+"""
+    )
+    found = listed(text)
+    assert found.complete
+    assert [[x.text for x in one.values] for one in found.equilibria] == [["pi/2"], ["-pi/2"]]
+    assert {one.free for one in found.equilibria} == {("x", "y")}
+    assert not any(one.verdict.stable for one in found.equilibria)
+
+
+def test_constraints_that_tie_what_moves_are_refused() -> None:
+    """x follows where y = v t and x + y = c: that no coordinate without a rate rests is no list of nothing."""
+    text = (
+        HEAD
+        + """
+bodies: [{name: B, attached to: 0, connection point: [x, y, 0], coordinates: [x, y], mass: 1}]
+constraints: [{relation: x + y = 1}]
+motion: {y: {rate: 2}}
+"""
+    )
+    with pytest.raises(Constrained, match="constraints tie what moves"):
+        listed(text)
+
+
+def test_the_result_of_a_description_knows_constraints() -> None:
+    assert len(mbsym.loads(SPHERE).equilibria.equilibria) == 2

@@ -1,0 +1,129 @@
+"""Inputs and parameters that hold a posture, in symbols: against virtual work by hand."""
+
+from __future__ import annotations
+
+import math
+import random
+from typing import Any
+
+import pytest
+from click.testing import CliRunner
+
+import mbsym
+from mbsym.algebra.failures import Failure
+from mbsym_cli.main import main
+
+HEAD = "mbsym: 1\nname: Held\n"
+
+FOUR_BAR = (
+    HEAD
+    + """
+parameters: {A: positive, B: positive, C: positive, D: positive, m: positive, g: positive, p0: real, q0: real, s0: real}
+inputs: [tau]
+bodies:
+  - {name: a, attached to: 0, rotation: {axes: [3], angles: [p]}, mass centre: [A/2, 0, 0], mass: m,
+     inertia about: mass centre, inertia: [0, m*A**2/12, m*A**2/12]}
+  - {name: b, attached to: a, connection point: [A, 0, 0], rotation: {axes: [3], angles: [q]}, mass centre: [B/2, 0, 0],
+     mass: m, inertia about: mass centre, inertia: [0, m*B**2/12, m*B**2/12]}
+  - {name: c, attached to: 0, connection point: [D, 0, 0], rotation: {axes: [3], angles: [s]},
+     mass centre: [C/2, 0, 0], mass: m, inertia about: mass centre, inertia: [0, m*C**2/12, m*C**2/12]}
+loads: [{uniform gravity: {vector: [0, -g, 0]}}, {generalized force: {p: tau}}]
+constraints: [{coincide: [{body: b, point: [B, 0, 0]}, {body: c, point: [C, 0, 0]}]}]
+motion: {p: p0, q: q0, s: s0}
+"""
+)
+
+LADDER = (
+    HEAD
+    + """
+parameters: {m: positive, l: positive, k: positive, g: positive, q0: real, e: real}
+bodies:
+  - {name: rod, attached to: 0, connection point: [x, y, 0], rotation: {axes: [3], angles: [q]}, coordinates: [x, y, q],
+     mass: m, inertia about: mass centre, inertia: [0, m*l**2/12, m*l**2/12]}
+loads: [{uniform gravity: {vector: [0, -g, 0]}}, {generalized force: {x: -k*(x - e)}}]
+constraints: [{relation: y + l/2*sin(q) = 0}, {relation: x - l/2*cos(q) = 0}]
+motion: {q: q0, x: l/2*cos(q0), y: -l/2*sin(q0)}
+"""
+)
+
+PENDULUM = (
+    HEAD
+    + """
+parameters: {m: positive, l: positive, g: positive, a: real}
+inputs: [tau, F]
+bodies: [{name: B, attached to: 0, rotation: {axes: [3], angles: [q]}, mass centre: [l, 0, 0], mass: m}]
+loads: [{uniform gravity: {vector: [0, -g, 0]}}, {generalized force: {q: tau + 2*F}}]
+motion: {q: a}
+"""
+)
+
+
+def at(formula: Any, **values: float) -> float:
+    return float(formula.to_sympy().subs({str(x): values[str(x)] for x in formula.to_sympy().free_symbols}))
+
+
+def test_the_torque_that_holds_a_four_bar() -> None:
+    """A sin p + B sin(p + q) = C sin s turns V into m g (A sin p + C sin s), and on the loop
+
+    C s' = A p' sin q / sin(p + q - s):    tau = dV/dp = m g A (cos p + cos s sin q / sin(p + q - s)).
+    """
+    found = mbsym.trim(mbsym.loads(FOUR_BAR))
+    assert [name for name, _ in found.solved] == ["tau"]
+    assert found.free == ()
+    assert len(found.conditions) == 2  # the loop closes
+    assert found.assumed
+    draw = random.Random(1)
+    for _ in range(5):
+        p, q, s, a = (draw.uniform(0.3, 2.8) for _ in range(4))
+        torque = 3 * 10 * a * (math.cos(p) + math.cos(s) * math.sin(q) / math.sin(p + q - s))
+        assert at(found.solved[0][1], p0=p, q0=q, s0=s, A=a, m=3, g=10) == pytest.approx(torque)
+
+
+@pytest.mark.parametrize("name", ["e", "k", "m"])
+def test_the_preload_of_a_spring_that_holds_a_ladder(name: str) -> None:
+    """Virtual work: m g cos q + k (l/2 cos q - e) sin q = 0."""
+    found = mbsym.trim(mbsym.loads(LADDER), solve=(name,))
+    values = {"m": 2.0, "l": 1.5, "k": 30.0, "g": 10.0, "q0": 0.7, "e": 0.4}
+    values[name] = at(found.solved[0][1], **values)
+    m, k, l, e, g, q = (values[x] for x in ("m", "k", "l", "e", "g", "q0"))
+    assert m * g * math.cos(q) + k * (l / 2 * math.cos(q) - e) * math.sin(q) == pytest.approx(0)
+    assert found.conditions == ()
+
+
+def test_one_equation_leaves_one_of_two_inputs_free() -> None:
+    found = mbsym.trim(mbsym.loads(PENDULUM))
+    assert [name for name, _ in found.solved] == ["tau"]
+    assert found.free == ("F",)
+    assert at(found.solved[0][1], m=2, l=3, g=10, a=0.5, F=7) == pytest.approx(60 * math.cos(0.5) - 14)
+
+
+def test_an_input_that_is_not_asked_for_keeps_its_value() -> None:
+    found = mbsym.trim(mbsym.loads(PENDULUM), solve=("F",))
+    assert at(found.solved[0][1], m=2, l=3, g=10, a=0.5) == pytest.approx(30 * math.cos(0.5))
+
+
+def test_what_cannot_be_solved_for_says_so() -> None:
+    with pytest.raises(Failure, match="q0: not linear"):
+        mbsym.trim(mbsym.loads(LADDER), solve=("q0",))
+
+
+def test_no_value_holds_what_nothing_acts_on() -> None:
+    """A pendulum level with its pivot, the torque on another body: m g l = 0 never holds."""
+    text = (
+        PENDULUM.replace("tau + 2*F", "0*tau").replace("inputs: [tau, F]", "inputs: [tau]").replace("{q: a}", "{q: 0}")
+    )
+    text = text.replace("mass: m}]", "mass: m}, {name: C, attached to: 0, rotation: {axes: [3], angles: [z]}, mass: m,")
+    text = text.replace("mass: m,\nloads", "mass: m, inertia about: joint, inertia: [1, 1, 1]}]\nloads").replace(
+        "{q: 0*tau}", "{z: tau}"
+    )
+    found = mbsym.trim(mbsym.loads(text.replace("motion: {q: 0}", "motion: {q: 0, z: 0}")))
+    assert [str(x) for x in found.impossible]
+
+
+def test_the_command_prints_it(tmp_path: Any) -> None:
+    path = tmp_path / "held.yaml"
+    path.write_text(PENDULUM)
+    done = CliRunner().invoke(main, ["trim", str(path), "--solve", "tau"])
+    assert done.exit_code == 0
+    assert "tau = m*l*g*cos(a)" in done.output
+    assert CliRunner().invoke(main, ["trim", str(path), "--solve", "zeta"]).exit_code == 2
