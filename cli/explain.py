@@ -16,6 +16,7 @@ TOPICS = {
     "loads": "the kinds of load and their keys",
     "constraints": "the kinds of constraint and their keys",
     "expressions": "what a formula may hold",
+    "abbreviations": "the author's letters, in claims and in results",
     "claims": "how printed formulas are checked, and the kinds of claim",
 }
 
@@ -25,7 +26,8 @@ TOPICS = {
 def command(topic: str | None) -> None:
     """Print what problem TOPIC (a number) does and the formula it uses; without TOPIC, the list of problems and topics.
 
-    The topics description, loads, constraints, expressions and claims tell what may stand in a description.
+    The topics description, loads, constraints, expressions, abbreviations and claims tell what may stand in a
+    description.
 
     \b
     Examples:

@@ -33,6 +33,7 @@ from mbsym_cli.console import (
     trace,
 )
 from mbsym_cli.files import deliver, delivered, digest_of, obstacle
+from mbsym_cli.letters import read_letters
 from mbsym_cli.options import Options
 
 if TYPE_CHECKING:
@@ -73,6 +74,7 @@ class Request:
     detail: str = "compact"
     settings: tuple[str, ...] = ()  # values that replace those of the description
     scale: str | None = None  # dimensionless variables that the description is put in
+    letters: str | None = None  # the author's, in which formulas are written; None: where they get shorter
 
 
 def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> int:
@@ -84,21 +86,19 @@ def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> 
         system = read_description(path)
         if system is None:
             return BAD_INPUT
+        asked = Options()
         if request.settings:
-            asked = Options()
             system = with_settings(path, system, request.settings, asked)
-            if asked.refused(path):
-                return BAD_INPUT
-        if request.scale is not None:
-            asked = Options()
-            system = in_scale(system, request.scale, asked)
-            if asked.refused(path) or system is None:
-                return BAD_INPUT
+        if request.scale is not None and not asked.complaints:
+            system = in_scale(system, request.scale, asked) if system is not None else None
+        letters = None if request.letters is None or system is None else read_letters(request.letters, system, asked)
+        if asked.refused(path) or system is None:
+            return BAD_INPUT
         reason = obstacle(folder, base)
         if reason:
             complain(path, f"the reports cannot be written: {reason}")
             return FAILED
-        return _derive(path, system, folder, request)
+        return _derive(path, system, folder, request, letters)
     except OSError as error:
         complain(path, f"the reports cannot be written: {reason_of(error)}")
         trace(error)
@@ -107,7 +107,7 @@ def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> 
     return FAILED
 
 
-def _derive(path: Path, system: System, folder: Path, request: Request) -> int:
+def _derive(path: Path, system: System, folder: Path, request: Request, letters: tuple[str, ...] | None) -> int:
     from mbsym.analysis import Analysis
     from mbsym.analysis.given import chosen as own_problems
     from mbsym.formulas.tree import angles_as
@@ -116,7 +116,7 @@ def _derive(path: Path, system: System, folder: Path, request: Request) -> int:
     problems = request.problems if request.named else own_problems(system, request.problems)
     analysis = Analysis(system, problems, request.terms)
     analysis.language = request.language
-    analysis.forms = request.forms
+    analysis.forms, analysis.letters = request.forms, letters
     analysis.detail, analysis.animate = request.detail, request.animate
     analysis.figures = _figures(folder, system) if "latex" in request.formats else ()
     found = None
@@ -183,6 +183,7 @@ def _show(
         show_brief(brief(analysis, seconds), path.name, request.width)
         return
     from mbsym.formulas.tree import angles_as
+    from mbsym.report.letters import in_letters
     from mbsym.report.plain_writer import LONGEST, Writer
     from mbsym.report.results import results
     from mbsym.report.sections.summary import finding
@@ -194,8 +195,9 @@ def _show(
         known = results(analysis, analysis.problems)
         writer = Writer(language, True, LONGEST, (asked_width() or WIDEST) - 2, file)  # documents stand further in
         lines = _documents(known, writer, request)
-        told = finding(known)
-        show_finding(told, analysis.system.name, path, seconds, written, writer, lines, not request.verbose)
+        with in_letters(analysis.system, analysis.letters):
+            told = finding(known)
+            show_finding(told, analysis.system.name, path, seconds, written, writer, lines, not request.verbose)
     if found is not None:
         from mbsym.report.runs.ledger import ledger_blocks
 

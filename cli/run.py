@@ -11,6 +11,7 @@ import click
 
 from mbsym_cli.console import BAD_INPUT, OK, OutPath, read_description
 from mbsym_cli.files import REPORTS, safe_name
+from mbsym_cli.letters import with_letters
 from mbsym_cli.options import Options, group
 from mbsym_cli.reports import Request, report_on
 from mbsym_cli.simulate.choice import COARSEST, FINEST
@@ -79,6 +80,7 @@ ledger_options = group(
     help="products, sums or shorter: sin and cos of sums of angles in every file.  [default: the shorter form of each "
     "formula for people, products for programs]",
 )
+@with_letters
 @click.option(
     "--form", "forms", default="lagrange", metavar="FORMS", help="Of problem 3, beside Lagrange's: routh, hamilton."
 )
@@ -101,6 +103,7 @@ def command(
     detail: str,
     terms: str,
     angles: str | None,
+    letters: str | None,
     forms: str,
     animate: str | None,
     language: str | None,
@@ -212,6 +215,7 @@ def command(
         wanted or detail,
         settings,
         scale,
+        letters,
     )
     worst = OK
     base = None if out is not None and len(paths) == 1 else out or REPORTS

@@ -9,6 +9,7 @@ import click
 
 from mbsym_cli.assignments import scaling_of, with_settings
 from mbsym_cli.console import BAD_INPUT, FAILED, OK, complain, printable, read_description, status
+from mbsym_cli.letters import read_letters, with_letters
 from mbsym_cli.options import Options
 
 
@@ -21,6 +22,7 @@ from mbsym_cli.options import Options
 @click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Replace a value; repeatable.")
 @click.option("--scale", metavar="LIST", help="Dimensionless variables: x=L*x1,t=tau/omega0,k=m*omega0**2*kappa.")
 @click.option("--terms", metavar="N", default="1000000", show_default=True, help="Longest formula that is derived.")
+@with_letters
 def command(
     file: Path,
     names: tuple[str, ...],
@@ -28,6 +30,7 @@ def command(
     settings: tuple[str, ...],
     scale: str | None,
     terms: str,
+    letters: str | None,
 ) -> None:
     """Print formulas of FILE by their NAMEs: its equations of motion, or what is asked for.
 
@@ -58,12 +61,15 @@ def command(
     budget = asked.whole("--terms", terms, 1, 10**12)
     if system is not None and settings:
         system = with_settings(file, system, settings, asked)
+    chosen = None if system is None else read_letters(letters, system, asked)
     scaling = scaling_of(scale, system, asked) if system is not None and scale is not None else None
     if asked.refused(file) or system is None or budget is None:
         sys.exit(BAD_INPUT)
     from mbsym.algebra.failures import Failure
     from mbsym.analysis import Analysis
+    from mbsym.expressions.tree import text
     from mbsym.report.formulas_by_name import carried_lines, known_names, lines, remarked, written
+    from mbsym.report.letters import in_letters, letters_of
 
     formulas = None
     if scaling is not None:
@@ -86,19 +92,26 @@ def command(
         asked.complain("NAME", "unknown-name", f"nothing is called '{name}' here", _nearest(name, known))
     if asked.refused(file):
         sys.exit(BAD_INPUT)
+    if chosen is None and language in ("python", "wolfram"):
+        chosen = ()  # other programs know no letters, unless somebody asks for them
     worst = OK
-    for name in wanted:
-        try:
-            with status(False, f"deriving {name}"):
-                found = list(lines(analysis, name) if formulas is None else carried_lines(formulas, name))
-        except Failure as error:
-            complain(file, f"{name}: {error}")
-            worst = FAILED
-            continue
-        for line in found:
-            if line.remark:
-                click.echo(remarked(printable(line.remark), language or "text"))
-            click.echo(written(line, language or "text"))
+    with in_letters(system, chosen) as used:
+        for name in wanted:
+            try:
+                with status(False, f"deriving {name}"):
+                    found = list(lines(analysis, name) if formulas is None else carried_lines(formulas, name))
+            except Failure as error:
+                complain(file, f"{name}: {error}")
+                worst = FAILED
+                continue
+            for line in found:
+                if line.remark:
+                    click.echo(remarked(printable(line.remark), language or "text"))
+                click.echo(written(line, language or "text"))
+    if used:
+        click.echo(remarked("where", language or "text"))
+        for name, value in letters_of(system).definitions(used):
+            click.echo(remarked(f"{name} = {text(value)}", language or "text"))
     sys.exit(worst)
 
 

@@ -9,6 +9,8 @@ import inspect
 import sys
 import time
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NoReturn, TypeVar
 
@@ -18,6 +20,7 @@ from mbsym.expressions.message import Message
 from mbsym.model.system import System
 from mbsym.report.content import Block, facts
 from mbsym.report.language import Language
+from mbsym.report.letters import in_letters, with_meanings
 from mbsym.report.plain_writer import Writer
 from mbsym.studies.request import fields_of
 from mbsym.studies.study import Answer, Asked, Document, Folder, Line, NotFit, Single, Study, Unfit
@@ -37,6 +40,7 @@ from mbsym_cli.console import (
     watching,
 )
 from mbsym_cli.files import deliver, folder_for, obstacle, write_whole
+from mbsym_cli.letters import letters_option, read_letters
 from mbsym_cli.options import Options
 from mbsym_cli.requests import option_of, read_fields
 
@@ -63,6 +67,8 @@ def command_of(study: Study[Any, Any]) -> click.Command:
 
 def _further(study: Study[Any, Any]) -> Iterator[click.Option]:
     """``--json``, ``--out`` and ``--quiet``, where there is something to them."""
+    if study.letters:
+        yield letters_option()
     if study.json is not None:
         yield click.Option(["--json", "as_json"], is_flag=True, help=study.json_help)
     match study.out:
@@ -84,6 +90,8 @@ class _Run:
         self.quiet = bool(texts.get("quiet"))
         self.as_json = bool(texts.get("as_json"))
         self.options = Options()
+        self.letters: tuple[str, ...] | None = None
+        self.used: set[str] = set()
         self.writes = False
         self.started = time.perf_counter()
         self.say = Language().say
@@ -93,6 +101,8 @@ class _Run:
         system = self._described()
         self.say = Language("" if system is None else system.language).say
         values, given = read_fields(file, system, study.request, self.texts, self.options)
+        if study.letters and system is not None:
+            self.letters = read_letters(self.texts.get("letters"), system, self.options)
         request = study.request(**values)
         typed = {name for name, text in self.texts.items() if text not in (None, (), False)}
         self.writes = isinstance(study.out, Folder) and study.writes(typed)
@@ -103,6 +113,13 @@ class _Run:
             return code or BAD_INPUT
         asked = Asked(system, given, printable(file), folder_for(file, self.out), write_whole)
         return self._answered(asked, request)
+
+    @contextmanager
+    def _in_letters(self, system: System) -> Iterator[set[str]]:
+        """Formulas are written in the author's letters, where the study does so; which ones were used is known then."""
+        with in_letters(system, self.letters if self.study.letters else ()) as used:
+            yield used
+        self.used |= used
 
     def _described(self) -> System | None:
         """The system, None after complaints; inputs are held, which is said, where the study does so."""
@@ -147,7 +164,9 @@ class _Run:
         try:
             with watching(self.quiet or self.as_json, file.name) as watch:
                 found = study.derive(asked, request, watch)
-                answer = study.answer(asked, request, found)
+                with self._in_letters(asked.system):
+                    answer = study.answer(asked, request, found)
+                    answer = replace(answer, lines=list(answer.lines))
                 if answer.files:
                     deliver(folder_for(file, self.out), answer.files, study.name)
         except OSError as error:
@@ -168,7 +187,8 @@ class _Run:
         if self.as_json and study.json is not None:
             click.echo(study.json(asked, request, found), nl=False)
         else:
-            self._tell(asked, answer)
+            with self._in_letters(asked.system) as used:
+                self._tell(asked, answer, used)
         for text in answer.complaints:
             complain(file, self.say(text))
         usual = study.out.usual if isinstance(study.out, Single) else ""
@@ -177,7 +197,7 @@ class _Run:
             return answer.code
         return self._written(place, study.document(asked, request, found))
 
-    def _tell(self, asked: Asked, answer: Answer) -> None:
+    def _tell(self, asked: Asked, answer: Answer, used: set[str]) -> None:
         loud = not self.quiet
         if loud:
             seconds = f", {time.perf_counter() - self.started:.2f} s" if self.study.timed else ""
@@ -187,6 +207,8 @@ class _Run:
                 tell(*one.parts, whole=one.whole)
             elif not isinstance(one, Line) and (loud or answer.brief):
                 show([one], asked.system.language)
+        if loud:
+            show(with_meanings((), asked.system, self.used | used), asked.system.language)
         if answer.files and loud:
             show_files(folder_for(self.file, self.out), answer.files, asked.system.language)
 

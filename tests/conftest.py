@@ -8,13 +8,14 @@ import os
 import shutil
 import subprocess
 from collections import OrderedDict
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache, wraps
+from operator import add, mul, sub, truediv
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import properties  # noqa: F401  (before the command line asks for one of its profiles)
 import pytest
@@ -33,11 +34,13 @@ from mbsym.algebra.base import Lowering
 from mbsym.analysis import Analysis
 from mbsym.expressions.parser import parse_expression
 from mbsym.expressions.place import Complaints, Span
-from mbsym.expressions.tree import Expression, number, substitute
+from mbsym.expressions.tree import Expression, Name, Negative, Number, Operation, number, substitute
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.variables import ring_environment
 from mbsym.model.system import System
 from mbsym.numerics.kernels.llvm import Library
+
+T = TypeVar("T")
 
 #: A width that somebody exported would wrap what is looked for in outputs.
 os.environ.pop("COLUMNS", None)
@@ -88,6 +91,30 @@ def parsed(text: str) -> Expression:
     tree = parse_expression(text, complaints, lambda start, end: Span(1, start + 1, end - start))
     assert tree is not None, [item.message for item in complaints.items]
     return tree
+
+
+def with_letters(system: System, values: dict[str, T], number: Callable[[Fraction], T]) -> dict[str, T]:
+    """The values, and those that rational letters of the description (notation, abbreviations) have by them."""
+
+    def value(x: Expression) -> Any:
+        match x:
+            case Number():
+                return number(x.value)
+            case Name():
+                return found[x.name]
+            case Negative():
+                return -value(x.operand)
+            case Operation("**", left, Number() as exponent):
+                return value(left) ** int(exponent.value)
+            case Operation(sign, left, right):
+                return {"+": add, "-": sub, "*": mul, "/": truediv}[sign](value(left), value(right))
+        raise KeyError(x)
+
+    found = dict(values)
+    for one in (*system.notation, *system.abbreviations):
+        with suppress(KeyError):
+            found[one.name] = value(one.value)
+    return found
 
 
 def browsed(file: Path, *options: str, wait: int = 1000) -> tuple[str, list[str]]:

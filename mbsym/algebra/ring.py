@@ -109,6 +109,12 @@ class Ring(Algebra[Polynomial]):
 
     #: Generators by which formulas are collected before others when they are shown.
     leading: frozenset[int] = frozenset()
+    #: Generators that are read like parameters.
+    resting: frozenset[int] = frozenset()
+    #: Whether formulas that are collected so have their common factors in front where that is shorter to read.
+    shortest = False
+    #: Names that are read before others of their kind.
+    letters: tuple[str, ...] = ()
 
     def __init__(
         self,

@@ -179,6 +179,8 @@ class Analysis(Stages):
         self.forms: tuple[str, ...] = ()
         #: Of the reports, where it is not that of the description.
         self.language = ""
+        #: The author's letters that reports use even where nothing gets shorter; None: all of them where it does.
+        self.letters: tuple[str, ...] | None = None
         #: How much reports write out: "compact", or "full".
         self.detail = "compact"
         #: The time until which report.html shows the motion; None: it does not, and nothing is integrated.

@@ -12,6 +12,7 @@ from typing import Any, Generic, Self, TypeVar, overload
 from mbsym.algebra.failures import Defect, Failure, Limit, NotInstalled, Severity, SingularPoint
 from mbsym.expressions.guessing import GuessesNames
 from mbsym.expressions.message import Message, worded
+from mbsym.formulas.letters import letters_as
 
 T = TypeVar("T")
 Owner = TypeVar("Owner", bound="Stages")
@@ -113,7 +114,8 @@ class Stages(GuessesNames):
             value, failure = None, None
             self._depth += 1
             try:
-                value = compute()
+                with letters_as(None):  # what is remembered is in parameters, whoever asks first
+                    value = compute()
             except Failure as reason:
                 failure = NoResult.of(reason)
             except Exception as error:  # it costs this stage and what needs it, and is told

@@ -13,6 +13,7 @@ from typing import Any
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.guessing import GuessesNames
 from mbsym.formulas.latex import latex_text
+from mbsym.formulas.letters import lettered
 from mbsym.formulas.python import python_text, readable_text
 from mbsym.formulas.shape import terms_read
 from mbsym.formulas.tree import Angles, angles_as, angles_or
@@ -30,6 +31,11 @@ class Formula(GuessesNames):
 
     ring: Ring
     polynomial: Polynomial
+
+    @property
+    def shown(self) -> Formula:
+        """What is written of it: the same in the letters of whoever asked for them (``letters_as``)."""
+        return Formula(*lettered(self.ring, self.polynomial))
 
     def __str__(self) -> str:
         return python_text(self.ring, self.polynomial)

@@ -20,6 +20,7 @@ from weakref import WeakKeyDictionary
 
 from mbsym.algebra.ring import Generator, ParameterRing, Polynomial, Ring
 from mbsym.expressions.table import Tabulated
+from mbsym.formulas.letters import LetterRing, lettered
 from mbsym.formulas.names import LOWER_GREEK, greek, injective, parts
 from mbsym.formulas.shape import forget_printed, length, present, printed
 from mbsym.formulas.tree import Factor, Product, Sum, Wave, angles_or
@@ -42,6 +43,7 @@ _NAMED = {"exp": r"\exp", "log": r"\ln", "atan": r"\arctan", "sign": r"\operator
 
 def latex_text(ring: Ring, polynomial: Polynomial, breaks: bool = False) -> str:
     """The polynomial; with ``breaks`` a paragraph of inline mathematics may break it before any plus or minus."""
+    ring, polynomial = lettered(ring, polynomial)
     return printed(
         ring, polynomial, angles_or("shorter"), ("latex", breaks), lambda shape: LatexPrinter(ring, breaks).sum(shape)
     )
@@ -52,6 +54,7 @@ def latex_factor(ring: Ring, polynomial: Polynomial, breaks: bool = False) -> st
 
     After ``\\cos x`` a name would seem to belong to the argument.  1 is written as an empty string, -1 as ``-``.
     """
+    ring, polynomial = lettered(ring, polynomial)
     shape, printer = present(ring, polynomial, angles_or("shorter")), LatexPrinter(ring, breaks)
     if len(shape.terms) != 1:
         return printer.factor(Factor(shape))
@@ -159,6 +162,8 @@ def _given(text: str) -> Symbol:
 def latex_names(ring: Ring) -> LatexNames:
     """The ring's renaming, made once; a part of a ring has the names of the whole."""
     ring = ring.whole if isinstance(ring, ParameterRing) else ring
+    if isinstance(ring, LetterRing):
+        return _NAMES.get(ring) or _NAMES.setdefault(ring, latex_names(ring.whole).beside(ring.letters))
     if ring not in _NAMES:
         kinds = ("coordinate", "prescribed", "parameter")
         _NAMES[ring] = LatexNames(["t", *(g.name for g in ring.generators if g.kind in kinds)])

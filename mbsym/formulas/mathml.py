@@ -17,6 +17,7 @@ from weakref import WeakKeyDictionary
 
 from mbsym.algebra.ring import Generator, ParameterRing, Polynomial, Ring
 from mbsym.expressions.table import Tabulated
+from mbsym.formulas.letters import LetterRing, lettered
 from mbsym.formulas.names import greek, parts
 from mbsym.formulas.shape import present
 from mbsym.formulas.tree import Factor, Product, Sum, Wave, angles_or, leaves
@@ -187,6 +188,8 @@ def write_as(ring: Ring, given: Mapping[str, Symbol]) -> None:
 def mathml_names(ring: Ring) -> MathNames:
     """The ring's renaming, made once; a part of a ring has the names of the whole."""
     ring = ring.whole if isinstance(ring, ParameterRing) else ring
+    if isinstance(ring, LetterRing):
+        return _NAMES.get(ring) or _NAMES.setdefault(ring, mathml_names(ring.whole).beside(ring.letters))
     if ring not in _NAMES:
         kinds = ("coordinate", "prescribed", "parameter")
         _NAMES[ring] = MathNames(["t", *(g.name for g in ring.generators if g.kind in kinds)])
@@ -198,11 +201,13 @@ def mathml_names(ring: Ring) -> MathNames:
 
 def mathml_pieces(ring: Ring, polynomial: Polynomial) -> list[str]:
     """The polynomial in pieces between which a page may break the line."""
+    ring, polynomial = lettered(ring, polynomial)
     return MathPrinter(ring).pieces(shape_of(ring, polynomial))
 
 
 def mathml_text(ring: Ring, polynomial: Polynomial) -> str:
     """The polynomial in one piece."""
+    ring, polynomial = lettered(ring, polynomial)
     return MathPrinter(ring).sum(shape_of(ring, polynomial))
 
 

@@ -11,12 +11,14 @@ from weakref import WeakKeyDictionary
 from mbsym.algebra.ring import Generator, Polynomial, Ring
 from mbsym.expressions.rates import ENDINGS
 from mbsym.expressions.table import Tabulated
+from mbsym.formulas.letters import LetterRing, lettered
 from mbsym.formulas.shape import present, printed
 from mbsym.formulas.tree import Factor, Product, Sum, Wave, angles_or
 
 
 def python_text(ring: Ring, polynomial: Polynomial) -> str:
     """The polynomial as one line of Python, in products of sines and cosines unless sums were asked for."""
+    ring, polynomial = lettered(ring, polynomial)
     return printed(ring, polynomial, angles_or("products"), ("python",), lambda shape: _PythonPrinter(ring).sum(shape))
 
 
@@ -27,6 +29,7 @@ def declared_name(generator: Generator) -> str:
 
 def readable_text(ring: Ring, polynomial: Polynomial) -> str:
     """The polynomial on one line as people write it: ``(m l^2 + J) theta'' + m g l sin(theta)``."""
+    ring, polynomial = lettered(ring, polynomial)
     return _ReadablePrinter(ring).sum(present(ring, polynomial, angles_or("shorter")))
 
 
@@ -146,4 +149,5 @@ def write_as(ring: Ring, given: Mapping[str, str]) -> None:
 
 def readable_name(ring: Ring, name: str) -> str:
     """A name as people write it."""
+    ring = ring.whole if isinstance(ring, LetterRing) else ring
     return _NAMES.get(ring, {}).get(name, name)

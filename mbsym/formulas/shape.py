@@ -132,7 +132,7 @@ class Presenter:
     def __init__(self, ring: Ring) -> None:
         self.ring = proxy(ring)  # the table of presenters must not keep its rings alive
         names = [g.name for g in ring.generators if g.kind in ("coordinate", "prescribed", "time", "parameter")]
-        self._declared = {name: place for place, name in enumerate(names)}
+        self._declared = {name: place for place, name in enumerate(dict.fromkeys([*ring.letters, *names]))}
         self._levels: dict[int, int] = {}
         self._places: dict[int, int] = {}
         self._inverted: dict[int, Polynomial | None] = {}
@@ -230,22 +230,29 @@ class Presenter:
         return squared if lengths[1] < lengths[0] else sums or (0, {})
 
     def _shape(self, scale: int, terms: Terms, under: list[Factor]) -> Sum:
-        if self.ring.leading and not under:
-            level = max(self.level(monomial[0][0]) for monomial in terms if monomial) if any(terms) else 0
-            if level == _SPEED_RATE:  # A p' + (C - B) q r + l q: first the derivatives, then what is left by itself
-                first = {m: c for m, c in terms.items() if m and self.level(m[0][0]) == level}
-                rest = {m: c for m, c in terms.items() if m not in first}
-                grouped = self._grouped(first, self._at_level(level), True)
-                parts = [x._replace(coefficient=x.coefficient / scale) for x in grouped.terms]
-                return Sum((*parts, *(self._shape(scale, rest, under).terms if rest else ())))
-            if level >= _VELOCITY:  # m l w/2 + l F, not l (m w + 2 F)/2: what leads is read term by term
-                grouped = self._grouped(terms, self._at_level(level), True)
-                return Sum(tuple(x._replace(coefficient=x.coefficient / scale) for x in grouped.terms))
+        found = self._by_terms(scale, terms) if self.ring.leading and not under else None
+        if found is not None and not self.ring.shortest:
+            return found
         product = self._product(terms, factored=len(terms) <= FACTOR_COEFFICIENTS)
         product = product._replace(coefficient=product.coefficient / scale)
         if under:
             return Sum((product._replace(under=_ordered(self, [*product.under, *under])),))
-        return self._opened(product)
+        whole = self._opened(product)
+        return whole if found is None or self.length(whole) <= self.length(found) else found
+
+    def _by_terms(self, scale: int, terms: Terms) -> Sum | None:
+        """What leads is read term by term, without common factors in front; None where nothing does."""
+        level = max(self.level(monomial[0][0]) for monomial in terms if monomial) if any(terms) else 0
+        if level == _SPEED_RATE:  # A p' + (C - B) q r + l q: first the derivatives, then what is left by itself
+            first = {m: c for m, c in terms.items() if m and self.level(m[0][0]) == level}
+            rest = {m: c for m, c in terms.items() if m not in first}
+            grouped = self._grouped(first, self._at_level(level), True)
+            parts = [x._replace(coefficient=x.coefficient / scale) for x in grouped.terms]
+            return Sum((*parts, *(self._shape(scale, rest, []).terms if rest else ())))
+        if level >= _VELOCITY:  # m l w/2 + l F, not l (m w + 2 F)/2
+            grouped = self._grouped(terms, self._at_level(level), True)
+            return Sum(tuple(x._replace(coefficient=x.coefficient / scale) for x in grouped.terms))
+        return None
 
     def _as_fraction(
         self, polynomial: Polynomial, used: Sequence[int], angles: Angles
@@ -285,7 +292,7 @@ class Presenter:
                 level = max([0, *(self.level(k) for k in occurring([generator.argument]))])
                 if generator.kind == "reciprocal" and level <= _RECIPROCAL:
                     level = _RECIPROCAL
-            elif level == 1 and self.ring.has("parameter", generator.name):
+            elif level == 1 and (self.ring.has("parameter", generator.name) or index in self.ring.resting):
                 level = 0
             elif index in self.ring.leading:
                 level = _VELOCITY

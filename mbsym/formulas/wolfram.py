@@ -14,6 +14,7 @@ from weakref import WeakKeyDictionary
 from mbsym.algebra.ring import Generator, ParameterRing, Polynomial, Ring
 from mbsym.expressions.table import OUTSIDE_ZERO, Curve, Table, Tabulated
 from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, children
+from mbsym.formulas.letters import lettered
 from mbsym.formulas.names import greek, injective, parts
 from mbsym.formulas.python import InfixPrinter, declared_name
 from mbsym.formulas.shape import printed
@@ -27,6 +28,7 @@ _SHORT_SYMBOLS = ("Do", "If", "In", "Im", "Re", "Or", "On", "Tr", "Pi", "Up", "B
 
 def wolfram_text(ring: Ring, polynomial: Polynomial, functions_of_time: bool = True) -> str:
     """The polynomial on one line; coordinates as functions of t, or as plain symbols (``\\[Theta]dot``)."""
+    ring, polynomial = lettered(ring, polynomial)
     return printed(
         ring,
         polynomial,

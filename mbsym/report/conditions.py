@@ -11,6 +11,7 @@ from mbsym.algebra.factors import rational_ratio
 from mbsym.algebra.ring import Ring
 from mbsym.expressions.message import Message, joined
 from mbsym.formulas.formula import Formula
+from mbsym.formulas.letters import letters
 from mbsym.formulas.names import parts
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.stability import Stability, SubsystemStability
@@ -67,7 +68,8 @@ class Labels:
 def label_meanings(ring: Ring, requirements: Sequence[Requirement]) -> Labels:
     """The meaning of the labels where these requirements are told."""
     forms = [form for one in requirements if (form := in_coefficients(ring, one)) is not None]
-    return Labels(frozenset(name for form in forms for name in form.names), names_in(ring))
+    same = {x for one in requirements if is_letter(Formula(ring, one.polynomial), x := _bare(one.label))}
+    return Labels(frozenset(name for form in forms for name in form.names), names_in(ring) - same)
 
 
 def statements(
@@ -356,8 +358,13 @@ class InCoefficients:
 
 def names_in(ring: Ring) -> frozenset[str]:
     """The names that formulas over the ring may hold, and those that look like them: v4 for ``v_4``, which is v_{4}."""
-    names = ring.names()
+    names = [*ring.names(), *(wanted.wanted if (wanted := letters()) is not None else ())]
     return frozenset([*names, *map(_looks, names)])
+
+
+def is_letter(formula: Formula, name: str) -> bool:
+    """Whether a formula is written as that letter of the description, and nothing else."""
+    return letters() is not None and str(formula) == name
 
 
 def _looks(name: str) -> str:
@@ -376,27 +383,35 @@ def in_coefficients(ring: Ring, requirement: Requirement) -> InCoefficients | No
     if condition.kind != "inequality" or condition.nonzero or len(condition.polynomial) <= WRITTEN_OUT:
         return None
     label, _, factor = requirement.label.partition(" of factor ")
-    names = _letters("discriminant" in label, len(coefficients), factor, names_in(ring))
+    names = _letters("discriminant" in label, [Formula(ring, x) for x in coefficients], factor, names_in(ring))
     present = [(name, x) for name, x in zip(names, coefficients, strict=True) if x != 0]
-    letters = Ring((), (), [name for name, _ in reversed(present)], {})
-    given = [letters.generator("parameter", n) if letters.has("parameter", n) else letters.zero for n in names]
+    own = Ring((), (), [name for name, _ in reversed(present)], {})
+    given = [own.generator("parameter", n) if own.has("parameter", n) else own.zero for n in names]
     value = _made(label, given)
     if value is None or not 2 * len(value) < len(condition.polynomial) or len(value) > MOST_TERMS:
         return None
     standing = dict(present)
-    images = [standing.get(g.name, ring.zero) for g in letters.generators]
+    images = [standing.get(g.name, ring.zero) for g in own.generators]
     if value.compose(*images, ctx=ring.context) != requirement.polynomial:
         return None
-    stand_for = [(Formula(letters, letters.generator("parameter", n)), Formula(ring, x)) for n, x in reversed(present)]
-    return InCoefficients(Formula(letters, value), tuple(stand_for))
+    stand_for = [(Formula(own, own.generator("parameter", n)), Formula(ring, x)) for n, x in reversed(present)]
+    return InCoefficients(Formula(own, value), tuple(stand_for))
 
 
-def _letters(even: bool, count: int, factor: str, taken: frozenset[str]) -> list[str]:
-    """Names of the coefficients, from low to high powers, none of which is ``taken``."""
+def _letters(even: bool, coefficients: list[Formula], factor: str, taken: frozenset[str]) -> list[str]:
+    """Names of the coefficients, from low to high powers, none of which is ``taken`` for something else."""
+    count = len(coefficients)
     power, end = (2 if even else 1), f"_{factor}" if factor else ""
     stems = _STEMS if even else (*_STEMS[1:], *_STEMS[:1])
     listed = ([f"{stem}{power * k}{end}" for k in range(count)] for stem in stems)
-    free = next((names for names in listed if taken.isdisjoint(names)), None)
+    free = next(
+        (
+            one
+            for one in listed
+            if all(x not in taken or is_letter(c, x) for x, c in zip(one, coefficients, strict=True))
+        ),
+        None,
+    )
     return free or [f"coefficient{power * k}{end}" for k in range(count)]
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 
 from mbsym.expressions.message import worded
 from mbsym.formulas.latex import latex_names, latex_symbol
@@ -15,6 +15,7 @@ from mbsym.report.canonical import Denominators, forms_of, with_names
 from mbsym.report.compact import Compact, compact
 from mbsym.report.conditions import provided
 from mbsym.report.content import Block, Heading, Inline, Intermediates, Paragraph, Said, paragraph, say
+from mbsym.report.letters import in_letters, with_meanings
 from mbsym.report.sections import section_of
 
 if TYPE_CHECKING:
@@ -128,9 +129,14 @@ class Section(Generic[T]):
     build: Callable[[Results], Iterator[Block]]
     known: Results
     write: Callable[[Iterator[Block]], T]
+    explains: bool = True  # what the author's letters in its formulas stand for
 
     def __call__(self) -> T:
-        return self.write(self.build(self.known))
+        known = self.known
+        with in_letters(known.system, known.analysis.letters) as used:
+            blocks = with_meanings(self.build(known), known.system, used) if self.explains else self.build(known)
+            told: Any = self.write(blocks)
+            return cast("T", iter(list(told)) if isinstance(told, Iterator) else told)
 
     @property
     def title(self) -> Said:
@@ -146,7 +152,7 @@ def contents(known: Results, write: Callable[[Iterator[Block]], T]) -> dict[int 
 
     modules: dict[int | str, Any] = {number: section_of(PROBLEMS[number]) for number in known.problems}
     modules |= {name: import_module(f"mbsym.report.sections.{name}") for name in BESIDE}
-    return {key: Section(x.content, known, write) for key, x in modules.items()}
+    return {key: Section(x.content, known, write, key != "claims") for key, x in modules.items()}
 
 
 def results(analysis: Analysis, problems: Sequence[int]) -> Results:

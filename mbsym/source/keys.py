@@ -656,7 +656,7 @@ SYSTEM = {
         label="initial state",
     ),
     "abbreviations": Key(
-        "a publication's own symbols for use in claims, in order: {c1: mA + mB, ...}", Named(_FORMULA)
+        "an author's own symbols for claims and results, in order: {c1: mA + mB, ...}", Named(_FORMULA)
     ),
     "source": Key("where the system is from: a publication, for the references of reports", _TEXT),
     "label": Key("what labels in LaTeX have of this system in them, in place of its name: mbsym:LABEL:eq:M", _TEXT),

@@ -73,6 +73,11 @@ def expressions() -> str:
     return _EXPRESSIONS.format(functions=", ".join(sorted(SMOOTH)), kinked=_KINKED, tabulated=_TABULATED)
 
 
+def abbreviations() -> str:
+    """The author's letters, in claims and in results."""
+    return _ABBREVIATIONS
+
+
 def claim_kinds() -> str:
     """Every kind of claim, the keys that it needs, and what they mean."""
     width = max(map(len, CLAIMS))
@@ -103,8 +108,32 @@ def _listed(table: Mapping[str, Key]) -> str:
 
 _SEE = (
     "Kinds of load: mbsym explain loads.  Of constraint: mbsym explain constraints.  Formulas: mbsym explain "
-    "expressions.  Claims: mbsym explain claims."
+    "expressions.  Letters: mbsym explain abbreviations.  Claims: mbsym explain claims."
 )
+
+_ABBREVIATIONS = """\
+abbreviations:  letters of an author, in order; later ones may hold earlier ones:
+
+    abbreviations:
+      lam: (s - 1)*r + eta
+      G: p**2 + q**2
+
+They may stand in claims, and they and those under 'notation' stand in formulas of results: in reports, and in what run,
+expand, average, oscillations, nonlinear, integrals and symmetries print.  A letter L = N/D is put in by its relation
+L*D = N, solved for a symbol v of it (or v**2, v**3, ...): eta = lam - (s - 1)*r, p**2 = G - q**2.  That is exact:
+the definitions put back give the same formula.  What cancels is cancelled.  After a formula's section is listed what
+its letters stand for.
+
+Without --in a letter is put in where that leaves less to read: names, numbers, functions, signs, brackets, fractions
+are counted, each step has to save a tenth, all together a fifth, and no step brings in a symbol or denominator that was
+not there.  Of several letters in a row (A = a*C, B = b*C) only the end is counted.  Formulas of more than 400 terms
+stay as they are.
+
+    --in lam,G       these letters alone, also where nothing gets shorter
+    --in lam,eta     and the parameter eta is not what is taken out
+    --in none        parameters alone
+
+results.json, report.wl and generated code have parameters alone in their formulas."""
 
 _KINKED = """\
 sign(x) = -1, 0, 1 for x < 0, x = 0, x > 0;  abs(x) = x*sign(x);  step(x) = (1 + sign(x))/2, 1/2 at 0;

@@ -163,4 +163,5 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
 STUDY = Study(
     "average", Request, derive, answer, refusal, unfit,
     matrices=True, held=False, out=Single("Write the averaged description here."), document=document,
+    letters=True,
 )  # fmt: skip

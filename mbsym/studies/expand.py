@@ -101,4 +101,4 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     return failed(error, "no expansion", True)
 
 
-STUDY = Study("expand", Request, derive, answer, refusal, unfit, as_json, held=False, out=None)
+STUDY = Study("expand", Request, derive, answer, refusal, unfit, as_json, held=False, out=None, letters=True)

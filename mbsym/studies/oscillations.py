@@ -193,5 +193,5 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
 
 STUDY = Study(
     "oscillations", Request, derive, answer, refusal, unfit, as_json, "Print JSON instead of text.",
-    held=False, out=Folder(quiet=None, unwritten=UNWRITTEN), writes=lambda typed: "format" in typed,
+    held=False, out=Folder(quiet=None, unwritten=UNWRITTEN), writes=lambda typed: "format" in typed, letters=True,
 )  # fmt: skip

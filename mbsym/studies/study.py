@@ -175,7 +175,7 @@ class Study(Generic[R, F]):
     ``constraints``, ``matrices``: whether descriptions with these are understood, ``bodies``: whether matrices are
     not, by the texts of the options; ``held``: whether inputs are held at their constant values.  ``out``: where files
     go; ``writes``: whether there are any, by what was typed; ``document`` makes the single one.  ``timed``: whether the
-    seconds are told.
+    seconds are told.  ``letters``: whether formulas are written in the author's letters.
     """
 
     name: str
@@ -194,6 +194,7 @@ class Study(Generic[R, F]):
     writes: Callable[[Collection[str]], bool] = lambda typed: True
     document: Callable[[Asked, R, F], Document] | None = None
     timed: bool = False
+    letters: bool = False
 
 
 def refused(before: str, error: Exception, code: Exit = Exit.FAILED) -> Refusal:

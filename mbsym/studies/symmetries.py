@@ -65,4 +65,6 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     return failed(error, "no symmetries")
 
 
-STUDY = Study("symmetries", Request, derive, answer, refusal, json=as_json, matrices=True, held=False, out=None)
+STUDY = Study(
+    "symmetries", Request, derive, answer, refusal, json=as_json, matrices=True, held=False, out=None, letters=True
+)

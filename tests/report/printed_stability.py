@@ -122,13 +122,13 @@ class Read:
         else:
             value = line.formula
         if line.symbol:
-            if line.symbol in self.names:
+            if line.symbol in self.names and (value is None or self.names[line.symbol] != value(self.names)):
                 raise TwoMeanings(line.symbol)
             if value is not None and line.alone not in self.letters:  # v0: v4 < 0 says nothing of the size of v0
                 self.letters[line.symbol] = value
         own = dict(line.letters)
         for symbol, meaning in own.items():
-            if symbol in self.names:
+            if symbol in self.names and self.names[symbol] != meaning(Symbols(self.names, {})):
                 raise TwoMeanings(symbol)
             if symbol in self.letters:
                 plain = Symbols(self.names, {})
@@ -256,7 +256,7 @@ def _terminal_line(words: str) -> Line:
         return Line(symbol, None, relation, under=symbol)
     if formula.startswith("["):
         return Line(symbol, None, relation)
-    if re.fullmatch(r"-?[av]\d+\^\(\d+\)", formula) or re.search(r" of |, |minor|subdisc", formula):
+    if re.fullmatch(r"-?[av]\d+\^\(\d+\)", formula) or re.search(r" of |, |minor|subdisc|condition ", formula):
         return Line(symbol, None, relation, under=_terminal_label(formula))
     return Line(
         symbol, readable(formula), relation, symbol=label if re.fullmatch(r"[av]\d+", label) else "", alone=formula

@@ -11,7 +11,7 @@ from fractions import Fraction
 
 import pytest
 import terminal
-from conftest import SHIPPED, derived, parsed
+from conftest import SHIPPED, derived, parsed, with_letters
 
 import mbsym
 from mbsym.algebra.base import Lowering
@@ -115,12 +115,16 @@ def test_letters_mean_on_the_terminal_what_stands_beside_them_there(text: str) -
     for part in analysis.stability.subsystems:
         own = list(_block(terminal.told(analysis, 6, longest=10**6), part.coordinates))
         shown = printed("\n".join(own))
-        names = {p.name for p in analysis.system.parameters} | {item.name for item in analysis.system.notation}
+        names = sorted(p.name for p in analysis.system.parameters)
         truth = dict(_true_conditions(part))
         assert shown
         source = random.Random(1)
         for _ in range(50):
-            point = {name: Fraction(source.randint(-9, 9), source.randint(1, 4)) for name in names}
+            numbers = {name: Fraction(source.choice((-9, -5, -1, 2, 3, 7)), source.randint(1, 4)) for name in names}
+            try:
+                point = with_letters(analysis.system, numbers, Fraction)
+            except ZeroDivisionError:
+                continue
             letters = {label: eval(formula, {}, dict(point)) for label, (formula, _) in shown.items() if label in OWN}
             for label, (formula, relation) in shown.items():
                 if not relation:
@@ -154,7 +158,7 @@ def _true_conditions(part: SubsystemStability) -> Iterator[tuple[str, Callable[[
         yield requirement.label, lambda point, formula=formula: eval(formula, {}, dict(point))
 
 
-def test_the_point_at_which_the_satellite_flutters_is_told_by_what_is_printed() -> None:
+def test_the_point_at_which_the_satellite_flutters_is_told_by_what_is_printed(monkeypatch: pytest.MonkeyPatch) -> None:
     """D = -16.1 there by the paper's formula (6), typed here; the flagship's terminal once made it positive."""
     alpha, gamma, p1, p2 = FLUTTER.values()
     values = {
@@ -169,7 +173,11 @@ def test_the_point_at_which_the_satellite_flutters_is_told_by_what_is_printed() 
     analysis, part, requirement = discriminant()
     found = in_coefficients(part.ring, requirement)  # type: ignore[attr-defined]
     assert found is not None
-    # It is shown once, as the coefficient that the discriminant holds: 4 alpha (...), not alpha (...).
+    # It is shown once, as the coefficient that the discriminant holds: 4 alpha (...), not alpha (...); the paper's v0.
+    text = TARGETS["latex"].render(analysis, (6,))
+    assert r"v_{0} \colon\quad v_{0} > 0" in text or r"v_{0} &\colon\quad v_{0} > 0" in text
+    assert r"v_{0} = 4 \alpha" in text
+    monkeypatch.setattr(analysis, "letters", ())
     assert r"v_{0} \colon\quad 4 \alpha" in TARGETS["latex"].render(analysis, (6,))
     shown = printed("\n".join(_block(terminal.told(analysis, 6), ("psi", "phi", "sigma"))))
     assert eval(shown["v0"][0], {}, dict(FLUTTER)) == values["v0"]

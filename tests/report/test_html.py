@@ -12,7 +12,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
-from conftest import SHIPPED, TESTS, browsed, derived, needs_chromium, precision
+from conftest import SHIPPED, TESTS, browsed, derived, needs_chromium, precision, with_letters
 from flint import arb, fmpq
 from mathml_reader import Reader, formulas, tokens_of, tree, written
 
@@ -32,7 +32,9 @@ def page_of(analysis: Analysis, problems: tuple[int, ...] = ALL) -> str:
 def point(analysis: Analysis, seed: int) -> dict[str, Fraction]:
     """A random rational value of every name, velocities by ``x_dot``."""
     source = random.Random(seed)
-    return {name: Fraction(source.randint(20, 90), 64) for name in analysis.ring.names()}
+    values = {name: Fraction(source.randint(20, 90), 64) for name in analysis.ring.names()}
+    known = with_letters(analysis.system, values, Fraction)
+    return {name: value for name, value in known.items() if name != "Dis"}  # a word, which this reader does not know
 
 
 def balls(analysis: Analysis, values: dict[str, Fraction]) -> dict[str, arb]:

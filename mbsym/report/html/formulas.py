@@ -108,7 +108,7 @@ def line(left: str, value: Formula, right: str, sign: str, size: str, spelled: b
     pieces = mathml_pieces(value.ring, value.polynomial)
     first = _joined(left, mo(sign) if left else "", pieces[0])
     written = whole([first, *pieces[1:]], right, spellings(value, spelled))
-    if leaves(shape_of(value.ring, value.polynomial)) <= FOLDED:
+    if _size(value) <= FOLDED:
         return written
     head = math(left, mo(sign), "<mo>\u2026</mo>") if left else ""
     return Markup(f"<details><summary>{head} <small>{escape(size)}</small></summary>{written}</details>")
@@ -132,7 +132,7 @@ def zero(values: Column) -> bool:
 
 
 def _size(value: Formula) -> int:
-    return leaves(shape_of(value.ring, value.polynomial))
+    return leaves(shape_of(value.shown.ring, value.shown.polynomial))
 
 
 def inline(value: Formula, spelled: bool = False) -> Markup:
@@ -196,6 +196,7 @@ def polynomial_pieces(coefficients: Sequence[Formula], variable: str, length: Ca
         if coefficient.is_zero:
             continue
         raised = "" if degree == 0 else mi(variable) if degree == 1 else power(mi(variable), mn(degree))
+        coefficient = coefficient.shown
         shape = shape_of(coefficient.ring, coefficient.polynomial)
         if not is_readable(coefficient):
             pieces, negative = [length(coefficient)], False

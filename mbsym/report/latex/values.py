@@ -12,6 +12,7 @@ from weakref import WeakKeyDictionary
 
 from mbsym import __version__
 from mbsym.formulas.latex import LatexNames, latex_names
+from mbsym.formulas.letters import letters
 from mbsym.formulas.tree import angles_or
 from mbsym.model.system import System
 from mbsym.report.code.interconnection import Interconnection, Joint, Kind, Node, interconnection
@@ -43,8 +44,8 @@ class Printed:
         self._made: dict[tuple[Any, ...], tuple[Any, Any]] = {}
 
     def __call__(self, function: Callable[..., T], value: Any, *more: Hashable) -> T:
-        """``function(value, *more)``, called once as long as angles are to be printed the same way."""
-        key = function, id(value), angles_or("shorter"), *more
+        """``function(value, *more)``, called once as long as formulas are to be printed the same way."""
+        key = function, id(value), angles_or("shorter"), letters(), *more
         if key not in self._made:
             self._made[key] = value, function(value, *more)
         found: T = self._made[key][1]

@@ -198,4 +198,4 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     return Refusal(f"no integrals: {error}")
 
 
-STUDY = Study("integrals", Request, derive, answer, refusal, unfit, as_json, held=False, out=None)
+STUDY = Study("integrals", Request, derive, answer, refusal, unfit, as_json, held=False, out=None, letters=True)

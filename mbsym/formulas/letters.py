@@ -1,0 +1,487 @@
+"""Formulas in an author's own letters: symbols of the description put in for what they stand for, exactly.
+
+A letter L that stands for N/D is the relation L D - N = 0.  Where that is A v^d + B = 0 with A and B free of a symbol
+v, v^d may be written as -B/A, which takes v out of a formula (d = 1) or its high powers; all that cancels is cancelled.
+What is left equals the formula by the relations alone: putting the definitions back gives it again, in the ring.
+Such steps are taken one by one, the one that leaves least to read first, as long as each leaves less
+(``size``: names, numbers, functions, signs, brackets, fractions) by a tenth at least and brings in neither other
+symbols nor denominators, and all of them together save a fifth.  Letters that were asked for take out a symbol
+wherever that leaves no denominator.
+
+Which letters there are is said once around all that is written (``letters_as``); printers ask ``lettered``.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from contextvars import ContextVar
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+from weakref import WeakKeyDictionary
+
+from mbsym.algebra.base import Lowering
+from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.factors import occurring
+from mbsym.algebra.failures import Failure
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.rates import ENDINGS
+from mbsym.expressions.tree import Call, Expression, names, substitute
+from mbsym.formulas.shape import length, present
+from mbsym.formulas.tree import angles_or
+
+#: Longer formulas stay as they are: nobody reads them, and it may take long.
+MOST_TERMS = 400
+#: Candidate terms of products that the steps of one formula may take, by each route.
+WORK = 20_000_000
+#: So many of the candidates with the fewest terms are written out, to see which is the shortest to read.
+WRITTEN = 8
+#: What is left to read at most, as a share of what there was: after one step, and after all of them.
+STEP, SHORTER = Fraction(9, 10), Fraction(4, 5)
+#: With more letters than this that hold declared symbols they are tried one by one only.
+MOST_CHAINED = 16
+#: Generators beside those of the ring, for what the definitions adjoin.
+FURTHER = 24
+
+
+@dataclass(frozen=True, eq=False)
+class Letters:
+    """Letters with what they stand for, in order: later ones may hold earlier ones.
+
+    ``asked``: those that are wanted, also where nothing gets shorter, and names that are to stay; None: all of them
+    where it does.
+    """
+
+    given: tuple[tuple[str, Expression], ...]
+    asked: tuple[str, ...] | None = None
+
+    @property
+    def wanted(self) -> tuple[str, ...]:
+        known = tuple(name for name, _ in self.given)
+        return known if self.asked is None else tuple(name for name in self.asked if name in known)
+
+    @property
+    def kept(self) -> frozenset[str]:
+        """Names that are to stay in formulas."""
+        return frozenset(self.asked or ()) - {name for name, _ in self.given}
+
+    def definitions(self, used: Iterable[str]) -> list[tuple[str, Expression]]:
+        """Those of the letters in ``used`` and of the letters that they are made of, in order."""
+        needed = set(used)
+        for name, value in reversed(self.given):
+            if name in needed:
+                needed |= names(value)
+        return [(name, value) for name, value in self.given if name in needed]
+
+
+_LETTERS: ContextVar[Letters | None] = ContextVar("letters", default=None)
+_USED: ContextVar[set[str] | None] = ContextVar("letters used", default=None)
+
+
+@contextmanager
+def letters_as(letters: Letters | None) -> Iterator[set[str]]:
+    """Within this block every formula is written in these letters; what is yielded gathers those that were used."""
+    used: set[str] = set()
+    tokens = _LETTERS.set(letters if letters is not None and letters.wanted else None), _USED.set(used)
+    try:
+        yield used
+    finally:
+        _LETTERS.reset(tokens[0])
+        _USED.reset(tokens[1])
+
+
+def letters() -> Letters | None:
+    """Those in which formulas are written."""
+    return _LETTERS.get()
+
+
+def lettered(ring: Ring, polynomial: Polynomial) -> tuple[Ring, Polynomial]:
+    """The formula as it is to be written: in the letters that were asked for, or as it is."""
+    wanted = letters()
+    if wanted is None or isinstance(ring, LetterRing):
+        return ring, polynomial
+    found = rewriter(ring, wanted)(polynomial)
+    if found is None:
+        return ring, polynomial
+    used = _USED.get()
+    if used is not None:
+        used |= found.used
+    return found.ring, found.polynomial
+
+
+class LetterRing(Ring):
+    """The ring ``whole`` with letters besides: ``moving`` ones vary with the state, ``fixed`` ones do not."""
+
+    shortest = True
+
+    def __init__(self, whole: Ring, moving: Sequence[str], fixed: Sequence[str]) -> None:
+        def of(kind: str) -> list[str]:
+            return [g.name for g in whole.generators if g.kind == kind and g.argument is None and g.name != "pi"]
+
+        def parameters(indices: Iterable[int]) -> list[str]:
+            return [whole.generators[k].name for k in indices if whole.generators[k].kind == "parameter"]
+
+        super().__init__(
+            of("coordinate"),
+            [*of("prescribed"), *moving],
+            [*of("parameter"), *fixed],
+            whole.angles,
+            positive=parameters(whole._positive),
+            nonnegative=parameters(whole._nonnegative),
+            spare=whole.spare + FURTHER,
+            terms=whole.most_terms,
+            typed=whole.typed,
+        )
+        self.whole = whole
+        self.letters = (*moving, *fixed)
+
+
+@dataclass(frozen=True)
+class Written:
+    """A formula in letters: over ``ring``, which holds them, and which of them are in it."""
+
+    ring: Ring
+    polynomial: Polynomial
+    used: frozenset[str]
+
+
+@dataclass(frozen=True)
+class _Step:
+    """``symbol``**``degree`` = -``rest``/``factor``, by the definition of ``letter``; ``brings`` what it brings in.
+
+    ``given``: as the definition has it, with earlier letters in it.
+    """
+
+    letter: str
+    symbol: int
+    degree: int
+    factor: Polynomial
+    rest: Polynomial
+    brings: frozenset[int]
+    given: bool
+
+
+#: A numerator, and factors of the denominator with their exponents.
+_Fraction = tuple[Polynomial, list[tuple[Polynomial, int]]]
+
+_REWRITERS: WeakKeyDictionary[Ring, dict[Letters, Rewriter]] = WeakKeyDictionary()
+
+
+def rewriter(ring: Ring, letters: Letters) -> Rewriter:
+    """Made once for a ring."""
+    known = _REWRITERS.setdefault(ring, {})
+    if letters not in known:
+        known[letters] = Rewriter(ring, letters)
+    return known[letters]
+
+
+class Rewriter:
+    """Writes polynomials of a ring in letters, and back."""
+
+    def __init__(self, ring: Ring, letters: Letters) -> None:
+        self._known: dict[tuple[int, str], tuple[Polynomial, Written | None]] = {}
+        self.letters = letters
+        held = {g.name + ENDINGS.get(g.kind, "") for g in ring.generators if g.argument is None} | {"t", "pi"}
+        self.values = self._expanded(letters, held, ring)
+        moving = [name for name, value in self.values.items() if not _constant(value, ring)]
+        own = {g.name for g in ring.generators if g.kind == "parameter"}
+        fixed = [name for name in self.values if name not in moving and name not in own]
+        self.ring = LetterRing(ring, moving, fixed)
+        self.named = _named(self.ring)
+        self.places = {name: next(iter(occurring([self.named[name]]))) for name in self.values}
+        self._read_so(ring, moving)
+        self._carry = Carrier(ring, self.ring, self.named)
+        self.steps = [step for name in self.values if name in letters.wanted for step in self._steps_of(name)]
+        letter = set(self.places.values())
+        other = letter - {self.places[name] for name in letters.wanted if name in self.places}
+        self.steps = [x for x in self.steps if not x.brings & other and x.symbol not in other]
+        given = {x.letter for x in self.steps if x.given}
+        self.chained = [
+            x for x in self.steps if (x.given or x.letter not in given) and x.degree == 1 and x.symbol not in letter
+        ]
+        if len({x.letter for x in self.chained}) > MOST_CHAINED:
+            self.chained = []
+        self.sharing = Counter(k for name in letters.wanted if name in self.values for k in self._symbols(name))
+
+    @staticmethod
+    def _expanded(letters: Letters, held: set[str], ring: Ring) -> dict[str, Expression]:
+        """The letters that can be said in the ring's names, by the declared names alone."""
+        found: dict[str, Expression] = {}
+        for name, value in letters.given:
+            whole = substitute(value, found)
+            if names(whole) <= held and (name not in held or ring.has("parameter", name)):
+                found[name] = whole
+        return found
+
+    def _read_so(self, ring: Ring, moving: Sequence[str]) -> None:
+        """Formulas are collected by p, q and G = p^2 + q^2; r and lambda = (s - 1) r + eta are read like parameters."""
+        first = {ring.generators[k].name for k in ring.leading}
+        if not first:
+            return
+        mixed: set[str] = set()
+        for name in moving:
+            held = names(self.values[name])
+            if not held <= first or held & mixed:
+                mixed |= {name, *(held & first)}
+        kinds = ("coordinate", "prescribed")
+        places = {x: self.ring.index(k, x) for x in (*first, *moving) for k in kinds if self.ring.has(k, x)}
+        self.ring.resting = frozenset(place for name, place in places.items() if name in mixed)
+        self.ring.leading = frozenset(places.values()) - self.ring.resting
+
+    def _symbols(self, name: str) -> set[int]:
+        """The generators that a letter is made of."""
+        return {k for x in names(self.values[name]) if x in self.named for k in occurring([self.named[x]])}
+
+    def _steps_of(self, name: str) -> Iterator[_Step]:
+        """What the definition of a letter allows to write differently, with earlier letters in it and without."""
+        ring, letter = self.ring, self.named[name]
+        given = dict(self.letters.given)[name]
+        seen: list[Polynomial] = []
+        for value in (given, self.values[name]):
+            try:
+                with ring.budget(WORK):
+                    lower = Lowering(ring, self.named)
+                    relations = [letter - lower(value)]
+                    if isinstance(value, Call) and value.function == "sqrt":
+                        relations.append(ring.times(letter, letter) - lower(value.argument))
+                    relations = [ring.fraction(x)[0] for x in relations]
+            except (Failure, ZeroDivisionError):
+                continue
+            for relation in relations:
+                if relation not in seen:
+                    seen.append(relation)
+                    yield from self._solved(name, relation, value is given)
+
+    def _solved(self, name: str, relation: Polynomial, given: bool) -> Iterator[_Step]:
+        own, held = self.places[name], occurring([relation])
+        if own not in held:
+            return
+        kept = {next(iter(occurring([self.named[x]]))) for x in self.letters.kept if x in self.named}
+        for symbol in held:
+            powers = _powers(self.ring, relation, symbol)
+            if symbol in (own, *kept) or len(powers) != 2 or 0 not in powers:
+                continue
+            degree = max(powers)
+            factor, rest = powers[degree], powers[0]
+            if degree > 1 and not factor.is_constant():
+                continue
+            yield _Step(name, symbol, degree, factor, rest, frozenset(held) - {own, symbol}, given)
+
+    # --- writing -----------------------------------------------------------------------------------------------------
+
+    def __call__(self, polynomial: Polynomial) -> Written | None:
+        """The polynomial in letters; None where it stays as it is."""
+        angles = angles_or("shorter")
+        known = self._known.get((id(polynomial), angles))
+        if known is None:  # the polynomial is kept, so that its id stays its own
+            known = self._known[id(polynomial), angles] = (polynomial, self._written(polynomial))
+        return known[1]
+
+    def _written(self, polynomial: Polynomial) -> Written | None:
+        if not self.steps or len(polynomial) > MOST_TERMS or polynomial.is_constant():
+            return None
+        try:
+            with self.ring.whole.budget(WORK):
+                return self._shortest(polynomial)
+        except (Failure, ZeroDivisionError):  # as it is it can be read, too
+            return None
+
+    def _shortest(self, polynomial: Polynomial) -> Written | None:
+        ring, whole = self.ring, self.ring.whole
+        found: _Fraction = ring.fraction(self._carry(polynomial))
+        if not self._applicable(found, self.steps, True):
+            return None
+        routes = [self._improved(found)]
+        with suppress(Failure, ZeroDivisionError), ring.budget(WORK):
+            chain = self._chain(found)
+            if chain is not None:
+                routes.append(self._improved(chain))
+        routes = [x for x in routes if x is not found]
+        if not routes:
+            return None
+        found = min(routes, key=self._read)
+        best = self._joined(found)
+        if not self.letters.asked and size(ring, best) > size(whole, polynomial) * SHORTER:
+            return None
+        held = self._held(found)
+        used = frozenset(name for name in self.values if self.places[name] in held)
+        return Written(ring, best, used)
+
+    def _improved(self, found: _Fraction) -> _Fraction:
+        """What single steps make of it, each of which leaves less to read."""
+        least = self._read(found)
+        with suppress(Failure), self.ring.budget(WORK):  # what is found within the budget is as good
+            while (tried := self._tried(found)) is not None and tried[0] <= least * STEP:
+                least, found = tried
+        return found
+
+    def _read(self, found: _Fraction) -> int:
+        """How much there is to read of a numerator and its denominator; nothing is adjoined for it."""
+        return size(self.ring, found[0]) + sum(1 + (n != 1) + size(self.ring, x) for x, n in found[1])
+
+    def _chain(self, found: _Fraction) -> _Fraction | None:
+        """One symbol for each letter that is not made of letters alone: A = a C, B = b C, lz = n C r; None for no step.
+
+        The symbol is one that leaves no denominator, and that few letters hold.  For letters that were asked for, which
+        are taken also where nothing gets shorter, there is no other.
+        """
+        start, gone, taken = self._held(found), set[int](), 0
+        if self.letters.asked and len(found[0]) == 1 and found[0].total_degree() == 1 and not found[1]:
+            return None  # a symbol
+        start |= set(self.places.values())
+        for name in self.values:
+            held = self._held(found)
+            own = [x for x in self.chained if x.letter == name and x.symbol in held - gone and x.brings <= start]
+            if self.letters.asked:
+                own = [x for x in own if x.factor.is_constant()]
+            if own:
+                step = min(own, key=lambda x: (not x.factor.is_constant(), self.sharing[x.symbol]))
+                after = self._after(found, step)
+                if after is not None:
+                    found, taken = after, taken + 1
+                    gone.add(step.symbol)
+        return found if taken else None
+
+    def _held(self, found: _Fraction) -> set[int]:
+        """The generators of a fraction, and those in what is adjoined."""
+        return _held(self.ring, [found[0], *(x for x, _ in found[1])])
+
+    def _applicable(self, found: _Fraction, steps: Iterable[_Step], forced: bool = False) -> list[_Step]:
+        """Those that have something to do and, unless ``forced``, bring in no other symbol than their letter."""
+        held = self._held(found)
+        return [x for x in steps if x.symbol in held and (forced or x.brings <= held)]
+
+    def _tried(self, found: _Fraction) -> tuple[int, _Fraction] | None:
+        """(how much there is to read, what is left) by the step that leaves least."""
+        candidates: list[tuple[int, int, _Fraction]] = []
+        for step in self._applicable(found, self.steps):
+            try:
+                after = self._after(found, step)
+            except (Failure, ZeroDivisionError):
+                continue
+            if after is not None and len(after[1]) <= len(found[1]):
+                polynomials = [after[0], *(x for x, _ in after[1])]
+                terms = sum(map(len, polynomials)) + len(occurring(polynomials))
+                candidates.append((terms, len(candidates), after))
+        shown = [x for _, _, x in sorted(candidates, key=lambda x: x[:2])[:WRITTEN]]
+        return min(((self._read(x), x) for x in shown), key=lambda x: x[0], default=None)
+
+    def _joined(self, found: _Fraction) -> Polynomial:
+        ring, result = self.ring, found[0]
+        for factor, exponent in found[1]:
+            result = ring.reduce(ring.times(result, ring.reciprocal(factor) ** exponent))
+        return result
+
+    def _after(self, found: _Fraction, step: _Step) -> _Fraction | None:
+        """The fraction after one step, in lowest terms; None where nothing changes."""
+        ring = self.ring
+        inside = [ring.generators[k].argument for k in occurring([found[0], *(x for x, _ in found[1])])]
+        if any(step.symbol in self._held((x, [])) for x in inside if x is not None):
+            if step.degree > 1:
+                return None
+            image = -ring.times(step.rest, ring.reciprocal(step.factor))
+            return ring.fraction(ring.substitute(self._joined(found), {step.symbol: image}))
+        top, above = self._put(found[0], step)
+        changed, below = top != found[0], list[tuple[Polynomial, int]]()
+        for factor, exponent in found[1]:
+            other, more = self._put(factor, step)
+            changed |= other != factor
+            above -= more * exponent
+            below.append((other, exponent))
+        if not changed:
+            return None
+        if above < 0:
+            top = ring.reduce(ring.times(top, step.factor**-above))
+        elif above:
+            below.append((step.factor, above))
+        return self._lowest(top, below)
+
+    def _put(self, polynomial: Polynomial, step: _Step) -> tuple[Polynomial, int]:
+        """(p, k) with polynomial = p/factor**k by the step."""
+        ring, powers = self.ring, _powers(self.ring, polynomial, step.symbol)
+        most = max(powers, default=0) // step.degree
+        if not most:
+            return polynomial, 0
+        total, symbol = ring.zero, ring.context.gen(step.symbol)
+        for power, coefficient in powers.items():
+            times, left = divmod(power, step.degree)
+            term = ring.times(coefficient, (-step.rest) ** times * step.factor ** (most - times))
+            total = total + ring.times(term, symbol**left)
+        return ring.reduce(total), most
+
+    def _lowest(self, top: Polynomial, below: Sequence[tuple[Polynomial, int]]) -> _Fraction:
+        """In lowest terms, the denominator in irreducible factors without numbers."""
+        ring, factors = self.ring, list[tuple[Polynomial, int]]()
+        for one, exponent in below:
+            if one.is_constant():
+                top = top / one.leading_coefficient() ** exponent
+                continue
+            content, parts = ring.factored(one)
+            top = top / content**exponent
+            for part, times in parts:
+                count = times * exponent + next((n for x, n in factors if x == part), 0)
+                factors = [(x, n) for x, n in factors if x != part] + [(part, count)]
+        left = []
+        for factor, count in factors:
+            while count and (quotient := ring.quotient(top, factor)) is not None:
+                top, count = quotient, count - 1
+            if count:
+                left.append((factor, count))
+        return top, left
+
+    # --- and back ----------------------------------------------------------------------------------------------------
+
+    def back(self, written: Written) -> Polynomial:
+        """With every letter's definition put back, in the ring ``whole``.  Raises what its arithmetic raises."""
+        whole = self.ring.whole
+        environment: dict[str, Any] = _named(whole)
+        lower = Lowering(whole, dict(environment))
+        environment |= {name: lower(value) for name, value in self.values.items()}
+        return Carrier(self.ring, whole, environment)(written.polynomial)
+
+
+def size(ring: Ring, polynomial: Polynomial) -> int:
+    """How much of a formula there is to read (``shape.length``), what stands under roots and in functions with it."""
+    angles = angles_or("shorter")
+    held = (ring.generators[k] for k in _held(ring, [polynomial]))
+    inside = [g.argument for g in held if g.argument is not None and g.kind != "reciprocal"]
+    return sum(length(ring, present(ring, x, angles)) for x in (polynomial, *inside))
+
+
+def _held(ring: Ring, polynomials: Iterable[Polynomial]) -> set[int]:
+    """The generators of polynomials, and those in what is adjoined."""
+    pending, held = list(occurring(polynomials)), set[int]()
+    while pending:
+        index = pending.pop()
+        if index not in held:
+            held.add(index)
+            argument = ring.generators[index].argument
+            pending += [] if argument is None else occurring([argument])
+    return held
+
+
+def _constant(value: Expression, ring: Ring) -> bool:
+    """Whether it is made of parameters alone."""
+    return all(name == "pi" or ring.has("parameter", name) for name in names(value))
+
+
+def _powers(ring: Ring, polynomial: Polynomial, index: int) -> Mapping[int, Polynomial]:
+    """By exponent of a generator, what stands before that power of it."""
+    parts: dict[int, dict[tuple[int, ...], Any]] = {}
+    for monomial, coefficient in polynomial.terms():
+        exponents = list(monomial)
+        power, exponents[index] = int(exponents[index]), 0
+        parts.setdefault(power, {})[tuple(exponents)] = coefficient
+    return {power: ring.context.from_dict(part) for power, part in parts.items()}
+
+
+def _named(ring: Ring) -> dict[str, Polynomial]:
+    """By name, as descriptions have it, the generators that are not adjoined; ``pi`` among them."""
+    plain = ("coordinate", "prescribed", "time", "parameter", "velocity", "acceleration")
+    return {
+        g.name + ENDINGS.get(g.kind, ""): ring.context.gen(k)
+        for k, g in enumerate(ring.generators)
+        if g.kind in plain and g.argument is None
+    }

@@ -1,0 +1,41 @@
+"""The author's letters in results: which there are, and what those stand for that are used."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator
+from contextlib import contextmanager
+
+from mbsym.formulas.letters import Letters, letters_as
+from mbsym.model.system import System
+from mbsym.report.content import Beside, Block, Definitions, Name, Relation, Said
+
+#: In place of letters, for none.
+NONE = "none"
+
+
+def letters_of(system: System, asked: tuple[str, ...] | None = None) -> Letters:
+    """Notation and abbreviations, of which ``asked`` ones are wanted; None: all where that is shorter.
+
+    Made once for a system: what is written in them is kept with them.
+    """
+    known: dict[tuple[str, ...] | None, Letters] = vars(system).setdefault("_letters", {})
+    if asked not in known:
+        given = tuple((one.name, one.value) for one in (*system.notation, *system.abbreviations))
+        known[asked] = Letters(given, asked)
+    return known[asked]
+
+
+@contextmanager
+def in_letters(system: System, asked: tuple[str, ...] | None) -> Iterator[set[str]]:
+    """Within this block formulas of the system are written so; what is yielded gathers the letters that were used."""
+    with letters_as(letters_of(system, asked)) as used:
+        yield used
+
+
+def with_meanings(blocks: Iterable[Block], system: System, used: Collection[str]) -> Iterator[Block]:
+    """The blocks, and then what the letters in them stand for, which is known when the blocks have been written."""
+    yield from blocks
+    if used:
+        meant = letters_of(system).definitions(used)
+        items = tuple(Relation(Name(name), "=", value) for name, value in meant)
+        yield Beside(tuple(x.name for x in system.abbreviations), (Definitions(Said("Letters used here"), items),))

@@ -1,0 +1,202 @@
+"""Formulas in an author's letters: exact, shorter, explained; the same on every surface.
+
+Expected formulas are derived by hand or stand in tests/references; lengths are those of ``size``.
+"""
+
+from __future__ import annotations
+
+import random
+from typing import Any
+
+import pytest
+from conftest import SHIPPED, parsed
+from flint import fmpq
+
+import mbsym
+from mbsym.algebra.base import Lowering
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.formulas import letters as module
+from mbsym.formulas.formula import Formula
+from mbsym.formulas.letters import Letters, Rewriter, letters_as, rewriter, size
+
+PARAMETERS = ("a", "b", "c", "k", "m", "l", "J")
+
+
+def ring_of(*coordinates: str) -> Ring:
+    return Ring(coordinates, [], PARAMETERS, dict.fromkeys(coordinates, 1), positive=PARAMETERS, spare=24)
+
+
+def lowered(ring: Ring, text: str) -> Polynomial:
+    return ring.reduce(Lowering(ring, module._named(ring))(parsed(text)))
+
+
+def letters(asked: tuple[str, ...] | None = None, **given: str) -> Letters:
+    return Letters(tuple((name, parsed(value)) for name, value in given.items()), asked)
+
+
+def written(formula: str, asked: tuple[str, ...] | None = None, **given: str) -> tuple[str, set[str]]:
+    ring = ring_of("x")
+    with letters_as(letters(asked, **given)) as used:
+        return str(Formula(ring, lowered(ring, formula))), used
+
+
+@pytest.mark.parametrize(
+    ("formula", "given", "expected"),
+    [
+        # (m l^2 + J) x'' + k x with I = m l^2 + J, by eliminating J
+        ("(m*l**2 + J)*x_ddot + k*x", {"I": "m*l**2 + J"}, "I*x_ddot + k*x"),
+        # k/m with w = k/m stands alone; nothing of m or k is left over
+        ("k/m*x + k**2/m**2*a", {"w": "k/m"}, "w*(w*a + x)"),
+        # two levels: p1 = d/f with d = m l^2, f = J + d
+        ("(J + m*l**2)*x_ddot + m*l**2*(c + k)*x", {"d": "m*l**2", "f": "J + d"}, "f*x_ddot + d*(c + k)*x"),
+        # a**2 + b**2 = G in even powers only
+        ("(a**2 + b**2)**2*c + (a**2 + b**2)*x", {"G": "a**2 + b**2"}, "G*(G*c + x)"),
+        # a root: s = sqrt(a^2 - 4 b)
+        ("c*sqrt(a**2 - 4*b) + k*x*sqrt(a**2 - 4*b)", {"s": "sqrt(a**2 - 4*b)"}, "s*(k*x + c)"),
+        # 1 - 4 b/a^2 under a sine is nobody's business; c x stays as it is
+        ("c*x", {"s": "sqrt(a**2 - 4*b)", "I": "m*l**2 + J"}, "c*x"),
+    ],
+)
+def test_formulas_are_rewritten_where_that_is_shorter(formula, given, expected):
+    assert str(Formula(*_both(expected, given))) == written(formula, **given)[0]
+
+
+def _both(expected: str, given: dict[str, str]) -> tuple[Ring, Polynomial]:
+    """The expected formula over a ring that has the letters, so that it is printed as any other."""
+    ring = ring_of("x")
+    wide = rewriter(ring, letters(**given)).ring
+    return wide, wide.reduce(Lowering(wide, module._named(wide))(parsed(expected)))
+
+
+def test_letters_that_were_asked_for_take_out_a_symbol_even_where_that_is_longer():
+    """k = lam - (a - 1) b put into c k + a b: longer, but asked for."""
+    given = {"lam": "(a - 1)*b + k"}
+    text, used = written("c*k + a*b", ("lam",), **given)
+    assert written("c*k + a*b", **given)[1] == set()
+    assert used == {"lam"}
+    assert eval(text, {"c": 7, "lam": 5, "a": 3, "b": 2}) == 7 * (5 - 2 * 2) + 3 * 2
+    assert written("c*k + a*b", ("lam", "k"), **given)[1] == set()  # what is named beside letters stays
+
+
+def test_letters_that_were_not_asked_for_are_not_brought_in():
+    """f = J + d, d = m l^2: with f alone it is f x, not (J + d) x."""
+    given = {"d": "m*l**2", "f": "J + d"}
+    assert written("(J + m*l**2)*x", ("f",), **given) == ("f*x", {"f"})
+    assert written("m*l**2*x", ("f",), **given)[1] == set()
+
+
+def test_without_letters_the_formula_is_the_same_object():
+    ring = ring_of("x")
+    value = lowered(ring, "(m*l**2 + J)*x")
+    for nothing in (None, letters(), letters((), I="m*l**2 + J")):
+        with letters_as(nothing):
+            assert module.lettered(ring, value) == (ring, value)
+    assert module.lettered(ring, value)[1] is value
+
+
+DEFINITIONS = (
+    "{0} + {1}*{2}",
+    "{0}*{1}**2",
+    "{0}/{1}",
+    "{0}**2 + {1}**2",
+    "({0} - {1})/({2} + {0})",
+    "sqrt({0}**2 + {1})",
+)
+
+
+def _random(source: random.Random) -> tuple[dict[str, str], str]:
+    """Definitions of two or three letters, later ones by earlier ones, and a formula in which they are put in."""
+    given: dict[str, str] = {}
+    for name in ("U", "V", "W")[: source.randint(2, 3)]:
+        symbols = source.sample([*PARAMETERS, *given], 3)
+        given[name] = source.choice(DEFINITIONS).format(*symbols)
+    meaning: dict[str, str] = {}
+    for name, value in given.items():
+        for other, inner in meaning.items():
+            value = value.replace(other, f"({inner})")
+        meaning[name] = value
+    terms = []
+    for _ in range(source.randint(2, 4)):
+        factors = source.choices([*given, *PARAMETERS, "x", "sin(x)", "x_dot"], k=source.randint(1, 3))
+        terms.append("*".join([str(source.choice((1, 2, -3))), *factors]))
+    formula = " + ".join(terms).replace("+ -", "- ")
+    for name, value in meaning.items():
+        formula = formula.replace(name, f"({value})")
+    return given, formula
+
+
+def _differs(ring: Ring, made: Rewriter, polynomial: Polynomial, source: random.Random) -> bool:
+    """Whether the rewritten formula has another value than the formula at a random exact point, or in the ring."""
+    found = made(polynomial)
+    if found is None:
+        return False
+    if ring.is_zero(made.back(found) - polynomial) is not True:
+        return True
+    values: dict[str, Any] = {name: fmpq(source.randint(1, 40), 16) for name in ring.names()}
+    truth = ring.evaluate(polynomial, values)
+    for name, value in made.letters.given:
+        values[name] = made.ring.evaluate(Lowering(made.ring, made.named)(value), values)
+    values |= {name: 0 for name in made.ring.names() if name not in values}
+    return not (made.ring.evaluate(found.polynomial, values) - truth).contains(0)
+
+
+def _trials(count: int) -> list[bool]:
+    source, found = random.Random(7), []
+    while len(found) < count:
+        given, formula = _random(source)
+        ring = ring_of("x")
+        try:
+            polynomial = lowered(ring, formula)
+        except ZeroDivisionError:
+            continue
+        made = rewriter(ring, letters(tuple(given) if len(found) % 2 else None, **given))
+        if made(polynomial) is not None:
+            found.append(_differs(ring, made, polynomial, source))
+    return found
+
+
+def test_putting_the_definitions_back_gives_the_ring_s_element():
+    assert not any(_trials(40))
+
+
+def test_an_error_in_a_step_is_caught(monkeypatch):
+    right = Rewriter._put
+
+    def wrong(self, polynomial, step):
+        value, power = right(self, polynomial, step)
+        return (value + step.rest if power else value), power
+
+    monkeypatch.setattr(Rewriter, "_put", wrong)
+    assert any(_trials(10))
+
+
+def test_what_is_written_is_shorter_by_the_length_that_is_documented():
+    source = random.Random(3)
+    compared = 0
+    while compared < 15:
+        given, formula = _random(source)
+        ring = ring_of("x")
+        polynomial = lowered(ring, formula)
+        found = rewriter(ring, letters(**given))(polynomial)
+        if found is not None:
+            compared += 1
+            before, after = size(ring, polynomial), size(found.ring, found.polynomial)
+            assert after <= before * module.SHORTER
+
+
+def test_the_slow_flow_of_the_satellite_with_a_damper_is_the_paper_s():
+    """tests/references, satellite with a damper, 1.4: term by term, in lambda, G and kappa."""
+    from mbsym.analysis.expanding import expansion
+    from mbsym.report.letters import in_letters
+    from mbsym.report.words.expansion_words import coefficients
+
+    analysis = mbsym.load(SHIPPED / "satellite-with-damper-slow.yaml")
+    found = {(x.variable, x.rate, x.order): x.formula for x in coefficients(expansion(analysis, 2, {}))}
+    with in_letters(analysis.system, None) as used:
+        texts = {key: str(value) for key, value in found.items()}
+    assert texts["x", False, 1] == "(rho*G + (lam - r)*p)/kappa"
+    assert texts["p", True, 0] == "-lam*q"
+    assert texts["q", True, 0] == "lam*p"
+    assert texts["r", True, 2] == "-(rho*(lam + r)*G + (lam - r)*(3*lam + r)*p)*q/(kappa*s)"
+    assert used == {"lam", "G"}
+    assert max(map(len, texts.values())) < 165  # 452 in raw parameters
