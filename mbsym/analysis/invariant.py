@@ -68,6 +68,10 @@ def invariant_sets_of(analysis: Analysis) -> InvariantSets:
             ),
             remedy="see 'mbsym integrals'" if lagrangian else "leave 'speeds' out",
         )
+    twice = [x for x in field.variables if any(y.startswith((f"sin({x})", f"sin({x}/")) for y in field.variables)]
+    if twice:  # grad K with respect to both would not be that of a function of the angle
+        names = ", ".join(y for x in twice for y in (x, f"sin({x})"))
+        raise NoClosedForm(Message("[[names]] are functions of each other: they cannot all be variables", names=names))
     if lagrangian and len(field.variables) > MOST_IN_ANGLES:
         raise NoClosedForm(
             Message(

@@ -225,3 +225,19 @@ def test_problem_ten_takes_no_exponentials():
         invariant_sets_of(analysis)
     with pytest.raises(NoClosedForm, match=r"sin\(phi\), cos\(phi\)"):
         invariant_sets_of(mbsym.loads(ROLLED))
+
+
+def test_problem_ten_takes_no_angle_beside_its_sine():
+    """At rest k (phi - a) + sin phi = 0; phi = a with sin phi = 0, which grad K in both apart gives, is none."""
+    text = """
+mbsym: 1
+name: a pendulum on a torsion spring
+parameters: {k: positive, a: positive}
+bodies:
+  - {name: one, attached to: 0, rotation: {axes: [3, 0, 0], angles: [phi, 0, 0]}, mass: 0, inertia about: joint,
+     inertia: [0, 0, 1]}
+loads:
+  - potential: k*(phi - a)**2/2 - cos(phi)
+"""
+    with pytest.raises(NoClosedForm, match=r"phi, sin\(phi\) are functions of each other"):
+        invariant_sets_of(mbsym.loads(text))
