@@ -57,7 +57,22 @@ def invariant_sets_of(analysis: Analysis) -> InvariantSets:
         )
     there = polynomial.setting(analysis)
     field = there.whole
-    if analysis.speed_form is None and len(field.variables) > MOST_IN_ANGLES:
+    lagrangian = analysis.speed_form is None
+    inside = [x for x in field.variables if x.startswith("exp(") or not (lagrangian or x.isidentifier())]
+    if inside:
+        raise NoClosedForm(
+            Message(
+                "[[names]] are variables: families of integrals are looked at in velocities, angles and positions, or "
+                "in speeds, positions and unit vectors",
+                names=", ".join(inside),
+            ),
+            remedy="see 'mbsym integrals'" if lagrangian else "leave 'speeds' out",
+        )
+    twice = [x for x in field.variables if any(y.startswith((f"sin({x})", f"sin({x}/")) for y in field.variables)]
+    if twice:  # grad K with respect to both would not be that of a function of the angle
+        names = ", ".join(y for x in twice for y in (x, f"sin({x})"))
+        raise NoClosedForm(Message("[[names]] are functions of each other: they cannot all be variables", names=names))
+    if lagrangian and len(field.variables) > MOST_IN_ANGLES:
         raise NoClosedForm(
             Message(
                 "[[count]] rates, sines, cosines and positions: families of at most [[most]] are looked at",
@@ -71,7 +86,6 @@ def invariant_sets_of(analysis: Analysis) -> InvariantSets:
     if not chosen:
         raise NoClosedForm("no integrals are known but those of geometry")
     signs = {one.name: one.sign for one in analysis.system.parameters}
-    lagrangian = analysis.speed_form is None
     floating = len(field.relations) if lagrangian else 0
     place = arena(field, chosen, signs, _assumptions(analysis, there.transfer), floating)
     from mbsym.problems.invariant_sets.arena import identifiers

@@ -12,9 +12,10 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from math import gcd, lcm
+from random import Random
 from typing import Any
 
-from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpz_mat
+from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly_ctx, fmpz_mat
 
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.factors import occurring
@@ -198,7 +199,26 @@ class _State:
                     for a, b in zip(components, others, strict=True):
                         total = total + ring.generator("coordinate", a) * ring.generator("coordinate", b)
                     found.append(total)
-        return [*found, *self._between_exponentials([k for k in variables if self._exponent(k) is not None])]
+        exponentials = [k for k in variables if self._exponent(k) is not None]
+        tied = self._between_exponentials(exponentials)
+        self._refuse_dependent(exponentials, [k for k in variables if k not in exponentials], len(tied))
+        return [*found, *tied]
+
+    def _refuse_dependent(self, exponentials: Sequence[int], others: Sequence[int], tied: int) -> None:
+        """Raises NoClosedForm where variables are functions of each other but for relations: ranks would mislead."""
+        ring = self.ring
+        exponents = [self._exponent(k) for k in exponentials]
+        under = sorted({name for a in exponents for name in ring.dependencies(a, self.rates)})
+        beside = [self.name(k) for k in others if k not in self.unknowns and ring.generators[k].name in under]
+        chance = Random("exponents")
+        point = [fmpq(chance.randint(2, 99)) for _ in ring.generators]
+        slopes = [[ring.derivative(a, name)(*point) for name in under] for a in exponents]
+        if beside or (slopes and fmpq_mat(slopes).rank() < len(slopes) - tied):
+            told = ", ".join([*map(self.name, exponentials), *beside])
+            raise NoClosedForm(
+                Message("[[names]] are functions of each other: they cannot all be variables", names=told),
+                remedy="see 'mbsym symmetries', which needs no polynomials",
+            )
 
     def _between_exponentials(self, places: Sequence[int]) -> list[Polynomial]:
         """exp(a)^m exp(b)^n ... = exp(c)^k ... for the integers with  m a + n b + ... = k c + ...

@@ -11,6 +11,7 @@ from flint import ctx, fmpq
 
 import mbsym
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.analysis.invariant import invariant_sets_of
 from mbsym.problems.vector_field import vector_field
 
 
@@ -84,7 +85,7 @@ bodies:
   - {name: two, attached to: one, connection point: [0, 0, 0], rotation: {axes: [3, 0, 0], angles: [phi, 0, 0]},
      mass: m, mass centre: [1, 0, 0]}
 loads:
-  - potential: k*cosh(b*x) + exp(cos(phi))
+  - potential: k*cosh(b*x) + m*cos(phi)
 """
 DRIVEN = """
 mbsym: 1
@@ -157,7 +158,7 @@ def test_exponentials_have_one_relation():
     assert vector_field(loaded.system, loaded.ring, None, loaded.equations)[0].relations == ()
     loaded = mbsym.loads(MORSE)
     field, _ = vector_field(loaded.system, loaded.ring, None, loaded.equations)
-    up, down = (field.generator(name) for name in field.variables if name.startswith("exp(") and "phi" not in name)
+    up, down = (field.generator(name) for name in field.variables if name.startswith("exp("))
     assert up * down - 1 in field.relations
     assert not any(field.denominator.degrees()[k] for k in field.places if "exp" in field.context.names()[k])
 
@@ -169,6 +170,8 @@ def test_exponentials_have_one_relation():
         ("exp(x) + exp(y) + exp(x + y) + exp(x - y) + exp(2*x)", "several ways"),
         ("x*log(1 + x**2)", "function log"),
         ("sqrt(2)*x**2", "constant sqrt(2) occurs"),
+        ("exp(x) + x**2", "exp(x), x are functions of each other"),
+        ("exp(x) + exp(a*x)", "functions of each other"),
         ("exp(a)*x**2", "constant exp(a) occurs"),
     ],
 )
@@ -213,3 +216,28 @@ def test_in_speeds_an_angle_is_a_pair():
     g, v, w, r, s, c = map(field.generator, ("g", *field.variables))
     by_hand = [r * w + g * c, -r * v - g * s, 0 * r, r * c, -r * s]
     assert [p - q * field.denominator for p, q in zip(field.numerators, by_hand, strict=True)] == [0] * 5
+
+
+def test_problem_ten_takes_no_exponentials():
+    """grad K in e = exp(x) and x apart would have no zero where there is an equilibrium."""
+    analysis = mbsym.loads(TODA)
+    with pytest.raises(NoClosedForm, match=r"exp\(x - y\)"):
+        invariant_sets_of(analysis)
+    with pytest.raises(NoClosedForm, match=r"sin\(phi\), cos\(phi\)"):
+        invariant_sets_of(mbsym.loads(ROLLED))
+
+
+def test_problem_ten_takes_no_angle_beside_its_sine():
+    """At rest k (phi - a) + sin phi = 0; phi = a with sin phi = 0, which grad K in both apart gives, is none."""
+    text = """
+mbsym: 1
+name: a pendulum on a torsion spring
+parameters: {k: positive, a: positive}
+bodies:
+  - {name: one, attached to: 0, rotation: {axes: [3, 0, 0], angles: [phi, 0, 0]}, mass: 0, inertia about: joint,
+     inertia: [0, 0, 1]}
+loads:
+  - potential: k*(phi - a)**2/2 - cos(phi)
+"""
+    with pytest.raises(NoClosedForm, match=r"phi, sin\(phi\) are functions of each other"):
+        invariant_sets_of(mbsym.loads(text))
