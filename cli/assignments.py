@@ -17,6 +17,7 @@ from mbsym.studies.study import missing as unfit
 from mbsym_cli.options import MAX_LENGTH, Options
 
 if TYPE_CHECKING:
+    from mbsym.model.scaling import Scaling
     from mbsym.model.system import System
     from mbsym.numerics.scenario import Lack, Scenario
 
@@ -134,6 +135,31 @@ def with_settings(file: Path, system: System, settings: Sequence[str], options: 
     if not options.complaints:
         contradictions(file, Lack((), contradictions_of(system, values)), assigned, options)
     return with_values(system, values)
+
+
+def scaling_of(text: str, system: System, options: Options) -> Scaling | None:
+    """What ``--scale`` says; every complaint joins those of ``options``."""
+    from mbsym.source.scaling import read_scaling
+
+    text, complaints = " ".join(text.splitlines()), Complaints()
+    found = read_scaling(text, system, complaints)
+    options.complaints += [render_option(one, text, "--scale") for one in complaints.sorted()]
+    return found
+
+
+def in_scale(system: System, text: str, options: Options) -> System | None:
+    """The description in the variables of ``--scale``; why there is none joins the complaints of ``options``."""
+    from mbsym.algebra.failures import Failure
+    from mbsym.studies.groups import in_scale as described
+
+    scaling = scaling_of(text, system, options)
+    try:
+        return None if scaling is None else described(system, scaling)
+    except Failure as error:
+        told = f"there is no description in these variables: {error.reason}"
+        hint = error.remedy or "'mbsym show --scale' prints equations and integrals in them"
+        options.complain("--scale", "no-description", told, hint)
+    return None
 
 
 def contradictions(file: Path, lack: Lack, assigned: Assigned, options: Options) -> None:

@@ -7,6 +7,7 @@ import os
 import re
 import shutil
 import sys
+import time
 import traceback
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
@@ -21,6 +22,7 @@ from mbsym.algebra.parts import missing
 from mbsym.expressions.message import Message
 from mbsym.expressions.safe import UNBROKEN
 from mbsym.expressions.safe import safe as escaped
+from mbsym.studies.study import Watch, unwatched
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -29,6 +31,7 @@ if TYPE_CHECKING:
 
     from mbsym.model.system import System
     from mbsym.report.plain_writer import Line
+
 
 #: Exit codes: everything held; a result failed its self-check, or is missing; the input is wrong.
 OK, FAILED, BAD_INPUT = 0, 1, 2
@@ -347,3 +350,64 @@ class OutPath(click.Path):
         if not str(value).strip():
             self.fail("it is empty (an unset variable?); write . for this folder", param, ctx)
         return super().convert(value, param, ctx)
+
+
+# What is being done, on standard error: words with a bar, or a bar over simulated time or whatever is counted.
+
+
+@contextmanager
+def progress(quiet: bool, name: str, end: float, what: str = "t") -> Iterator[Callable[[float], None]]:
+    """On standard error; nothing where that is no terminal.  ``what`` is counted: the time, unless it is said."""
+    if quiet or not sys.stderr.isatty():
+        yield lambda t: None
+        return
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+
+    bar = Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TaskProgressColumn(),
+        TextColumn(what + " = {task.completed:.4g}"),
+        TimeRemainingColumn(),
+        console=console(stderr=True),
+        transient=True,
+    )
+    with bar:
+        task = bar.add_task(name, total=end)
+        shown = 0.0
+
+        def watch(t: float) -> None:
+            nonlocal shown
+            now = time.monotonic()
+            if now - shown > 0.05:
+                shown = now
+                bar.update(task, completed=t)
+
+        yield watch
+
+
+@contextmanager
+def watching(quiet: bool, name: str) -> Iterator[Watch]:
+    """What a study is doing, and a bar that fills where that is counted; nothing where there is no terminal."""
+    if quiet or not sys.stderr.isatty():
+        yield unwatched
+        return
+    from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+    words = TextColumn("{task.description}", markup=False)
+    bar = Progress(
+        SpinnerColumn(), words, BarColumn(), TimeElapsedColumn(), console=console(stderr=True), transient=True
+    )
+    with bar:
+        task = bar.add_task(printable(name), total=None)
+        said, shown = "", 0.0
+
+        def watch(text: str, done: float = 0.0, whole: float = 0.0) -> None:
+            nonlocal said, shown
+            now = time.monotonic()
+            if text != said or now - shown > 0.05:
+                said, shown = text, now
+                told = f"{printable(name)}: {printable(text)}" if text else printable(name)
+                bar.update(task, description=told, completed=done, total=whole or None)
+
+        yield watch

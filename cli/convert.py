@@ -13,6 +13,7 @@ import click
 from mbsym.expressions.message import counted
 from mbsym.expressions.place import Complaints
 from mbsym.source import read, render, to_text, to_yaml
+from mbsym_cli.assignments import in_scale
 from mbsym_cli.console import BAD_INPUT, FAILED, OutPath, complain, diagnose, printable, read_description
 from mbsym_cli.files import write_whole
 from mbsym_cli.options import Options
@@ -30,6 +31,7 @@ from mbsym_cli.options import Options
     type=click.Choice(["snap", "exact"]),
     help="Of a robot: 1.5708 is pi/2 (snap, the default; it is told), or stays the number that it is (exact).",
 )
+@click.option("--scale", metavar="LIST", help="In dimensionless variables: x=L*x1,t=tau/omega0,k=m*omega0**2*kappa.")
 @click.option("--out", type=OutPath(path_type=Path, dir_okay=False), help="Default: standard output.")
 def command(
     file: Path,
@@ -39,6 +41,7 @@ def command(
     no_damping: bool,
     no_inputs: bool,
     angles: str | None,
+    scale: str | None,
     out: Path | None,
 ) -> None:
     """Convert a description between YAML and the editor's plain text, or make one of a robot's URDF or MJCF.
@@ -49,10 +52,19 @@ def command(
     not tell, the torque or force is an input, tau_NAME; joints that mimic others follow them exactly.  Links and named
     sites without mass are frames: massless bodies.
 
+    With --scale the description is written in dimensionless variables of yours.  Left of = stands a name of FILE, right
+    of it what is put in: of a coordinate, a speed or the time t a factor times its new name; of a parameter anything.
+    Other new names are parameters.  New variables are pure numbers; so is a new parameter that stands once only, at a
+    parameter.  Names of units (those of factors first, then the first positive ones) become 1, and what has
+    a dimension still is measured in them.  The equations of both are compared exactly before anything is written.
+    Names in factors are taken to be positive.  Claims, abbreviations, limits and units of measurement are left out.
+    'mbsym groups' proposes such a list.
+
     \b
     Examples:
       mbsym convert systems/satellite.yaml --out satellite.txt
       mbsym convert robot.urdf --symbols --out robot.yaml
+      mbsym convert systems/simple-pendulum.yaml --to yaml --scale "t=tau/w,J=j*m*l**2,g=l*(1+j)*w**2,b=m*l**2*w*d"
     """
     asked = Options()
     if out is not None and _same(out, file):
@@ -73,6 +85,10 @@ def command(
             complain(file, f"is no URDF or MJCF: {options} mean nothing here")
             sys.exit(BAD_INPUT)
         written, system = None, read_description(file)
+    if system is not None and scale is not None:
+        written, system = None, in_scale(system, scale, asked)
+        if asked.refused(file):
+            sys.exit(BAD_INPUT)
     if system is None:
         sys.exit(BAD_INPUT)
     if spelling is None:

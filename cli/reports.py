@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from mbsym.report.content import say
 from mbsym.report.language import Language
 from mbsym.report.whole_run import derive_all, lost, rendered_all
-from mbsym_cli.assignments import with_settings
+from mbsym_cli.assignments import in_scale, with_settings
 from mbsym_cli.beside import beside
 from mbsym_cli.console import (
     BAD_INPUT,
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from mbsym.formulas.tree import Angles
     from mbsym.model.system import System
     from mbsym.numerics.ledger.entry import Ledger
-    from mbsym.numerics.ledger.work import Wanted
+    from mbsym.numerics.ledger.work import AccuracyGoal
     from mbsym.report.brief import Brief
     from mbsym.report.content import Facts
     from mbsym.report.figures.made_figures import MadeFigure
@@ -61,7 +61,7 @@ class Request:
     terms: int
     quiet: bool
     strict_claims: bool = False
-    ledger: Wanted | bool = False  # or the accuracy that it is held against
+    ledger: AccuracyGoal | bool = False  # or the accuracy that it is held against
     brief: bool = False
     width: int = 0
     angles: Angles | None = None  # None: what each kind of text usually has
@@ -72,6 +72,7 @@ class Request:
     verbose: bool = False
     detail: str = "compact"
     settings: tuple[str, ...] = ()  # values that replace those of the description
+    scale: str | None = None  # dimensionless variables that the description is put in
 
 
 def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> int:
@@ -87,6 +88,11 @@ def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> 
             asked = Options()
             system = with_settings(path, system, request.settings, asked)
             if asked.refused(path):
+                return BAD_INPUT
+        if request.scale is not None:
+            asked = Options()
+            system = in_scale(system, request.scale, asked)
+            if asked.refused(path) or system is None:
                 return BAD_INPUT
         reason = obstacle(folder, base)
         if reason:
@@ -150,7 +156,7 @@ def _figures(folder: Path, system: System) -> tuple[MadeFigure, ...]:
     return made_figures(text, meaning(system), unchanged)
 
 
-def _ledger(analysis: Analysis, texts: dict[str, str | bytes], wanted: Wanted | bool) -> Ledger:
+def _ledger(analysis: Analysis, texts: dict[str, str | bytes], wanted: AccuracyGoal | bool) -> Ledger:
     """The ledger of a finished run, put into its files."""
     from mbsym.numerics.ledger.table import ledger
     from mbsym.report.runs.ledger import ledger_csv, with_ledger

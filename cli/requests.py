@@ -118,7 +118,7 @@ def _motion(
 
     if not kind.whole(texts):
         return None, sound_numbers(file, system, settings, options)
-    return given_numbers(file, system, settings, options, state=kind.state)
+    return given_numbers(file, system, settings, options, declared=kind.declared, state=kind.state)
 
 
 def _read(field: Field, given: Any, system: System | None, options: Options, motion: Scenario | None = None) -> Any:

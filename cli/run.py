@@ -17,21 +17,21 @@ from mbsym_cli.simulate.choice import COARSEST, FINEST
 
 if TYPE_CHECKING:
     from mbsym.formulas.tree import Angles
-    from mbsym.numerics.ledger.work import Wanted
+    from mbsym.numerics.ledger.work import AccuracyGoal
 
 
 # ``--ledger`` of ``mbsym run``, and the accuracy that it is held against.
 
 
 @dataclass(frozen=True)
-class Asked:
+class LedgerOptions:
     """As typed."""
 
     ledger: bool
     accuracy: str | None
     until: str | None
 
-    def read(self, asked: Options) -> Wanted | bool:
+    def read(self, asked: Options) -> AccuracyGoal | bool:
         """Whether there is a ledger, and the accuracy that it is held against, if any; complaints join ``asked``."""
         if self.accuracy is None and self.until is None:
             return self.ledger
@@ -44,14 +44,14 @@ class Asked:
         until = asked.number("--until", self.until)
         if accuracy is None or until is None:
             return self.ledger
-        from mbsym.numerics.ledger.work import Wanted
+        from mbsym.numerics.ledger.work import AccuracyGoal
 
-        return Wanted(accuracy, until)
+        return AccuracyGoal(accuracy, until)
 
 
 ledger_options = group(
     "ledger",
-    Asked,
+    LedgerOptions,
     click.option("--ledger", is_flag=True, help="What was left out, why that is safe, and what it saved."),
     click.option(
         "--accuracy",
@@ -70,6 +70,7 @@ ledger_options = group(
 )
 @click.option("--out", "-o", type=OutPath(path_type=Path), help="Folder of the reports.  [default: reports/NAME]")
 @click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Replace a value; repeatable.")
+@click.option("--scale", metavar="LIST", help="In dimensionless variables, as 'mbsym convert' has them.")
 @click.option("--detail", default="compact", show_default=True, metavar="WORD", help="Long formulas: compact, or full.")
 @click.option("--terms", default="60000", show_default=True, metavar="N", help="Budget of terms of one closed formula.")
 @click.option(
@@ -96,6 +97,7 @@ def command(
     formats: str,
     out: Path | None,
     settings: tuple[str, ...],
+    scale: str | None,
     detail: str,
     terms: str,
     angles: str | None,
@@ -104,7 +106,7 @@ def command(
     language: str | None,
     strict_claims: bool,
     brief: bool,
-    ledger: Asked,
+    ledger: LedgerOptions,
     verbose: bool,
     quiet: bool,
 ) -> None:
@@ -146,6 +148,9 @@ def command(
 
     With --set NAME=VALUE a parameter has another value than in the description: for the verdict at given values,
     eigenvalues, parameters that code begins with.
+
+    With --scale x=L*x1,t=tau/omega0,... everything is derived of the description in these variables, which 'mbsym
+    convert --scale' writes.
 
     \b
     Examples:
@@ -206,6 +211,7 @@ def command(
         verbose,
         wanted or detail,
         settings,
+        scale,
     )
     worst = OK
     base = None if out is not None and len(paths) == 1 else out or REPORTS

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from mbsym_cli.assignments import with_settings
+from mbsym_cli.assignments import scaling_of, with_settings
 from mbsym_cli.console import BAD_INPUT, FAILED, OK, complain, printable, read_description, status
 from mbsym_cli.options import Options
 
@@ -19,8 +19,16 @@ from mbsym_cli.options import Options
 @click.option("--wolfram", "language", flag_value="wolfram", help="Write Wolfram Language.")
 @click.option("--python", "language", flag_value="python", help="Write Python, with the names of the description.")
 @click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Replace a value; repeatable.")
+@click.option("--scale", metavar="LIST", help="Dimensionless variables: x=L*x1,t=tau/omega0,k=m*omega0**2*kappa.")
 @click.option("--terms", metavar="N", default="1000000", show_default=True, help="Longest formula that is derived.")
-def command(file: Path, names: tuple[str, ...], language: str | None, settings: tuple[str, ...], terms: str) -> None:
+def command(
+    file: Path,
+    names: tuple[str, ...],
+    language: str | None,
+    settings: tuple[str, ...],
+    scale: str | None,
+    terms: str,
+) -> None:
     """Print formulas of FILE by their NAMEs: its equations of motion, or what is asked for.
 
     \b
@@ -28,10 +36,12 @@ def command(file: Path, names: tuple[str, ...], language: str | None, settings: 
     accelerations   solved for q''             M f           of M q'' = f
     motion          does it satisfy them       constraints   in velocities
     M0 D G K N B    first approximation
-    characteristic  polynomials                conditions    of stability
-    eigenvalues     at the given values        integrals     first integrals
+    characteristic  polynomials                determinants  and what they come from
+    conditions      of stability               integrals     first integrals
+    eigenvalues     at the given values
 
-    The name of a body prints its kinematics.  Without --latex, --wolfram or --python formulas are written as people
+    The name of a body prints its kinematics and its part of T, that of a coordinate (a speed) its equation, terms with
+    accelerations first.  Without --latex, --wolfram or --python formulas are written as people
     write them: theta'' is the second derivative, a space multiplies.  Exit codes: 0 printed, 1 there is no such result,
     2 something is wrong.
 
@@ -40,19 +50,35 @@ def command(file: Path, names: tuple[str, ...], language: str | None, settings: 
       mbsym show systems/simple-pendulum.yaml
       mbsym show systems/double-pendulum.yaml T U equations
       mbsym show systems/satellite.yaml conditions --latex
+      mbsym show systems/satellite.yaml determinants theta
+      mbsym show systems/spring-pendulum.yaml --scale "r=l0*x,t=tau/omega0,k=m*omega0**2,g=l0*omega0**2*nu"
     """
     system = read_description(file)
     asked = Options()
     budget = asked.whole("--terms", terms, 1, 10**12)
     if system is not None and settings:
         system = with_settings(file, system, settings, asked)
+    scaling = scaling_of(scale, system, asked) if system is not None and scale is not None else None
     if asked.refused(file) or system is None or budget is None:
         sys.exit(BAD_INPUT)
     from mbsym.algebra.failures import Failure
     from mbsym.analysis import Analysis
-    from mbsym.report.formulas_by_name import known_names, lines, remarked, written
+    from mbsym.report.formulas_by_name import carried_lines, known_names, lines, remarked, written
 
-    analysis = Analysis(system, terms=budget)
+    formulas = None
+    if scaling is not None:
+        from mbsym.analysis.scaled import Formulas, NoDescription
+        from mbsym.studies.groups import in_scale
+
+        try:
+            with status(False, "scaling"):
+                system = in_scale(system, scaling)
+        except NoDescription:
+            formulas = Formulas(system, scaling, budget)
+        except Failure as error:
+            complain(file, f"--scale: {error}")
+            sys.exit(FAILED)
+    analysis = Analysis(system, terms=budget) if formulas is None else formulas.analysis
     known = known_names(analysis)
     wanted = names or (("equations",) if system.linear is None else ("M0", "D", "G", "K", "N"))
     unknown = [name for name in wanted if name not in known]
@@ -64,7 +90,7 @@ def command(file: Path, names: tuple[str, ...], language: str | None, settings: 
     for name in wanted:
         try:
             with status(False, f"deriving {name}"):
-                found = list(lines(analysis, name))
+                found = list(lines(analysis, name) if formulas is None else carried_lines(formulas, name))
         except Failure as error:
             complain(file, f"{name}: {error}")
             worst = FAILED

@@ -34,10 +34,10 @@ from mbsym_cli.console import (
     read_held,
     reason_of,
     tell,
+    watching,
 )
 from mbsym_cli.files import deliver, folder_for, obstacle, write_whole
 from mbsym_cli.options import Options
-from mbsym_cli.progress import watching
 from mbsym_cli.requests import option_of, read_fields
 
 Found = TypeVar("Found")
@@ -107,10 +107,10 @@ class _Run:
     def _described(self) -> System | None:
         """The system, None after complaints; inputs are held, which is said, where the study does so."""
         study, bodies = self.study, self.study.bodies(self.texts)
-        constraints, matrices = study.constraints and not bodies, study.matrices and not bodies
+        matrices = study.matrices and not bodies
         if study.held:
-            return read_held(self.file, study.name, constraints, not matrices)
-        return read_description(self.file, "" if constraints else study.name, "" if matrices else study.name)
+            return read_held(self.file, study.name, study.constraints, not matrices)
+        return read_description(self.file, "" if study.constraints else study.name, "" if matrices else study.name)
 
     def _complain(self, request: Any, system: System | None, typed: Collection[str]) -> None:
         """About what does not go together."""
@@ -273,7 +273,7 @@ def show_files(folder: Path, names: Iterable[str], language: str) -> None:
     tell(f"  {Language(language).say(Message('files in'))} ", (printable(folder), "bold"), f": {', '.join(names)}")
 
 
-def told(
+def show_result(
     file: Path, system: System, lines: Iterable[tuple[str, str]], folder: Path, names: Iterable[str], after: str = ""
 ) -> None:
     """Prints lines with titles beneath the name of the system, ``after`` which stands what they are about."""

@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from mbsym.model.system import System
     from mbsym.numerics.scenario import Scenario
     from mbsym.simulation import Request
-    from mbsym_cli.simulate.many import Many
     from mbsym_cli.simulate.request import Asked
 
 
@@ -52,7 +51,7 @@ closing_options = group(
 )
 
 
-def check_constrained(system: System | None, wanted: Asked, many: Many, asked: Options) -> None:
+def check_constrained(system: System | None, wanted: Asked, asked: Options) -> None:
     """Complains about every option that does not know constraints yet."""
     if system is None or not system.constraints:
         return
@@ -60,16 +59,9 @@ def check_constrained(system: System | None, wanted: Asked, many: Many, asked: O
 
     request = wanted.request
     told = constraints_listed(system.constraints)
-    options = {
-        "--vary": bool(many.vary),
-        "--sensitivity": many.sensitivity is not None,
-        "--certify": request.certify is not None,
-        "--linear": request.model.linear,
-    }
-    for option, there in options.items():
-        if there:
-            message = f"{option} does not take constraints into account yet ({told})"
-            asked.complain(option, "constraints", message, "without them this would be another system")
+    if request.model.linear:
+        message = f"--linear does not take constraints into account yet ({told})"
+        asked.complain("--linear", "constraints", message, "without them this would be another system")
     if request.method in METHODS and (METHODS[request.method].traits.conservative or request.method == "lsoda"):
         hint = "these do: auto, dop853, rk45, rk4, taylor, radau, bdf"
         message = f"{request.method} does not keep to constraints ({told})"

@@ -13,10 +13,20 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.safe import quoted as ascii_safe
 from mbsym.report.language import Language
 from mbsym.studies.study import Exit, Refusal
-from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, complain, printable, reason_of, status
+from mbsym_cli.console import (
+    BAD_INPUT,
+    BROKEN_DOWN,
+    FAILED,
+    INTERRUPTED,
+    OK,
+    complain,
+    printable,
+    progress,
+    reason_of,
+    status,
+)
 from mbsym_cli.files import room_beside
 from mbsym_cli.options import Options
-from mbsym_cli.progress import progress
 from mbsym_cli.simulate.files import write_files
 from mbsym_cli.simulate.request import Asked
 from mbsym_cli.simulate.summary import (

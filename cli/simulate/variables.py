@@ -12,7 +12,6 @@ from mbsym_cli.options import Options, group
 if TYPE_CHECKING:
     from mbsym.model.system import System
     from mbsym.simulation import Request
-    from mbsym_cli.simulate.many import Many
     from mbsym_cli.simulate.request import Asked
 
 #: What an option that goes with coordinates only is answered with.
@@ -68,7 +67,7 @@ variables_options = group(
 )
 
 
-def check_states(system: System | None, wanted: Asked, many: Many, asked: Options) -> None:
+def check_states(system: System | None, wanted: Asked, asked: Options) -> None:
     """Complains about every option that goes with coordinates only, where a run has other variables."""
     from mbsym.model.states import InStates
 
@@ -78,9 +77,6 @@ def check_states(system: System | None, wanted: Asked, many: Many, asked: Option
 
     request = wanted.request
     options = {
-        "--vary": bool(many.vary),
-        "--sensitivity": many.sensitivity is not None,
-        "--certify": request.certify is not None,
         "--continue": request.earlier is not None,
         "--linear": request.model.linear,
         **{option: kind in wanted.formats for kind, option in OF_BODIES.items()},

@@ -97,6 +97,7 @@ def in_groups(system: System, found: Groups, values: bool = True) -> System:
         description=f"In units in which {told}.  {system.description}".strip() if told else system.description,
         bodies=tuple(map(_accepted, changed.bodies)),
         parameters=tuple(parameters),
+        symbols=tuple(one for one in changed.symbols if one.name not in units),
         initial=tuple(_initial(system.initial, found, known)),
         start=tuple(_initial(system.start, found, known)),
         time_scale=scale if scale is not None and names(scale) else None,
@@ -121,6 +122,8 @@ def _accepted(body: Body) -> Body:
 
 def _group(one: Parameter, stands: Expression, values: Mapping[str, Expression]) -> Parameter:
     meaning = f"{text(stands)}; {one.name}: {one.meaning}" if one.meaning else text(stands)
+    if stands == Name(one.name):
+        meaning = one.meaning
     return replace(one, meaning=meaning, value=_valued(stands, values))
 
 

@@ -14,7 +14,7 @@ from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.ring import Ring
 from mbsym.expressions.message import Message
 from mbsym.formulas import latex, mathml, python
-from mbsym.problems.claims.forms import in_parameters
+from mbsym.problems.claims.result import in_parameters
 from mbsym.problems.claims.symbols import Symbols
 from mbsym.problems.integrals import ENERGY
 

@@ -6,29 +6,33 @@ all deviations from the unperturbed motion are small themselves, the field is th
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import pairwise
+from functools import cached_property
+from itertools import count, pairwise
 from typing import TYPE_CHECKING, Any
 
 from flint import acb
 
 from mbsym.algebra import rationals
+from mbsym.algebra.base import Lowering
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
+from mbsym.algebra.tower import MOST_ROOTS, Element, Tower, angle_in
+from mbsym.analysis.scaled import with_parameters
 from mbsym.expressions.message import Message
+from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.motion import relations
 from mbsym.model.oscillation_names import names_in, oscillation_names
+from mbsym.model.scaling import Scaling
 from mbsym.model.system import SmallParameter, System, velocity_name
-from mbsym.problems.angle_field import in_angles
 from mbsym.problems.normal_forms.dissipative import taylor_field
+from mbsym.problems.normal_forms.exact import letter
 from mbsym.problems.small_parameter.graded_rows import graded_rows
-from mbsym.problems.small_parameter.harmonics import Harmonics
-from mbsym.problems.small_parameter.oscillation_result import Amplitude, Divisor, Oscillation
+from mbsym.problems.small_parameter.oscillation_result import Amplitude, Divisor, Harmonics, Oscillation
 from mbsym.problems.small_parameter.oscillations import (
     AMPLITUDE,
     LATEST,
@@ -36,10 +40,14 @@ from mbsym.problems.small_parameter.oscillations import (
     oscillation,
     tower_over,
 )
-from mbsym.problems.vector_field import in_speeds
+from mbsym.problems.vector_field import vector_field
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
+
+
+#: What the sign of the exponent of a cycle says; None of one that is not known.
+_ATTRACTS: dict[str | None, bool] = {"negative": True, "positive": False}
 
 
 @dataclass(frozen=True)
@@ -49,7 +57,8 @@ class Oscillating:
     ``field``: the equations with their numbers; ``taylor``: it is a Taylor series about the motion, cut off; ``real``:
     by the signs of the parameters the frequency at eps = 0 is real and not zero; ``resonances``: the divisors that are
     not known to be different from zero by them.  ``real_amplitude``: so is a determined amplitude.  ``velocities``:
-    variables that are rates of others.
+    variables that are rates of others.  ``attracts``: whether motions near a single cycle come closer to it for small
+    eps > 0, None where that is not known, or depends.
     """
 
     found: Oscillation
@@ -61,20 +70,64 @@ class Oscillating:
     real: bool = False
     resonances: tuple[Divisor, ...] = ()
     real_amplitude: bool = True
+    attracts: bool | None = None
     velocities: tuple[str, ...] = ()
 
-    def formula(self, x: Element) -> Formula:
-        return Formula(self.ring, in_letters(self.found.tower, self.ring, self.symbols, x))
+    def formula(self, x: Element, ring: Ring | None = None) -> Formula:
+        """An element; in ``told_ring`` with letters for common denominators."""
+        letters = None if ring is None else self.denominators
+        whole = self.ring if ring is None else ring
+        return Formula(whole, in_letters(self.found.tower, whole, self.symbols, x, letters))
 
-    def wave(self, one: Harmonics) -> Formula:
+    @cached_property
+    def denominators(self) -> tuple[tuple[Any, str], ...]:
+        """Letters D1, D2, ... for irreducible factors with several terms that divide more than one coefficient."""
+        found = self.found
+        waves = [one for series in found.series for one in series] + [x for one in found.drifts for x in one.waves]
+        values = [x for one in waves for pair in one.waves.values() for x in pair if not x.is_zero()]
+        factors: list[Any] = []
+        often: list[int] = []
+        for x in [*values, *found.corrections]:
+            for factor, _ in x.bottom.factor()[1]:
+                if len(factor) > 1 and not any(factor.degrees()[:MOST_ROOTS]):
+                    if factor not in factors:
+                        factors.append(factor)
+                        often.append(0)
+                    often[factors.index(factor)] += 1
+        taken = set(self.ring.names()) | set(self.symbols.values())
+        names = (name for k in count(1) if (name := f"D{k}") not in taken)
+        return tuple(zip((x for x, times in zip(factors, often, strict=True) if times > 1), names, strict=False))
+
+    @cached_property
+    def told_ring(self) -> Ring:
+        """The ring of the result with the letters of ``denominators``."""
+        if not self.denominators:
+            return self.ring
+        names = [g.name for g in self.ring.generators if g.kind == "parameter" and g.name != "pi"]
+        positive = [name for name in names if self.ring.is_positive(self.ring.generator("parameter", name))]
+        return Ring(
+            (), (self.phase,), [*names, *(name for _, name in self.denominators)], self.ring.angles, positive, spare=40
+        )
+
+    def wave(self, one: Harmonics, told: Ring | None = None) -> Formula:
         """A trigonometric polynomial of the phase."""
-        ring, total = self.ring, self.ring.zero
+        ring = self.ring if told is None else told
+        total = ring.zero
         s, c = (ring.generator(kind, self.phase) for kind in ("sine", "cosine"))
         for k, (a, b) in one.waves.items():
             sine, cosine = ring.multiple_angle(s, c, k) if k else (ring.zero, ring.one)
-            total = total + ring.times(self.formula(a).polynomial, cosine)
-            total = total + ring.times(self.formula(b).polynomial, sine)
-        return Formula(ring, ring.reduce(total))
+            total = total + ring.times(self.formula(a, told).polynomial, cosine)
+            total = total + ring.times(self.formula(b, told).polynomial, sine)
+        return Formula(ring, total if told is not None else ring.reduce(total))
+
+    def shortest(self, one: Harmonics) -> Formula:
+        """The same with letters for common denominators, in the form that takes least to be written."""
+        whole = self.wave(one)
+        if not self.denominators:
+            return whole
+        plain = self.wave(one, self.told_ring)
+        reduced = Formula(plain.ring, plain.ring.reduce(plain.polynomial))
+        return min((plain, reduced, whole), key=lambda x: len(x.text()))
 
     def written(self, one: Harmonics) -> str:
         """The same, harmonic by harmonic, in Python syntax."""
@@ -131,6 +184,8 @@ def oscillating(
 ) -> Oscillating:
     """The periodic solution up to eps^order, checked.  ``values`` of parameters and of symbols of the result.
 
+    A number of a parameter that is scaled stands before its power of eps, as the symbol would.
+
     ``leading`` names the variable that leads, ``which`` says which frequency it has, where it shares several.
 
     Raises NoClosedForm where there is none, or it cannot be had; ZeroDivisionError where numbers make it singular.
@@ -146,22 +201,23 @@ def oscillating(
                 remedy="solve the relation for another parameter",
             )
     whole, taylor = _field(analysis, small, order)
-    if small.name in given or any(given.get(name) for name, _ in small.powers):
-        raise NoClosedForm("what depends on the small parameter cannot be a number")
+    if small.name in given:
+        raise NoClosedForm("the small parameter cannot be a number")
     numbers = {n: rationals.exact(x) for n, x in given.items() if n in whole.parameters}
+    scaled = {n: numbers.pop(n) for n, _ in small.powers if numbers.get(n)}  # zero has no power
     field = whole.at(numbers) if numbers else whole
     powers = {n: p for n, p in small.powers if n in field.parameters or n in field.variables}
-    for name in system.coordinates:
-        if name in powers and velocity_name(name) in field.variables:
-            powers[velocity_name(name)] = powers[name]
+    for name, power in small.powers:  # the velocity of a cyclic coordinate, too
+        if name in system.coordinates and velocity_name(name) in field.variables:
+            powers[velocity_name(name)] = power
     if small.name not in field.parameters and not powers:
         raise NoClosedForm(Message("the equations do not depend on [[name]]", name=small.name))
-    kept = [name for name in field.parameters if name != small.name]
+    kept = [n for n in field.parameters if n != small.name and n not in scaled and n not in dict(field.roots)]
     most = order if taylor else order + LATEST
     left = {*kept, small.name, *related, *given}
     others = [name for name in system.parameter_names if name not in left]
     tower = tower_over(kept, field.variables, order, others)
-    rows = graded_rows(tower, field, small.name, powers, most)
+    rows = graded_rows(tower, field, small.name, powers, most, scaled)
     phase, symbols = names_of(system, field)
     ring = _letters(system, [*kept, *others], phase, symbols)
     constants = {internal: tower.number(given[shown]) for internal, shown in symbols.items() if shown in given}
@@ -205,7 +261,119 @@ def oscillating(
             if all(_sign(analysis, tower, x) not in ("positive", "negative") for x in one.parts)
         ),
         found.kind is Amplitude.FREE or size == "positive",
+        None if found.exponent is None else _ATTRACTS.get(_sign(analysis, tower, found.exponent[1])),
         () if system.speeds else system.velocities,
+    )
+
+
+def in_variables(told: Oscillating, system: System, scaling: Scaling) -> Oscillating:
+    """The same solution in an author's variables, time and parameters: put in, exactly, divided by the factors.
+
+    Constant values and the small parameter keep their names; the amplitude is that of the new leading variable.
+    """
+    found, old = told.found, told.found.tower
+    if any(angle_in(name) is not None for name in old.parameters):
+        raise NoClosedForm("sines and cosines of parameters stand in it: it is not told in other variables")
+    base = with_parameters(system, scaling)
+    shown = {name: internal for internal, name in told.symbols.items()}
+    kept = [one.name for one in base.parameters if one.name not in shown and one.name != found.small]
+    internal = [name for name in old.parameters if name.startswith("#")]
+    tower = Tower((*kept, *internal))
+    own = {name: tower.parameter(shown.get(name, name)) for name in (*kept, *shown)}
+    lower = Lowering(tower, own)
+    images = {**own, **{name: lower(value) for name, value in scaling.parameters}}
+    factors = {one.name: lower(one.factor) for one in scaling.variables}
+    new = {one.name: one.new for one in scaling.variables}
+    slow = tower.one if scaling.time is None else lower(scaling.time.factor)
+    for name in told.velocities:
+        plain = without_velocity(name)
+        factors[name] = factors.get(plain, tower.one) / slow
+        new[name] = velocity_name(new.get(plain, plain))
+    leading = factors.get(found.leading, tower.one)
+
+    def called(names: tuple[str, ...]) -> tuple[str, ...]:
+        return tuple(new.get(name, name) for name in names)
+
+    def generator(index: int) -> Element:
+        if index < MOST_ROOTS:
+            return tower.square_root(whole(old.squares[MOST_ROOTS - 1 - index]))
+        name = old.parameters[index - MOST_ROOTS]
+        if name == AMPLITUDE:
+            return tower.parameter(name) * leading
+        return tower.parameter(name) if name.startswith("#") else images[name]
+
+    known: dict[int, Element] = {}
+
+    def whole(p: Any) -> Element:
+        """A polynomial with everything put in, over the product of the denominators."""
+        degrees = [int(d) for d in p.degrees()]
+        used = [k for k, degree in enumerate(degrees) if degree > 0]
+        for k in used:
+            known.setdefault(k, generator(k))
+        total = tower.context.constant(0)
+        for monomial, c in p.to_dict().items():
+            term = tower.context.constant(c)
+            for k in used:
+                term *= known[k].top ** int(monomial[k]) * known[k].bottom ** (degrees[k] - int(monomial[k]))
+            total += term
+        below = tower.context.constant(1)
+        for k in used:
+            below *= known[k].bottom ** degrees[k]
+        return tower.made(tower.reduced(total), below)
+
+    def put(x: Element) -> Element:
+        return whole(x.top) / whole(x.bottom)
+
+    def wave(name: str, one: Harmonics) -> Harmonics:
+        factor = tower.reciprocal(factors.get(name, tower.one))
+        return Harmonics(tower, {k: (put(c) * factor, put(s) * factor) for k, (c, s) in one.waves.items()})
+
+    moved = {
+        id(one): replace(
+            one,
+            variables=called(one.variables),
+            value=put(one.value),
+            damping=None if one.damping is None else put(one.damping),
+        )
+        for one in found.divisors
+    }
+    changed = replace(
+        found,
+        tower=tower,
+        names=called(found.names),
+        leading=new.get(found.leading, found.leading),
+        block=called(found.block),
+        frequency=put(found.frequency) * slow,
+        corrections=tuple(map(put, found.corrections)),
+        amplitude=put(found.amplitude) / leading,
+        constants=tuple((name, put(x)) for name, x in found.constants),
+        series=tuple(
+            tuple(wave(name, one) for one in series) for name, series in zip(found.names, found.series, strict=True)
+        ),
+        drifts=tuple(
+            replace(
+                one,
+                variable=new.get(one.variable, one.variable),
+                rates=tuple(put(x) * slow / factors.get(one.variable, tower.one) for x in one.rates),
+                waves=tuple(wave(one.variable, x) for x in one.waves),
+            )
+            for one in found.drifts
+        ),
+        divisors=tuple(moved.values()),
+        others=tuple((called(names), put(x) * slow * slow) for names, x in found.others),
+        damped=tuple(map(called, found.damped)),
+        with_zero=tuple(map(called, found.with_zero)),
+        not_known=tuple(map(called, found.not_known)),
+        other_amplitudes=None if found.other_amplitudes is None else put(found.other_amplitudes),
+        exponent=None if found.exponent is None else (found.exponent[0], put(found.exponent[1]) * slow),
+    )
+    return replace(
+        told,
+        found=changed,
+        ring=_letters(base, kept, told.phase, told.symbols),
+        real=told.real or tower.rational(changed.frequency) is not None,
+        resonances=tuple(moved[id(one)] for one in told.resonances),
+        velocities=called(told.velocities),
     )
 
 
@@ -240,18 +408,17 @@ def _field(analysis: Analysis, small: SmallParameter, order: int) -> tuple[Polyn
     """The equations; and whether they are cut off."""
     equations: Any = analysis.equations
     images = relations(analysis.parameters_scene)
-    if analysis.speed_form is not None:
-        return in_speeds(analysis.speed_form, equations, (), images)[0], False
     names = analysis.system.coordinates
     weights = dict(small.powers)
-    if analysis.system.motion and all(weights.get(name, 0) > 0 for name in names):
+    in_coordinates = analysis.speed_form is None
+    if in_coordinates and analysis.system.motion and all(weights.get(name, 0) > 0 for name in names):
         from mbsym.analysis.higher import ignorable
         from mbsym.problems.normal_forms.expansion import expansion
 
         cyclic = ignorable(analysis)[1]
         jets = expansion(analysis.parameters_scene, analysis.system, analysis.equilibrium, order + 2, cyclic)
         return taylor_field(jets, order + 1), True
-    field = in_angles(analysis.ring, names, equations, (), images)[0]
+    field = vector_field(analysis.system, analysis.ring, analysis.speed_form, equations, (), images)[0]
     for name in names:
         if weights.get(name) and any(f"({name}" in one for one in field.variables):
             raise NoClosedForm(
@@ -272,18 +439,31 @@ def names_of(system: System, field: PolynomialField) -> tuple[str, dict[str, str
 
 
 def _letters(system: System, kept: list[str], phase: str, symbols: Mapping[str, str]) -> Ring:
-    positive = [one.name for one in system.parameters if one.name in kept and one.sign == "positive"]
-    return Ring((), (phase,), [*kept, *symbols.values()], {phase: 1}, [*positive, symbols[AMPLITUDE]], spare=40)
+    angles = {inside[1]: inside[2] for name in kept if (inside := angle_in(name)) is not None}
+    names = [name for name in dict.fromkeys((*kept, *angles)) if angle_in(name) is None]
+    positive = [one.name for one in system.parameters if one.name in names and one.sign == "positive"]
+    positive.append(symbols[AMPLITUDE])
+    return Ring((), (phase,), [*names, *symbols.values()], {phase: 1} | angles, positive, spare=40)
 
 
-def in_letters(tower: Tower, ring: Ring, symbols: Mapping[str, str], x: Element) -> Polynomial:
-    """An element as a polynomial of the ring of a result; symbols that no result holds are left as they are."""
+def in_letters(
+    tower: Tower,
+    ring: Ring,
+    symbols: Mapping[str, str],
+    x: Element,
+    denominators: Sequence[tuple[Any, str]] | None = None,
+) -> Polynomial:
+    """An element as a polynomial of the ring of a result; symbols that no result holds are left as they are.
+
+    ``denominators``: letters for factors of denominators; then c/c is left where it stands.
+    """
 
     def generator(index: int) -> Polynomial:
         if index >= MOST_ROOTS:
             name = tower.parameters[index - MOST_ROOTS]
-            return ring.generator("parameter", symbols.get(name, name))
-        return ring.square_root(carried(tower.squares[MOST_ROOTS - 1 - index]))
+            return letter(ring, symbols.get(name, name))
+        kind = tower.kind(index)
+        return letter(ring, kind) if isinstance(kind, str) else ring.square_root(carried(kind))
 
     def carried(p: Any) -> Polynomial:
         total = ring.zero
@@ -298,4 +478,12 @@ def in_letters(tower: Tower, ring: Ring, symbols: Mapping[str, str], x: Element)
     top = carried(x.top)
     if x.bottom.is_constant():
         return top  # the leading coefficient of every denominator is 1
-    return ring.reduce(ring.times(top, ring.reciprocal(carried(x.bottom))))
+    if denominators is None:
+        return ring.reduce(ring.times(top, ring.reciprocal(carried(x.bottom))))
+    constant, factors = x.bottom.factor()
+    below = ring.number(rationals.fraction(constant))
+    for factor, power in factors:
+        name = next((name for one, name in denominators if one == factor), None)
+        own = carried(factor) if name is None else ring.generator("parameter", name)
+        below = ring.times(below, own ** int(power))
+    return ring.times(top, ring.reciprocal(below))

@@ -19,7 +19,7 @@ from mbsym.mechanics.rest import Value, at_numbers
 from mbsym.model.system import MotionEntry, Parameter, System
 from mbsym.problems.open_verdicts import MOST_COORDINATES
 from mbsym.problems.relative_equilibria.equilibria import WITHIN, Equilibria, equilibria
-from mbsym.problems.relative_equilibria.result import CoordinateValue, RelativeEquilibrium
+from mbsym.problems.relative_equilibria.listing import CoordinateValue, RelativeEquilibrium
 from mbsym.problems.stability.reasons import Because
 
 

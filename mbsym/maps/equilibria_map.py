@@ -37,7 +37,7 @@ from mbsym.mechanics.charts import Chart
 from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.model.system import System
 from mbsym.problems.relative_equilibria.equilibria import equilibria
-from mbsym.problems.relative_equilibria.unknowns import Unknowns
+from mbsym.problems.relative_equilibria.place import Unknowns
 
 #: So many random points are tried until one lies in a region.
 TRIED = 60

@@ -39,10 +39,10 @@ from mbsym.analysis import Analysis
 from mbsym.analysis.higher import ignorable
 from mbsym.maps.images import Images
 from mbsym.maps.section import Section
+from mbsym.problems.normal_forms.along import judged_enclosed
+from mbsym.problems.normal_forms.centre import OnCurve, on_curve
 from mbsym.problems.normal_forms.dissipative import state_field
 from mbsym.problems.normal_forms.expansion import Expansion, Numbers, expansion
-from mbsym.problems.normal_forms.on_curve import OnCurve, on_curve
-from mbsym.problems.normal_forms.pairs import judged_enclosed
 from mbsym.problems.normal_forms.problem import PRECISION
 from mbsym.problems.normal_forms.result import Judged as Higher
 from mbsym.problems.normal_forms.result import Outcome, Theorem, Why

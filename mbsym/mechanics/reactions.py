@@ -2,8 +2,9 @@
 
     R_k = sum over body k and all beyond it of  (F - loads - constraint forces),    moments about O_k alike,
 
-in the axes of body k.  All that acts across the joint is in them: the bearing's reaction, and a spring, damper or drive
-in the joint itself.  Constraint forces enter by their multipliers, M q'' = f + J^T lambda: R = R_0 + sum lambda_i R_i.
+in the axes of body k.  In them are the bearing's reaction and what is given by the joint's coordinates (a spring, a
+damper, a generalised force), not loads that are wrenches on bodies, two neighbours or not.  Constraint forces enter by
+their multipliers, M q'' = f + J^T lambda: R = R_0 + sum lambda_i R_i.
 
 ===========  ==========================================================================================
 coincide     force lambda on the first point, the opposite one on the second

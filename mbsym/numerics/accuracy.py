@@ -65,6 +65,7 @@ class Lacking(StrEnum):
 
     NOT_ASKED = "none was asked for"
     NOT_WHOLE = "the run ended early"
+    NOTHING = "nothing was integrated"
     FINEST = "no better run can be had: this one is as fine as the arithmetic, and no finer arithmetic is there"
     TOO_LONG = "a better run takes too long"
     CUT = (
@@ -135,8 +136,10 @@ def estimated(
     ``completed`` makes of another method one that integrates the same coordinates and shows whole states.  All better
     runs together, and the run beside them, may cost about as much as ``limit`` (``mbsym.numerics.planning.prices``).
     """
-    if not found.whole:
+    if not found.whole or found.times[-1] == found.times[0]:
         return NoEstimate(Lacking.NOT_WHOLE)
+    if len(found.times) < 2:
+        return NoEstimate(Lacking.NOTHING)
     why, left = Lacking.FINEST, limit
     try:
         for better, kind, setting in _candidates(dynamics, found, method, scalar, completed):

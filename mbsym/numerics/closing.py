@@ -22,10 +22,11 @@ from mbsym.algebra import rationals
 from mbsym.algebra.failures import Constrained, Failure
 from mbsym.expressions.message import Message, joined
 from mbsym.mechanics.constraints.rows import RowName
+from mbsym.model.states import InStates
 from mbsym.numerics.constrained import Constraints
 from mbsym.numerics.kernels.precise import precise
 from mbsym.numerics.scenario import PRECISION, Scenario, rounded
-from mbsym.numerics.states import dynamics_of
+from mbsym.numerics.states import dynamics_of, scenario_in_states
 
 #: Steps of Newton's method and of the descent to the least gap, of the way along the constraints, of the refinement.
 STEPS, ALONG, REFINED = 200, 60, 40
@@ -133,6 +134,31 @@ def moving(found: Closed) -> Closed:
     if len(constraints.independent(0.0, state)) == constraints.size:  # else it may move from a singular position
         raise NothingMoves(found.scenario)
     return found
+
+
+def begun(scenario: Scenario, fixed: Collection[str] = (), declared: bool = True) -> Closed:
+    """The scenario in the variables of its run, on its constraints.
+
+    ``declared``: those that a description with speeds declares; else coordinates and their velocities.  Raises
+    NotClosed, Failure.
+    """
+    found = closed(fitted(scenario, declared), fixed)
+    return replace(found, scenario=shown(found.scenario, declared))
+
+
+def fitted(scenario: Scenario, declared: bool) -> Scenario:
+    """The scenario in the variables in which it is fitted to constraints: what is given in declared ones, in these."""
+    if not scenario.system.speeds or isinstance(scenario.system, InStates):
+        return scenario
+    if not declared:
+        return replace(scenario, system=scenario.system.without_speeds)
+    return scenario_in_states(scenario) if scenario.declared else scenario
+
+
+def shown(scenario: Scenario, declared: bool) -> Scenario:
+    """In the variables of the run."""
+    own = declared and bool(scenario.system.speeds) and not isinstance(scenario.system, InStates)
+    return scenario_in_states(scenario) if own else scenario
 
 
 def closed(scenario: Scenario, fixed: Collection[str] = ()) -> Closed:

@@ -40,8 +40,8 @@ BITS = 320
 class DeclaredStart:
     """``state`` is (s, u); ``positions`` and ``velocities`` of all coordinates, None where angles are ``singular``.
 
-    ``missing`` are names without a value; ``wrong`` (name, sentence) of what cannot be.  ``unstated`` are velocities that
-    were left out, and do not follow from speeds.
+    ``missing`` are names without a value; ``wrong`` (name, sentence) of what cannot be; ``unstated`` velocities that
+    were left out and do not follow from speeds.
     """
 
     state: tuple[arb, ...] = ()

@@ -17,8 +17,18 @@ import numpy as np
 from mbsym.expressions.message import Message, joined
 from mbsym.expressions.tree import number
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.methods.interface import COUNTS, Breakdown, Method, Piece, Run, Setting, Traits, Work
-from mbsym.numerics.methods.passed import Passed, together
+from mbsym.numerics.methods.interface import (
+    COUNTS,
+    Breakdown,
+    Method,
+    Passed,
+    Piece,
+    Run,
+    Setting,
+    Traits,
+    Work,
+    together,
+)
 from mbsym.numerics.planning.reduction import without
 from mbsym.numerics.scenario import Scenario
 

@@ -26,12 +26,14 @@ from mbsym.numerics.methods.interface import (
     UNDEFINED,
     Breakdown,
     Method,
+    Passed,
     Run,
     Setting,
     Work,
+    met_by,
+    up_to,
 )
 from mbsym.numerics.methods.kept import compiled_kernel
-from mbsym.numerics.methods.passed import Passed, met_by, up_to
 from mbsym.numerics.planning.prices import Meter
 
 if TYPE_CHECKING:

@@ -17,8 +17,7 @@ from mbsym.numerics.breakdowns import fallen
 from mbsym.numerics.conservation import EVENLY, LARGEST_CHANGES
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED
-from mbsym.numerics.methods.interface import UNDEFINED, Breakdown, Method, Setting
-from mbsym.numerics.methods.passed import up_to
+from mbsym.numerics.methods.interface import UNDEFINED, Breakdown, Method, Setting, up_to
 from mbsym.numerics.simulate import Trajectory, allowed_apart, followed, raw_energies
 
 #: (t, q, q') in columns -> further quantities by name, each of shape (m,).

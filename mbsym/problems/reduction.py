@@ -33,8 +33,7 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.tree import names as names_of
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.notebook import Shown
-from mbsym.mechanics.constraints.elimination import Row, echelon
-from mbsym.mechanics.constraints.expansion import Expansion
+from mbsym.mechanics.constraints.expansion import Expansion, Row, echelon
 from mbsym.mechanics.constraints.perturbed import Projected, felt
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.variables import expressions

@@ -234,6 +234,20 @@ def _found(scene: Scene, made: _Equations, coordinates: Sequence[str]) -> Groups
     place = {key: k for k, key in enumerate(unknowns)}
     exponents = {name: [vector[place["parameter", name]] for vector in basis] for name in free}
     units, held = _units(free, exponents, {x.name: x.sign for x in scene.system.parameters})
+    rate = [-vector[place[TIME]] for vector in basis]
+    own = {name: [vector[place["coordinate", name]] for vector in basis] for name in lengths}
+    return measured_in(exponents, units, rate, own, idle=idle, held=held)
+
+
+def measured_in(
+    exponents: Mapping[str, Sequence[fmpq]],
+    units: tuple[str, ...],
+    rate: Sequence[fmpq],
+    lengths: Mapping[str, Sequence[fmpq]],
+    idle: tuple[str, ...] = (),
+    held: tuple[str, ...] = (),
+) -> Groups:
+    """Parameters with these ``exponents`` (of scalings, or of base units), the ``rate`` and ``lengths`` in units."""
     table = [exponents[name] for name in (*units, *held)]
 
     def powers(weights: Sequence[fmpq]) -> tuple[tuple[str, Fraction], ...] | None:
@@ -241,13 +255,21 @@ def _found(scene: Scene, made: _Equations, coordinates: Sequence[str]) -> Groups
         return None if found is None else tuple(x for x in zip(units, found, strict=False) if x[1])
 
     left = []
-    for name in free:
+    for name, weights in exponents.items():
         if name not in units:
-            own = powers(exponents[name])
+            own = powers(weights)
             left.append(Group(name, tuple((unit, -power) for unit, power in own or ())))
-    measured = [Group(name, own) for name in lengths if (own := powers([v[place["coordinate", name]] for v in basis]))]
-    rate = powers([-vector[place[TIME]] for vector in basis])
-    return Groups(free, idle, units, tuple(left), rate, tuple(measured), len(held))
+    measured = [Group(name, own) for name, weights in lengths.items() if (own := powers(weights))]
+    return Groups(tuple(exponents), idle, units, tuple(left), powers(rate), tuple(measured), len(held))
+
+
+def independent(names: Iterable[str], exponents: Mapping[str, Sequence[fmpq]]) -> tuple[str, ...]:
+    """As many of the names, the first ones, as are independent of each other."""
+    found: list[str] = []
+    for name in names:
+        if name not in found and _rank([exponents[x] for x in (*found, name)]) > len(found):
+            found.append(name)
+    return tuple(found)
 
 
 def _units(
@@ -266,7 +288,7 @@ def _units(
             break
         if _rank([exponents[name] for name in chosen]) < size:
             continue
-        held = _completing(chosen, free, exponents)
+        held = independent((*chosen, *free), exponents)[size:]
         table = [exponents[name] for name in (*chosen, *held)]
         powers = [(_solved(table, exponents[name]) or ())[:size] for name in free if name not in chosen]
         cost = (
@@ -279,17 +301,6 @@ def _units(
         if comb(len(candidates), size) > MOST_CHOICES:
             break
     return ((), ()) if best is None else best[1:]
-
-
-def _completing(chosen: Sequence[str], free: Sequence[str], exponents: Mapping[str, Sequence[fmpq]]) -> tuple[str, ...]:
-    """Further parameters with which the chosen ones determine a scaling."""
-    found: list[str] = []
-    rank = len(chosen)
-    for name in free:
-        if _rank([exponents[x] for x in (*chosen, *found, name)]) > rank:
-            found.append(name)
-            rank += 1
-    return tuple(found)
 
 
 def _solved(rows: Sequence[Sequence[fmpq]], target: Sequence[fmpq]) -> tuple[Fraction, ...] | None:

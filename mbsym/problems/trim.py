@@ -20,7 +20,7 @@ from mbsym.algebra.signs import Signs
 from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.notebook import Shown
-from mbsym.mechanics.constraints.elimination import Row, echelon
+from mbsym.mechanics.constraints.expansion import Row, echelon
 from mbsym.mechanics.kinematics import Scene
 from mbsym.problems.equilibrium import equilibrium, essential
 

@@ -87,8 +87,7 @@ def _symbol(one: Standard, numbers: dict[str, int]) -> str:
 
 def regressor_module(found: Regressor) -> str:
     """``regressor.py``: Y and the values of the base parameters, of NumPy alone."""
-    from mbsym.report.code.functions import Functions
-    from mbsym.report.code.model_values import parameters_of
+    from mbsym.report.code.functions import Functions, parameters_of
     from mbsym.report.code.python_module import DIALECT, RESERVED, default, plain
     from mbsym.report.environment import rendered
 

@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 
 from mbsym.expressions.tree import Expression
-from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.numerics.ensembles.ensemble import Ensemble, ensemble
-from mbsym.numerics.ensembles.parametrised import Parametrised
+from mbsym.numerics.ensembles.parametrised import parametrised
 from mbsym.numerics.ensembles.variation import RANDOM, Variation, drawn, members
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.scenario import Scenario
 from mbsym.simulation.request import TOLERANCE, Request
+from mbsym.simulation.run import prepared
 from mbsym.simulation.sampling import sample_times
 
 #: Unless asked for otherwise: rows of the statistics.
@@ -44,17 +44,17 @@ def simulate_many(
 
     Raises Unvaried for what cannot be varied, Failure where there is no program for the equations.
     """
-    refuse_constraints(scenario.system, "ensembles")
     request, system = asked.request, scenario.system
+    begun = prepared(scenario, request)[0]
     values = drawn(system, asked.variations, asked.members, asked.seed, asked.sampling)
     names = [one.name for one in asked.variations]
     free = [name for name in names if name in system.parameter_names]
-    found = members(Parametrised(scenario, free, overrides), names, values)
+    found = members(parametrised(begun, free, overrides, request.fixed), names, values)
     method = "dop853" if request.method == "auto" else request.method
     fixed = request.step is not None
     tolerance = None if fixed else request.tolerance or TOLERANCE["float64"]
     setting = Setting(tolerance, request.step, request.step_limit, request.longest)
-    return ensemble(found, method, setting, _times(request, scenario), threads, watch)
+    return ensemble(found, method, setting, _times(request, begun), threads, watch)
 
 
 def _times(request: Request, scenario: Scenario) -> Any:

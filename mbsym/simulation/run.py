@@ -17,9 +17,11 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 
 from mbsym.expressions.message import Message
+from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.model.states import described, in_states
 from mbsym.numerics import simulate as integration
 from mbsym.numerics.accuracy import ErrorEstimate, Lacking, NoEstimate, contradicted, estimated
+from mbsym.numerics.closing import Closed, begun, moving
 from mbsym.numerics.columns import columns
 from mbsym.numerics.conservation import (
     Conservation,
@@ -43,10 +45,10 @@ from mbsym.numerics.planning.prices import cost
 from mbsym.numerics.planning.reduced import reduced
 from mbsym.numerics.planning.sizes import kinetic_between
 from mbsym.numerics.scenario import Scenario
-from mbsym.numerics.states import dynamics_of, scenario_in_states, state_names
+from mbsym.numerics.states import dynamics_of, state_names
 from mbsym.numerics.unseen import between_rows, nearest_to_singular
 from mbsym.simulation.request import COORDINATES, DECLARED, Request, wrong_with
-from mbsym.simulation.result import Chosen, Kept, Simulation
+from mbsym.simulation.result import Chosen, FollowedIntegral, Simulation
 from mbsym.simulation.sampling import chosen_for
 from mbsym.simulation.watching import Watching
 
@@ -54,7 +56,6 @@ if TYPE_CHECKING:
     from mbsym.algebra.ring import Ring
     from mbsym.analysis import Analysis
     from mbsym.model.system import System
-    from mbsym.numerics.closing import Closed
     from mbsym.numerics.constrained import Drift
     from mbsym.numerics.simulate import Trajectory
 
@@ -145,17 +146,11 @@ def prepared(scenario: Scenario, request: Request) -> tuple[Scenario, Closed | N
     system, model = scenario.system, request.model
     later = set(model.without) <= set(droppable(system))
     scenario = scenario if later else scenario_of(scenario, model)
-    declared = runs_in_states(system, request)
-    if declared:
-        refuse_in_states(system, request)
-    elif system.speeds:  # what is integrated are coordinates and their derivatives
-        scenario = replace(scenario, system=scenario.system.without_speeds)
-    in_declared = declared and bool(scenario.declared)  # what is given in these is fitted in these
-    scenario = scenario_in_states(scenario) if in_declared else scenario
-    closed = _closed(scenario, request)
-    scenario = scenario if closed is None else closed.scenario
-    scenario = scenario_in_states(scenario) if declared and not in_declared else scenario
-    return scenario_of(scenario, model) if later else scenario, closed
+    refuse_in_run(system, request)
+    found = begun(scenario, request.fixed, request.variables == DECLARED)
+    found = moving(found) if system.constraints else found
+    whole = scenario_of(found.scenario, model) if later else found.scenario
+    return whole, found if system.constraints else None
 
 
 def runs_in_states(system: System, request: Request) -> bool:
@@ -174,10 +169,14 @@ def integrated_system(system: System, variables: str = DECLARED) -> System:
 NOT_IN_STATES = "integrates coordinates and their velocities only; this system has speeds"
 
 
-def refuse_in_states(system: System, request: Request) -> None:
-    """Raises ValueError for what goes with coordinates only, Unusable for a method that does."""
+def refuse_in_run(system: System, request: Request) -> None:
+    """Raises Constrained for what leaves constraints out; with speeds ValueError and Unusable for what does not know
+    them."""
+    if request.model.linear:
+        refuse_constraints(system, "linearised equations in numbers")
+    if not runs_in_states(system, request):
+        return
     asked = {
-        "certify": request.certify is not None,
         "the linearised equations": request.model.linear,
         "going on from an earlier run": request.earlier is not None,
     }
@@ -191,23 +190,6 @@ def refuse_in_states(system: System, request: Request) -> None:
 
 def _dynamics(scenario: Scenario, ring: Ring | None, request: Request) -> Dynamics:
     return LinearisedDynamics(scenario, ring) if request.model.linear else dynamics_of(scenario, ring, request.whole)
-
-
-def _closed(scenario: Scenario, request: Request) -> Closed | None:
-    """The initial state on the constraints; None where there are none.
-
-    Raises NotClosed, NothingMoves, and Constrained where something is asked for that leaves constraints out.
-    """
-    if not scenario.system.constraints:
-        return None
-    from mbsym.mechanics.constraints.refusal import refuse_constraints
-    from mbsym.numerics.closing import closed, moving
-
-    if request.certify is not None:
-        refuse_constraints(scenario.system, "enclosures of the solution")
-    if request.model.linear:
-        refuse_constraints(scenario.system, "linearised equations in numbers")
-    return moving(closed(scenario, request.fixed))
 
 
 def drift_along(dynamics: Dynamics, found: integration.Trajectory) -> Drift | None:
@@ -293,7 +275,7 @@ def _near(found: Trajectory) -> list[list[float]]:
 
 def kept_integrals(
     dynamics: Dynamics, found: Trajectory, integrals: tuple[Any, ...], held: Collection[str], dense: Trajectory
-) -> tuple[Kept, ...]:
+) -> tuple[FollowedIntegral, ...]:
     """First integrals at the rows of ``found``; judged along ``dense``, the same run with places between its rows.
 
     One that is not proved is looked at where the run goes.
@@ -308,6 +290,8 @@ def kept_integrals(
         if not item.proved or isinstance(dynamics, LinearisedDynamics):
             state, doubt = standing(dynamics, item.code, 0, _seen(dense, item.column, course), held, _near(dense))
         kept.append(
-            Kept(item.column, column, confronted(item.name, state, course, size, doubt, Measure.TERMS), item.unit)
+            FollowedIntegral(
+                item.column, column, confronted(item.name, state, course, size, doubt, Measure.TERMS), item.unit
+            )
         )
     return tuple(kept)

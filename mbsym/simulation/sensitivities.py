@@ -9,14 +9,16 @@ from typing import Any
 import numpy as np
 
 from mbsym.expressions.tree import Expression
-from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.model.system import System
 from mbsym.numerics.methods.interface import Breakdown, Method, Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.orbits.variational import Variational, sensitive, split
+from mbsym.numerics.planning.sizes import scaled, sizes_of_scene
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.simulate import integrated
+from mbsym.numerics.states import dynamics_of
 from mbsym.simulation.request import TOLERANCE, Request
+from mbsym.simulation.run import prepared
 from mbsym.simulation.sampling import SAMPLES, sample_times
 
 #: The derivatives are integrated once more with a tolerance so many times smaller (a step half as long).
@@ -61,8 +63,8 @@ def sensitivities(
 
     Raises ValueError for names by which nothing can be differentiated, Failure where there is no program.
     """
-    refuse_constraints(scenario.system, "sensitivities")
-    augmented = sensitive(scenario, names, overrides)
+    scenario = prepared(scenario, request)[0]
+    augmented = sensitive(scenario, names, overrides, request.fixed)
     name = request.method if request.method not in ("auto", "midpoint", "midpoint4", "midpoint6") else "dop853"
     method = METHODS[name]
     step = request.step if method.traits.fixed else None
@@ -72,7 +74,7 @@ def sensitivities(
         times = np.linspace(0.0, request.time, SAMPLES)
     setting = Setting(tolerance, step, request.step_limit, request.longest)
     found = integrated(augmented, method, setting, times)
-    states, values = split(found.states, len(scenario.positions))
+    states, values = split(found.states, len(scenario.state))
     error = _error(augmented, method, setting, found) if found.breakdown is None else float("nan")
     return Sensitivities(scenario.system, tuple(names), found.times, states, values, name, error, found.breakdown)
 
@@ -89,7 +91,11 @@ def _error(augmented: Variational, method: Method, setting: Setting, found: Any)
     better = integrated(augmented, method, finer, found.times)
     if better.breakdown is not None:
         return float("nan")
-    size = len(augmented.states)
-    differences = np.max(np.abs(better.states - found.states)[size:], axis=1)
-    sizes = np.max(np.abs(better.states[size:]), axis=1)
-    return float(np.max(np.where(sizes > 0, differences / np.where(sizes > 0, sizes, 1.0), 0.0), initial=0.0))
+    states, values = split(better.states, len(augmented.states))
+    differences = np.max(np.abs(values - split(found.states, len(states))[1]), axis=2)
+    own = np.max(np.abs(values), axis=2)
+    # What rests but for rounding answers by rounding: it is measured by what the others' answers come to.
+    scene = sizes_of_scene(dynamics_of(augmented.base.scenario), found.times, states)
+    sizes = scaled(np.max(np.abs(states), axis=1), scene)
+    usual = sizes * np.max(own / sizes, axis=1, keepdims=True)
+    return float(np.max(differences / scaled(own, usual, differences), initial=0.0))

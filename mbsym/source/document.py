@@ -12,8 +12,7 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.place import Complaint, Complaints
 from mbsym.model.system import System
 from mbsym.source.builder import build
-from mbsym.source.lines import check_characters, normalised
-from mbsym.source.placed import MAX_TEXT, Node, TooManyComplaints
+from mbsym.source.placed import MAX_TEXT, Node, TooManyComplaints, check_characters, normalised
 from mbsym.source.recognition import is_text
 from mbsym.source.text_reader import read_text
 from mbsym.source.yaml_reader import Extent, read_yaml
@@ -68,7 +67,7 @@ def read(text: str, filename: str = "<string>", folder: Path | None = None) -> t
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class ReadResult:
     """What reading gives: ``tree`` is what the text says before it is understood, ``editor`` whether in editor text."""
 
     system: System | None
@@ -83,7 +82,7 @@ def read_placed(
     folder: Path | None = None,
     extents: dict[int, Extent] | None = None,
     understand: bool = True,
-) -> Found:
+) -> ReadResult:
     """The same with the placed tree, and where each node of a YAML text stands.
 
     ``understand`` False: the tree alone.
@@ -99,7 +98,7 @@ def read_placed(
                 system = build(node, complaints, editor=editor, folder=folder)
     except TooManyComplaints:
         system, stopped = None, True
-    return Found(system, Complaints([*complaints.sorted(), *complaints.rest(stopped)]), node, editor)
+    return ReadResult(system, Complaints([*complaints.sorted(), *complaints.rest(stopped)]), node, editor)
 
 
 def placed_tree(text: str, filename: str = "<string>") -> tuple[Node | None, bool]:

@@ -10,8 +10,7 @@ from pathlib import Path
 
 from mbsym.model.system import LANGUAGES
 from mbsym.source.labels import HEADER, SECTIONS
-from mbsym.source.lines import normalised
-from mbsym.source.placed import MAX_TEXT
+from mbsym.source.placed import MAX_TEXT, normalised
 from mbsym.source.text_lines import HEADING, label_of, lines_of, word_of
 
 #: Lines that can only be YAML (or JSON): keys that are no labels of the editor.

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from mbsym.expressions.message import Message, worded
 from mbsym.expressions.place import Complaint, Span
 from mbsym.expressions.safe import safe
-from mbsym.source.lines import normalised
+from mbsym.source.placed import normalised
 
 _WIDTH = 120
 

@@ -16,14 +16,15 @@ if TYPE_CHECKING:
 MOST_GAPS = 8
 
 
-def closed_motion(given: Scenario) -> tuple[Scenario, tuple[str, ...]]:
-    """The scenario with an initial state on its constraints, and what is said of that.  Raises NotClosed."""
-    if not given.system.constraints:
-        return given, ()
-    from mbsym.numerics.closing import closed
+def closed_motion(given: Scenario, declared: bool = False) -> tuple[Scenario, tuple[str, ...]]:
+    """The scenario on its constraints, in ``declared`` variables if it has any and they are integrated; what is said.
+
+    Raises NotClosed.
+    """
+    from mbsym.numerics.closing import begun, closed
     from mbsym.report.runs.constrained_run_words import start_lines
 
-    found = closed(given)
+    found = begun(given) if declared else closed(given)
     say = Language(given.system.language).say
     notes = (Message("note: [[text]]", text=text) for text in start_lines(found, given.system))
     return found.scenario, tuple(map(say, notes)) if found.moves else ()

@@ -145,7 +145,10 @@ def asked_of(source: Source, request: Any) -> Asked:
     from mbsym.numerics.scenario import scenario
     from mbsym.simulation.request import read_values
 
-    return Asked(system, scenario(system, read_values(system, request.values or {}), settings[0].state))
+    kind = settings[0]
+    return Asked(
+        system, scenario(system, read_values(system, request.values or {}), kind.state, declared=kind.declared)
+    )
 
 
 def _shown(default: Any) -> Any:

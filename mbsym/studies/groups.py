@@ -12,6 +12,8 @@ from mbsym.studies.study import Answer, Asked, Document, Refusal, Single, Study,
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+    from mbsym.model.scaling import Scaling
+    from mbsym.model.system import System
     from mbsym.problems.scaling import Groups
 
 
@@ -61,11 +63,24 @@ def answer(asked: Asked, request: Request, found: Found) -> Answer:
 def _lines(found: Found) -> Iterator[Block]:
     sections = [(Message("first approximation"), _linear(found.analysis))]
     if found.analysis.system.linear is None:
-        sections.insert(0, (Message("equations of motion"), _said(found.groups)))
+        sections.insert(0, (Message("equations of motion"), _motion(found)))
     for title, lines in sections:
         yield Subheading((title,))
         for text in lines:
             yield paragraph("  ", text)
+
+
+def _motion(found: Found) -> Iterator[str]:
+    from mbsym.analysis.scaled import proposed
+    from mbsym.expressions.place import Complaints
+    from mbsym.source.scaling import read_scaling
+
+    yield from _said(found.groups)
+    system = found.analysis.system
+    dimensions = read_scaling("", system, Complaints())
+    scale = "" if dimensions is None else proposed(system, dimensions, found.groups.units)
+    if scale:
+        yield Message('in variables by dimensions: --scale "[[scale]]"', scale=scale)
 
 
 def _said(found: Groups, effects: bool = True) -> Iterator[str]:
@@ -117,6 +132,20 @@ def _linear(analysis: Analysis) -> Iterator[str]:
         yield Message("none: [[reason]]", reason=error.reason)
         return
     yield from _said(found, effects=False)
+
+
+def in_scale(system: System, scaling: Scaling) -> System:
+    """The description in the variables of a scaling, as it is read from its text, which has to be sound.
+
+    Raises NoDescription, or what deriving the equations raises.
+    """
+    from mbsym.analysis.scaled import NoDescription, in_variables
+    from mbsym.source import read, to_yaml
+
+    found, complaints = read(to_yaml(in_variables(system, scaling)))
+    if found is None:
+        raise NoDescription(complaints.sorted()[0].message)
+    return found
 
 
 def document(asked: Asked, request: Request, found: Found) -> Document:

@@ -50,6 +50,9 @@ class Request:
     small, of order eps.  Coefficients hold the parameters, the amplitude and the values that stay constant without
     eps; resonances that were divided by are listed, and what is left out.
 
+    With --scale they are written in variables of yours, as 'mbsym convert --scale' has them, with powers of the small
+    parameter before them; symbols of the solution, such as r_0, may stand in factors.
+
     The series are put into the equations exactly.  Where FILE has numbers, their error is measured against runs at
     parts of eps.  Figures show the series and a simulation from the same state over three periods: oscillation (over
     time), oscillation-planes (each variable and its rate), and oscillation-angles where FILE has speeds.
@@ -63,17 +66,21 @@ class Request:
       mbsym oscillations systems/double-pendulum.yaml --of theta1 --frequency 2
       mbsym oscillations systems/gyrostat-fast.yaml --order 2
       mbsym oscillations systems/gyrostat-fast.yaml --set lx=0 --json
+      mbsym oscillations systems/gyrostat-fast.yaml --order 1 --scale "p=r_0*p1,q=r_0*q1,A=a*C,B=b*C,lx=y1*C*r_0"
       mbsym oscillations systems/gyrostat-fast.yaml --format png --out figures
     """
 
     _: KW_ONLY
-    order: Annotated[int, Whole("N", "Up to this power.", "-n", most=6)] = 2
+    order: Annotated[int, Whole("N", "Up to this power.", "-n", most=8)] = 2
     of: Annotated[str | None, Text("NAME", "The variable whose oscillation leads, where there are several.")] = None
     frequency: Annotated[int, Whole("K", "Of several that it shares with others, the K-th.", most=99, shown=False)] = 1
     values: Annotated[
         Mapping[str, Fraction],
         ExactSettings("NAME=VALUE", "Put in a number; repeatable.", "-s", "--set", more=symbols),
     ] = field(default_factory=dict)
+    scale: Annotated[str | None, Text("LIST", "Dimensionless variables and parameters: p=r_0*p1,t=tau/r_0,A=a*C.")] = (
+        None
+    )
     format: Annotated[tuple[str, ...], formats("Draw figures: svg, pdf, png.", FORMATS)] = ()
     language: Annotated[str | None, language("Of figures: en, ru, es.")] = None
 
@@ -87,21 +94,39 @@ def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[
     if leading and leading not in known:
         told = f"there is no variable called {leading[:60]!r}"
         yield Unfit("--of", "unknown-name", told, f"one of: {', '.join(known)}")
-    for name, value in request.values.items():
-        if small is None:
-            break
-        if name == small.name or (name in dict(small.powers) and value != 0):  # zero has no power
+    for name in request.values:
+        if small is not None and (name == small.name or name in {*dict(small.powers)} - {*system.parameter_names}):
             yield Unfit("--set", "bad-assignment", f"{name} belongs to the small parameter: it stays a symbol")
+    if request.scale is not None:
+        yield from _unscaled(request.scale, system)
     if "language" in typed and "format" not in typed:
         yield Unfit("--language", *UNWRITTEN)
 
 
+def _unscaled(text: str, system: System) -> Iterator[Unfit]:
+    """What is wrong with a scaling."""
+    from mbsym.expressions.place import Complaints
+    from mbsym.source.scaling import read_scaling
+
+    complaints = Complaints()
+    found = read_scaling(text, system, complaints)
+    for one in complaints.sorted():
+        yield Unfit("--scale", one.code, one.message, one.hint)
+    if found is not None and system.small is not None and system.small.name in found.new:
+        hint = "the series are in its powers, which stand before what is scaled"
+        yield Unfit("--scale", "misplaced-name", f"{system.small.name} is the small parameter", hint)
+
+
 @dataclass(frozen=True)
 class Found:
-    """The solution, and the order of its error; why that was not measured where it was not."""
+    """The solution, and the order of its error; why that was not measured where it was not.
+
+    ``told``: the solution in variables that were asked for, if any were.
+    """
 
     solution: Oscillating
     measured: MeasuredOrders | str
+    told: Oscillating
 
 
 def derive(asked: Asked, request: Request, watch: Watch) -> Found:
@@ -112,7 +137,16 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Found:
     watch("oscillations")
     found = oscillating(Analysis(asked.system), request.order, request.values, request.of or "", request.frequency)
     watch("measuring")
-    return Found(found, orders_or_why(asked.system, found, request.values))
+    measured = orders_or_why(asked.system, found, request.values)
+    if request.scale is None:
+        return Found(found, measured, found)
+    from mbsym.analysis.oscillating import in_variables
+    from mbsym.expressions.place import Complaints
+    from mbsym.source.scaling import read_scaling
+
+    scaling = read_scaling(request.scale, asked.system, Complaints())
+    assert scaling is not None  # ``unfit`` has seen it
+    return Found(found, measured, in_variables(found, asked.system, scaling))
 
 
 def answer(asked: Asked, request: Request, found: Found) -> Answer:
@@ -120,7 +154,7 @@ def answer(asked: Asked, request: Request, found: Found) -> Answer:
 
     files, reason = _figures(asked.system, request, found.solution) if request.format else ({}, "")
     complaints = (f"no figures: {reason}",) if reason else ()
-    lines = of_wave(found.solution, found.measured)
+    lines = of_wave(found.told, found.measured)
     return Answer(lines, files, complaints, Exit.FAILED if reason else Exit.OK)
 
 
@@ -148,7 +182,7 @@ def _figures(system: System, request: Request, found: Oscillating) -> tuple[dict
 def as_json(asked: Asked, request: Request, found: Found) -> str:
     from mbsym.report.oscillation_json import oscillations_json
 
-    return oscillations_json(asked.system, request.values, found.solution, found.measured)
+    return oscillations_json(asked.system, request.values, found.told, found.measured)
 
 
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:

@@ -140,10 +140,12 @@ class Named(Kind):
 class Settings(Kind):
     """Values by name that replace those of the description: of parameters, initial positions and velocities.
 
-    ``state``: whether an initial state is needed, ``whole``: whether values are, by the texts of the options.
+    ``state``: whether an initial state is needed, ``declared``: whether it may be one that declared variables alone
+    tell; ``whole``: whether values are needed, by the texts of the options.
     """
 
     state: bool = True
+    declared: bool = False
     whole: Callable[[Mapping[str, Any]], bool] = lambda texts: True
 
 

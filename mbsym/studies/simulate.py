@@ -210,7 +210,7 @@ def ensemble(
     read = simulation.read_values(system, values or {})
     request = simulation.Request(time, samples, every, method, tolerance, step)
     asked = Spread(request, [variation(name, given) for name, given in vary.items()], members, seed, sampling)
-    return simulate_many(scenario(system, read), asked, read, threads)
+    return simulate_many(scenario(system, read, declared=True), asked, read, threads)
 
 
 def sensitivities(
@@ -240,7 +240,7 @@ def sensitivities(
     system = moving_system(source)
     read = simulation.read_values(system, values or {})
     request = simulation.Request(time, samples, every, method, tolerance)
-    return derived(scenario(system, read), request, tuple(names), read)
+    return derived(scenario(system, read, declared=True), request, tuple(names), read)
 
 
 def gradient(

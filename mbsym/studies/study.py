@@ -172,9 +172,9 @@ class Study(Generic[R, F]):
     what of a request does not go together; fields that could not be read are None there, but among those that were
     ``typed``.
 
-    ``constraints``, ``matrices``: whether descriptions with these are understood, ``bodies``: whether neither are, by
-    the texts of the options; ``held``: whether inputs are held at their constant values.  ``out``: where files go;
-    ``writes``: whether there are any, by what was typed; ``document`` makes the single one.  ``timed``: whether the
+    ``constraints``, ``matrices``: whether descriptions with these are understood, ``bodies``: whether matrices are
+    not, by the texts of the options; ``held``: whether inputs are held at their constant values.  ``out``: where files
+    go; ``writes``: whether there are any, by what was typed; ``document`` makes the single one.  ``timed``: whether the
     seconds are told.
     """
 

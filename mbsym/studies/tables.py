@@ -163,7 +163,7 @@ def _tradeoff(
     for name in names:
         if name not in METHODS:
             raise ValueError(f"there is no method '{name}'{guess(name, METHODS)}")
-    given = scenario(system, read_values(system, values))
+    given = scenario(system, read_values(system, values), declared=True)
     found = studied(given, [METHODS[name] for name in names], time, budget, models)
     strayed = ("constraint_drift", "constraint_velocity_drift") if system.constraints else ()
     runs = Table.of(

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
 from mbsym.expressions.message import Message, duration, joined
 from mbsym.report.language import Language
 from mbsym.studies.closing import closed_motion, not_closed
-from mbsym.studies.request import Flag, Number, Values, Words
+from mbsym.studies.request import Flag, Number, Settings, Value, Words
 from mbsym.studies.request import duration as length
 from mbsym.studies.study import (
     Answer,
@@ -37,6 +37,7 @@ def _methods() -> tuple[str, ...]:
     return tuple(METHODS)
 
 
+SETTINGS = Settings("NAME=VALUE", "Replace a value; repeatable.", "-s", "--set", declared=True)
 METHODS = Words(None, "Some of them, separated by commas.", "-m", choices=_methods, what="method", every="all")
 BUDGET = "Work worth so many seconds on a usual machine, counted, not timed; less than 30 may be too little."
 
@@ -48,8 +49,8 @@ class Request:
     Every method climbs a ladder of tolerances or steps, in every arithmetic it knows; its error is measured over the
     whole interval against a reference solution, whose own error is printed: an extrapolation in 160 bits, or, where
     that takes too long, one of two methods in extended arithmetic that agree, or of two implicit ones.  Simpler models
-    (gravity of lower order, linearised equations, coordinates that rest taken out) are compared with the most faithful
-    one.
+    (gravity of lower order; without constraints linearised equations, and coordinates that rest taken out) are compared
+    with the most faithful one.  Of a description with speeds these are integrated, and unit vectors or quaternions.
 
     Written are tradeoff.csv, fidelity.csv and work-precision.svg/.png; Ctrl-C keeps what was measured in files named
     ...-partial.  Exit codes: 0 done, 1 files could not be written, or a trial ended in an internal error (the
@@ -63,7 +64,7 @@ class Request:
     time: Annotated[float, length("Simulate from 0 to T (60, 2*pi).")]
     _: KW_ONLY
     target: Annotated[float, Number("X", "The error that is good enough.", least=1e-15, most=0.1)] = 1e-9
-    values: Values = field(default_factory=dict)
+    values: Annotated[Mapping[str, Value], SETTINGS] = field(default_factory=dict)
     methods: Annotated[tuple[str, ...], METHODS] = ("all",)
     budget: Annotated[float, Number("S", BUDGET)] = 60.0
     fidelity: Annotated[bool, Flag(None, "Compare simpler models too.", both=True)] = True
@@ -83,10 +84,7 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Found:
     from mbsym.numerics.methods import table
     from mbsym.numerics.trade.trade_study import studied
 
-    given, notes = closed_motion(asked.motion)
-    if request.fidelity and asked.system.constraints:
-        text = Message("note: simpler models are not compared: with constraints they would begin elsewhere")
-        notes = (*notes, Language(asked.system.language).say(text))
+    given, notes = closed_motion(asked.motion, declared=True)
     methods = [table.METHODS[name] for name in request.methods]
     return Found(studied(given, methods, request.time, request.budget, request.fidelity, watch), notes)
 
@@ -143,7 +141,7 @@ def _lines(request: Request, found: trade_study.Study, say: Callable[[str], str]
     )
     costs = {"reference": f"{truth.cost:.2g}", "runs": f"{trade.spent:.2g}"}
     yield line("  ", say(Message(text, budget=f"{request.budget:g}", **costs)))
-    if models:
+    if len(models) > 1:
         yield _models(found)
     advised = joined(filter(None, (advice(trade, target), model_advice(models, target))))
     yield line((say(advised), "bold"), always=True)

@@ -55,8 +55,9 @@ def measure_of(system: System, asked: Asked) -> Measure:
     if asked.time is not None and asked.formula is not None:
         from mbsym.sweeps.simulated import SimulatedMeasure
 
-        given = scenario(system, {name: number(value) for name, value in asked.settings.items()}, assumed=False)
-        return SimulatedMeasure(given, asked.points.names, asked.formula, text(asked.formula), asked.time)
+        overrides = {name: number(value) for name, value in asked.settings.items()}
+        given, said = scenario(system, overrides, assumed=False), text(asked.formula)
+        return SimulatedMeasure(given, overrides, asked.points.names, asked.formula, said, asked.time)
     analysis = Analysis(system)
     axes = [Axis(name, *asked.ends[name]) for name in asked.points.names]
     found = section(analysis, axes, asked.settings)

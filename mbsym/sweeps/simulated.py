@@ -13,9 +13,9 @@ import numpy as np
 
 from mbsym.algebra.base import Lowering
 from mbsym.expressions.tree import Expression
-from mbsym.mechanics.constraints.refusal import refuse_constraints
+from mbsym.numerics.closing import begun
+from mbsym.numerics.ensembles.ensemble import beginning
 from mbsym.numerics.ensembles.parametrised import Parametrised, released
-from mbsym.numerics.ensembles.side_by_side import TABLEAUX, SideBySide, compiled
 from mbsym.numerics.ensembles.variation import members
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import Code
@@ -35,17 +35,22 @@ MOST_STEPS = 1_000_000
 class SimulatedMeasure:
     """``formula`` along the motions from 0 to ``time``; not a number for motions that end early.
 
-    Raises Failure where there is no program for the equations, and where steps would have to end at switches.
+    ``overrides`` are those of which the scenario was made.  Raises Failure where there is no program for the equations.
     """
 
-    def __init__(self, scenario: Scenario, names: Sequence[str], formula: Expression, text: str, time: float) -> None:
-        refuse_constraints(scenario.system, "sweeps of motions")
+    def __init__(
+        self,
+        scenario: Scenario,
+        overrides: Mapping[str, Expression],
+        names: Sequence[str],
+        formula: Expression,
+        text: str,
+        time: float,
+    ) -> None:
         self.names = tuple(names)
         free = [name for name in names if name in scenario.system.parameter_names]
-        self._dynamics = Parametrised(scenario, free)
+        self._dynamics = Parametrised(begun(scenario, declared=False).scenario, free, overrides)
         self._times = np.linspace(0.0, time, ROWS)
-        code = self._dynamics.right_hand_side
-        self._compiled = compiled(code, TABLEAUX[METHOD], 2 * len(scenario.system.coordinates))
         fresh = released(scenario, free)
         node = Lowering(fresh, Names(fresh))(formula)
         self._formula = arrays.kernel(Code(fresh, self._dynamics.inputs, (node,)))
@@ -58,7 +63,7 @@ class SimulatedMeasure:
     def at(self, points: Any) -> Mapping[str, Any]:
         found = members(self._dynamics, self.names, points)
         setting = Setting(TOLERANCE, None, MOST_STEPS, None)
-        run = SideBySide(self._compiled, setting, found.starts, found.parameters, threads=1)
+        run = beginning(found, METHOD, 1)(setting, slice(None))
         final = self._value(0.0, found.starts, found.parameters)
         least, greatest = final.copy(), final.copy()
         rows = max(1, BLOCK // max(1, found.starts.size))

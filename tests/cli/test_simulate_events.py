@@ -91,3 +91,15 @@ def test_what_never_leaves_the_error_of_a_step_is_undecided(tmp_path: Path) -> N
     assert done.exit_code == 0, done.output
     assert "nothing can be told" in done.output
     assert "theta2 = 9: never" in done.output
+
+
+def test_a_stop_that_holds_at_the_start_says_so(tmp_path: Path) -> None:
+    """One row, and no word of a better run that broke down: there was nothing to be integrated."""
+    done = ran(tmp_path, "--time", "2", "--format", "csv", "--estimate", "--stop", "theta2 < 10")
+    assert done.exit_code == 0, done.output
+    told = " ".join(done.output.split())
+    assert "stopped at t = 0 by theta2 < 10, which holds at the start: nothing was integrated" in told
+    assert "singularity" not in told
+    content = json.loads((tmp_path / "simulation.json").read_text())
+    assert list(Draft202012Validator(schema("simulation")).iter_errors(content)) == []
+    assert len(table(tmp_path / "trajectory.csv")) == 1

@@ -13,6 +13,7 @@ import mbsym
 from mbsym.analysis.pipeline import Analysis
 from mbsym.formulas.formula import Matrix
 from mbsym.problems.checks import EXACT
+from mbsym.problems.stability.word import Word
 from mbsym.source import read
 
 HERE = Path(__file__).parent
@@ -210,3 +211,34 @@ def test_the_flat_parallelogram_is_singular() -> None:
     stage = described(ONE_LENGTH).stage(5)
     assert stage.failure is not None
     assert stage.failure.code == "singular"
+
+
+OUTSIDE = """
+mbsym: 1
+name: Three masses, the velocity of the first one given by the place of the second
+parameters: {a: {sign: real, value: 1/2}}
+bodies:
+  - {name: p1, attached to: 0, connection point: [x1, 0, 0], mass: 3, coordinates: [x1]}
+  - {name: p2, attached to: 0, connection point: [x2, 0, 0], mass: 1, coordinates: [x2]}
+  - {name: p3, attached to: 0, connection point: [x3, 0, 0], mass: 1, coordinates: [x3]}
+loads: [{generalized force: {x2: -2*x2, x3: -(a + 1)*x3}}]
+constraints: [{velocity: -x1_dot = a*x2}, {velocity: 2*x3_dot = x2_dot}]
+motion: {}
+"""
+
+
+def test_a_coordinate_outside_the_linear_equations_may_drift() -> None:
+    """d'Alembert, v3 = v2/2 and x3 = x2/2 + c: (5/4) x2'' + (2 + (a + 1)/4) x2 = -(a + 1) c/2.
+
+    With c disturbed x2 swings about a place that is not zero, and x1 = -a times its integral grows with the time.
+    """
+    stability = described(OUTSIDE).stability
+    assert stability is not None
+    (part,) = stability.subsystems
+    assert part.theory.cases[0].verdict.word is Word.STABLE_BUT_CYCLIC
+    assert stability.numerical is not None
+    assert stability.numerical.word is Word.STABLE_BUT_CYCLIC
+    inside = described(OUTSIDE.replace("a*x2", "a*x2_dot")).stability  # x1 = -a x2 + const
+    assert inside is not None
+    assert inside.numerical is not None
+    assert inside.numerical.word.stable

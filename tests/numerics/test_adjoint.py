@@ -30,7 +30,7 @@ def expression(text: str) -> Expression:
 def by_columns(name: str, names: tuple[str, ...], time: float) -> np.ndarray:
     given = scenario(mbsym.load(SHIPPED / f"{name}.yaml").system)
     run = integrated(sensitive(given, names), METHODS["dop853"], Setting(1e-12), [0.0, time])
-    return np.array(split(run.states[:, -1], len(given.positions))[1])
+    return np.array(split(run.states[:, -1], len(given.state))[1])
 
 
 def test_both_ways_give_one_gradient() -> None:

@@ -13,7 +13,7 @@ import mbsym
 from mbsym.numerics.between import accelerations
 from mbsym.numerics.body_motion import BodyMotions, body_motions
 from mbsym.numerics.scenario import scenario
-from mbsym.report.runs.bodies_csv import bodies_parts
+from mbsym.report.runs.trajectory_csv import bodies_parts
 from mbsym.simulation import Simulation
 
 

@@ -51,7 +51,7 @@ def at_end(dynamics: Dynamics, time: float, tolerance: float = 1e-12) -> Any:
 
 def columns(given: Scenario, names: Sequence[str], time: float) -> Any:
     found = sensitive(given, names)
-    return split(at_end(found, time), len(given.positions))[1]
+    return split(at_end(found, time), len(given.state))[1]
 
 
 def test_an_oscillator_answers_as_its_closed_form() -> None:
@@ -114,7 +114,7 @@ def test_volumes_are_kept_where_nothing_dissipates(name: str) -> None:
     """det Phi = exp(int tr J): with p = dL/dq' it is det M(q(0)) / det M(q(t)) without dissipation (Liouville)."""
     given = scenario(shipped(name))
     dynamics = Dynamics(given)
-    x, y = split(at_end(Variational(dynamics, units(dynamics)), 2.0), dynamics.size)
+    x, y = split(at_end(Variational(dynamics, units(dynamics)), 2.0), dynamics.dimension)
     mass = compiled_kernel(dynamics, "mass_matrix")
     n = dynamics.size
     ends = ([0.0, *map(float, given.state)], [2.0, *x])

@@ -13,6 +13,7 @@ from mbsym.analysis.pipeline import Analysis
 from mbsym.formulas.formula import column
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
 from mbsym.problems.reactions import check_reactions
+from mbsym.report.targets import TARGETS
 
 PENDULUM = """
 mbsym: 1
@@ -81,3 +82,19 @@ def test_planted_mistakes_are_found(kind: str) -> None:
 def test_a_joint_that_is_none_is_complained_about() -> None:
     with pytest.raises(mbsym.DescriptionError, match="there is no body 'hinge'"):
         mbsym.loads(PENDULUM.replace("reactions: [rod]", "reactions: [hinge]"))
+
+
+@pytest.mark.parametrize("drive", ["torque: {body: rod, components: [0, 0, k], axes: 0}", "generalized force: {q: k}"])
+def test_what_is_said_to_be_in_a_reaction_is(drive: str) -> None:
+    """On the motion  J_O q'' = -b q' - m g l sin q + k,  and L = J_O q'' + m g l sin q - (torques on the body).
+
+    L is -b q' beside a torque on the body, and k - b q' where k is given by the coordinate.
+    """
+    text = PENDULUM.replace("torque: {body: rod, components: [0, 0, k], axes: 0}", drive)
+    analysis = mbsym.loads(text, (1, 2, 3))
+    (found,) = analysis.reactions
+    holds_torque = bool(found.moment[2].polynomial.degrees()[analysis.ring.index("parameter", "k")])
+    assert holds_torque == drive.startswith("torque")  # L = J_O q'' + m g l sin q - k, of which J_O q'' has + k
+    told = " ".join(str(TARGETS["html"].render(analysis, (3,))).split())
+    assert "given by coordinates" in told
+    assert "forces and torques on bodies act besides" in told

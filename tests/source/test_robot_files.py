@@ -18,7 +18,7 @@ from mbsym.problems.claims import DIFFERS, EXACT
 from mbsym.report.targets import TARGETS
 from mbsym.source import read, to_text
 from mbsym.source.robots import Converted, convert, is_robot
-from mbsym.source.robots.elements import MAX_DEPTH
+from mbsym.source.robots.reader import MAX_DEPTH
 from mbsym.source.robots.robot import turns_about
 from mbsym_cli.main import main
 

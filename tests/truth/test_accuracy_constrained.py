@@ -1,8 +1,9 @@
 """What ``--accuracy`` promises of systems with constraints, judged by solutions that know no constraints.
 
 The same mechanisms told in coordinates of their own are solved by hand-written equations (``truth/independent``); a
-sleigh and a ball have closed forms.  Over the whole interval, at irregular times: the run is within its bound, the bound
-within what was asked for and not a thousand times the error; no other setting that keeps twice the room is much cheaper.
+sleigh and a ball have closed forms.  Over the whole interval, at irregular times: the run is within its bound, the
+bound within what was asked for and not a thousand times the error; no other setting that keeps twice the room is much
+cheaper.
 """
 
 from __future__ import annotations
@@ -148,7 +149,7 @@ initial: {x: 0, y: 0, e0: 1, e1: 0, e2: 0, e3: 0, p: 3, q: 1, s: 2}
 def ball(times: Any) -> dict[str, Any]:
     """A homogeneous ball: the force at the contact vanishes, omega is constant, and so is the centre's velocity.
 
-    e(0) = 1: e(t) = (cos(w t/2), sin(w t/2) omega/w);  x' = r omega_y, y' = -r omega_x.  Of full turns none is singular.
+    e(0) = 1: e(t) = (cos(w t/2), sin(w t/2) omega/w);  x' = r omega_y, y' = -r omega_x.
     """
     omega = np.array([3.0, 1.0, 2.0])
     w = float(np.linalg.norm(omega))
@@ -190,7 +191,6 @@ def test_what_is_promised_under_constraints_is_kept(name: str, target: float) ->
     error = errors(name, times, lambda key: states[names.index(key)])
     bound = found.plan.bound.total
     assert error <= bound <= target
-    # Ends of the interval are not among the places, and what is not compared may be the worst: a factor more is allowed.
     assert bound <= max(1000 * error, FLOOR)
     assert found.drift is not None
     assert max(found.drift.largest) < target / 100

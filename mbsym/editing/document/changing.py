@@ -18,8 +18,7 @@ from mbsym.editing.document.written import Data, Path, Refused, Written, data_of
 from mbsym.editing.document.yaml_edits import emptied, yaml_edits
 from mbsym.expressions.place import Complaint, Span
 from mbsym.expressions.tree import Name
-from mbsym.source.lines import normalised
-from mbsym.source.placed import MAX_TEXT, Mapping
+from mbsym.source.placed import MAX_TEXT, Mapping, normalised
 
 Json = dict[str, Any]
 

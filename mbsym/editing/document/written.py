@@ -10,8 +10,7 @@ from mbsym.expressions.place import Complaints, Span
 from mbsym.model.system import System
 from mbsym.source.document import read_placed
 from mbsym.source.keys import ALIASES
-from mbsym.source.lines import normalised
-from mbsym.source.placed import Entry, Mapping, Node, Scalar, Sequence
+from mbsym.source.placed import Entry, Mapping, Node, Scalar, Sequence, normalised
 from mbsym.source.yaml_reader import Extent, read_yaml
 
 Path = tuple[str | int, ...]

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from flint import arb, ctx, fmpq
 
-from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.enclosure.enclose import GUARD, Enclosure, enclosed
 from mbsym.numerics.enclosure.field import NotAnalytic, function_of
@@ -84,7 +83,6 @@ class Certificate:
 
 def analytic(dynamics: Dynamics) -> None:
     """Raises NotAnalytic where the equations of motion or their Jacobian have a function without a power series."""
-    refuse_constraints(dynamics.system, "enclosures of the solution")
     for code in (dynamics.right_hand_side, dynamics.jacobian):
         function_of(code, GUARD)
 

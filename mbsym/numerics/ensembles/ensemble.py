@@ -17,16 +17,18 @@ from typing import Any
 
 import numpy as np
 
+from mbsym.algebra.program import Node
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.ensembles.parametrised import Parametrised
 from mbsym.numerics.ensembles.side_by_side import TABLEAUX, Fate, SideBySide, compiled
 from mbsym.numerics.ensembles.variation import Members
 from mbsym.numerics.kernels.interface import Code
-from mbsym.numerics.methods.interface import BLOW_UP, LARGEST, Breakdown, Run, Setting
-from mbsym.numerics.methods.passed import Narrow, met_by
+from mbsym.numerics.methods.interface import BLOW_UP, LARGEST, Breakdown, Narrow, Run, Setting, met_by
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.orbits.variational import extended
+from mbsym.numerics.planning.sizes import scaled, sizes_of_scene
 from mbsym.numerics.specialise import Specialised
+from mbsym.numerics.states import dynamics_of
 
 #: Quantiles of the statistics: the median, and the bands of 50 % and 90 % about it.
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
@@ -156,7 +158,7 @@ def ensemble(
     Ctrl-C ends it: what has been computed is kept.  Memory is needed for the members' states and a block of times.
     """
     times = np.asarray(times, float)
-    begin = _beginning(found, method, threads)
+    begin = beginning(found, method, threads)
     run = begin(setting, slice(None))
     started = time.perf_counter()
     parts = [statistics(found.starts[None])]
@@ -198,19 +200,19 @@ def ensemble(
 
 
 #: Runs of some members at a setting, from the start.
-_Beginning = Callable[[Setting, Any], "SideBySide | OneByOne"]
+Beginning = Callable[[Setting, Any], "SideBySide | OneByOne"]
 
 
-def _beginning(found: Members, method: str, threads: int | None) -> _Beginning:
-    """Side by side; one by one where steps have to end at switches, or be short beside what is narrow."""
-    if not found.dynamics.features.none:
+def beginning(found: Members, method: str, threads: int | None) -> Beginning:
+    """Side by side; one by one where steps have to end at switches, be short beside what is narrow, or be led back."""
+    if not found.dynamics.features.none or found.dynamics.correction is not None:
         whole = WithParameters(found.dynamics)
         return lambda setting, some: OneByOne(whole, method, setting, found.starts[:, some], found.parameters[:, some])
     made = compiled(found.dynamics.right_hand_side, TABLEAUX[method], len(found.starts))
     return lambda setting, some: SideBySide(made, setting, found.starts[:, some], found.parameters[:, some], threads)
 
 
-def _compared(found: Members, begin: _Beginning, setting: Setting, times: Any, run: SideBySide | OneByOne) -> Compared:
+def _compared(found: Members, begin: Beginning, setting: Setting, times: Any, run: SideBySide | OneByOne) -> Compared:
     """Some members, those with the most steps among them, once more: a hundredth of the tolerance, half the step."""
     whole = [member for member in range(run.members) if member not in run.fates]
     clamped = setting.tolerance is not None and setting.tolerance < FINEST
@@ -230,14 +232,16 @@ def _compared(found: Members, begin: _Beginning, setting: Setting, times: Any, r
     ends = times[1:] if len(times) * len(places) * len(found.starts) <= BLOCK else times[-1:]
     states = [begin(one, places).block(ends) for one in (setting, finer)]
     differences = np.max(np.abs(states[0] - states[1]), axis=(0, 2))
-    sizes = np.max(np.abs(states[1]), axis=(0, 2))
-    return Compared(chosen, differences, sizes)
+    own = np.max(np.abs(states[1]), axis=(0, 2))
+    usual = sizes_of_scene(dynamics_of(found.dynamics.scenario), ends, states[1][:, :, 0].T)
+    return Compared(chosen, differences, scaled(own, usual, differences))
 
 
 # Members of an ensemble one after the other, where steps have to end at switches and be short beside narrow loads.
 #
 # Side by side all members take the steps of their error estimates alone, which may pass over a push without a sign of
-# it. Here each is a run of its own (``mbsym.numerics.methods.landing``), with the parameters behind its state,
+# it, and lead nothing back to constraints or to quaternions of length 1. Here each is a run of its own
+# (``mbsym.numerics.methods.landing``, ``led``), with the parameters behind its state,
 #
 #     x = (q, q', p),    x' = (rhs(t, q, q', p), 0),
 #
@@ -245,14 +249,19 @@ def _compared(found: Members, begin: _Beginning, setting: Setting, times: Any, r
 
 
 class WithParameters(Dynamics):
-    """A scenario whose free parameters are constant components of the state; zeros make their number even."""
+    """A scenario whose free parameters are constant components of the state."""
 
     def __init__(self, base: Parametrised) -> None:
         values = [Fraction(base.scenario.parameters[name]) for name in base.free]
-        super().__init__(extended(base.scenario, values + [Fraction(0)] * (len(values) % 2)), base.ring)
+        super().__init__(extended(base.scenario, values), base.ring)
         self.base = base
-        self.inputs = (*base.inputs, *(["constant~"] if len(values) % 2 else []))
-        self.size = (len(self.inputs) - 1) // 2
+        self.inputs = base.inputs
+        self.__dict__["constraints"] = base.constraints
+
+    @property
+    def dimension(self) -> int:
+        """Of (q, q', p)."""
+        return len(self.inputs) - 1
 
     @cached_property
     def _specialised(self) -> Specialised:
@@ -262,8 +271,25 @@ class WithParameters(Dynamics):
     def right_hand_side(self) -> Code:
         """(t, q, q', p) -> (q', q'', 0)."""
         rates = self.base.right_hand_side
-        still = [rates.program.zero] * (len(self.inputs) - 1 - len(rates.outputs))
-        return Code(rates.program, self.inputs, (*rates.outputs, *still))
+        return Code(rates.program, self.inputs, (*rates.outputs, *self._still))
+
+    @property
+    def _still(self) -> list[Node]:
+        return [self._specialised.zero] * len(self.base.free)
+
+    @cached_property
+    def correction(self) -> Code | None:
+        """Of the state; parameters stay."""
+        found = self.base.correction
+        if found is None:
+            return None
+        *moved, nearness = found.outputs
+        return Code(found.program, self.inputs, (*moved, *self._still, nearness))
+
+    @cached_property
+    def pivots(self) -> Code:
+        """(t, q, q', p) -> those of the matrices."""
+        return self.base.pivots
 
 
 class OneByOne:
@@ -274,8 +300,7 @@ class OneByOne:
     def __init__(self, whole: WithParameters, method: str, setting: Setting, starts: Any, parameters: Any) -> None:
         self._dynamics, self._method, self._setting = whole, method, setting
         self._size, self.members = starts.shape
-        more = np.zeros((len(whole.inputs) - 1 - self._size - len(parameters), self.members))
-        self._states = np.vstack([starts, parameters, more]).astype(float)
+        self._states = np.vstack([starts, parameters]).astype(float)
         self._runs: list[Run | None] = [None] * self.members
         self._bound = LARGEST * np.maximum(1.0, np.max(np.abs(starts), axis=0, initial=0.0))
         self.fates: dict[int, Fate] = {}

@@ -9,17 +9,23 @@ it move with it.  All codes take (t, q, q', p).
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.base import Lowering
+from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.program import Node
-from mbsym.expressions.tree import Expression, names
-from mbsym.model.states import InStates
+from mbsym.expressions.message import Message
+from mbsym.expressions.tree import Expression, names, number
+from mbsym.model.states import InStates, described
 from mbsym.model.system import System, velocity_name
+from mbsym.numerics.closing import begun, closed, fitted, shown
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import Code
-from mbsym.numerics.scenario import Scenario, initial_values
+from mbsym.numerics.scenario import Incomplete, Scenario, initial_values
+from mbsym.numerics.scenario import scenario as scenario_of_run
 from mbsym.numerics.specialise import Names, Specialised, bound
 from mbsym.numerics.states import StateDynamics, dynamics_of
 
@@ -27,11 +33,20 @@ if TYPE_CHECKING:
     from mbsym.numerics.constrained import Constraints
 
 
+#: Differences of order 4: f' = sum of weight f(c + offset h)/(12 h); and h, a part of c or of 1.
+CENTRAL = {-2: 1, -1: -8, 1: 8, 2: -1}
+FORWARD = {0: -25, 1: 48, 2: -36, 3: 16, 4: -3}
+STEP = Fraction(1, 2**14)
+
+
 class Parametrised(Dynamics):
-    """The codes of a scenario with the parameters ``free`` as inputs behind (t, q, q'); of one in states ``parametrised``.
+    """The codes of a scenario with the parameters ``free`` as inputs behind (t, q, q').
+
+    Of one in declared variables it is ``ParametrisedStates``: see ``parametrised``.
 
     ``overrides`` are those of which the scenario was made: an initial state may be an expression in free parameters.
-    Which rows of constraints follow from others is told at the scenario's own values.
+    ``fixed`` are initial values that stay while others are fitted to constraints.  Which rows of constraints follow
+    from others is told at the scenario's own values.
     """
 
     def __init__(
@@ -39,10 +54,11 @@ class Parametrised(Dynamics):
         scenario: Scenario,
         free: Sequence[str],
         overrides: Mapping[str, Expression] | None = None,
+        fixed: Sequence[str] = (),
     ) -> None:
         super().__init__(scenario)
         self.free = tuple(free)
-        self.overrides = dict(overrides or {})
+        self.overrides, self.fixed = dict(overrides or {}), tuple(fixed)
         self.inputs = (*self.inputs, *self.free)
 
     @cached_property
@@ -71,6 +87,46 @@ class Parametrised(Dynamics):
         order = (*self.system.coordinates, *self.system.velocities)
         return Code(fresh, (*self.free, *order), tuple(outputs[name] for name in order))
 
+    def begun(self, values: Mapping[str, Expression]) -> Scenario:
+        """The scenario of a run of its own with ``values`` in the place of others.  Raises Incomplete, Failure."""
+        return begun(self._given(values), self.fixed, self.in_states).scenario
+
+    def _given(self, values: Mapping[str, Expression]) -> Scenario:
+        return scenario_of_run(described(self.system), self.overrides | dict(values), declared=self.in_states)
+
+    def column(self, name: str) -> tuple[Fraction, ...]:
+        """dx(0)/dc: of an initial value or a parameter c, through everything that follows from it and constraints.
+
+        By differences of order 4 of states in many bits, each fitted to constraints from the state at c; to one side
+        where c has no room on the other.  Raises Failure.
+        """
+        plain = self._given({})
+        given = fitted(plain, self.in_states)
+        center = closed(given, self.fixed).scenario
+        told = dict(given.parameters)
+        for one in (plain, given, shown(given, self.in_states)):
+            told |= dict(zip((*one.system.coordinates, *one.system.velocities), one.state, strict=True))
+        step = STEP * max(Fraction(1), abs(told[name]))
+        p = len(given.positions)
+
+        def state(offset: int) -> tuple[Fraction, ...]:
+            moved = fitted(self._given({name: number(told[name] + offset * step)}), self.in_states)
+            here = tuple(x + a - b for x, a, b in zip(center.state, moved.state, given.state, strict=True))
+            begun = replace(moved, positions=here[:p], velocities=here[p:])
+            return shown(closed(begun, self.fixed).scenario, self.in_states).state
+
+        def slope(weights: Mapping[int, int]) -> tuple[Fraction, ...]:
+            known = [(state(offset), weight) for offset, weight in weights.items()]
+            whole = zip(*([weight * x for x in values] for values, weight in known), strict=True)
+            return tuple(sum(parts, Fraction(0)) / (12 * step) for parts in whole)
+
+        for sides in (CENTRAL, FORWARD, {-offset: -weight for offset, weight in FORWARD.items()}):
+            try:
+                return slope(sides)
+            except Incomplete as reason:
+                why = str(reason)
+        raise NoClosedForm(Message("no motion begins with another [[name]] alone: [[why]]", name=name, why=why))
+
     @cached_property
     def parameters(self) -> Code:
         """(p) -> all parameters that move with p, themselves first, then those of ``dependent``."""
@@ -89,11 +145,14 @@ class ParametrisedStates(Parametrised, StateDynamics):
 
 
 def parametrised(
-    scenario: Scenario, free: Sequence[str], overrides: Mapping[str, Expression] | None = None
+    scenario: Scenario,
+    free: Sequence[str],
+    overrides: Mapping[str, Expression] | None = None,
+    fixed: Sequence[str] = (),
 ) -> Parametrised:
     """The codes of a scenario, in what it is told in, with some parameters as inputs."""
     kind = ParametrisedStates if isinstance(scenario.system, InStates) else Parametrised
-    return kind(scenario, free, overrides)
+    return kind(scenario, free, overrides, fixed)
 
 
 def dependent(system: System, free: Iterable[str]) -> tuple[str, ...]:

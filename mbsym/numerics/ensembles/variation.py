@@ -15,14 +15,16 @@ from typing import Any
 import numpy as np
 
 from mbsym.algebra.base import Lowering
+from mbsym.algebra.failures import Failure
 from mbsym.expressions.guessing import guess
-from mbsym.expressions.tree import names
+from mbsym.expressions.tree import names, number
 from mbsym.expressions.tree import text as spelled
 from mbsym.model.assumptions import has_sign, holds
 from mbsym.model.system import System
 from mbsym.numerics.ensembles.parametrised import Parametrised, dependent, released
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import Code
+from mbsym.numerics.scenario import Incomplete
 from mbsym.numerics.specialise import Names
 
 #: More members than this are refused.
@@ -132,7 +134,7 @@ def complaints_of(
     system: System, variations: Sequence[Variation], members: int | None
 ) -> Iterator[tuple[str, str, str]]:
     """Of the members of an ensemble."""
-    known = (*system.parameter_names, *system.coordinates, *system.velocities)
+    known = (*system.parameter_names, *system.coordinates, *system.velocities, *system.variables)
     yield from complaints(variations, members, known, {relation.name for relation in system.relations})
 
 
@@ -207,27 +209,48 @@ class Members:
 def members(dynamics: Parametrised, varied: Sequence[str], values: Any) -> Members:
     """Initial states and parameters of members with ``values`` (k, m) of ``varied`` names.
 
-    ``dynamics.free`` must be those of them that are parameters.
+    ``dynamics.free`` must be those of them that are parameters.  States that have to be fitted to constraints, or told
+    in declared variables, are those of a run of each member by itself.
 
     Raises Unvaried where a member's parameters break a declared sign or give no initial state.
     """
-    system, count = dynamics.system, values.shape[1]
-    own = dict(zip(varied, values, strict=True))
+    count = values.shape[1]
+    parameters = np.array([values[varied.index(name)] for name in dynamics.free]).reshape(len(dynamics.free), count)
+    wrong = [*_signs(dynamics, parameters), *_assumptions(dynamics, parameters)]
+    if wrong:
+        raise Unvaried(wrong)
+    one_by_one = dynamics.system.constraints or dynamics.in_states
+    starts = _begun(dynamics, varied, values) if one_by_one else _starts(dynamics, varied, values, parameters)
+    bad = np.flatnonzero(~np.all(np.isfinite(starts), axis=0))
+    if len(bad):
+        raise Unvaried([(varied[0], f"{len(bad)} of {count} members have no initial state", "")])
+    return Members(dynamics, tuple(varied), values, starts, parameters)
+
+
+def _starts(dynamics: Parametrised, varied: Sequence[str], values: Any, parameters: Any) -> Any:
+    """(2n, m)."""
+    system, own = dynamics.system, dict(zip(varied, values, strict=True))
     states = (*system.coordinates, *system.velocities)
     fixed = dict(zip(states, map(float, dynamics.scenario.state), strict=True))
-    parameters = np.array([own[name] for name in dynamics.free]).reshape(len(dynamics.free), count)
-    given = [own.get(name, np.full(count, fixed[name])) for name in states]
+    given = [own.get(name, np.full(values.shape[1], fixed[name])) for name in states]
     starts = arrays.kernel(dynamics.start)(np.vstack([parameters, np.array(given)]))
     for place, name in enumerate(states):
         if name in own:
             starts[place] = own[name]
-    wrong = [*_signs(dynamics, parameters), *_assumptions(dynamics, parameters)]
-    bad = np.flatnonzero(~np.all(np.isfinite(starts), axis=0))
-    if len(bad):
-        wrong.append((varied[0], f"{len(bad)} of {count} members have no initial state", ""))
-    if wrong:
-        raise Unvaried(wrong)
-    return Members(dynamics, tuple(varied), values, starts, parameters)
+    return starts
+
+
+def _begun(dynamics: Parametrised, varied: Sequence[str], values: Any) -> Any:
+    """(p + n, m).  Raises Unvaried with the first member that has no state."""
+    starts = []
+    for column in values.T:
+        own = {name: number(Fraction(float(value))) for name, value in zip(varied, column, strict=True)}
+        try:
+            starts.append([float(x) for x in dynamics.begun(own).state])
+        except (Failure, Incomplete) as reason:
+            told = ", ".join(f"{name} = {value:.12g}" for name, value in zip(varied, column, strict=True))
+            raise Unvaried([(varied[0], f"no motion begins with {told}: {reason}", "narrow the range")]) from None
+    return np.array(starts).T
 
 
 def _signs(dynamics: Parametrised, parameters: Any) -> Iterator[tuple[str, str, str]]:

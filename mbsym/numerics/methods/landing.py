@@ -24,10 +24,23 @@ from mbsym.expressions.message import Message
 from mbsym.numerics.dynamics import Dynamics, Frozen
 from mbsym.numerics.events.features import SLIDING
 from mbsym.numerics.methods.blocks import MOST, Block, Blocks
-from mbsym.numerics.methods.interface import COUNTS, STEP_LIMIT, Breakdown, Method, Piece, Run, Setting, Traits, Work
+from mbsym.numerics.methods.interface import (
+    COUNTS,
+    MOST_INSIDE,
+    MOST_KEPT,
+    STEP_LIMIT,
+    Breakdown,
+    Method,
+    Narrow,
+    Passed,
+    Piece,
+    Run,
+    Setting,
+    Traits,
+    Work,
+)
 from mbsym.numerics.methods.led import LedRun, lead
 from mbsym.numerics.methods.narrow import BESIDE, along, met
-from mbsym.numerics.methods.passed import MOST_INSIDE, MOST_KEPT, Narrow, Passed
 from mbsym.numerics.methods.runge_kutta import CompiledRun
 from mbsym.numerics.methods.sides import TOGETHER, Leaving, Sides, endless, feature_kernel
 

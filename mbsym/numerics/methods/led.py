@@ -19,9 +19,8 @@ import numpy as np
 from mbsym.expressions.message import Message
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.bridge import Bridge, bridge
-from mbsym.numerics.methods.interface import SINGULAR_CONSTRAINTS, Breakdown, Piece, Run, Unusable
+from mbsym.numerics.methods.interface import SINGULAR_CONSTRAINTS, Breakdown, Passed, Piece, Run, Unusable, met_by
 from mbsym.numerics.methods.kept import compiled_kernel
-from mbsym.numerics.methods.passed import Passed, met_by
 
 #: Newton's steps for a state between the ends of steps.
 TIMES = 2

@@ -21,10 +21,9 @@ from mbsym.numerics.dynamics import Dynamics, Frozen
 from mbsym.numerics.events.crossings import Sign, free_of_zeros, passages, resolved, series
 from mbsym.numerics.events.features import SLIDING
 from mbsym.numerics.kernels.llvm import kernel
-from mbsym.numerics.methods.interface import Breakdown, Piece
+from mbsym.numerics.methods.interface import MOST_KEPT, Breakdown, Passed, Piece
 from mbsym.numerics.methods.kept import compiled_kernel, once
 from mbsym.numerics.methods.narrow import along
-from mbsym.numerics.methods.passed import MOST_KEPT, Passed
 
 #: Why a run cannot go on at a switch, and beyond the points of a table.
 SWITCHING = "switching without end"

@@ -25,8 +25,9 @@ from mbsym.algebra.derivative import directional, gradient, jacobian
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.program import Node, Program
 from mbsym.expressions.tree import Expression
+from mbsym.model.states import described
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.ensembles.parametrised import Parametrised
+from mbsym.numerics.ensembles.parametrised import Parametrised, parametrised
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.specialise import Specialised, bound, substituted
@@ -80,13 +81,21 @@ class Variational(Dynamics):
         self.size = len(self.system.coordinates) * (1 + len(self.directions))
         # Its flow leaves constraints alone: states and columns are led back where a passage ends (``flow``).
         self.__dict__["constraints"] = None
-        if base.constraints is not None:
-            pivots = base.pivots
-            self.__dict__["pivots"] = Code(pivots.program, self.inputs, pivots.outputs)
+
+    @property
+    def dimension(self) -> int:
+        """Of the state and all columns."""
+        return len(self.inputs) - 1
 
     @cached_property
     def _specialised(self) -> Specialised:
         return bound(self.scenario)
+
+    @cached_property
+    def pivots(self) -> Code:
+        """Those of the motion's own matrices."""
+        found = self.base.pivots
+        return Code(self._specialised, self.inputs, tuple(substituted(found.program, found.outputs, self._specialised)))
 
     @cached_property
     def right_hand_side(self) -> Code:
@@ -146,26 +155,37 @@ def _unit(name: str, names: Sequence[str]) -> Direction:
 
 
 def sensitive(
-    scenario: Scenario, wanted: Sequence[str], overrides: Mapping[str, Expression] | None = None
+    scenario: Scenario,
+    wanted: Sequence[str],
+    overrides: Mapping[str, Expression] | None = None,
+    fixed: Sequence[str] = (),
 ) -> Variational:
     """The motion with its derivatives by ``wanted`` names: of parameters, of coordinates and velocities at t = 0.
 
     What follows from a parameter (relations, prescribed motions, an initial state made of it) is part of its
-    derivative.  Raises ValueError for a name that is neither, or for a parameter that itself follows from others.
+    derivative; and where there are constraints, what initial values have to follow, with those ``fixed`` that are.  Of
+    declared variables and coordinates that stand for them both may be wanted.
+
+    Raises ValueError for a name that is neither, or for a parameter that itself follows from others.
     """
     system = scenario.system
+    plain = described(system)
     states = (*system.coordinates, *system.velocities)
+    given = {*states, *plain.coordinates, *plain.velocities, *plain.variables}
     following = {relation.name for relation in system.relations}
     for name in wanted:
-        if name not in (*states, *system.parameter_names):
+        if name not in given and name not in system.parameter_names:
             raise ValueError(f"there is nothing called {name} to differentiate by")
         if name in following:
             raise ValueError(f"{name} follows from other parameters: differentiate by those")
-    free = tuple(name for name in wanted if name not in states)
-    base = Parametrised(scenario, free, overrides)
+    free = tuple(name for name in wanted if name not in given)
+    base = parametrised(scenario, free, overrides, fixed)
+    fitted = system.constraints or base.in_states
     directions = []
     for name in wanted:
-        if name in states:
+        if fitted:
+            directions.append(Direction(name, base.column(name), name if name in free else None))
+        elif name in states:
             directions.append(_unit(name, states))
         else:
             directions.append(Direction(name, start_column(base, name), name))
@@ -189,6 +209,6 @@ def start_column(base: Parametrised, name: str) -> tuple[Fraction, ...]:
 
 
 def split(states: Any, size: int) -> tuple[Any, Any]:
-    """(x, y) of a variational state: arrays of shapes (2n, ...) and (k, 2n, ...); ``size`` is n."""
+    """(x, y) of a variational state: arrays of shapes (2n, ...) and (k, 2n, ...); ``size`` is 2n."""
     found = np.asarray(states)
-    return found[: 2 * size], found[2 * size :].reshape(-1, 2 * size, *found.shape[1:])
+    return found[:size], found[size:].reshape(-1, size, *found.shape[1:])

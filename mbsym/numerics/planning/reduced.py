@@ -20,9 +20,8 @@ from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
 from mbsym.mechanics.states import SEED
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.methods.interface import Breakdown, Method, Piece, Run, Setting
+from mbsym.numerics.methods.interface import Breakdown, Method, Passed, Piece, Run, Setting, met_by
 from mbsym.numerics.methods.kept import compiled_kernel
-from mbsym.numerics.methods.passed import Passed, met_by
 from mbsym.numerics.methods.stages import exact_number
 from mbsym.numerics.planning.reduction import Reduction, resting
 

@@ -3,8 +3,9 @@
 ``variants`` lists the models that a description allows:
 
 * Newtonian gravity of order 2, 3, 4 (where such an expansion converges) and exact;
-* the equations linearised about the unperturbed motion,  x' = x0' + J(t, x0) (x - x0)  with J = d rhs/dx;
-* coordinates that rest taken out (a plane motion of a spatial system), which changes nothing but the cost.
+* without constraints and speeds, the equations linearised about the unperturbed motion,
+  x' = x0' + J(t, x0) (x - x0)  with J = d rhs/dx;
+* there, too, coordinates that rest taken out (a plane motion of a spatial system), which changes nothing but the cost.
 
 ``measured`` integrates each one far more accurately than models differ, and compares it with the most faithful one.
 """
@@ -23,6 +24,7 @@ import numpy as np
 from mbsym.algebra.failures import Defect, Failure
 from mbsym.expressions.message import Message
 from mbsym.model.loads import EXACT, GRAVITY_ORDERS, NewtonianGravity
+from mbsym.model.states import InStates
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import FLOAT64
 from mbsym.numerics.ledger.described import relative_size
@@ -31,6 +33,7 @@ from mbsym.numerics.methods.interface import Breakdown, Method, Setting, Unusabl
 from mbsym.numerics.planning.prices import cost
 from mbsym.numerics.planning.reduction import Reduction, resting
 from mbsym.numerics.scenario import Scenario
+from mbsym.numerics.states import dynamics_of
 
 #: Tolerance at which variants are integrated, and what differences below ``RESOLVED`` mean nothing.
 TIGHT, RESOLVED = 1e-13, 1e-11
@@ -77,7 +80,7 @@ def variants(scenario: Scenario) -> Iterator[Variant]:
     system = scenario.system
     fields = system.newtonian_fields
     faithful = min((GRAVITY_ORDERS.index(load.order) + 1 for load in fields), default=0)
-    yield Variant(DESCRIBED, Message("nothing that the description has"), Dynamics(scenario), faithful)
+    yield Variant(DESCRIBED, Message("nothing that the description has"), dynamics_of(scenario), faithful)
     for rank, order in enumerate(GRAVITY_ORDERS if fields else (), start=1):
         if all(load.order == order for load in fields) or (order != EXACT and not _expandable(scenario, fields)):
             continue
@@ -85,7 +88,9 @@ def variants(scenario: Scenario) -> Iterator[Variant]:
         if order != EXACT:
             dropped = Message("terms of the field above order [[order]] in size/R", order=order)
             name = Message("gravity of order [[order]]", order=order)
-        yield Variant(name, dropped, Dynamics(replace(scenario, system=system.with_field_order(order))), rank)
+        yield Variant(name, dropped, dynamics_of(replace(scenario, system=system.with_field_order(order))), rank)
+    if system.constraints or isinstance(system, InStates):
+        return
     if system.motion:
         label = Message("linearised")
         yield Variant(label, Message("all that is not linear in the deviation"), LinearisedDynamics(scenario), -1)

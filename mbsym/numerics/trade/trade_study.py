@@ -10,11 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mbsym.numerics.closing import closed
-from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.closing import begun
 from mbsym.numerics.methods.interface import Method
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.scenario import Scenario
+from mbsym.numerics.states import dynamics_of
 from mbsym.numerics.trade import fidelity
 from mbsym.numerics.trade.fidelity import ModelError
 from mbsym.numerics.trade.reference import IMPLICIT
@@ -47,19 +47,19 @@ def studied(
 ) -> Study:
     """The study from 0 to ``end``, for what ``budget`` pays (some more where that is too little for a reference).
 
-    Of a system with constraints the initial state is the closest one that satisfies them, and no simpler models are
-    compared, which would begin beside them.
+    Of a system with constraints the initial state is the closest one that satisfies them; with speeds these are
+    integrated.
 
     Raises NotClosed, Breakdown where there is no reference solution up to ``end``, Failure where the equations have no
     program.
     """
-    scenario = closed(scenario).scenario
-    dynamics = Dynamics(scenario)
+    scenario = begun(scenario).scenario
+    dynamics = dynamics_of(scenario)
     watch("reference solution")
     usual, at_most = (max(LEAST_FOR_REFERENCE, part * budget) for part in (FOR_REFERENCE, MOST_FOR_REFERENCE))
     truth = whole_reference(dynamics, end, usual, watch, at_most)
     models: tuple[ModelError, ...] = ()
-    if with_models and not scenario.system.constraints:
+    if with_models:
         places = np.unique(np.linspace(0, len(truth.times) - 1, PLACES).astype(int))
         method = METHODS["lsoda" if truth.way == IMPLICIT else "dop853"]
         models = fidelity.measured(scenario, method, truth.times[places].tolist(), watch, truth.scale)

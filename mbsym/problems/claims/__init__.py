@@ -41,7 +41,6 @@ from mbsym.model.claims import CLAIMS, Claim
 from mbsym.problems.claims.comparison import examined_formula
 from mbsym.problems.claims.conditions import examined_condition
 from mbsym.problems.claims.equations import examined_equation
-from mbsym.problems.claims.forms import in_parameters, scene_of_claims
 from mbsym.problems.claims.integrals import examined_integral
 from mbsym.problems.claims.numbers import examined_number
 from mbsym.problems.claims.quantities import derived_quantity, with_momenta
@@ -63,6 +62,8 @@ from mbsym.problems.claims.result import (
     ClaimResult,
     Derived,
     Part,
+    in_parameters,
+    scene_of_claims,
     title,
     undecided,
 )

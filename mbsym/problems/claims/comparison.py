@@ -15,15 +15,6 @@ from mbsym.expressions.message import Message, enumerated
 from mbsym.expressions.tree import Expression, Name, differentiate, names
 from mbsym.formulas.formula import Formula
 from mbsym.model.claims import CLAIMS, SUMS, Claim
-from mbsym.problems.claims.forms import (
-    by_motion,
-    by_place,
-    in_parameters,
-    is_moving,
-    on_relations,
-    scene_of_claims,
-    split_off,
-)
 from mbsym.problems.claims.result import (
     DIFFERS,
     EQUIVALENT,
@@ -36,6 +27,13 @@ from mbsym.problems.claims.result import (
     ClaimResult,
     Derived,
     Part,
+    by_motion,
+    by_place,
+    in_parameters,
+    is_moving,
+    on_relations,
+    scene_of_claims,
+    split_off,
 )
 from mbsym.problems.claims.signs_under_roots import decided
 from mbsym.problems.claims.symbols import Symbols

@@ -32,7 +32,6 @@ from mbsym.problems.claims.comparison import examined_formula
 from mbsym.problems.claims.conditions import examined_condition
 from mbsym.problems.claims.counterexample import Counterexample, shown
 from mbsym.problems.claims.equations import NOTHING, power_of
-from mbsym.problems.claims.forms import in_parameters, scene_of_claims
 from mbsym.problems.claims.numbers import examined_number
 from mbsym.problems.claims.quantities import IN_MOMENTA, derived_quantity, of_first_approximation
 from mbsym.problems.claims.result import (
@@ -42,6 +41,8 @@ from mbsym.problems.claims.result import (
     UNDECIDED,
     ClaimResult,
     Derived,
+    in_parameters,
+    scene_of_claims,
 )
 from mbsym.problems.claims.symbols import Symbols
 from mbsym.problems.constraints.integrals import STATES, AlongMotion

@@ -27,7 +27,6 @@ from mbsym.formulas.formula import Formula
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.problems.claims.comparison import closest_multiple, differing, exceptions
 from mbsym.problems.claims.counterexample import rate_at_states
-from mbsym.problems.claims.forms import by_place, in_parameters, on_relations
 from mbsym.problems.claims.result import (
     ALONG,
     DIFFERS,
@@ -37,6 +36,9 @@ from mbsym.problems.claims.result import (
     UNDECIDED,
     ClaimResult,
     Derived,
+    by_place,
+    in_parameters,
+    on_relations,
 )
 from mbsym.problems.claims.signs_under_roots import decided
 from mbsym.problems.claims.symbols import Symbols

@@ -23,7 +23,6 @@ from mbsym.model.claims import Claim
 from mbsym.problems.claims.comparison import examined_formula
 from mbsym.problems.claims.conditions import examined_condition
 from mbsym.problems.claims.equations import NOT_LINEAR, NOTHING, SAME_ACCELERATIONS, Dynamics, along_motion
-from mbsym.problems.claims.forms import in_parameters, scene_of_claims
 from mbsym.problems.claims.quantities import derived_quantity, of_first_approximation
 from mbsym.problems.claims.result import (
     ALONG,
@@ -35,6 +34,8 @@ from mbsym.problems.claims.result import (
     UNDECIDED,
     ClaimResult,
     Derived,
+    in_parameters,
+    scene_of_claims,
 )
 from mbsym.problems.claims.symbols import Symbols
 from mbsym.problems.in_speeds import speeds

@@ -26,8 +26,16 @@ from mbsym.formulas.formula import Formula
 from mbsym.model.claims import Claim
 from mbsym.model.system import System, rational
 from mbsym.problems.claims.comparison import over_common_denominator
-from mbsym.problems.claims.forms import in_parameters, on_relations
-from mbsym.problems.claims.result import DIFFERS, EXACT, FACTOR, UNDECIDED, ClaimResult, Derived
+from mbsym.problems.claims.result import (
+    DIFFERS,
+    EXACT,
+    FACTOR,
+    UNDECIDED,
+    ClaimResult,
+    Derived,
+    in_parameters,
+    on_relations,
+)
 from mbsym.problems.claims.symbols import Symbols
 from mbsym.problems.normal_forms.result import Focus, InSymbols
 

@@ -20,8 +20,7 @@ from flint import nmod_mat
 
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
-from mbsym.problems.small_parameter.harmonics import Harmonics
-from mbsym.problems.small_parameter.oscillation_result import Amplitude, Oscillation
+from mbsym.problems.small_parameter.oscillation_result import Amplitude, Harmonics, Oscillation
 from mbsym.problems.small_parameter.oscillations import AMPLITUDE
 
 PRIME = (1 << 61) - 1

@@ -15,8 +15,7 @@ from mbsym.model.claims import CLAIMS, SUMS, Claim
 from mbsym.model.momenta import momentum_names
 from mbsym.model.system import INERTIAL
 from mbsym.problems.claims.equations import Dynamics
-from mbsym.problems.claims.forms import by_motion
-from mbsym.problems.claims.result import Derived
+from mbsym.problems.claims.result import Derived, by_motion
 from mbsym.problems.claims.symbols import Symbols
 from mbsym.problems.integrals import residual
 

@@ -22,9 +22,8 @@ from mbsym.algebra.signs import MOST_TERMS, ContradictionError, Signs, coefficie
 from mbsym.expressions.message import Message
 from mbsym.expressions.tree import is_number
 from mbsym.model.claims import Claim
-from mbsym.problems.claims.forms import in_parameters, on_relations
 from mbsym.problems.claims.remarks import Remark, Said, said
-from mbsym.problems.claims.result import Derived
+from mbsym.problems.claims.result import Derived, in_parameters, on_relations
 from mbsym.problems.knowledge import signs as signs_now
 from mbsym.problems.stability import SubsystemStability
 from mbsym.problems.stability.covering import Cell, Lift, atoms, cells_of, everywhere, joined

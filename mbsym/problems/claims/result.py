@@ -2,42 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from mbsym.algebra.certainty import Certainty
-from mbsym.algebra.ring import Ring
+from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs
 from mbsym.expressions.message import Message
-from mbsym.expressions.tree import (
-    ZERO,
-    text,
-)
+from mbsym.expressions.tree import ZERO, text
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.motion import relations
 from mbsym.mechanics.programs import Programs
 from mbsym.model.claims import CLAIMS, SUMS, Claim, index_names
 from mbsym.model.system import System
-from mbsym.problems.claims.counterexample import (
-    Counterexample,
-    Trials,
-)
+from mbsym.problems.claims.counterexample import Counterexample, Trials
 from mbsym.problems.dissipation import Balance
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.integrals import Integral
 from mbsym.problems.kinematics import Kinematics
+from mbsym.problems.knowledge import definition_in_parameters
 from mbsym.problems.linearisation import Linearisation
 from mbsym.problems.stability import Stability
 
 if TYPE_CHECKING:
     from mbsym.mechanics.speeds import SpeedForm
     from mbsym.problems.canonical.canonical import Routh
-    from mbsym.problems.claims.oscillations import Told, ToldManifold
+    from mbsym.problems.claims.oscillations import SolutionInRing, ToldManifold
     from mbsym.problems.normal_forms import NormalForms
     from mbsym.problems.state_space import StateSpace
+
 
 EXACT = "holds exactly"
 RELATIONS = "holds on the relations between the parameters"
@@ -97,7 +94,7 @@ class Derived(Protocol):
     @property
     def trials(self) -> Trials: ...
     @property
-    def claimed_oscillation(self) -> Told: ...
+    def claimed_oscillation(self) -> SolutionInRing: ...
     @property
     def claimed_manifold(self) -> ToldManifold: ...
 
@@ -197,3 +194,74 @@ def title(claim: Claim, system: System) -> Message:
 def undecided(system: System, claim: Claim, reason: str) -> ClaimResult:
     """A claim about something that could not be derived."""
     return ClaimResult(claim, title(claim, system), UNDECIDED, remark=reason)
+
+
+# Polynomials of a claim in other forms: in declared parameters, on the relations, by products of velocities.
+
+
+#: What is told of an unperturbed motion, by how the kinds of claim begin.
+_OF_THE_MOTION = ("linear", "subsystem", "state", "characteristic", "condition", "normal form", "lyapunov")
+
+_MOTION = ("velocity", "acceleration")
+
+
+def scene_of_claims(derived: Derived) -> Scene[Any]:
+    """Where claims and their abbreviations are lowered: over parameters, and with the inputs where there are some."""
+    return derived.scene if derived.system.inputs else derived.parameters_scene
+
+
+def in_parameters(derived: Derived, x: Polynomial) -> Polynomial:
+    """The description's own symbols replaced by what they stand for."""
+    ring, scene = derived.ring, derived.parameters_scene
+    degrees = x.degrees()
+    images = {}
+    for item in derived.system.notation:
+        index = ring.index("parameter", item.name)
+        if degrees[index] > 0:
+            images[index] = definition_in_parameters(scene, item.name)
+    return ring.substitute(x, images) if images else ring.reduce(x)
+
+
+def on_relations(derived: Derived, claim: Claim, x: Polynomial) -> Polynomial:
+    """Relations between parameters used; for the linear problem also the conditions under which the motion exists."""
+    ring = derived.ring
+    if claim.kind.startswith(_OF_THE_MOTION):
+        images = derived.equilibrium.determined(derived.parameters_scene)
+    else:
+        images = relations(derived.parameters_scene)
+    return ring.substitute(x, images) if images else x
+
+
+def is_moving(derived: Derived, x: Polynomial) -> bool:
+    """Whether x depends on the state or the time."""
+    ring = derived.ring
+    degrees = x.degrees()
+    if any(degrees[k] > 0 for k, g in enumerate(ring.generators) if g.kind in _MOTION):
+        return True
+    prescribed = (*(item.name for item in derived.system.prescribed), *derived.system.input_names)
+    return bool(ring.dependencies(x, [*derived.system.coordinates, *derived.system.velocities, *prescribed, "t"]))
+
+
+def by_motion(ring: Ring, x: Polynomial) -> Iterator[tuple[tuple[int, ...], Polynomial]]:
+    """Exponents of velocities and accelerations (those of all others are zero), and what stands before them."""
+    yield from split_off(ring, x, {k for k, g in enumerate(ring.generators) if g.kind not in _MOTION})
+
+
+def by_place(ring: Ring, claim: Claim, x: Polynomial) -> Iterator[tuple[tuple[int, ...], Polynomial]]:
+    """x by products of velocities and accelerations; a characteristic polynomial by powers of its variable."""
+    if not claim.variable:
+        return by_motion(ring, x)
+    time = ring.index("time", "t")
+    return split_off(ring, x, set(range(len(ring.generators))) - {time})
+
+
+def split_off(ring: Ring, x: Polynomial, constant: set[int]) -> Iterator[tuple[tuple[int, ...], Polynomial]]:
+    """x as a polynomial in the other generators: their exponents, and the coefficients in the constant ones."""
+    found: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
+    for monomial, coefficient in x.terms():
+        exponents = [int(e) for e in monomial]
+        key = tuple(0 if k in constant else e for k, e in enumerate(exponents))
+        rest = tuple(e if k in constant else 0 for k, e in enumerate(exponents))
+        found.setdefault(key, {})[rest] = coefficient
+    for key, terms in found.items():
+        yield key, ring.context.from_dict(terms)

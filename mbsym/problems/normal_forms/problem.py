@@ -17,7 +17,7 @@ from mbsym.formulas.formula import Formula
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.rest import rational_values
 from mbsym.problems.equilibrium import Equilibrium
-from mbsym.problems.normal_forms.birkhoff import diagonalised, matrix_of, normal_form
+from mbsym.problems.normal_forms.birkhoff import diagonalised, is_zero_exactly, matrix_of, normal_form
 from mbsym.problems.normal_forms.dissipative import focus, judged_field
 from mbsym.problems.normal_forms.equal import equal_frequencies
 from mbsym.problems.normal_forms.exact import (
@@ -33,7 +33,6 @@ from mbsym.problems.normal_forms.exact import (
 )
 from mbsym.problems.normal_forms.expansion import Expansion, Numbers, SingularMass, expansion
 from mbsym.problems.normal_forms.generalized_potential import has_forces, taken_in
-from mbsym.problems.normal_forms.resonant_term import is_zero_exactly
 from mbsym.problems.normal_forms.result import InSymbols, Judged, NormalForms, Outcome, Theorem, Why
 from mbsym.problems.normal_forms.twist import judged
 from mbsym.problems.normal_forms.zero_root import BALLS, Scalars, zero_root

@@ -43,21 +43,22 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.rest import Rest, Value, at_numbers, rest
 from mbsym.mechanics.variables import ring_environment
 from mbsym.model.system import System
-from mbsym.problems.relative_equilibria.listing import ELSEWHERE, Solution, groups
-from mbsym.problems.relative_equilibria.multipliers import Case, Polynomials, cases
-from mbsym.problems.relative_equilibria.oriented import orientations
-from mbsym.problems.relative_equilibria.place import PRECISION, Place, angle_of, exact_rates
-from mbsym.problems.relative_equilibria.result import (
+from mbsym.problems.relative_equilibria.conditions import Case, Polynomials, cases
+from mbsym.problems.relative_equilibria.listing import (
     CERTIFIED,
+    ELSEWHERE,
     EXACT,
     CoordinateValue,
     Equilibria,
     EquilibriumFamily,
     RelativeEquilibrium,
+    Solution,
+    groups,
 )
+from mbsym.problems.relative_equilibria.oriented import orientations
+from mbsym.problems.relative_equilibria.place import PRECISION, Place, Unknowns, angle_of, exact_rates
 from mbsym.problems.relative_equilibria.sampling import STARTS
 from mbsym.problems.relative_equilibria.search import WITHIN, SearchInBoxes
-from mbsym.problems.relative_equilibria.unknowns import Unknowns
 from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.word import Word
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
@@ -13,18 +13,14 @@ from flint import ctx, fmpq, fmpq_poly
 
 from mbsym.algebra import rationals
 from mbsym.algebra.failures import Failure, message_of
-from mbsym.algebra.polynomial_systems import (
-    Limits,
-)
+from mbsym.algebra.polynomial_systems import Limits
 from mbsym.algebra.ring import Polynomial
 from mbsym.expressions.message import Message, joined
 from mbsym.mechanics.charts import Chart
 from mbsym.mechanics.charts import features as direction_features
 from mbsym.mechanics.reflections import Reflection, reflections
-from mbsym.problems.relative_equilibria.conditions import Conditions
-from mbsym.problems.relative_equilibria.multipliers import Case
+from mbsym.problems.relative_equilibria.conditions import Case, Conditions
 from mbsym.problems.relative_equilibria.place import PRECISION, Place, exact_rates
-from mbsym.problems.relative_equilibria.result import CoordinateValue, EquilibriumFamily
 from mbsym.problems.relative_equilibria.sampling import turned
 from mbsym.problems.relative_equilibria.verdict import LinearAtRest, linear_at_rest
 from mbsym.problems.stability.reasons import Because, Reason
@@ -217,3 +213,79 @@ class Listing(Conditions):
 
 def short(value: float) -> str:
     return f"{value + 0.0:.10g}" if abs(value) > 1e-15 else "0"
+
+
+# What is told of relative equilibria: isolated ones, families, and how far the list is complete.
+
+
+EXACT, CERTIFIED = "exact", "proved in a box"
+
+
+@dataclass(frozen=True)
+class CoordinateValue:
+    """One coordinate at an equilibrium: ``text`` is exact if ``exact`` (``pi/2``, ``5/4``), else rounded.
+
+    ``angle``: it occurs under sine and cosine only, so it is meant modulo a full turn.
+    """
+
+    name: str
+    text: str
+    value: float
+    angle: bool
+    exact: bool
+
+
+@dataclass(frozen=True)
+class RelativeEquilibrium:
+    """One isolated relative equilibrium.
+
+    ``proof``: exact (f vanishes in a number field), or proved in a box.  ``coordinates_of``: which joints have other
+    angles than the description's, because those are singular here (empty: none).  ``free``: coordinates that do not
+    occur in f, so that every value of them does.  ``described``: how many sets of coordinates mean this configuration.
+    ``beyond``: the negative lengths of polar coordinates, behind their singularity.  ``enclosures``: balls that hold
+    the coordinates.
+    """
+
+    values: tuple[CoordinateValue, ...]
+    proof: str
+    verdict: Verdict
+    coordinates_of: str = ""
+    free: tuple[str, ...] = ()
+    described: int = 1
+    beyond: tuple[str, ...] = ()
+    enclosures: Mapping[str, Any] = field(default_factory=dict, compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class EquilibriumFamily:
+    """Relative equilibria that are not isolated: a real set of ``dimension``, all solutions of ``equations`` = 0.
+
+    ``sample`` is one of them, ``verdict`` the verdict there; ``free`` may be chosen near it.
+    """
+
+    dimension: int
+    free: tuple[str, ...]
+    equations: tuple[str, ...]
+    sample: tuple[CoordinateValue, ...]
+    verdict: Verdict
+    coordinates_of: str = ""
+
+
+@dataclass(frozen=True)
+class Equilibria:
+    """``complete``: nothing is missing; otherwise ``remarks`` say what was not done, and why.
+
+    ``singular`` are solutions of f = 0 at which the mass matrix, and with it the coordinates, are singular: whether
+    they are equilibria is undecided.  ``beyond`` are solutions in which a polar coordinate that is a length is negative
+    and the forces are not those at the same places of the bodies with a positive length: no states of the system meant.
+    ``turning`` are the coordinates that turn at the description's rates, ``charts`` how many sets of angles were used.
+    """
+
+    equilibria: tuple[RelativeEquilibrium, ...]
+    families: tuple[EquilibriumFamily, ...]
+    complete: bool
+    remarks: tuple[str, ...]
+    turning: tuple[tuple[str, float], ...] = ()
+    charts: int = 1
+    singular: tuple[RelativeEquilibrium, ...] = ()
+    beyond: tuple[RelativeEquilibrium, ...] = ()

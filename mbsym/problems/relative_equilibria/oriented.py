@@ -23,8 +23,7 @@ from mbsym.algebra.polynomial_systems import AlgebraicPoint, Limits, context, so
 from mbsym.algebra.ring import Polynomial
 from mbsym.mechanics.charts import Chart, Joint, moment_components
 from mbsym.problems.relative_equilibria.cosines import Choice, Cosines, choices
-from mbsym.problems.relative_equilibria.place import PRECISION, Place, angle_of, exact_rates
-from mbsym.problems.relative_equilibria.unknowns import Unknowns
+from mbsym.problems.relative_equilibria.place import PRECISION, Place, Unknowns, angle_of, exact_rates
 
 #: Bits of a coefficient that are allowed, as a multiple of those in sines and cosines; the part of the work (the
 #: general gyrostat takes 150,000 steps of ten million); and the size of one interreduction (the gyrostat: 40 million).

@@ -9,7 +9,7 @@ from typing import Any
 from flint import fmpq, fmpq_poly
 
 from mbsym.algebra.quotients import Quotient, Series
-from mbsym.problems.small_parameter.scaled import ScaledField
+from mbsym.problems.small_parameter.result import ScaledField
 
 #: Numerators and denominators of the random states.
 _SIZE = 40

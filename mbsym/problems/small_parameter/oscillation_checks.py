@@ -13,8 +13,7 @@ from typing import Any
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
 from mbsym.algebra.tower import MOST_ROOTS, Element
-from mbsym.problems.small_parameter.harmonics import Harmonics
-from mbsym.problems.small_parameter.oscillation_result import Oscillation
+from mbsym.problems.small_parameter.oscillation_result import Harmonics, Oscillation
 
 _SIZE = 20
 MOST_SEEDS = 8

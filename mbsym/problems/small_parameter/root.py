@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from mbsym.algebra.quotients import Quotient
-from mbsym.problems.small_parameter.scaled import ScaledField
+from mbsym.problems.small_parameter.result import ScaledField
 
 Polynomial = Any  # a flint.fmpq_mpoly: python-flint carries no types
 

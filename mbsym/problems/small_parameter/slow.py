@@ -24,8 +24,8 @@ from typing import Any
 from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.algebra.quotients import LOWER, Polynomial, Quotient, Series
 from mbsym.expressions.message import Message
+from mbsym.problems.small_parameter.result import Graded, ScaledField
 from mbsym.problems.small_parameter.root import root
-from mbsym.problems.small_parameter.scaled import Graded, ScaledField
 
 #: Choices of fast variables that are looked at.
 MOST_CHOICES = 2000

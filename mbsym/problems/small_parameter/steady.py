@@ -16,8 +16,7 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.matrices import determinant_by_traces, faddeev
 from mbsym.algebra.quotients import Quotient, Series
 from mbsym.expressions.message import Message
-from mbsym.problems.small_parameter.result import Hurwitz, SteadyStates
-from mbsym.problems.small_parameter.scaled import ScaledField
+from mbsym.problems.small_parameter.result import Hurwitz, ScaledField, SteadyStates
 from mbsym.problems.small_parameter.slow import derivative
 
 #: Characteristic polynomials of a higher degree are not expanded.

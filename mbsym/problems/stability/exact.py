@@ -73,8 +73,15 @@ def verdict_over(system: LinearSystem, at: ExactPoint) -> PointVerdict:
     found = _verdict_over(system, at)
     if system.exact and found.roots is not None:
         found = replace(found, verdict=_of_linear_equations(system, at, found.verdict))
-    verdict = displaced(found.verdict, system.basis)
-    return replace(found, verdict=off_the_leaf(verdict) if system.leaf else verdict)
+    return replace(found, verdict=on_the_motion(system, found.verdict))
+
+
+def on_the_motion(system: LinearSystem, verdict: Verdict) -> Verdict:
+    """What a verdict on the coordinates of the matrices means for the motion: others may be outside."""
+    verdict = displaced(verdict, system.basis)
+    if system.exact and system.nonholonomic is not None:
+        verdict = nonholonomic.besides_outside(system.nonholonomic, verdict)
+    return off_the_leaf(verdict) if system.leaf else verdict
 
 
 def _verdict_over(system: LinearSystem, at: ExactPoint) -> PointVerdict:

@@ -17,14 +17,16 @@ class NonholonomicForm:
 
     ``idle`` are indices of coordinates that do not occur in the nonlinear equations, their columns in K + N vanish;
     ``family``: in so many dimensions the steady motions of the subsystem lie near the given one.  ``drifts``: the whole
-    system has coordinates that drop out; ``open_names`` are those not shown to drop out in all orders.  ``following``
-    are indices of coordinates whose rows are of first order, those of M zero.
+    system has coordinates that drop out; ``open_names`` are those not shown to drop out in all orders, ``outside``:
+    some of them are in no subsystem, as their velocities are dependent.  ``following`` are indices of coordinates whose
+    rows are of first order, those of M zero.
     """
 
     idle: tuple[int, ...] = ()
     family: int = 0
     drifts: bool = False
     open_names: tuple[str, ...] = ()
+    outside: bool = False
     following: tuple[int, ...] = ()
 
     def zeros(self, power: int) -> int:

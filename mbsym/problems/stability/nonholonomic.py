@@ -23,7 +23,8 @@ from mbsym.problems.stability.linear_form import NonholonomicForm
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.state_matrix import state_matrix
 from mbsym.problems.stability.theorems import Fact
-from mbsym.problems.stability.verdict import Verdict, bounded, concluded, undecided
+from mbsym.problems.stability.verdict import Verdict, bounded, concluded, drifting, undecided
+from mbsym.problems.stability.word import Word
 
 #: What is concluded where roots are imaginary and simple.
 OPEN = (Reason(Because.IMAGINARY_NONHOLONOMIC), Reason(Because.HIGHER_ORDER))
@@ -38,6 +39,16 @@ def all_left(form: NonholonomicForm, zeros: int) -> Verdict:
     if zeros == form.family:
         return concluded({Fact.LEFT_BUT_STEADY})
     return undecided(Because.MORE_ZERO_ROOTS, zeros, form.family)
+
+
+def besides_outside(form: NonholonomicForm, verdict: Verdict) -> Verdict:
+    """A verdict on exactly linear equations, where coordinates in none of them may drift away.
+
+    x1' = -a x2: where x2 stays near a place that is not zero, x1 grows with the time.
+    """
+    if not form.outside or verdict.word is not Word.STABLE:
+        return verdict
+    return drifting(verdict, constant_momenta=False)
 
 
 def at_rationals(form: NonholonomicForm, first_order: Any) -> Verdict:

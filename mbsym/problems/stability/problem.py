@@ -40,13 +40,13 @@ from mbsym.problems.stability import nonholonomic
 from mbsym.problems.stability.algebraic_values import algebraic_point
 from mbsym.problems.stability.covering import Cell, Lift, cells_of, everywhere, joined
 from mbsym.problems.stability.enclosed import Spectrum, enclosed_verdict_with_cyclic, from_characteristic, from_matrices
-from mbsym.problems.stability.exact import verdict_at, verdict_over
+from mbsym.problems.stability.exact import on_the_motion, verdict_at, verdict_over
 from mbsym.problems.stability.linear_form import LinearSystem, NonholonomicForm, null_rows
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.requirements import Requirement
 from mbsym.problems.stability.sentences import named
 from mbsym.problems.stability.symbolic import Theory, analyse
-from mbsym.problems.stability.verdict import Verdict, combine, displaced, exactly, off_the_leaf, undecided
+from mbsym.problems.stability.verdict import Verdict, combine, exactly, undecided
 from mbsym.problems.stability.word import Word
 
 if TYPE_CHECKING:
@@ -310,16 +310,17 @@ def _by_enclosures(
     theory: Theory,
 ) -> Verdict:
     there = balance.at(values)
-    cyclic = () if part.at(there).driven else part.system.cyclic
+    system = part.at(there)
+    cyclic = () if system.driven else part.system.cyclic
     matrices = matrices_at(scene, linear, part.coordinates, values, part.system.basis)
     if part.system.nonholonomic is not None:
         even = theory.variable == "lambda^2"
         form, power, exact = part.system.nonholonomic, theory.zero_power, there.exactly_linear
         found = nonholonomic.enclosed(form, matrices, power, PRECISION, even, exact)
-        return exactly(found) if exact else found
-    found = enclosed_verdict_with_cyclic(matrices, there.law.bounded, cyclic, PRECISION, there.exactly_linear)
-    found = displaced(found, part.system.basis)
-    return off_the_leaf(found) if part.system.leaf else found
+        found = exactly(found) if exact else found
+    else:
+        found = enclosed_verdict_with_cyclic(matrices, there.law.bounded, cyclic, PRECISION, there.exactly_linear)
+    return on_the_motion(system, found)
 
 
 def _judge(scene: Scene, made: Prepared, values: Mapping[str, Fraction] | None, balance: Balance) -> SubsystemStability:
@@ -395,13 +396,17 @@ def prepared_parts(
         leaf = 0 if linear.constrained is None else linear.constrained.leaf
         return tuple(replace(part, system=replace(part.system, leaf=leaf)) for part in prepared) if leaf else prepared
     about, free = linear.constrained, equilibrium.satisfied
+    outside = not {*about.idle} <= {name for part in prepared for name in part.coordinates}
+    forms = (_form(part, balance, about, signs, free, outside) for part in prepared)
     return tuple(
-        replace(part, system=replace(part.system, cyclic=(), nonholonomic=_form(part, balance, about, signs, free)))
-        for part in prepared
+        replace(part, system=replace(part.system, cyclic=(), nonholonomic=form))
+        for part, form in zip(prepared, forms, strict=True)
     )
 
 
-def _form(part: Prepared, balance: Balance, about: Reduction, signs: Signs, free: bool) -> NonholonomicForm:
+def _form(
+    part: Prepared, balance: Balance, about: Reduction, signs: Signs, free: bool, outside: bool
+) -> NonholonomicForm:
     """What is known of a subsystem of a nonholonomic system besides its matrices.
 
     ``free``: the motion exists for all parameters, so that those which stand in it alone make a family of motions.
@@ -415,6 +420,7 @@ def _form(part: Prepared, balance: Balance, about: Reduction, signs: Signs, free
         family=about.dimension(at, signs) if free else 0,
         drifts=bool(about.idle),
         open_names=() if closed else about.idle,
+        outside=outside,
         following=tuple(i for i, name in enumerate(part.coordinates) if name in about.following),
     )
 

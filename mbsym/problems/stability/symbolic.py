@@ -52,7 +52,7 @@ from mbsym.algebra.signs import MOST_TERMS, Condition, ContradictionError, Signs
 from mbsym.expressions.message import Message, joined
 from mbsym.problems.stability import nonholonomic
 from mbsym.problems.stability.covering import alone, cells_of, uncovered
-from mbsym.problems.stability.exact import PointVerdict, verdict_at
+from mbsym.problems.stability.exact import PointVerdict, on_the_motion, verdict_at
 from mbsym.problems.stability.linear_form import (
     CONSERVATIVE,
     LinearSystem,
@@ -99,10 +99,8 @@ from mbsym.problems.stability.verdict import (
     coasting,
     concluded,
     depends,
-    displaced,
     drifting,
     exactly,
-    off_the_leaf,
     only_drifts,
     undecided,
 )
@@ -196,12 +194,11 @@ def analyse(
         if at_hand and not occurring(x for matrix in system.matrices for row in matrix for x in row):
             verdict = verdict_at(system, {}).verdict
         found = replace(found, cases=cases, verdict=verdict)
-    if system.leaf or system.basis is not None:
-        found = replace(
-            found,
-            cases=tuple(replace(case, verdict=_told(system, case.verdict)) for case in found.cases),
-            verdict=_told(system, found.verdict),
-        )
+    found = replace(
+        found,
+        cases=tuple(replace(case, verdict=on_the_motion(system, case.verdict)) for case in found.cases),
+        verdict=on_the_motion(system, found.verdict),
+    )
     return found if point is None else replace(found, at_point=verdict_at(system, point))
 
 
@@ -221,12 +218,6 @@ def _without_further_zeros(found: Theory, signs: Signs, case: Case | None) -> bo
         return known.never_zero(found.polynomial[0])
     except (ContradictionError, NoClosedForm):
         return False
-
-
-def _told(system: LinearSystem, verdict: Verdict) -> Verdict:
-    """What the coordinates of the matrices mean for the verdict on the motion."""
-    verdict = displaced(verdict, system.basis)
-    return off_the_leaf(verdict) if system.leaf else verdict
 
 
 def _left_out(system: LinearSystem, signs: Signs, reason: str) -> Theory:

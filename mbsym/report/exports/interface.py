@@ -17,10 +17,18 @@ from mbsym.expressions.tree import text
 from mbsym.formulas.straight_line import Dialect
 from mbsym.model.quantities import told_units
 from mbsym.model.system import System
-from mbsym.report.code.functions import Function, Functions, prescribed_value
+from mbsym.report.code.functions import (
+    Function,
+    Functions,
+    Value,
+    initial_values,
+    ordered,
+    parameters_of,
+    prescribed_value,
+    starting,
+)
 from mbsym.report.code.identifiers import camel, prefix_of
 from mbsym.report.code.model_code import NamedIntegral, Part, first_integrals, parts
-from mbsym.report.code.model_values import Value, initial_values, ordered, parameters_of, starting
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis

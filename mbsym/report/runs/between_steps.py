@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from mbsym.expressions.message import Message
 from mbsym.expressions.tree import text
 from mbsym.numerics.events.surfaces import source_of
-from mbsym.numerics.methods.passed import Narrow, Passed
+from mbsym.numerics.methods.interface import Narrow, Passed
 from mbsym.report.documents import simulation as doc
 
 if TYPE_CHECKING:

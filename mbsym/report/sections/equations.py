@@ -353,8 +353,9 @@ def _of_reactions(results: Results) -> Iterator[Block]:
         return
     yield Subheading((Said("Reactions in joints"),))
     sentences = [
-        "Force $R$ and moment $L$ about the connection point that the joint exerts on the body, in its axes; all that "
-        "acts across the joint is in them."
+        "Force $R$ and moment $L$ about the connection point that the joint exerts on the body, in its axes. What is "
+        "given by coordinates (springs, dampers, generalised forces) acts in the joint and is in them; forces and "
+        "torques on bodies act besides."
     ]
     if results.system.constraints:
         sentences.append(r"With the multipliers, $R + \sum \lambda_i R^{(i)}$ and $L + \sum \lambda_i L^{(i)}$.")

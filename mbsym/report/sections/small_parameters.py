@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from mbsym.analysis.small import SmallParameters
 from mbsym.model.system import System
-from mbsym.report.content import Block, Display, Heading, Paragraph, Said, ragged
+from mbsym.report.content import Block, Definitions, Display, Heading, Paragraph, Said, ragged
 from mbsym.report.documents.results import small_parameters as doc
 from mbsym.report.expansion_json import expansion_data, measured_data
 from mbsym.report.oscillation_json import oscillation_data
@@ -72,7 +72,7 @@ def content(results: Results) -> Iterator[Block]:
         yield from told(results.found[12], results.system)
 
 
-def told(found: SmallParameters, system: System) -> Iterator[Paragraph | Display]:
+def told(found: SmallParameters, system: System) -> Iterator[Paragraph | Display | Definitions]:
     """Sentences, and coefficients where they stand between them."""
     yield from map(ragged, of_none(found))
     if found.slow is not None:
@@ -93,10 +93,13 @@ def of_slow(found: Expansion, measured: Measured | str) -> Iterator[Paragraph | 
     yield from map(ragged, of_measured(found.manifold.field.small, measured))
 
 
-def of_wave(found: Oscillating, measured: MeasuredOrders | str) -> Iterator[Paragraph | Display]:
+def of_wave(found: Oscillating, measured: MeasuredOrders | str) -> Iterator[Paragraph | Display | Definitions]:
     """The periodic solution, variables that follow from it, and its error."""
     yield from map(ragged, oscillation_words.opening(found))
-    yield from (Display(x.equation) for x in oscillation_words.coefficients(found))
+    yield from map(Display, oscillation_words.collected(found))
+    letters = oscillation_words.denominators(found)
+    if letters is not None:
+        yield letters
     if found.found.drifts:
         yield ragged(Said(oscillation_words.DRIFTS))
         yield from map(Display, oscillation_words.drifting(found))
@@ -108,10 +111,10 @@ def formulas(found: SmallParameters, system: System) -> Iterator[tuple[str, Form
     """What each formula is, and the formula: those that model.py has."""
     if found.slow is not None:
         for one in coefficients(found.slow):
-            yield f"{one.variable}{chr(39) if one.rate else ''}, order {one.order}", one.formula
+            yield f"{one.variable}{chr(39) * one.rate}, order {one.order}", one.formula
     if found.oscillation is not None:
         for one in oscillation_words.coefficients(found.oscillation):
-            yield f"periodic solution: {one.variable}{chr(39) if one.rate else ''}, order {one.order}", one.formula
+            yield f"periodic solution: {one.variable}{chr(39) * one.rate}, order {one.order}", one.formula
     for each in averages(found, system):
         if each.found is not None:
             over = f"averaged over {each.found.phase} ({each.found.scaling})"

@@ -10,9 +10,9 @@ from mbsym.algebra.tower import Element
 from mbsym.expressions.message import worded
 from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula
-from mbsym.problems.small_parameter.harmonics import Harmonics
-from mbsym.problems.small_parameter.oscillation_result import Amplitude
+from mbsym.problems.small_parameter.oscillation_result import Amplitude, Harmonics
 from mbsym.report.content import (
+    Definitions,
     Gaps,
     Listed,
     Math,
@@ -71,6 +71,15 @@ _NOTHING_OF_TAYLOR = (
     "Put into the equations cut off so, at random rational parameters, it leaves nothing (verified); of those that are "
     "not cut off it may leave terms of order [[next]] of [[small]]."
 )
+_EXPONENT = {
+    True: "Poincare's exponent of this cycle is [[exponent]] times the power [[power]] of [[small]] in the lowest "
+    "order: for all sufficiently small [[small]] > 0 it is asymptotically orbitally stable.",
+    False: "Poincare's exponent of this cycle is [[exponent]] times the power [[power]] of [[small]] in the lowest "
+    "order: for all sufficiently small [[small]] > 0 it is unstable.",
+    None: "Poincare's exponent of this cycle is [[exponent]] times the power [[power]] of [[small]] in the lowest "
+    "order: for all sufficiently small [[small]] > 0 it is asymptotically orbitally stable where that is negative, "
+    "unstable where it is positive.",
+}
 _REAL = "The frequency without [[small]] is real and not zero where [[condition]]."
 _NONZERO = "It holds where the frequency without [[small]] is not zero: [[condition]]."
 _RESONANCE = (
@@ -122,6 +131,28 @@ def coefficients(told: Oscillating) -> Iterator[Coefficient]:
             yield Coefficient(told.phase, True, order, told.formula(found.frequency * x))
 
 
+def collected(told: Oscillating) -> Iterator[Relation]:
+    """The same for people: factors that divide several coefficients have letters (``denominators``)."""
+    found = told.found
+    for name, series in zip(found.names, found.series, strict=True):
+        plain = without_velocity(name) if name in told.velocities else name
+        for order, one in enumerate(series):
+            if not one.is_zero:
+                yield Coefficient(plain, plain != name, order, told.shortest(one)).equation
+    for order, x in enumerate((found.tower.one, *found.corrections)):
+        if not x.is_zero():
+            value = told.shortest(Harmonics.constant(found.tower, found.frequency * x))
+            yield Coefficient(told.phase, True, order, value).equation
+
+
+def denominators(told: Oscillating) -> Definitions | None:
+    """What the letters stand for."""
+    tower, ring = told.found.tower, told.told_ring
+    made = [(name, tower.made(factor, tower.context.constant(1))) for factor, name in told.denominators]
+    items = tuple(Relation(Name(name, ring=ring), "=", told.formula(x)) for name, x in made)
+    return Definitions(Said("with"), items) if items else None
+
+
 def drifting(told: Oscillating) -> Iterator[Relation]:
     """Coefficients of variables that follow by integration: a rate times t, and what is periodic."""
     for one in told.found.drifts:
@@ -129,9 +160,12 @@ def drifting(told: Oscillating) -> Iterator[Relation]:
         for order, (rate, wave) in enumerate(zip_longest(one.rates, one.waves)):
             parts: list[Math | str] = []
             if rate is not None and not rate.is_zero():
-                parts += [Notation("t"), Listed((told.formula(rate),), brackets=True)]
+                parts += [
+                    Notation("t"),
+                    Listed((told.shortest(Harmonics.constant(told.found.tower, rate)),), brackets=True),
+                ]
             if wave is not None and not wave.is_zero:
-                parts += [*(["+"] if parts else []), told.wave(wave)]
+                parts += [*(["+"] if parts else []), told.shortest(wave)]
             if parts:
                 yield Relation(Raised(Name(plain, int(plain != one.variable)), order), "=", *parts)
 
@@ -149,6 +183,9 @@ def sentences(told: Oscillating) -> Iterator[Said]:
             yield say(_REAL_AMPLITUDE, condition=Relation(square, ">", 0))
         if found.other_amplitudes is not None:
             yield say(_OTHER_AMPLITUDES, condition=Relation(told.formula(found.other_amplitudes), "=", 0))
+    if found.exponent is not None:
+        power, x = found.exponent
+        yield say(_EXPONENT[told.attracts], **values, exponent=told.formula(x), power=str(power))
     if found.constants:
         names = tuple(told.formula(x) for _, x in found.constants)
         yield say(_CONSTANTS, **values, names=names, variables=named(name for name, _ in found.constants))

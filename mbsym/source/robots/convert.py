@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from mbsym.expressions.place import Complaints
 from mbsym.source.robots.describe import describe
-from mbsym.source.robots.elements import include, parsed
 from mbsym.source.robots.mjcf import read_mjcf
+from mbsym.source.robots.reader import include, parsed
 from mbsym.source.robots.urdf import read_urdf
 
 _BEFORE = re.compile(r"\s*+(?:<\?xml[^>]*\?>)?\s*+")

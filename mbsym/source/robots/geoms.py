@@ -9,9 +9,8 @@ from decimal import Decimal
 from fractions import Fraction
 
 from mbsym.expressions.parser import ascii_safe
-from mbsym.source.robots.elements import Element
 from mbsym.source.robots.orientation import Angles, orientation, turns_onto
-from mbsym.source.robots.reader import Reader, Texts, number
+from mbsym.source.robots.reader import Element, Reader, Texts, number
 from mbsym.source.robots.robot import Inertial, Shape, Turns
 
 _SIZES = {"sphere": 1, "capsule": 2, "cylinder": 2, "ellipsoid": 3, "box": 3}

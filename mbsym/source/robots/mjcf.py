@@ -12,10 +12,9 @@ from fractions import Fraction
 
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints
-from mbsym.source.robots.elements import Element
 from mbsym.source.robots.geoms import checked, is_solid, matter_of, shape_of, weighs
 from mbsym.source.robots.orientation import TURNING, Angles, orientation
-from mbsym.source.robots.reader import NOWHERE, Reader, Texts, check_spelling, decimal, degrees, number
+from mbsym.source.robots.reader import NOWHERE, Element, Reader, Texts, check_spelling, decimal, degrees, number
 from mbsym.source.robots.robot import GROUND, Inertial, Joint, Link, Robot, Turns, ties
 
 _KINDS = {"hinge": "turn", "slide": "slide", "ball": "ball", "free": "free"}

@@ -6,8 +6,7 @@ import math
 from dataclasses import dataclass
 
 from mbsym.expressions.parser import ascii_safe
-from mbsym.source.robots.elements import Element
-from mbsym.source.robots.reader import Reader, angle, degrees, number
+from mbsym.source.robots.reader import Element, Reader, angle, degrees, number
 from mbsym.source.robots.robot import Turns
 
 Row = tuple[float, float, float]

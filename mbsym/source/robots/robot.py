@@ -11,8 +11,7 @@ from dataclasses import dataclass, field
 
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Span
-from mbsym.source.robots.elements import Element
-from mbsym.source.robots.reader import NOWHERE, Reader, Texts, angle, number, opposite
+from mbsym.source.robots.reader import NOWHERE, Element, Reader, Texts, angle, number, opposite
 
 #: (axis, angle) of the turns that lead from one set of axes to another.
 Turns = tuple[tuple[int, str], ...]

@@ -13,8 +13,7 @@ from fractions import Fraction
 
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints
-from mbsym.source.robots.elements import Element
-from mbsym.source.robots.reader import Reader, Texts, is_nonnegative, number
+from mbsym.source.robots.reader import Element, Reader, Texts, is_nonnegative, number
 from mbsym.source.robots.robot import GROUND, Inertial, Joint, Link, Robot, Shape, Turns
 
 #: The attributes of an inertia.

@@ -83,6 +83,21 @@ def checked_units(system: System, declared: tuple[Declared, ...], reading: Readi
     return Units(declared, inferred, base)
 
 
+def dimensions_of(
+    system: System, complain: Callable[[str, Span | None, str | None], None], given: dict[str, Form]
+) -> Dimensions:
+    """The dimensions that follow from the places of a description and from those that are ``given``.
+
+    ``complain`` is told of what is asked afterwards, not of what contradicts itself in the description.
+    """
+    known = {
+        one.name: Form(found.dimension) for one in system.units.declared if isinstance(found := unit(one.text), Unit)
+    }
+    inference = Inference({**known, **given})
+    _System(system, Dimensions(inference, _form_of(system), lambda *_: None)).check()
+    return Dimensions(inference, _form_of(system), complain)
+
+
 def _form_of(system: System) -> Callable[[str], Form]:
     """The dimension of a name, that of its rates included."""
     rates = {velocity_name(name): (name, 1) for name in system.coordinates}

@@ -18,8 +18,7 @@ from mbsym.algebra.quotients import Quotient, Series
 from mbsym.analysis.expanding import expansion
 from mbsym.problems.small_parameter import slow
 from mbsym.problems.small_parameter.checks import residual_orders
-from mbsym.problems.small_parameter.result import Outcome
-from mbsym.problems.small_parameter.scaled import scaled
+from mbsym.problems.small_parameter.result import Outcome, scaled
 from mbsym.problems.small_parameter.steady import steady_states
 
 REFERENCE = reference("satellite-with-damper-slow")

@@ -1,0 +1,199 @@
+"""Dimensionless variables as an author chooses them: ``x=L*x1,t=tau/omega0,k=m*omega0**2*kappa``.
+
+Left of each sign of equality stands a name of the description, right of it what is put in for it: a variable is a
+factor times its new name, which comes last where several would do; a parameter is any expression.  Names that the
+description does not have are new.  New variables, and new parameters that stand only once and at a parameter, are pure
+numbers: what has another dimension than its name is complained about, whether units are declared or not, for most
+places of a description demand one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from mbsym.expressions.message import Message
+from mbsym.expressions.parser import ascii_safe, parse_expression
+from mbsym.expressions.place import Complaints, Span
+from mbsym.expressions.rates import ENDINGS
+from mbsym.expressions.tree import (
+    CONSTANTS,
+    ONE,
+    Expression,
+    Name,
+    names,
+    substitute,
+    walk,
+)
+from mbsym.model.scaling import Scaled, Scaling, Weights, factor_of
+from mbsym.model.system import System
+from mbsym.source.scope import did_you_mean, listed, why_no_name
+from mbsym.source.units.expressions import Dimensions, Form
+from mbsym.source.units.system import dimensions_of
+
+
+@dataclass(frozen=True)
+class _Places:
+    """Offsets in what is right of a sign of equality to places."""
+
+    offset: int
+
+    def __call__(self, start: int, end: int) -> Span:
+        return Span(1, self.offset + start + 1, max(1, end - start))
+
+
+@dataclass(frozen=True)
+class _Item:
+    name: str
+    span: Span
+    value: Expression
+    start: int
+
+
+def read_scaling(text: str, system: System, complaints: Complaints) -> Scaling | None:
+    """What an author writes, checked; None after a complaint."""
+    items = list(_items(text, system, complaints))
+    if complaints.errors:
+        return None
+    known = {*system.parameter_names, *CONSTANTS}
+    moving = (*system.coordinates, *system.variables)
+    # A variable may keep its name.
+    own = {one.name for one in items if one.name in moving}
+    seen = [node.name for one in items for node in walk(one.value) if isinstance(node, Name)]
+    fresh = [name for name in dict.fromkeys(seen) if name not in known]
+    taken = _taken(system)
+    for one in items:
+        for node in walk(one.value):
+            if isinstance(node, Name) and node.name in fresh and node.span is not None:
+                if node.name == one.name and one.name in own:
+                    continue
+                reason = why_no_name(node.name)
+                if node.name in taken and node.name != "t":
+                    reason = "the description has it", "what is put in holds parameters and new names"
+                if reason is not None:
+                    told = Message(
+                        "[[name]] cannot be a new name: [[reason]]", name=ascii_safe(node.name), reason=reason[0]
+                    )
+                    complaints.error("bad-name", told, node.span, reason[1])
+    if complaints.errors:
+        return None
+    variables: list[Scaled] = []
+    time: Scaled | None = None
+    for one in items:
+        if one.name != "t" and one.name not in moving:
+            continue
+        there = [node.name for node in walk(one.value) if isinstance(node, Name) and node.name in fresh]
+        linear = [
+            name for name in dict.fromkeys(there) if seen.count(name) == 1 and factor_of(one.value, name) is not None
+        ]
+        if not linear:
+            told = Message("[[name]] is to be a factor times a new name that stands nowhere else", name=one.name)
+            example = "t=tau/omega0" if one.name == "t" else f"{one.name}=L*{one.name}1"
+            complaints.error("bad-scale", told, one.span, Message("for example [[example]]", example=example))
+            continue
+        told_as = Scaled(one.name, linear[-1], factor_of(one.value, linear[-1]) or ONE)
+        if one.name == "t":
+            time = told_as
+        else:
+            variables.append(told_as)
+    images = _resolved({one.name: one.value for one in items if one.name in system.parameter_names}, items, complaints)
+    if complaints.errors:
+        return None
+    named = {one.new for one in (*variables, *([time] if time else []))}
+    variables = [replace(one, factor=substitute(one.factor, images)) for one in variables]
+    time = None if time is None else replace(time, factor=substitute(time.factor, images))
+    new = tuple(name for name in fresh if name not in named)
+    found = Scaling(tuple(variables), time, tuple(images.items()), new, {})
+    dimensions = _dimensions(system, items, found, named, complaints)
+    if complaints.errors:
+        return None
+    left = [name for name in system.parameter_names if name not in images]
+    driven = (*(one.name for one in system.prescribed), *system.input_names)
+    weights = {name: _weights(dimensions, name) for name in (*left, *new, *moving, *driven)}
+    return Scaling(found.variables, found.time, found.parameters, found.new, weights)
+
+
+def _items(text: str, system: System, complaints: Complaints) -> Iterator[_Item]:
+    """The assignments, their names looked up and each given once."""
+    done: set[str] = set()
+    depth, start = 0, 0
+    for k, letter in enumerate(text + ",") if text.strip() else ():
+        depth += (letter in "([") - (letter in ")]")
+        if letter != "," or (depth > 0 and k < len(text)):
+            continue
+        piece, offset, start = text[start:k], start, k + 1
+        left, equals, right = piece.partition("=")
+        name, blanks = left.strip(), len(left) - len(left.lstrip())
+        span = Span(1, offset + blanks + 1, max(1, len(name)))
+        if not equals or not name or not right.strip():
+            told = Message("[[text]] says of no name what it is", text=ascii_safe(piece.strip()) or "nothing")
+            complaints.error("bad-assignment", told, span, "write name=expression, for example x=L*x1,t=tau/omega0")
+            continue
+        if not _known(name, span, system, complaints):
+            continue
+        if name in done:
+            complaints.error("repeated-name", Message("'[[name]]' is given twice", name=name), span)
+            continue
+        done.add(name)
+        at = offset + len(left) + 1
+        value = parse_expression(right, complaints, _Places(at))
+        if value is not None:
+            yield _Item(name, span, value, at)
+
+
+def _known(name: str, span: Span, system: System, complaints: Complaints) -> bool:
+    moving = (*system.coordinates, *system.variables)
+    there = ("t", *moving, *system.parameter_names)
+    if name not in there:
+        hint = did_you_mean(name, there) or listed("there are", there)
+        told = Message("there is nothing called [[name]] to scale", name=ascii_safe(name))
+        complaints.error("unknown-name", told, span, hint)
+        return False
+    if name in {one.name for one in system.relations}:
+        told = Message("'[[name]]' follows from a relation", name=name)
+        complaints.error("misplaced-name", told, span, "say what the names are that it is made of")
+        return False
+    return True
+
+
+def _taken(system: System) -> set[str]:
+    """Names that no new one may be."""
+    moving = (*system.coordinates, *system.variables)
+    own = {name + end for name in moving for end in ("", *ENDINGS.values())}
+    own |= {one.name for part in (system.prescribed, system.notation, system.inputs, system.tables) for one in part}
+    return own
+
+
+def _resolved(images: dict[str, Expression], items: list[_Item], complaints: Complaints) -> dict[str, Expression]:
+    """What is put in, without names for which something is put in."""
+    for _ in images:
+        images = {name: substitute(value, images) for name, value in images.items()}
+    for one in items:
+        if one.name in images and names(images[one.name]) & images.keys():
+            told = Message("'[[name]]' is made of itself", name=one.name)
+            complaints.error("circular", told, one.span, "one of these names is to be left, or a new one to come in")
+    return images
+
+
+def _dimensions(
+    system: System, items: list[_Item], found: Scaling, named: set[str], complaints: Complaints
+) -> Dimensions:
+    """The dimensions of all names; complains where an expression has another one than what it is put in for."""
+    hint = "new variables are pure numbers, and so are new parameters that stand in one place only, at a parameter"
+    factors = {name for one in items if one.name not in found.images for name in names(one.value)}
+    often = {name for name in found.new if sum(name in names(one.value) for one in items) > 1}
+    numbers = {*named, *(name for name in found.new if name not in factors | often)}
+
+    def complain(message: str, span: Span | None, own: str | None) -> None:
+        complaints.error("dimension", message, span, own or hint)
+
+    dimensions = dimensions_of(system, complain, {name: Form() for name in numbers})
+    for one in sorted(items, key=lambda one: one.name in found.images):
+        wanted = dimensions.name_form(one.name)
+        dimensions.expect(one.value, wanted, f"'{one.name}'")
+    return dimensions
+
+
+def _weights(dimensions: Dimensions, name: str) -> Weights:
+    form = dimensions.inference.reduced(dimensions.name_form(name))
+    return {**dict(form.known), **{f"[{other}]": power for other, power in form.unknown}}
