@@ -285,3 +285,35 @@ motion: {y: {rate: 2}}
 
 def test_the_result_of_a_description_knows_constraints() -> None:
     assert len(mbsym.loads(SPHERE).equilibria.equilibria) == 2
+
+
+def test_a_five_bar_is_not_solved_exactly_and_says_so() -> None:
+    """Two degrees of freedom.  Each place by d'Alembert with numbers: grad V in the range of J^T, the loop closed."""
+    text = (
+        FOUR_BAR.replace("C: {positive: true, value: 3/2},", "C: {positive: true, value: 3/2}, E: {value: 2},")
+        .replace("loads:", _FIFTH + "loads:")
+        .replace("{body: c, point: [C, 0, 0]}", "{body: e, point: [E, 0, 0]}")
+        .replace(
+            "attached to: a, connection point: [A, 0, 0]", "attached to: 0, connection point: [A*cos(p), A*sin(p), 0]"
+        )
+    )
+    found = listed(text, A=2, B=3, C=2, E=3, D=3, gx=1, gy=-9)
+    assert not found.complete
+    assert len(found.equilibria) >= 10
+    for one in found.equilibria:
+        p, q, s, w = (x.value for x in one.values)
+        directions = (p, q, s, s + w)
+        lengths, signs = (2, 3, 2, 3), (1, 1, -1, -1)
+        along = [size * np.exp(1j * x) for size, x in zip(lengths, directions, strict=True)]
+        assert abs(sum(sign * x for sign, x in zip(signs, along, strict=True)) - 3) < 1e-8
+        turned = [1j * x for x in along]  # derivatives by the directions of the bars
+        jacobian = np.array([[f(sign * x) for sign, x in zip(signs, turned, strict=True)] for f in (np.real, np.imag)])
+        weights = (3 / 2, 1 / 2, 3 / 2, 1 / 2)  # half of its own bar, and the bar that it carries
+        slope = np.array([weight * (x.real * 1 - 9 * x.imag) for weight, x in zip(weights, turned, strict=True)])
+        _, residue, *_ = np.linalg.lstsq(jacobian.T, slope, rcond=None)
+        assert float(residue[0]) < 1e-12
+
+
+_FIFTH = """  - {name: e, attached to: c, connection point: [C, 0, 0], rotation: {axes: [3], angles: [w]},
+     mass centre: [E/2, 0, 0], mass: 1, inertia about: mass centre, inertia: [0, E**2/12, E**2/12]}
+"""

@@ -75,6 +75,10 @@ __all__ = [
 ]
 
 
+#: The size of one interreduction under constraints (four-bars: 600,000): above this one alone may take minutes.
+REDUCTION = 4_000_000
+
+
 def equilibria(
     system: System, values: Mapping[str, Value], within: float = WITHIN, limits: Limits | None = None
 ) -> Equilibria:
@@ -119,6 +123,7 @@ def _listed(first: Rest, described_by: System, within: float, limits: Limits) ->
     complete = True
     covering = charts(first, described_by)
     rank = _rank(first) if first.rows else None
+    limits = replace(limits, reduction=REDUCTION) if first.rows and not limits.reduction else limits
     for chart in covering:
         searches = list(_searches(chart, within, limits, rank))
         for search in searches:
