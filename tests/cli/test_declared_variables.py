@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import csv
 import json
+import re
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner, Result
-from conftest import SHIPPED
+from conftest import SHIPPED, reference
 
 from mbsym_cli.main import main
 
@@ -117,3 +119,25 @@ def test_what_cannot_be_meant_is_complained_about(words: tuple[object, ...], tol
     result = called(words[0], "--time", 1, *words[1:], "--out", tmp_path / "out")
     assert result.exit_code == 2, result.output
     assert told in result.stderr
+
+
+def test_a_few_motions_of_a_grid_are_drawn_beside_each_other(tmp_path: Path) -> None:
+    """Table 1 of Amer, Amer & Galal with lx = 30, 60, 90: the first at t = 1/2 against 30 digits."""
+    truth = reference("gyrostat")["paper_P1_spin_only"]
+    a, b = truth["parameters"]["A"], truth["parameters"]["B"]
+    text = (SHIPPED / "gyrostat-fast.yaml").read_text(encoding="utf-8").partition("# The symbols")[0]
+    text = text.replace("inertia: [A, B, C]", "inertia: {tensor: [A, B, C], accept: true}").replace("200", "5")
+    values = f"R: 1000, g: 9.81, M: 300, A: {a}, B: {b}, C: 11, x0: 0.7, y0: 0.3, z0: 0.1, lx: 30, lz: 30"
+    text = re.sub("^values: .*$", f"values: {{{values}}}", text, flags=re.MULTILINE)
+    (tmp_path / "table-1.yaml").write_text(text.replace("atan(4/3)", "atan(sqrt(1 - 1/10**6)*1000)"), encoding="utf-8")
+    words = ("--time", "1/2", "--samples", 51, "--vary", "lx=30:90:3", "-f", "csv,svg", "--out", tmp_path / "out")
+    result = called(tmp_path / "table-1.yaml", *words)
+    assert result.exit_code == 0, result.output
+    pictures = (tmp_path / "out" / "phase-planes-2.svg").read_text(encoding="utf-8")
+    assert all(f"lx = {value}" in pictures for value in (30, 60, 90))
+    with (tmp_path / "out" / "members.csv").open(encoding="utf-8") as file:
+        (last, _, _) = csv.DictReader(file)
+    (row,) = [one for one in truth["rows"] if Fraction(one["t"]) == Fraction(1, 2)]
+    ours = {"p": "p", "q": "q", "r": "r", "gamma": "gamma1", "gammap": "gamma2", "gammapp": "gamma3"}
+    wanted = {name: float(row[key]) for key, name in ours.items()}
+    assert max(abs(float(last[f"{name}_final"]) - value) for name, value in wanted.items()) < 1e-8
