@@ -177,7 +177,7 @@ def refuse_in_run(system: System, request: Request) -> None:
     if not runs_in_states(system, request):
         return
     asked = {
-        "the linearised equations": request.model.linear,
+        "a linear model": request.model.linear,
         "going on from an earlier run": request.earlier is not None,
     }
     wrong = [f"{what} {NOT_IN_STATES}: take variables='{COORDINATES}'" for what, there in asked.items() if there]

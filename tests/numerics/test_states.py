@@ -12,7 +12,10 @@ import mbsym
 from mbsym.analysis import Analysis
 from mbsym.numerics.conservation import Standing
 from mbsym.numerics.methods.interface import Unusable
+from mbsym.numerics.planning.models import Model
+from mbsym.numerics.scenario import scenario
 from mbsym.numerics.states import StateDynamics, norm_drifts
+from mbsym.simulation import Request, simulate
 
 FREE = """
 mbsym: 1
@@ -176,8 +179,9 @@ def test_methods_that_do_not_apply_are_refused(jacobi: Analysis, method: str) ->
 
 
 def test_what_goes_with_coordinates_only_is_refused(jacobi: Analysis) -> None:
-    with pytest.raises(ValueError, match="certify integrates coordinates"):
-        mbsym.simulate(jacobi, 1.0, certify=1e-9)
+    linear = Request(1.0, model=Model(linear=True))
+    with pytest.raises(ValueError, match="a linear model integrates coordinates"):
+        simulate(scenario(jacobi.system, declared=True), linear)
     with pytest.raises(ValueError, match="no variables angles"):
         mbsym.simulate(jacobi, 1.0, variables="angles")
 
