@@ -36,10 +36,12 @@ def command(
     accelerations   solved for q''             M f           of M q'' = f
     motion          does it satisfy them       constraints   in velocities
     M0 D G K N B    first approximation
-    characteristic  polynomials                conditions    of stability
-    eigenvalues     at the given values        integrals     first integrals
+    characteristic  polynomials                determinants  and what they come from
+    conditions      of stability               integrals     first integrals
+    eigenvalues     at the given values
 
-    The name of a body prints its kinematics.  Without --latex, --wolfram or --python formulas are written as people
+    The name of a body prints its kinematics and its part of T, that of a coordinate (a speed) its equation, terms with
+    accelerations first.  Without --latex, --wolfram or --python formulas are written as people
     write them: theta'' is the second derivative, a space multiplies.  Exit codes: 0 printed, 1 there is no such result,
     2 something is wrong.
 
@@ -48,6 +50,7 @@ def command(
       mbsym show systems/simple-pendulum.yaml
       mbsym show systems/double-pendulum.yaml T U equations
       mbsym show systems/satellite.yaml conditions --latex
+      mbsym show systems/satellite.yaml determinants theta
       mbsym show systems/spring-pendulum.yaml --scale "r=l0*x,t=tau/omega0,k=m*omega0**2,g=l0*omega0**2*nu"
     """
     system = read_description(file)

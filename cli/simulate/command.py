@@ -55,7 +55,8 @@ def command(
 
     --vary integrates many motions at once, on a grid or drawn at random; written are ensemble.csv (mean, standard
     deviation, extremes and quantiles at every time), members.csv (values and final state of each), fan charts and
-    ensemble.json.  --sensitivity writes the motion's derivatives by initial values and parameters, sensitivity.csv.
+    ensemble.json.  Up to six motions of a grid are drawn as curves, in one picture, in place of the fan charts.
+    --sensitivity writes the motion's derivatives by initial values and parameters, sensitivity.csv.
 
     --certify encloses the exact solution in balls: what it says is proved, whatever the method did.  enclosure.csv has
     it.  Where neighbouring motions part fast that takes long, and ends early (exit code 3) where it is out of reach.

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -28,8 +29,9 @@ def spread(
     varied: Varied,
     wanted: Asked,
     options: Options,
+    read: Callable[[tuple[str, ...]], Scenario | None],
 ) -> int:
-    """Many motions; the exit code."""
+    """Many motions; the exit code.  ``read`` makes the scenario of one member, from its settings."""
     from mbsym.numerics.ensembles.ensemble import Ensemble
     from mbsym.numerics.ensembles.variation import Unvaried
     from mbsym.report.figures.ensemble_figure import fan_charts
@@ -42,11 +44,12 @@ def spread(
     def work() -> Ensemble:
         with progress(wanted.quiet, file.name, wanted.request.time) as watch:
             found = simulate_many(given, request, overrides, watch=watch)
+        kinds = [kind for kind in wanted.formats if kind != "csv"]
+        several = _beside(file, read, varied, wanted, kinds) if kinds and not found.interrupted else {}
         with status(wanted.quiet, "drawing"):
             if "csv" in wanted.formats:
                 texts.update({"ensemble.csv": ensemble_csv(found), "members.csv": members_csv(found)})
-            kinds = [kind for kind in wanted.formats if kind != "csv"]
-            texts.update(fan_charts(found, kinds) if kinds and len(found.times) > 1 else {})
+            texts.update(several or (fan_charts(found, kinds) if kinds and len(found.times) > 1 else {}))
             files = list(texts)
             texts["ensemble.json"] = ensemble_json(found, varied.variations, varied.seed, varied.sampling, files)
             deliver(folder, texts, "ensemble")
@@ -73,6 +76,29 @@ def spread(
         print(f"{printable(file)}: {len(found.fates)} of {found.count} members ended early.", file=sys.stderr)
         return BROKEN_DOWN
     return OK
+
+
+def _beside(
+    file: Path, read: Callable[[tuple[str, ...]], Scenario | None], varied: Varied, wanted: Asked, kinds: Sequence[str]
+) -> dict[str, bytes]:
+    """Curves of a few members in one picture, each from a run of its own; ``read`` makes a scenario with more settings.
+
+    Nothing where one has no such scenario: the ensemble has said so.
+    """
+    from mbsym.report.figures.figures import Curve, curves
+    from mbsym.simulation import simulate
+    from mbsym_cli.simulate.files import rates_along
+
+    drawn = []
+    for member in varied.few:
+        name = ", ".join(f"{one} = {value:.12g}" for one, value in member)
+        given = read(tuple(f"{one}={value}" for one, value in member))
+        if given is None:
+            return {}
+        with progress(wanted.quiet, f"{file.name}: {name}", wanted.request.time) as watch:
+            run = simulate(given, replace(wanted.request, estimate=False), watch)
+        drawn.append(Curve(run.trajectory, rates_along(run), name))
+    return curves(drawn, kinds) if drawn and all(len(one.found.times) > 1 for one in drawn) else {}
 
 
 def answers(

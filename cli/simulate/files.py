@@ -154,15 +154,20 @@ def _animation(run: Simulation, formats: Sequence[str]) -> dict[str, bytes]:
 
 
 def _pictures(run: Simulation, kinds: Sequence[str]) -> dict[str, bytes]:
-    from mbsym.numerics.between import accelerations
     from mbsym.report.figures.figures import figures
 
-    found = run.trajectory
+    found, rates = run.trajectory, rates_along(run)
     conserved = run.conservation.standing.conserved is True
     if run.dynamics.in_states:
-        return figures(found, kinds, note(found), conserved) | _places(run, kinds)
-    rates = accelerations(run.dynamics, found.times, found.states)
+        return figures(found, kinds, note(found), conserved, rates) | _places(run, kinds)
     return figures(found, kinds, note(found), conserved, rates) | _motion(run, kinds, rates)
+
+
+def rates_along(run: Simulation) -> Any:
+    """The accelerations at every row, or the rates of all declared variables."""
+    from mbsym.numerics.between import accelerations
+
+    return accelerations(run.dynamics, run.times, run.trajectory.states)
 
 
 def _places(run: Simulation, kinds: Sequence[str]) -> dict[str, bytes]:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import product
+from math import prod
 from typing import TYPE_CHECKING
 
 import click
@@ -17,6 +19,9 @@ if TYPE_CHECKING:
     from mbsym.numerics.ensembles.variation import Variation
     from mbsym.numerics.scenario import Scenario
     from mbsym_cli.simulate.request import Asked
+
+#: So many motions of a grid are drawn as curves beside each other.
+MOST_BESIDE = 6
 
 #: More names than this are not varied at once.
 MOST_VARIED = 32
@@ -61,6 +66,16 @@ class Varied:
     members: int | None
     seed: int
     sampling: str
+
+    @property
+    def few(self) -> tuple[tuple[tuple[str, float], ...], ...]:
+        """The members by what varies, where they are grids of no more than can be drawn beside each other."""
+        from mbsym.numerics.ensembles.variation import Grid
+
+        grids = [one for one in self.variations if isinstance(one, Grid)]
+        if len(grids) < len(self.variations) or prod(one.count for one in grids) > MOST_BESIDE:
+            return ()
+        return tuple(product(*([(one.name, float(value)) for value in one.values] for one in grids)))
 
 
 def read_many(

@@ -28,6 +28,7 @@ from mbsym_cli.simulate.variables import Variables, check_states
 if TYPE_CHECKING:
     from mbsym.expressions.tree import Expression
     from mbsym.model.system import System
+    from mbsym.numerics.scenario import Scenario
     from mbsym.simulation import Request
 
 
@@ -70,7 +71,12 @@ def simulated(
         complain(file, f"the results cannot be written: {reason}")
         return FAILED
     if varied is not None:
-        return spread(file, folder, given, overrides, varied, wanted, asked)
+
+        def read(more: tuple[str, ...]) -> Scenario | None:
+            assert system is not None
+            return given_numbers(file, system, (*settings, *more), asked, laws, own)[0]
+
+        return spread(file, folder, given, overrides, varied, wanted, asked, read)
     code = run(file, folder, given, wanted, asked)
     return code if code or not sensitive else answers(file, folder, given, overrides, sensitive, wanted)
 

@@ -41,7 +41,7 @@ def _factored_among_its_own(p: Polynomial) -> tuple[Any, list[tuple[Polynomial, 
         names = whole.names()
         own = p.project_to_context(type(whole).get([names[k] for k in used], whole.ordering()))
     if _is_irreducible(own):
-        unit = _content(p)
+        unit = content(p)
         return unit, [(p / unit, 1)]
     unit, powers = _factored(own)
     if own is p:
@@ -62,7 +62,7 @@ def _is_irreducible(p: Polynomial) -> bool:
     return False
 
 
-def _content(p: Polynomial) -> Any:
+def content(p: Polynomial) -> Any:
     """The number by which p has to be divided to be primitive, with whole coefficients and a positive leading one."""
     coefficients = p.coeffs()
     found = coefficients[0]

@@ -186,12 +186,6 @@ def determinant(algebra: Algebra[S], rows: Table[S]) -> S:
     return leading_minors(algebra, rows)[-1] if rows else algebra.one
 
 
-def solved_times_determinant(algebra: Algebra[S], rows: Table[S], right: Sequence[S]) -> list[S]:
-    """det(A) x for A x = ``right``, by Cramer's rule: without a division."""
-    replaced = ([[*row[:k], f, *row[k + 1 :]] for row, f in zip(rows, right, strict=True)] for k in range(len(right)))
-    return [determinant(algebra, table) for table in replaced]
-
-
 def without(rows: Table[S], i: int, j: int) -> list[list[S]]:
     """The matrix without row i and column j."""
     return [[*row[:j], *row[j + 1 :]] for k, row in enumerate(rows) if k != i]

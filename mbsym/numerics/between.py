@@ -33,10 +33,14 @@ _BASIS = np.array(
 
 
 def accelerations(dynamics: Dynamics, times: Any, states: Any) -> Any:
-    """q'' along a trajectory (``states`` of shape (2n, m)), of shape (n, m); not finite where it does not exist."""
+    """q'' along a trajectory (``states`` of shape (2n, m)), of shape (n, m); not finite where it does not exist.
+
+    Of a run in declared variables the rates of all of them.
+    """
     moments = np.vstack([np.asarray(times, dtype=float), np.asarray(states, dtype=float)])
     with np.errstate(all="ignore"):
-        return np.asarray(compiled_kernel(dynamics, "right_hand_side")(moments), dtype=float)[len(states) // 2 :]
+        found = np.asarray(compiled_kernel(dynamics, "right_hand_side")(moments), dtype=float)
+    return found if dynamics.in_states else found[len(states) // 2 :]
 
 
 def between(times: Any, states: Any, rates: Any, pieces: Any) -> tuple[Any, Any]:

@@ -123,7 +123,8 @@ class StateDynamics(Dynamics):
         fresh, moved = self._specialised, restoring(self._specialised, self.described)
         if not moved:
             return None
-        return Code(fresh, self.inputs, (*(moved.get(name, fresh.zero) for name in self.inputs[1:]), fresh.zero))
+        state = self.inputs[1 : 1 + self.dimension]  # what further inputs there are stays
+        return Code(fresh, self.inputs, (*(moved.get(name, fresh.zero) for name in state), fresh.zero))
 
     @cached_property
     def pivots(self) -> Code:

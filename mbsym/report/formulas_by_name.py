@@ -3,25 +3,30 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import reduce
 from typing import TYPE_CHECKING, cast
 
+from mbsym.algebra.factors import content, irreducible_factors
 from mbsym.algebra.failures import NoClosedForm
-from mbsym.algebra.matrices import cramer, determinant
-from mbsym.algebra.ring import Ring
+from mbsym.algebra.matrices import added, cramer, determinant
+from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.rates import ENDINGS, acceleration_name
 from mbsym.formulas.formula import Column, Formula, Matrix, column
 from mbsym.formulas.latex import latex_symbol
 from mbsym.formulas.wolfram import wolfram_name
+from mbsym.mechanics.energy import body_energy
 from mbsym.problems.stability.enclosed import RootNumbers, numbers
 from mbsym.report.conditions import Statement, label_meanings, statements
 from mbsym.report.content import Number
 
 if TYPE_CHECKING:
+    from mbsym.algebra.signs import Signs
     from mbsym.analysis import Analysis
     from mbsym.analysis.scaled import Formulas
     from mbsym.problems.in_speeds.speeds import SpeedEquations
+    from mbsym.problems.stability.problem import SubsystemStability
 
 #: The languages in which a formula is written; the first is for people.
 LANGUAGES = ("text", "latex", "wolfram", "python")
@@ -30,7 +35,22 @@ LANGUAGES = ("text", "latex", "wolfram", "python")
 MOST_SOLVED = 4
 
 
-Value = Formula | Matrix | Column | tuple[RootNumbers, ...] | str
+@dataclass(frozen=True)
+class InPowers:
+    """``factor`` times a polynomial in lambda: its coefficients, from the constant one on."""
+
+    factor: Formula
+    coefficients: tuple[Formula, ...]
+
+
+@dataclass(frozen=True)
+class Determinant:
+    """The determinant of these rows."""
+
+    rows: tuple[tuple[InPowers, ...], ...]
+
+
+Value = Formula | Matrix | Column | Determinant | tuple[RootNumbers, ...] | str
 
 
 @dataclass(frozen=True)
@@ -92,10 +112,14 @@ def accelerations(analysis: Analysis) -> Column:
 
 
 def _accelerations(analysis: Analysis) -> Iterator[Line]:
-    found = analysis.equations
-    rates = getattr(found, "speed_rates", ()) or map(acceleration_name, analysis.system.coordinates)
     solved = accelerations(analysis)
-    yield from (Line(_moving(x.ring, rate), x) for rate, x in zip(rates, solved, strict=True))
+    yield from (Line(_moving(x.ring, rate), x) for rate, x in zip(_rates(analysis), solved, strict=True))
+
+
+def _rates(analysis: Analysis) -> tuple[str, ...]:
+    """The accelerations by name, in the order of the rows."""
+    speeds = getattr(analysis.equations, "speed_rates", ())
+    return tuple(speeds or map(acceleration_name, analysis.system.coordinates))
 
 
 def _moving(ring: Ring, rate: str) -> Formula:
@@ -125,6 +149,46 @@ def _characteristic(analysis: Analysis) -> Iterator[Line]:
     for part in analysis.stability.subsystems:
         remark = f"of {', '.join(part.coordinates)}: coefficients of the powers of lambda, from the constant one on"
         yield Line("", tuple(part.characteristic), "", remark)
+
+
+def _determinants(analysis: Analysis) -> Iterator[Line]:
+    """|lambda^2 M + lambda (D + G) + K + N|, its rows freed of factors that are positive."""
+    for k, part in enumerate(analysis.stability.subsystems, start=1):
+        if part.system is None or part.known is None:
+            raise NoClosedForm("the characteristic polynomials of this system come from no matrices")
+        matrices = part.system
+        by_power = (added(matrices.K, matrices.N), added(matrices.D, matrices.G), matrices.M)
+        rows = (
+            _freed(part.ring, part.known, zip(*(m[i] for m in by_power), strict=True)) for i in range(matrices.size)
+        )
+        told = tuple(tuple(_in_factors(part, entry) for entry in row) for row in rows)
+        yield Line(f"Lambda{k}", Determinant(told), remark=f"of {', '.join(matrices.names)}, up to a positive factor")
+
+
+def _in_factors(part: SubsystemStability, entry: Sequence[Polynomial]) -> InPowers:
+    """A polynomial in lambda, with what all its coefficients have in common taken out."""
+    there = [x for x in entry if not x.is_zero()]
+    common = part.ring.one if len(there) < 2 else reduce(lambda x, y: x.gcd(y), there)
+    common = common if len(there) < 2 or content(there[-1]) > 0 else -common
+    shared = [part.ring.quotient(x, common) for x in entry]
+    whole = part.factor.ring
+    first, *rest = (Formula(whole, part.in_whole(cast("Polynomial", x))) for x in (common, *shared))
+    return InPowers(first, tuple(rest))
+
+
+def _freed(ring: Ring, known: Signs, row: Iterable[tuple[Polynomial, ...]]) -> list[list[Polynomial]]:
+    """A row of the determinant without those of its common factors that are known to be positive."""
+    entries = [list(entry) for entry in row]
+    there = [x for entry in entries for x in entry if not x.is_zero()]
+    if not there:
+        return entries
+    for factor, exponent in irreducible_factors(reduce(lambda x, y: x.gcd(y), there))[1]:
+        sign = known.sign(factor)
+        if sign in {"positive", "negative"}:
+            divisor = (factor if sign == "positive" else -factor) ** exponent
+            entries = [[cast("Polynomial", ring.quotient(x, divisor)) for x in entry] for entry in entries]
+    number = reduce(lambda x, y: x.gcd(y), (content(x) for entry in entries for x in entry if not x.is_zero()))
+    return [[x / abs(number) for x in entry] for entry in entries]
 
 
 def _conditions(analysis: Analysis) -> Iterator[Line]:
@@ -172,6 +236,7 @@ NAMES: Mapping[str, tuple[str, Callable[[Analysis], Iterator[Line]]]] = {
     "N": ("its circulatory matrix", _matrix("N")),
     "B": ("its matrix of inputs", _matrix("B")),
     "characteristic": ("the characteristic polynomials", _characteristic),
+    "determinants": ("whose zeros are the roots lambda, in the description's notation", _determinants),
     "conditions": ("the conditions of stability", _conditions),
     "eigenvalues": ("the eigenvalues at the given values", _eigenvalues),
     "integrals": ("the first integrals", _integrals),
@@ -184,11 +249,37 @@ def _of_body(analysis: Analysis, name: str) -> Iterator[Line]:
     yield Line("omega", body.angular_velocity, remark="its angular velocity, in its axes")
     yield Line("V_O", body.velocity_origin, remark="velocity of its connection point")
     yield Line("V_C", body.velocity_mass_centre, remark="velocity of its mass centre")
+    scene = analysis.scene
+    motion = next(x for x in scene.motions.values() if x.body.name == name)
+    energy = body_energy(scene, motion)
+    if motion.gyrostatic_moment is not None:
+        energy += motion.gyrostatic_moment.dot(motion.angular_velocity)
+    yield Line("T", Formula(scene.ring, scene.ring.reduce(energy)), remark="its part of the kinetic energy")
+
+
+def _of_equation(analysis: Analysis, name: str) -> Iterator[Line]:
+    """The equation of one coordinate, or speed: what stands before accelerations, and the rest."""
+    found, names = analysis.equations, _of_rows(analysis)
+    at, ring = names.index(name), found.forcing[0].ring
+    moving = [_moving(ring, rate) for rate in _rates(analysis)]
+    first = sum((x * rate for x, rate in zip(found.mass_matrix.rows[at], moving, strict=True)), moving[0] * 0)
+    rest = found.equalities(names)[at] - first
+    tied = "" if found.constraints is None else " but for the forces of constraints"
+    yield Line("", first, "", f"the terms with accelerations in the equation of {name}")
+    yield Line("", rest, "", f"its other terms; the sum is zero{tied}")
+
+
+def _of_rows(analysis: Analysis) -> tuple[str, ...]:
+    """What the rows of the equations of motion are named after."""
+    found = analysis.system
+    if found.linear is not None:
+        return ()
+    return tuple(speed.name for speed in found.speeds) or found.coordinates
 
 
 def known_names(analysis: Analysis) -> list[str]:
     """Everything that may be asked for."""
-    return [*NAMES, *(body.name for body in analysis.system.bodies)]
+    return list(dict.fromkeys((*NAMES, *(body.name for body in analysis.system.bodies), *_of_rows(analysis))))
 
 
 def lines(analysis: Analysis, name: str) -> Iterator[Line]:
@@ -197,7 +288,8 @@ def lines(analysis: Analysis, name: str) -> Iterator[Line]:
         return NAMES[name][1](analysis)
     if name not in known_names(analysis):
         raise KeyError(name)
-    return _of_body(analysis, name)
+    bodies = {body.name for body in analysis.system.bodies}
+    return _of_body(analysis, name) if name in bodies else _of_equation(analysis, name)
 
 
 def carried_lines(formulas: Formulas, name: str) -> Iterator[Line]:
@@ -231,7 +323,8 @@ def written(line: Line, language: str) -> str:
         return f"{name} = " + value.replace("\n", "\n" + " " * (len(name) + 3))
     if not line.relation:
         return value
-    right = _sum(line.right, language) if line.right else "" if "const" in line.relation else "0"
+    named = [(x, _LETTERS[language](multiplier)) for x, multiplier in line.right]
+    right = _sum(named, language) if named else "" if "const" in line.relation else "0"
     return " ".join(filter(None, (value, _RELATIONS[language].get(line.relation, line.relation), right)))
 
 
@@ -241,21 +334,55 @@ def remarked(words: str, language: str) -> str:
 
 
 def _sum(terms: Sequence[tuple[Formula, str]], language: str) -> str:
-    """The sum of coefficients times multipliers."""
+    """The sum of coefficients times multipliers, or powers, that are written already; "" is 1."""
     times = {"latex": "\\, ", "text": " "}.get(language, "*")
     found = []
-    for coefficient, multiplier in terms:
-        value, name = _WRITERS[language](coefficient), _LETTERS[language](multiplier)
-        factor = f"({value})" if coefficient.terms > 1 or language != "text" else value
-        found.append({"1": name, "-1": f"-{name}"}.get(value, f"{factor}{times}{name}"))
+    for coefficient, name in terms:
+        value = _WRITERS[language](coefficient)
+        factor = f"({value})" if _is_sum(value) else value
+        found.append(value if not name else {"1": name, "-1": f"-{name}"}.get(value, f"{factor}{times}{name}"))
     return " + ".join(found).replace("+ -", "- ")
 
 
+#: How a power of lambda is written; Python has a word of that name.
+_POWERS: Mapping[str, str] = {
+    "text": "lambda^{}", "latex": "\\lambda^{{{}}}", "wolfram": "lambda^{}", "python": "lam**{}",
+}  # fmt: skip
+
+
+def _in_powers(value: InPowers, language: str) -> str:
+    """From the highest power on."""
+    powers = {0: "", 1: _POWERS[language].split("^")[0].split("**")[0]}
+    terms = [(x, powers.get(k, _POWERS[language].format(k))) for k, x in enumerate(value.coefficients) if not x.is_zero]
+    found = _sum(terms[::-1], language) or "0"
+    if str(value.factor) == "1":
+        return found
+    return _sum([(value.factor, f"({found})" if _is_sum(found) else found)], language)
+
+
+def _is_sum(text: str) -> bool:
+    """Whether a formula is a sum, outside of all brackets."""
+    depth = 0
+    for k, letter in enumerate(text):
+        depth += (letter in "([{") - (letter in ")]}")
+        if depth == 0 and text[k : k + 3] in (" + ", " - "):
+            return True
+    return False
+
+
+def _entries(value: Matrix | Determinant, language: str) -> list[list[str]]:
+    """Row by row."""
+    if isinstance(value, Matrix):
+        return [[_WRITERS[language](x) for x in row] for row in value]
+    return [[_in_powers(x, language) for x in row] for row in value.rows]
+
+
 def _text(value: Value) -> str:
-    if isinstance(value, Matrix) and value.shape != (1, 1):
-        rows = [[x.readable() for x in row] for row in value]
+    if isinstance(value, Determinant) or (isinstance(value, Matrix) and value.shape != (1, 1)):
+        left, right = "||" if isinstance(value, Determinant) else "[]"
+        rows = _entries(value, "text")
         widths = [max(map(len, texts)) for texts in zip(*rows, strict=True)]
-        return "\n".join("[ " + "   ".join(map(str.ljust, row, widths)) + " ]" for row in rows)
+        return "\n".join(f"{left} {'   '.join(map(str.ljust, row, widths))} {right}" for row in rows)
     return _plain(value, Formula.readable, root_text, "({})")
 
 
@@ -270,6 +397,9 @@ def root_text(root: RootNumbers) -> str:
 
 
 def _latex(value: Value) -> str:
+    if isinstance(value, Determinant):
+        body = " \\\\ ".join(map(" & ".join, _entries(value, "latex")))
+        return f"\\begin{{vmatrix}} {body} \\end{{vmatrix}}"
     if isinstance(value, Matrix) and value.shape != (1, 1):
         return value.latex()
     return _plain(
@@ -278,8 +408,9 @@ def _latex(value: Value) -> str:
 
 
 def _wolfram(value: Value) -> str:
-    if isinstance(value, Matrix):
-        return "{" + ", ".join(_wolfram(tuple(row)) for row in value) + "}"
+    if isinstance(value, Matrix | Determinant):
+        rows = "{" + ", ".join("{" + ", ".join(row) + "}" for row in _entries(value, "wolfram")) + "}"
+        return f"Det[{rows}]" if isinstance(value, Determinant) else rows
     return _plain(value, Formula.wolfram, lambda x: _both(x, "*I", _decimal), "{{{}}}")
 
 
@@ -290,6 +421,8 @@ def _decimal(text: str) -> str:
 def _python(value: Value) -> str:
     if isinstance(value, Matrix):
         return str(value)
+    if isinstance(value, Determinant):
+        return "det([" + ", ".join(f"[{', '.join(row)}]" for row in _entries(value, "python")) + "])"
     return _plain(value, str, lambda x: _both(x, "j"), "({},)")
 
 
@@ -301,7 +434,7 @@ def _plain(
     comma: str = ", ",
 ) -> str:
     """A formula, also the only one of a matrix, or several values side by side."""
-    assert not isinstance(value, str)
+    assert not isinstance(value, str | Determinant)
     if isinstance(value, Matrix):
         value = value[0, 0]
     if isinstance(value, Formula):

@@ -168,7 +168,7 @@ def _check_inertia(system: System, body: Body, draft: Draft, values: Mapping[str
     if alone is not None:
         _check_single_moment(system, body, alone, values, span, reading)
         return
-    if _check_numbers(body, values, span, reading) or body.inertia.accepted:
+    if _check_numbers(system, body, values, span, reading) or body.inertia.accepted:
         return
     about_joint = body.inertia.about == "joint"
     doubt = symbolic_violation(body.inertia.tensor, body.mass, body.mass_centre, about_joint, signs)
@@ -180,22 +180,28 @@ def _check_inertia(system: System, body: Body, draft: Draft, values: Mapping[str
         )
 
 
-def _check_numbers(body: Body, values: Mapping[str, Fraction], span: Span, reading: Reading) -> bool:
-    """Whether something was said of the numbers: rounding is a warning, more is an error unless it is accepted."""
+def _check_numbers(system: System, body: Body, values: Mapping[str, Fraction], span: Span, reading: Reading) -> bool:
+    """Whether something was said of the numbers: rounding is a warning, more is an error unless it is accepted.
+
+    A body about a fixed point has the kinetic energy w.J_O w/2, which needs no tensor about the mass centre.
+    """
     violation = body_violation(body, values)
     if body.inertia is None or violation is None:
         return False
     entries = [entry for row in body.inertia.tensor for entry in row]
     message = Message("no body has this inertia: [[violation]]", violation=violation)
+    about = body
+    if body.inertia.accepted and body.inertia.about == "joint" and _is_fixed(system, body):
+        about = replace(body, inertia=replace(body.inertia, about="mass centre"))
     if body_violation(body, values, ROUNDING) is None:
         told = Message("no body has exactly this inertia: [[violation]]", violation=violation)
         hint = "taken for rounding, as it is less than a millionth; the numbers are used as they stand"
         reading.complaints.warning("rounded-inertia", told, span, hint)
-    elif has_negative_energy(body, values) and not _is_possible_elsewhere(body, values):
+    elif has_negative_energy(about, values) and not _is_possible_elsewhere(body, values):
         if body.inertia.accepted:
             message = joined([message, Message("its kinetic energy would be negative")], "; ")
         reading.error("bad-inertia", message, span, _values_hint(*entries))
-    elif _is_possible_elsewhere(body, values) and (not body.inertia.accepted or has_negative_energy(body, values)):
+    elif _is_possible_elsewhere(body, values) and (not body.inertia.accepted or has_negative_energy(about, values)):
         hint = "with inertia about: mass centre it would be possible"
         reading.error("bad-inertia", message, span, hint)
     elif not body.inertia.accepted:
@@ -207,6 +213,21 @@ def _check_numbers(body: Body, values: Mapping[str, Fraction], span: Span, readi
             "bad-inertia", message, span, _short(hint, "write {tensor: ..., accept: true} if it was identified")
         )
     return True
+
+
+def _is_fixed(system: System, body: Body) -> bool:
+    """Whether the body's connection point rests in space, for sure."""
+    moving = {*system.coordinates, *(one.name for one in system.prescribed), "t"}
+    bodies = {one.name: one for one in system.bodies}
+    for _ in bodies:
+        if any(names(x) & moving for x in body.connection_point):
+            return False
+        if body.attached_to not in bodies:
+            return True
+        body = bodies[body.attached_to]
+        if any(names(angle) & moving for _, angle in body.rotation.turns()):
+            return False
+    return False
 
 
 def _is_possible_elsewhere(body: Body, values: Mapping[str, Fraction]) -> bool:

@@ -192,7 +192,8 @@ _TENSOR: tuple[Type, ...] = (_VECTOR, Listed(_VECTOR, 3, 3))
 INERTIA = {
     "tensor": Key("three principal moments, or three rows", Either(_TENSOR), required=True, label="tensor of inertia"),
     "accept": Key(
-        "true: taken as given although the triangle inequality of its principal moments does not hold",
+        "true: taken as given although no body has it: the triangle inequality of its principal moments does not hold, "
+        "or about a fixed point they are smaller than those of the mass in its centre",
         Flag(false=True),
         label="accept tensor of inertia",
     ),
@@ -308,10 +309,6 @@ def _of_force(load: Any) -> tuple[Any, ...]:
     return load.point.body, load.point.position, load.components, load.axes
 
 
-def _written(load: Any) -> tuple[Any, ...]:
-    return (load.written,)
-
-
 LOADS: dict[str, Kind] = {
     "newtonian gravity": Kind(
         "Newtonian field of a centre: expanded about a point of the orbit, or exact",
@@ -400,22 +397,22 @@ LOADS: dict[str, Kind] = {
         ways=(Way(IsotropicDamper, ("between", "coefficient")),),
     ),
     "rayleigh": Kind(
-        "a dissipation function R(q, q'); its generalised forces are -dR/dq'",
+        "a dissipation function R(q, q'), or of speeds; its generalised forces are -dR/dq'",
         Formula(DISSIPATION),
         ways=(Way(Rayleigh),),
     ),
     "force function": Kind(
         "a force function U = -potential, added to the Lagrangian",
         Formula(POTENTIAL),
-        ways=(Way(ForceFunction, fixed=(("spelled", "force function"),), parts=_written),),
+        ways=(Way(ForceFunction, fixed=(("spelled", "force function"),)),),
     ),
     "potential": Kind(
         "a potential energy V, subtracted from the Lagrangian",
         Formula(POTENTIAL),
-        ways=(Way(ForceFunction, fixed=(("spelled", "potential"),), parts=_written),),
+        ways=(Way(ForceFunction, fixed=(("spelled", "potential"),)),),
     ),
     "generalized force": Kind(
-        "{coordinate: expression in coordinates, velocities, parameters and t}",
+        "{coordinate: expression in coordinates, velocities or speeds, parameters and t}",
         Named(Formula(FORCE), "coordinate"),
         ways=(Way(GeneralizedForce),),
     ),

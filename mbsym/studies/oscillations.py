@@ -94,10 +94,8 @@ def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[
     if leading and leading not in known:
         told = f"there is no variable called {leading[:60]!r}"
         yield Unfit("--of", "unknown-name", told, f"one of: {', '.join(known)}")
-    for name, value in request.values.items():
-        if small is None:
-            break
-        if name == small.name or (name in dict(small.powers) and value != 0):  # zero has no power
+    for name in request.values:
+        if small is not None and (name == small.name or name in {*dict(small.powers)} - {*system.parameter_names}):
             yield Unfit("--set", "bad-assignment", f"{name} belongs to the small parameter: it stays a symbol")
     if request.scale is not None:
         yield from _unscaled(request.scale, system)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import csv
 import json
+import re
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner, Result
-from conftest import SHIPPED
+from conftest import SHIPPED, reference
 
 from mbsym_cli.main import main
 
@@ -47,6 +49,44 @@ def test_coordinates_are_integrated_where_they_are_asked_for(tmp_path: Path) -> 
     assert "coordinates and their velocities; speeds are computed from them" in result.stdout
 
 
+@pytest.mark.parametrize("model", [("--gravity", "3"), ("--gravity", "exact")])
+def test_a_model_is_the_same_in_both_kinds_of_variables(model: tuple[str, str], tmp_path: Path) -> None:
+    """The quaternion's columns of a run in angles: computed from these, by the same field of gravity."""
+    rows = []
+    for kind in ("declared", "coordinates"):
+        where = tmp_path / kind
+        how = ("--variables", kind, "--time", 300, "--samples", 4, "-f", "csv", "--tolerance", 1e-12, *model)
+        result = called(SATELLITE, *how, "--out", where)
+        assert result.exit_code == 0, result.output
+        rows.append(list(csv.DictReader((where / "trajectory.csv").read_text(encoding="utf-8").splitlines()))[-1])
+    for name in ("e0", "e1", "e2", "e3", "p", "q", "r"):
+        assert float(rows[0][name]) == pytest.approx(float(rows[1][name]), abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("words", "table"),
+    [
+        (("--accuracy", "1e-6"), "trajectory.csv"),
+        (("--sensitivity", "A"), "sensitivity.csv"),
+        (("--vary", "theta=0.05:0.06:2"), "ensemble.csv"),
+        (("--certify", "1e-6"), "enclosure.csv"),
+    ],
+)
+def test_what_knows_declared_variables_speaks_them(words: tuple[str, ...], table: str, tmp_path: Path) -> None:
+    result = called(SATELLITE, "--time", 10, "--samples", 11, "-f", "csv", *words, "--out", tmp_path)
+    assert result.exit_code == 0, result.output
+    head = (tmp_path / table).read_text(encoding="utf-8").splitlines()[0]
+    assert "e0" in head
+    assert "psi" not in head
+
+
+def test_a_speed_that_is_no_state_alone_is_refused(tmp_path: Path) -> None:
+    """The initial velocities are those of angles: one speed besides is no state."""
+    result = called(SATELLITE, "--time", 10, "--vary", "p=0.01:0.02:3", "--out", tmp_path / "out")
+    assert result.exit_code == 2
+    assert "no motion begins with p = 0.01: no value for q" in result.stderr
+
+
 @pytest.mark.parametrize(
     ("option", "words"),
     [
@@ -79,3 +119,25 @@ def test_what_cannot_be_meant_is_complained_about(words: tuple[object, ...], tol
     result = called(words[0], "--time", 1, *words[1:], "--out", tmp_path / "out")
     assert result.exit_code == 2, result.output
     assert told in result.stderr
+
+
+def test_a_few_motions_of_a_grid_are_drawn_beside_each_other(tmp_path: Path) -> None:
+    """Table 1 of Amer, Amer & Galal with lx = 30, 60, 90: the first at t = 1/2 against 30 digits."""
+    truth = reference("gyrostat")["paper_P1_spin_only"]
+    a, b = truth["parameters"]["A"], truth["parameters"]["B"]
+    text = (SHIPPED / "gyrostat-fast.yaml").read_text(encoding="utf-8").partition("# The symbols")[0]
+    text = text.replace("inertia: [A, B, C]", "inertia: {tensor: [A, B, C], accept: true}").replace("200", "5")
+    values = f"R: 1000, g: 9.81, M: 300, A: {a}, B: {b}, C: 11, x0: 0.7, y0: 0.3, z0: 0.1, lx: 30, lz: 30"
+    text = re.sub("^values: .*$", f"values: {{{values}}}", text, flags=re.MULTILINE)
+    (tmp_path / "table-1.yaml").write_text(text.replace("atan(4/3)", "atan(sqrt(1 - 1/10**6)*1000)"), encoding="utf-8")
+    words = ("--time", "1/2", "--samples", 51, "--vary", "lx=30:90:3", "-f", "csv,svg", "--out", tmp_path / "out")
+    result = called(tmp_path / "table-1.yaml", *words)
+    assert result.exit_code == 0, result.output
+    pictures = (tmp_path / "out" / "phase-planes-2.svg").read_text(encoding="utf-8")
+    assert all(f"lx = {value}" in pictures for value in (30, 60, 90))
+    with (tmp_path / "out" / "members.csv").open(encoding="utf-8") as file:
+        (last, _, _) = csv.DictReader(file)
+    (row,) = [one for one in truth["rows"] if Fraction(one["t"]) == Fraction(1, 2)]
+    ours = {"p": "p", "q": "q", "r": "r", "gamma": "gamma1", "gammap": "gamma2", "gammapp": "gamma3"}
+    wanted = {name: float(row[key]) for key, name in ours.items()}
+    assert max(abs(float(last[f"{name}_final"]) - value) for name, value in wanted.items()) < 1e-8

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from fractions import Fraction
 from pathlib import Path
 
@@ -131,3 +132,84 @@ def test_words_and_roots_may_be_pasted(tmp_path: Path) -> None:
     assert eval(shown["python"].splitlines()[1]) == (-1e-9 + 1j, -1e-9 - 1j)
     for line in shown["latex"].splitlines():
         assert line.startswith("%") or "\\text" not in line
+
+
+def test_determinants_are_those_that_a_paper_prints() -> None:
+    """Banshchikov & Vetrov, before (5): rows freed of positive factors, in alpha, gamma, p1, p2."""
+    told = show("satellite", "determinants").stdout
+    entries = [
+        [re.sub(r"\s+", "", cell) for cell in re.split(r" {3,}", line.split("|")[1].strip())]
+        for line in told.splitlines()
+        if "|" in line
+    ]
+    assert entries == [
+        ["lambda^2+alpha", "(alpha-1)lambda", "0"],
+        ["(alpha-1)(gamma-1)lambda", "(alphagamma+1)lambda^2+4(alpha+gamma)", "p2(alpha+1)(lambda^2+4)"],
+        ["0", "lambda^2+4", "p1lambda^2+p1+3"],
+        ["lambda^2+3gamma", "p2(lambda^2+3)"],
+        ["lambda^2+3", "p1lambda^2+3"],
+    ]
+
+
+@pytest.mark.parametrize(
+    "name", ["satellite", "ziegler-damped", "heavy-top", "satellite-with-damper-slow", "gyroscopic-pair"]
+)
+def test_determinants_have_the_roots_of_the_characteristic_polynomials(name: str) -> None:
+    """Both as Python reads them, at a rational point: the ratio is one positive number at three values of lambda."""
+    names = derived(SHIPPED / f"{name}.yaml").system
+    at = {
+        x: Fraction(2 * k + 3, 11)
+        for k, x in enumerate((*names.parameter_names, *(one.name for one in names.notation)))
+    }
+    polynomials = [
+        eval(line, {}, at) for line in show(name, "characteristic", "--python").stdout.splitlines() if line[0] != "#"
+    ]
+    determinants = [
+        line.split(" = ")[1] for line in show(name, "determinants", "--python").stdout.splitlines() if line[0] != "#"
+    ]
+    assert len(polynomials) == len(determinants)
+    for polynomial, text in zip(polynomials, determinants, strict=True):
+        ratios = set()
+        for value in (Fraction(1, 2), Fraction(3), Fraction(-7, 5)):
+            whole = sum(c * value**k for k, c in enumerate(polynomial))
+            ratios.add(Fraction(eval(text, {"det": _det}, at | {"lam": value})) / whole)
+        assert len(ratios) == 1
+        assert ratios.pop() != 0
+
+
+def _det(rows: list[list[Fraction]]) -> Fraction:
+    """By the first column."""
+    if not rows:
+        return Fraction(1)
+    return sum(
+        (
+            (-1) ** i * row[0] * _det([other[1:] for j, other in enumerate(rows) if j != i])
+            for i, row in enumerate(rows)
+        ),
+        Fraction(0),
+    )
+
+
+def test_an_equation_begins_with_its_accelerations() -> None:
+    """m l^2 + J, and the rest, of the pendulum; of speeds their rates; the sum is what 'equations' says."""
+    assert show("simple-pendulum", "theta").stdout.splitlines()[1::2] == [
+        "(m l^2 + J) theta''",
+        "b theta' + m l g sin(theta)",
+    ]
+    first, rest = show("satellite-with-damper-slow", "q").stdout.splitlines()[1::2]
+    # x0' and the particle's own acceleration: M of the third row of Euler's equations.
+    assert first == "A (eps x^2 + 2 eps rho x + 1) q' - A eps y'"
+    assert "'" not in rest
+    tied = show("cartesian-pendulum", "x").stdout.splitlines()
+    assert tied[1] == "m x''"
+    assert tied[2].endswith("but for the forces of constraints")
+
+
+@pytest.mark.parametrize("name", ["double-pendulum", "tethered-satellites", "gyrostat", "satellite-with-damper-slow"])
+def test_kinetic_energies_of_bodies_add_up(name: str) -> None:
+    from mbsym.report.formulas_by_name import lines
+
+    analysis = derived(SHIPPED / f"{name}.yaml")
+    parts = [list(lines(analysis, body.name))[-1] for body in analysis.system.bodies]
+    assert {part.name for part in parts} == {"T"}
+    assert sum((part.value for part in parts[1:]), parts[0].value) == analysis.energy.kinetic_energy

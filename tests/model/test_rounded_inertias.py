@@ -103,6 +103,39 @@ def test_published_values_can_be_accepted_and_the_reports_say_so(tmp_path):
     assert Fraction(str(analysis.energy.kinetic_energy).replace("*q_dot**2", "").replace("q_dot**2", "1")) == wanted
 
 
+FIXED = """
+mbsym: 1
+name: About a point
+bodies:
+  - name: support
+    rotation: {{axes: [1], angles: [1/2]}}
+    connection point: [0, 0, {height}]
+    mass: 0
+  - name: body
+    attached to: support
+    rotation: {{axes: [3, 1, 3], angles: [a, b, c]}}
+    mass: 300
+    mass centre: [0.7, 0.3, 0.1]
+    inertia about: joint
+    inertia: {inertia}
+"""
+
+
+def test_about_a_fixed_point_the_tensor_there_is_all_that_an_energy_needs():
+    """Table 1 of Amer, Amer & Galal: C = 11 < M (x0^2 + y0^2) = 174.  T = w.J_O w/2 stays positive; of a body whose
+    joint moves it would not."""
+    found = {}
+    for height, inertia in (
+        ("2", "{tensor: [83, 76, 11], accept: true}"),
+        ("2", "[83, 76, 11]"),
+        ("z", "{tensor: [83, 76, 11], accept: true}"),
+        ("2", "{tensor: [83, 76, -1], accept: true}"),
+    ):
+        system, _ = read(FIXED.format(height=height, inertia=inertia) + ("" if height == "2" else "coordinates: [z]"))
+        found[height, inertia] = system is not None
+    assert list(found.values()) == [True, False, False, False]
+
+
 def test_nothing_is_said_of_bodies_that_are_real():
     analysis = mbsym.loads(LINK.format(inertia="[1, 1, 1]", twist="0"))
     assert "accepted" not in TARGETS["latex"].render(analysis, (1,))

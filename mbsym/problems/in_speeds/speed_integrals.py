@@ -28,7 +28,7 @@ from functools import cached_property
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
-from mbsym.algebra.matrices import determinant, solved_times_determinant
+from mbsym.algebra.matrices import cramer, determinant
 from mbsym.algebra.ring import Polynomial
 from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
@@ -56,7 +56,7 @@ class Field:
     def scaled(self) -> list[Polynomial]:
         """det(M) u' by Cramer's rule."""
         forcing = [x.polynomial for x in self.equations.forcing]
-        return solved_times_determinant(self.form.ring, self.equations.mass_matrix.polynomials, forcing)
+        return cramer(self.form.ring, self.equations.mass_matrix.polynomials, forcing)
 
     def rate(self, x: Polynomial) -> Polynomial:
         """det(M) dx/dt on the motion."""

@@ -8,6 +8,7 @@ Many coordinates are spread over pages: ``histories.svg``, ``histories-2.svg``, 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from itertools import chain
 from typing import Any
 
@@ -29,6 +30,9 @@ from mbsym.report.unit_text import labelled
 #: Rows of time histories, and rows and columns of phase planes, on one page.
 HISTORY_ROWS, PLANE_ROWS, PLANE_COLUMNS = 5, 3, 3
 
+#: Of several curves in one picture: no more are told apart.
+COLOURS = (BLUE, RED, "#2e8540", "#8b5fbf", "#c77700", "#00838f")
+
 #: Planes with more points become pixels.
 MOST_POINTS = 20_000
 
@@ -40,26 +44,63 @@ ROUNDING, FLOOR = 2.0**-53, 1e-18
 CORNER, CLOSE, MOST_PIECES = np.radians(4), 2e-3, 24
 
 
+@dataclass(frozen=True)
+class Curve:
+    """A motion to be drawn, ``told`` beside others.
+
+    ``rates`` are the accelerations, of shape (n, m): with them phase planes are drawn as smooth curves through the
+    samples, without them as lines from one to the next.  Of a run in declared variables they are the rates of all of
+    these; without them it has no phase planes.
+    """
+
+    found: Trajectory
+    rates: Any = None
+    told: str = ""
+
+
 def figures(
     found: Trajectory, formats: Sequence[str], note: str = "", conserved: bool = True, rates: Any = None
 ) -> dict[str, bytes]:
     """Every figure in every format, by file name.
 
-    ``rates`` are the accelerations, of shape (n, m): with them phase planes are drawn as smooth curves through the
-    samples, without them as lines from one to the next.  ``note`` is written under each title (a trajectory that is
+    ``rates`` as those of a ``Curve``.  ``note`` is written under each title (a trajectory that is
     not whole must say so); ``conserved`` says whether the
     energy ought to be constant, so that what it changes by is an error.  A single state gives no figures.
     """
     if len(found.times) < 2:
         return {}
+    images = curves([Curve(found, rates)], formats, note)
     with styled():
-        images: dict[str, bytes] = {}
+        return images | saved("drift", _drift(found, note, conserved), formats)
+
+
+def curves(drawn: Sequence[Curve], formats: Sequence[str], note: str = "") -> dict[str, bytes]:
+    """Time histories and phase planes of several motions of one system, by file name."""
+    images: dict[str, bytes] = {}
+    with styled():
         # One page after the other: a hundred coordinates have fifty of them, and a page in memory is some 20 MB.
-        pages = chain(_histories(found, note), _planes(found, note, rates))
-        for stem, figure in _variables(found, note) if isinstance(found.system, InStates) else pages:
+        histories = _variables if isinstance(drawn[0].found.system, InStates) else _histories
+        for stem, figure in chain(histories(drawn, note), _planes(drawn, note)):
             images |= saved(stem, figure, formats)
             figure.clear()  # a figure and its axes hold each other
-        return images | saved("drift", _drift(found, note, conserved), formats)
+    return images
+
+
+def _page_of(drawn: Sequence[Curve], axis: Any, figure: Figure) -> Figure:
+    """The page with what tells several curves apart."""
+    if len(drawn) > 1:
+        handles, told = axis.get_legend_handles_labels()
+        figure.legend(handles, told, loc="outside lower center", ncols=len(told), frameon=False, fontsize=9)
+    return figure
+
+
+def _over_time(axis: Any, drawn: Sequence[Curve], place: int) -> None:
+    for colour, one in zip(COLOURS, drawn, strict=False):
+        axis.plot(*thinned(one.found.times, one.found.states[place]), color=colour, label=one.told or None)
+
+
+def _longest(drawn: Sequence[Curve]) -> Any:
+    return max((one.found.times for one in drawn), key=lambda times: times[-1])
 
 
 def _page(width: float, height: float, title: str, note: str) -> Figure:
@@ -96,9 +137,9 @@ def coordinate_labels(system: System, between: str = " ") -> tuple[dict[str, str
     return positions, velocities
 
 
-def _histories(found: Trajectory, note: str) -> Iterator[tuple[str, Figure]]:
+def _histories(drawn: Sequence[Curve], note: str) -> Iterator[tuple[str, Figure]]:
     """q(t) on the left, q'(t) on the right, a row a coordinate."""
-    system = found.system
+    system = drawn[0].found.system
     positions, velocities = coordinate_labels(system, "\n")
     place = {name: i for i, name in enumerate(system.coordinates)}
     for file, names, page in _pages("histories", system.coordinates, HISTORY_ROWS):
@@ -107,38 +148,47 @@ def _histories(found: Trajectory, note: str) -> Iterator[tuple[str, Figure]]:
         left = ScaledTranslation(-0.6, 0, figure.dpi_scale_trans)
         for row, name in zip(axes, names, strict=True):
             for side, (axis, label) in enumerate(zip(row, (positions[name], velocities[name]), strict=True)):
-                axis.plot(*thinned(found.times, found.states[place[name] + side * len(place)]), color=BLUE)
+                _over_time(axis, drawn, place[name] + side * len(place))
                 _label(axis, label)
                 axis.yaxis.set_label_coords(0, 0.5, axis.transAxes + left)
         for axis in axes[-1]:
             axis.set_xlabel(labelled("$t$", time_unit(system)))
-            _span(axis, found.times)
-        yield file, figure
+            _span(axis, _longest(drawn))
+        yield file, _page_of(drawn, axes.flat[0], figure)
 
 
-def _variables(found: Trajectory, note: str) -> Iterator[tuple[str, Figure]]:
+def _variables(drawn: Sequence[Curve], note: str) -> Iterator[tuple[str, Figure]]:
     """Each variable of a run in declared ones over the time, positions, then speeds."""
-    system = found.system
+    system = drawn[0].found.system
     states = (*system.coordinates, *system.velocities)
-    names, place = LatexNames(["t", *states]), {name: i for i, name in enumerate(states)}
+    labels, place = _labels(states), {name: i for i, name in enumerate(states)}
     for file, shown, page in _pages("histories", states, 2 * HISTORY_ROWS):
         rows = -(-len(shown) // 2)
         figure = _page(10, 1.0 + 1.75 * rows + (0.3 if note else 0), _title(system) + page, note)
         axes = figure.subplots(rows, 2, squeeze=False, sharex=True)
         left = ScaledTranslation(-0.6, 0, figure.dpi_scale_trans)
         for axis, name in zip(axes.T.ravel(), shown, strict=False):
-            axis.plot(*thinned(found.times, found.states[place[name]]), color=BLUE)
-            symbol = names[name]
-            plain = "$\\mathrm{" + name.replace("_", r"\_") + "}$"
-            label = plain if "mathtt" in symbol.stem else f"${symbol}$"
-            _label(axis, label + labelled("", unit_of(system, name)).replace(" ", "\n", 1))
+            _over_time(axis, drawn, place[name])
+            _label(axis, labels[name][0] + labelled("", unit_of(system, name)).replace(" ", "\n", 1))
             axis.yaxis.set_label_coords(0, 0.5, axis.transAxes + left)
         for axis in axes.T.ravel()[len(shown) :]:
             axis.set_visible(False)
         for axis in axes[-1]:
             axis.set_xlabel(labelled("$t$", time_unit(system)))
-            _span(axis, found.times)
-        yield file, figure
+            _span(axis, _longest(drawn))
+        yield file, _page_of(drawn, axes.flat[0], figure)
+
+
+def _labels(states: Sequence[str]) -> dict[str, tuple[str, str]]:
+    """Each variable and its rate as mathematical text."""
+    names = LatexNames(["t", *states])
+    found = {}
+    for name in states:
+        symbol = names[name]
+        plain = "$\\mathrm{" + name.replace("_", r"\_") + "}$"
+        odd = "mathtt" in symbol.stem
+        found[name] = (plain, f"d{plain}/d$t$") if odd else (f"${symbol}$", f"${symbol.accented('dot')}$")
+    return found
 
 
 def _label(axis: Any, label: str) -> None:
@@ -156,13 +206,21 @@ def _span(axis: Any, times: Any) -> None:
         axis.set_xlim(0, times[-1])
 
 
-def _planes(found: Trajectory, note: str, rates: Any = None) -> Iterator[tuple[str, Figure]]:
-    """q' over q, one plane a coordinate; the initial point is marked.  An angle that winds is shown modulo 2 pi."""
-    system = found.system
-    positions, velocities = coordinate_labels(system)[0], coordinate_labels(system, "\n")[1]
-    place = {name: i for i, name in enumerate(system.coordinates)}
-    turning = angle_denominators(system)
-    for file, names, page in _pages("phase-planes", system.coordinates, PLANE_ROWS * PLANE_COLUMNS):
+def _planes(drawn: Sequence[Curve], note: str) -> Iterator[tuple[str, Figure]]:
+    """q' over q, one plane a coordinate, or variable; initial points are marked.  An angle that winds is shown modulo
+    2 pi."""
+    system = drawn[0].found.system
+    if isinstance(system, InStates):
+        if any(one.rates is None for one in drawn):
+            return
+        states, turning = (*system.coordinates, *system.velocities), {}
+        positions = {x: told[0] + labelled("", unit_of(system, x)) for x, told in _labels(states).items()}
+        velocities = {x: told[1] for x, told in _labels(states).items()}
+    else:
+        states, turning = system.coordinates, angle_denominators(system)
+        positions, velocities = coordinate_labels(system)[0], coordinate_labels(system, "\n")[1]
+    place = {name: i for i, name in enumerate(states)}
+    for file, names, page in _pages("phase-planes", states, PLANE_ROWS * PLANE_COLUMNS):
         columns = min(PLANE_COLUMNS, len(names))
         rows = -(-len(names) // columns)
         size = 4.6 if columns == 1 else 3.6
@@ -173,27 +231,31 @@ def _planes(found: Trajectory, note: str, rates: Any = None) -> Iterator[tuple[s
         for axis in axes[len(names) :]:
             axis.set_visible(False)
         for axis, name in zip(axes, names, strict=False):
-            q, v = _curve(found, place[name], rates)
+            both = [_curve(one, place[name]) for one in drawn]
             label = positions[name]
-            if turning.get(name) == 1 and np.ptp(q) > 3 * np.pi:
-                q, v = _wrapped(q, v)
+            if turning.get(name) == 1 and any(np.ptp(q) > 3 * np.pi for q, _ in both):
+                both = [_wrapped(q, v) for q, v in both]
                 label += r"  modulo $2\pi$"
                 axis.set_xlim(-np.pi, np.pi)
                 axis.set_xticks(
                     np.array([-1, -0.5, 0, 0.5, 1]) * np.pi,
                     ["\u2212\u03c0", "\u2212\u03c0/2", "0", "\u03c0/2", "\u03c0"],
                 )
-            axis.plot(q, v, color=BLUE, linewidth=0.9, rasterized=len(q) > MOST_POINTS)
-            axis.plot(q[:1], v[:1], "o", color=RED, markersize=4)
+            for colour, one, (q, v) in zip(COLOURS, drawn, both, strict=False):
+                axis.plot(q, v, color=colour, linewidth=0.9, rasterized=len(q) > MOST_POINTS, label=one.told or None)
+                axis.plot(q[:1], v[:1], "o", color=RED if len(drawn) == 1 else colour, markersize=4)
             axis.set_xlabel(label, fontsize=12)
             _label(axis, velocities[name])
             if "modulo" not in label:
                 axis.xaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10], min_n_ticks=3))
-        yield file, figure
+        yield file, _page_of(drawn, axes[0], figure)
 
 
-def _curve(found: Trajectory, i: int, rates: Any) -> tuple[Any, Any]:
-    """q and q' of one coordinate, between the samples too where the curve turns."""
+def _curve(drawn: Curve, i: int) -> tuple[Any, Any]:
+    """q and q' of one coordinate, between the samples too where the curve turns; a variable and its rate."""
+    found, rates = drawn.found, drawn.rates
+    if isinstance(found.system, InStates):
+        return np.asarray(found.states[i], dtype=float), rates[i]
     state = np.asarray(found.states[[i, i + len(found.states) // 2]], dtype=float)
     size = np.ptp(state, axis=1)
     if rates is None or len(found.times) > MOST_POINTS or not np.all(size > 0):
