@@ -252,7 +252,7 @@ def read_description(path: Path, unconstrained: str = "", moving: str = "") -> S
     """
     from mbsym.report.language import Language
     from mbsym.source import load, render
-    from mbsym.source.recognition import language_of
+    from mbsym.source.text_lines import language_of
 
     system, complaints, text = load(path)
     say = Language(language_of(text)).say

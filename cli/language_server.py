@@ -15,7 +15,7 @@ from mbsym.editing import explanation, suggestions
 from mbsym.expressions.place import Complaint
 from mbsym.model.system import System
 from mbsym.source import read
-from mbsym.source.recognition import says_so
+from mbsym.source.text_lines import says_so
 
 _SEVERITIES = {"error": types.DiagnosticSeverity.Error, "warning": types.DiagnosticSeverity.Warning}
 

@@ -66,7 +66,7 @@ class Options:
 
         What lies in a folder and does not say that it is a description is passed over.
         """
-        from mbsym.source.recognition import is_description
+        from mbsym.source.text_lines import is_description
 
         found: dict[str, Path] = {}
         others = 0

@@ -274,7 +274,7 @@ def show_finding(
 def show_brief(found: Brief, name: str, width: int) -> None:
     """A run in one line; columns are as wide as they mostly are."""
     from mbsym.report.plain_writer import STYLES
-    from mbsym.report.words.verdicts import grade
+    from mbsym.report.words.claims import grade
 
     colour = STYLES[grade(found.worst)] if found.worst else ""
     tell(

@@ -18,8 +18,7 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import motion_values
 from mbsym.mechanics.rest import Rest, at_numbers, rest
 from mbsym.model.system import System
-from mbsym.problems.relative_equilibria.candidates import candidate_at
-from mbsym.problems.relative_equilibria.place import exact_rates
+from mbsym.problems.relative_equilibria.place import candidate_at, exact_rates
 from mbsym.problems.relative_equilibria.verdict import linear_at_rest
 from mbsym.problems.stability.verdict import Verdict
 

@@ -15,8 +15,8 @@ from mbsym.editing.document import look
 from mbsym.expressions.place import Complaint, Complaints, Span
 from mbsym.serving.requests import Wrong
 from mbsym.source import read, to_text, to_yaml
-from mbsym.source.recognition import is_text, says_so
 from mbsym.source.starter import NewBody, starter
+from mbsym.source.text_lines import is_text, says_so
 
 if TYPE_CHECKING:
     from mbsym.model.system import System

@@ -176,7 +176,7 @@ def _hover(task: Task, system: System) -> Iterator[Message]:
 
 def _simulate(task: Task, system: System) -> Iterator[Message]:
     from mbsym.picture import picture
-    from mbsym.report.viewer.motion import motion, motion_json
+    from mbsym.report.viewer.page import motion, motion_json
     from mbsym.simulation import Request
     from mbsym.simulation.request import read_values
 
@@ -195,7 +195,7 @@ def _simulate(task: Task, system: System) -> Iterator[Message]:
 
 
 def _equilibria(task: Task, system: System) -> Iterator[Message]:
-    from mbsym.report.viewer.resting import at_rest, at_rest_json
+    from mbsym.report.viewer.page import at_rest, at_rest_json
 
     yield {"kind": "progress", "words": "relative equilibria are looked for"}
     yield {"kind": "equilibria", "value": at_rest_json(at_rest(system, _numbers(task)))}

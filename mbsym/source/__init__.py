@@ -13,15 +13,15 @@ from mbsym.source.render import render, render_option  # not later: its module h
 
 if TYPE_CHECKING:
     from mbsym.source.document import load, read
-    from mbsym.source.recognition import is_description
     from mbsym.source.schema import json_schema
+    from mbsym.source.text_lines import is_description
     from mbsym.source.text_writer import to_text
     from mbsym.source.yaml_writer import to_yaml
 
 __all__ = ["is_description", "json_schema", "load", "read", "render", "render_option", "to_text", "to_yaml"]
 
 _PLACES = {
-    "is_description": "recognition",
+    "is_description": "text_lines",
     "json_schema": "schema",
     "load": "document",
     "read": "document",

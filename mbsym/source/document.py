@@ -13,7 +13,7 @@ from mbsym.expressions.place import Complaint, Complaints
 from mbsym.model.system import System
 from mbsym.source.builder import build
 from mbsym.source.placed import MAX_TEXT, Node, TooManyComplaints, check_characters, normalised
-from mbsym.source.recognition import is_text
+from mbsym.source.text_lines import is_text
 from mbsym.source.text_reader import read_text
 from mbsym.source.yaml_reader import Extent, read_yaml
 

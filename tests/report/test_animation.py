@@ -27,7 +27,7 @@ from mbsym.report.figures.animation_gif import MOST, TALL, WIDE, animation_gif
 from mbsym.report.figures.animation_page import animation_page, run_sentences
 from mbsym.report.figures.figures import figures
 from mbsym.report.targets import TARGETS
-from mbsym.report.viewer.motion import motion_of
+from mbsym.report.viewer.page import motion_of
 from mbsym.simulation import Simulation
 
 

@@ -11,7 +11,7 @@ from click.testing import CliRunner
 from mbsym.expressions.message import Message
 from mbsym.report.language import Language
 from mbsym.source import read
-from mbsym.source.recognition import language_of
+from mbsym.source.text_lines import language_of
 from mbsym_cli.main import main
 
 WRONG = """mbsym: 1

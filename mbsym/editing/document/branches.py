@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from itertools import count
 
-from mbsym.editing.document import understood
+from mbsym.editing.document import view
 from mbsym.editing.document.meaning import Json, Meant, setting, word_of
 from mbsym.editing.document.primitives import Primitive, Remove, Shift
 from mbsym.editing.document.words import body_renamed, pattern, places, words_of
@@ -140,7 +140,7 @@ def reattach(found: Written, operation: Json) -> Meant:
 def own_names(found: Written, tree: Mapping, index: int) -> list[str]:
     """Coordinates, speeds and vectors that a body declares."""
     body = node_at(tree, ("bodies", index))
-    own = [] if body is None else understood.coordinates_of(found, tree, body, index)
+    own = [] if body is None else view.coordinates_of(found, tree, body, index)
     for key in ("speeds", "orientation"):
         node = None if body is None else child(body, key)
         own += [entry.key.text for entry in node.entries] if isinstance(node, Mapping) else []

@@ -15,8 +15,7 @@ import numpy as np
 from mbsym.numerics.kernels.lanes import DOUBLE, Lanes, wide_scalar
 from mbsym.numerics.kernels.writer import INTEGER, POINTER, Value
 from mbsym.numerics.methods.marching import GROWTH, INTEGRAL, SAFETY, SHRINKAGE
-from mbsym.numerics.methods.stages import Stages, add_compensated
-from mbsym.numerics.methods.tableaux import Tableau
+from mbsym.numerics.methods.tableaux import Stages, Tableau, add_compensated
 
 #: Rows of ``clock``: a vector each.
 TIME, CARRY, START, LAST, STEP, PREVIOUS, NEXT, STEPS, REJECTED, FRESH, CAREFUL, INFINITE, DEAD = range(13)

@@ -43,8 +43,7 @@ from mbsym.numerics.kernels.lanes import library
 from mbsym.numerics.kernels.llvm import Library, kernel
 from mbsym.numerics.methods.interface import BLOW_UP, LARGEST, STEP_LIMIT, STUCK, Setting
 from mbsym.numerics.methods.runge_kutta import OPERATIONS_AT_A_TIME
-from mbsym.numerics.methods.stages import address, aligned
-from mbsym.numerics.methods.tableaux import DOP853, RK4, RK45, Tableau
+from mbsym.numerics.methods.tableaux import DOP853, RK4, RK45, Tableau, address, aligned
 
 #: The methods that run side by side.
 TABLEAUX = {tableau.name: tableau for tableau in (DOP853, RK45, RK4)}

@@ -18,7 +18,7 @@ import numpy as np
 
 from mbsym.numerics.kernels.llvm import Scalar
 from mbsym.numerics.kernels.writer import INTEGER, POINTER, Function, Value
-from mbsym.numerics.methods.stages import (
+from mbsym.numerics.methods.tableaux import (
     ABSOLUTE,
     BASE,
     CAREFUL,
@@ -43,10 +43,10 @@ from mbsym.numerics.methods.stages import (
     TIME_CARRY,
     UNTIL,
     Stages,
+    Tableau,
     add_compensated,
     clock_dtype,
 )
-from mbsym.numerics.methods.tableaux import Tableau
 
 #: Newton's steps to the constraints after every step: the first leaves the square of what the second has to do.
 LED_BACK = 2

@@ -15,7 +15,7 @@ from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.kernels.llvm import Scalar
 from mbsym.numerics.kernels.writer import INTEGER, POINTER, Function, Value, clock_kind
-from mbsym.numerics.methods.stages import add_compensated
+from mbsym.numerics.methods.tableaux import add_compensated
 from mbsym.numerics.scenario import PRECISION, rounded
 from mbsym.numerics.specialise import Specialised, substituted
 

@@ -21,7 +21,7 @@ from fractions import Fraction
 from mbsym.numerics.kernels.llvm import Scalar
 from mbsym.numerics.kernels.writer import INTEGER, POINTER, Function, Value
 from mbsym.numerics.methods.marching import ARGUMENTS
-from mbsym.numerics.methods.stages import (
+from mbsym.numerics.methods.tableaux import (
     EVALUATIONS,
     FRESH,
     LAST,
@@ -34,8 +34,8 @@ from mbsym.numerics.methods.stages import (
     TIME,
     UNTIL,
     Stages,
+    Tableau,
 )
-from mbsym.numerics.methods.tableaux import Tableau
 
 
 def terms_of(tableau: Tableau) -> int:

@@ -38,10 +38,12 @@ from mbsym.numerics.methods.led import nearly_singular
 from mbsym.numerics.methods.marching import adaptive_text, fixed_text
 from mbsym.numerics.methods.nested import Nested
 from mbsym.numerics.methods.rows import dense_text, terms_of
-from mbsym.numerics.methods.stages import (
+from mbsym.numerics.methods.stepping import Stepping
+from mbsym.numerics.methods.tableaux import (
     ABSOLUTE,
     BASE,
     CAREFUL,
+    DOP853,
     EVALUATIONS,
     FRESH,
     INFINITE,
@@ -55,6 +57,8 @@ from mbsym.numerics.methods.stages import (
     REJECTED,
     RELATIVE,
     REPLY,
+    RK4,
+    RK45,
     SINGULARLY,
     SLACK,
     START,
@@ -64,13 +68,12 @@ from mbsym.numerics.methods.stages import (
     TIME,
     TIME_CARRY,
     UNTIL,
+    Tableau,
     address,
     aligned,
     clock_dtype,
     initial_state,
 )
-from mbsym.numerics.methods.stepping import Stepping
-from mbsym.numerics.methods.tableaux import DOP853, RK4, RK45, Tableau
 
 #: Machine code is left after about so many operations, so that Ctrl-C and progress bars work.
 OPERATIONS_AT_A_TIME = 20_000_000

@@ -66,8 +66,8 @@ from mbsym.numerics.methods.midpoint_code import (
 )
 from mbsym.numerics.methods.nested import Nested, hermite
 from mbsym.numerics.methods.runge_kutta import MISSED, OPERATIONS_AT_A_TIME
-from mbsym.numerics.methods.stages import address, clock_dtype, initial_state
 from mbsym.numerics.methods.stepping import Stepping
+from mbsym.numerics.methods.tableaux import address, clock_dtype, initial_state
 from mbsym.numerics.scenario import PRECISION, rounded
 
 

@@ -35,8 +35,8 @@ from mbsym.numerics.methods.interface import (
 )
 from mbsym.numerics.methods.kept import once
 from mbsym.numerics.methods.led import lead, nearly_singular
-from mbsym.numerics.methods.stages import exact_number, initial_state
 from mbsym.numerics.methods.stepping import Stepping
+from mbsym.numerics.methods.tableaux import exact_number, initial_state
 
 #: Beyond so many operations heyoka is told to compile loops instead of straight code, which is slower to run.
 STRAIGHT = 100

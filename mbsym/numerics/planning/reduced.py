@@ -22,7 +22,7 @@ from mbsym.mechanics.states import SEED
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import Breakdown, Method, Passed, Piece, Run, Setting, met_by
 from mbsym.numerics.methods.kept import compiled_kernel
-from mbsym.numerics.methods.stages import exact_number
+from mbsym.numerics.methods.tableaux import exact_number
 from mbsym.numerics.planning.reduction import Reduction, resting
 
 #: A coordinate that is accelerated by more than this part of the greatest acceleration is pushed.

@@ -48,6 +48,7 @@ from mbsym.problems.relative_equilibria.listing import (
     CERTIFIED,
     ELSEWHERE,
     EXACT,
+    STARTS,
     CoordinateValue,
     Equilibria,
     EquilibriumFamily,
@@ -57,7 +58,6 @@ from mbsym.problems.relative_equilibria.listing import (
 )
 from mbsym.problems.relative_equilibria.oriented import orientations
 from mbsym.problems.relative_equilibria.place import PRECISION, Place, Unknowns, angle_of, exact_rates
-from mbsym.problems.relative_equilibria.sampling import STARTS
 from mbsym.problems.relative_equilibria.search import WITHIN, SearchInBoxes
 from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.word import Word

@@ -11,10 +11,8 @@ from flint import arb, arb_mat, ctx
 from mbsym.algebra import krawczyk
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message, joined
-from mbsym.problems.relative_equilibria.candidates import Candidate, candidates, only_root
-from mbsym.problems.relative_equilibria.listing import CERTIFIED, EXACT, Listing, short
-from mbsym.problems.relative_equilibria.place import PRECISION, Place, exact_rates
-from mbsym.problems.relative_equilibria.sampling import STARTS, from_many_points
+from mbsym.problems.relative_equilibria.listing import CERTIFIED, EXACT, STARTS, Listing, from_many_points, short
+from mbsym.problems.relative_equilibria.place import PRECISION, Candidate, Place, candidates, exact_rates, only_root
 
 #: Plain coordinates that no formula bounds are searched for in [-WITHIN, WITHIN], where no exact solution is possible.
 WITHIN = 10.0

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from mbsym.expressions.message import worded
 from mbsym.problems.checks import Check
 from mbsym.report.content import Block, Graded, Heading, Inline, Said, Table, TableColumn, paragraph
-from mbsym.report.words.verdicts import grade
+from mbsym.report.words.claims import grade
 
 if TYPE_CHECKING:
     from mbsym.report.results import Results

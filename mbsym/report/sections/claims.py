@@ -27,8 +27,7 @@ from mbsym.report.content import (
     Text,
     paragraph,
 )
-from mbsym.report.words.claims import ClaimLine, claim_line, counterexample, repair, titles, together
-from mbsym.report.words.verdicts import grade
+from mbsym.report.words.claims import ClaimLine, claim_line, counterexample, grade, repair, titles, together
 
 if TYPE_CHECKING:
     from mbsym.report.results import Results

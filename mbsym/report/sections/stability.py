@@ -65,7 +65,7 @@ from mbsym.report.documents import parts
 from mbsym.report.documents.results import stability as doc
 from mbsym.report.plain import Write
 from mbsym.report.references import keys_of, theorems_named
-from mbsym.report.words.verdicts import concluded, decided, verdict
+from mbsym.report.words.claims import concluded, decided, verdict
 
 if TYPE_CHECKING:
     from mbsym.report.results import Results

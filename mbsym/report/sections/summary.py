@@ -49,9 +49,8 @@ from mbsym.report.sections.equilibrium import exists_if
 from mbsym.report.sections.integrals import CONSTANT
 from mbsym.report.sections.stability import condition_keys
 from mbsym.report.sections.system import unperturbed_motion
-from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line, titles
+from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line, decided, grade, titles, verdict, where
 from mbsym.report.words.stabilisation_words import controllability
-from mbsym.report.words.verdicts import decided, grade, verdict, where
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis

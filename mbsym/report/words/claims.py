@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
 from mbsym.expressions.message import Message, worded
 from mbsym.expressions.tree import text
 from mbsym.formulas.formula import Formula
+from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
 from mbsym.problems.claims import DIFFERS, FACTOR, SCALED, UNDECIDED, ClaimResult, Part
 from mbsym.problems.claims.counterexample import THE_MOTION, Counterexample
 from mbsym.problems.claims.result import CONDITION, ENTRY
-from mbsym.report.content import Inline, Phrase, Relation, Said, joined, say
+from mbsym.problems.stability import Stability
+from mbsym.problems.stability.verdict import Verdict
+from mbsym.problems.stability.word import Word
+from mbsym.report.content import Inline, Phrase, Relation, Said, Strong, joined, say
 from mbsym.report.plain_writer import Writer
 
 #: Differences longer than this are counted, not printed.
@@ -165,3 +169,43 @@ def _shown(value: Formula) -> Formula | Said:
     """A formula in a line of text, or its length."""
     short = len(str(value)) <= LONGEST_DIFFERENCE
     return value if short else say("([[count]] terms; see the reports)", count=str(value.terms))
+
+
+# Verdicts and outcomes as reports say them.
+
+
+_GOOD = {*(word for word in Word if word.stable), EXACT, NUMERICAL, HELD}
+_BAD = {Word.UNSTABLE, Word.UNSTABLE_BUT_BORDERS, FAILED, REFUTED}
+
+
+def grade(word: str) -> str:
+    """good, bad or open: how a verdict or an outcome is coloured; the word itself says it."""
+    return "good" if word in _GOOD else "bad" if word in _BAD else "open"
+
+
+def concluded(word: Word, theorems: Sequence[str], key: str = "") -> tuple[Inline, ...]:
+    """``stable (Routh)``."""
+    return Strong(worded(word), grade(word), key), *_by(theorems)
+
+
+def where(word: Word, theorems: Sequence[str]) -> tuple[Inline, ...]:
+    """The same of what holds under conditions: it is neither good nor bad."""
+    return worded(word), *_by(theorems)
+
+
+def _by(theorems: Sequence[str]) -> tuple[Inline, ...]:
+    names = [part for name in theorems for part in (", ", worded(name))][1:]
+    return (" (", *names, ")") if names else ()
+
+
+def verdict(found: Verdict, key: str = "") -> tuple[Inline, ...]:
+    """Its word, with its theorems."""
+    return concluded(found.word, found.theorems, key)
+
+
+def decided(found: Stability) -> str:
+    """How the verdict at given values was found, if it is one: irrational values have enclosures."""
+    if found.numerical is None or found.numerical.word == Word.UNDECIDED:
+        return ""
+    enclosed = any(part.theory.at_point is None for part in found.subsystems)
+    return ", decided by rigorous enclosures" if enclosed else ", decided exactly"
