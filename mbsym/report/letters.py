@@ -20,7 +20,8 @@ def letters_of(system: System, asked: tuple[str, ...] | None = None) -> Letters:
     """
     known: dict[tuple[str, ...] | None, Letters] = vars(system).setdefault("_letters", {})
     if asked not in known:
-        given = tuple((one.name, one.value) for one in (*system.notation, *system.abbreviations))
+        notation = [(one.name, one.value) for one in system.notation]
+        given = (*notation, *((one.name, one.value) for one in system.abbreviations))
         known[asked] = Letters(given, asked)
     return known[asked]
 
